@@ -1,0 +1,39 @@
+"""The compiled form of the kernel, where one was put beside the source and fits the machine; else the source itself runs.
+
+Both give the same bits. ``VIBROIMPACT_PURE_PYTHON=1`` in the environment asks for the source.
+"""
+
+import ctypes
+import os
+import platform
+import sys
+
+LIBRARIES = {("linux", "x86_64"): "kernel-x86_64-linux.so", ("win32", "amd64"): "kernel-x86_64-windows.dll"}
+
+
+def load_compiled(folder):
+    """Entry points ``(initialize, advance)`` of the library in ``folder``, or None.
+
+    Parameters
+    ----------
+    folder : str
+        Where the library would lie.
+
+    Returns
+    -------
+    tuple of ctypes functions, or None
+        Each takes an array of c_double and a time, and returns a code.
+    """
+    name = LIBRARIES.get((sys.platform, platform.machine().lower()))
+    path = os.path.join(folder, name or "none")
+    if os.environ.get("VIBROIMPACT_PURE_PYTHON", "0") not in ("", "0") or not os.path.isfile(path):
+        return None
+    try:
+        library = ctypes.CDLL(path)
+        entries = library.initialize, library.advance
+    except (OSError, AttributeError):  # another C library, a damaged file: the source runs everywhere
+        return None
+    for entry in entries:
+        entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
+        entry.restype = ctypes.c_int
+    return entries

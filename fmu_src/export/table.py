@@ -1,0 +1,115 @@
+"""What a model tells the world: its variables, once, for the slave, the XML, the documentation and the tests.
+
+Standard library only: this file travels inside the FMU.
+"""
+
+from dataclasses import dataclass
+from math import isfinite
+
+REAL, INTEGER, BOOLEAN = "Real", "Integer", "Boolean"
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable of an FMU.
+
+    Attributes
+    ----------
+    name, description, unit : str
+        As in ``modelDescription.xml``; unit ``"1"`` is dimensionless, ``""`` for what has none.
+    slot : int
+        Place in the kernel's memory, and the FMI value reference.
+    causality, variability, initial : str
+        FMI 2.0 attributes.
+    type : str
+        REAL, INTEGER or BOOLEAN.
+    start : float
+        Start value, for all that is not calculated.
+    minimum, maximum : float or None
+        Allowed range, both included.
+    nominal : float
+        Order of magnitude.
+    initial_dependencies : tuple of str
+        The variables known at the start that the calculated initial value depends on.
+    """
+
+    name: str
+    slot: int
+    description: str
+    causality: str
+    unit: str = ""
+    variability: str = "continuous"
+    initial: str = ""
+    type: str = REAL
+    start: float = 0.0
+    minimum: "float | None" = None
+    maximum: "float | None" = None
+    nominal: float = 1.0
+    initial_dependencies: tuple = ()
+
+    @property
+    def calculated(self):
+        """Whether the FMU computes the variable, so that nobody can set it."""
+        return self.causality == "output"
+
+    @property
+    def fixed(self):
+        """Whether the variable can be set before the end of initialisation only."""
+        return self.variability == "fixed"
+
+    def problem(self, value):
+        """Why ``value`` cannot be the variable's, as one line; an empty string where it can."""
+        if self.type == BOOLEAN:
+            return ""
+        low = self.minimum is None or value >= self.minimum
+        high = self.maximum is None or value <= self.maximum
+        if isfinite(value) and low and high:
+            return ""
+        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+        return f"{self.name} = {value!r}{unit}: allowed is {self.range_text()}"
+
+    def range_text(self):
+        """The allowed range in words."""
+        if self.type == BOOLEAN:
+            return "true or false"
+        if self.minimum is None and self.maximum is None:
+            return "every finite number"
+        lower = "" if self.minimum is None else f"{self.minimum!r} <= "
+        upper = "" if self.maximum is None else f" <= {self.maximum!r}"
+        return f"{lower}{self.name}{upper}"
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model as the exporters see it.
+
+    Attributes
+    ----------
+    name, description, version, author, license : str
+    variables : tuple of Variable
+        In the order of the slots, from 0 without gaps.
+    memory_size : int
+        Number of floats of an instance's memory.
+    time_slot : int
+        Slot of the communication point reached.
+    initialize, advance : callable
+        The kernel's entry points, ``(memory, time) -> code``; 0 is success.
+    explain : callable
+        ``(memory, code, time) -> str``: what a code says, as one line.
+    stop_time, step_size : float
+        Default experiment, s.
+    """
+
+    name: str
+    description: str
+    version: str
+    author: str
+    license: str
+    variables: tuple
+    memory_size: int
+    time_slot: int
+    initialize: object
+    advance: object
+    explain: object
+    stop_time: float
+    step_size: float

@@ -1,0 +1,1 @@
+"""``TwoMassImpactOscillator``: variable table, error texts, documentation and reference results."""

@@ -1,0 +1,41 @@
+"""Impact: Newton's restitution (15) in the corrected form, and the end of chattering (17)."""
+
+from . import memory as at
+
+
+def common_velocity(m, v1, v2):
+    """Velocity of both masses after a perfectly plastic impact: momentum is kept."""
+    return (v1 + m[at.MU] * v2) / (1.0 + m[at.MU])
+
+
+def restitution(m, v1, v2):
+    """Velocities after an impact, (15) with ``(1+e)/(1+mu)`` in its second line: momentum kept, gap velocity times -e."""
+    common = common_velocity(m, v1, v2)
+    part = m[at.E] * (v1 - v2) / (1.0 + m[at.MU])
+    return common - m[at.MU] * part, common + part
+
+
+def sticks(m, separation, force):
+    """Whether chattering ends here, (17) without a velocity scale.
+
+    The masses are pressed together by ``force`` (18) < 0 and would part with the velocity ``separation``: the next flight, a
+    parabola of duration ``2 separation/|force|``, would last less than gamma. Both sides scale with the amplitude.
+
+    Parameters
+    ----------
+    separation : float
+        Gap velocity after the impact, >= 0.
+    force : float
+        f of (18) at the common velocity: the gap's acceleration.
+    """
+    return force < 0.0 and 2.0 * separation < m[at.GAMMA] * -force
+
+
+def count_impact(m, time, closing, lost):
+    """Enter an impact into the ledger; ``closing`` is the velocity before it (m per unit of tau), ``lost`` the part of its square that is lost."""
+    m[at.IMPACT_COUNT] += 1.0
+    m[at.IMPACT_TIME] = time
+    velocity = closing * m[at.OMEGA]
+    m[at.IMPACT_VELOCITY] = velocity
+    reduced_mass = m[at.M2] / (1.0 + m[at.MU])
+    m[at.IMPACT_ENERGY] += 0.5 * reduced_mass * velocity * velocity * lost

@@ -1,0 +1,34 @@
+"""The largest gap over a piece of flight: from summit to summit, with the certified steps of the root finder."""
+
+from . import memory as at
+from .barrier import evaluate
+from .roots import clear_step, next_step
+
+SMALLEST = 1e-9  # least progress, in tau: a summit is flat, nothing is lost
+
+
+def largest_gap(m, start, stop, highest):
+    """The larger of ``highest`` and the largest gap in ``start <= tau <= stop`` of the present flight.
+
+    Climbing, the walk goes to the first root of the gap's slope; elsewhere to the first point that rises above what is known.
+    """
+    tau = start
+    summit = False
+    while m[at.WORK] < m[at.WORK_LIMIT]:
+        h0, h1, h2, h3, bound_3, bound_4 = evaluate(m, tau)
+        if h0 > highest:
+            highest = h0
+        if tau >= stop:
+            break
+        if h1 > 0.0 and not summit:
+            step, summit = next_step(h1, h2, h3, bound_4, tau)
+        elif highest > h0:
+            step, _ = next_step(highest - h0, -h1, -h2, bound_3, tau)
+            summit = False
+        else:
+            step = clear_step(0.0, -h1 if h1 < 0.0 else 0.0, -h2, bound_3)
+            summit = False
+            if step < SMALLEST:
+                step = SMALLEST
+        tau = tau + step if tau + step < stop else stop
+    return highest

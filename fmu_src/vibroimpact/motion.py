@@ -1,0 +1,184 @@
+"""The states and their sequence (1): flight, permanent contact, glued.
+
+A state begins with its initial conditions (9), from which its closed form and its barrier follow; it ends at the barrier's first
+root, found once and kept. Communication points only look at it. Which state follows is decided on the boundary by the gap, then its
+velocity, then the first derivative that does not vanish.
+"""
+
+from . import memory as at
+from .barrier import bounds, evaluate, set_contact_force, set_gap
+from .contact import contact_force, first_derivative
+from .elementary import fraction, sincos_turns
+from .excitation import cubic_at, set_cubic_response
+from .impact import common_velocity, count_impact, restitution, sticks
+from .response import displacement, set_free
+from .roots import INFINITE, clear_step
+
+
+def state_at(m, tau):
+    """Displacements and velocities ``tau`` after the state's start, (10).
+
+    Returns
+    -------
+    x1, v1, x2, v2 : float
+        m, and m per unit of tau; ``x2 >= x1``.
+    """
+    sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
+    if m[at.MODE] == at.FLIGHT:
+        x1, v1 = displacement(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, tau, sine, cosine)
+        x2, v2 = displacement(m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, tau, sine, cosine)
+        if x2 < x1:  # by rounding, at the very end of a flight
+            x1 = x2 = common_position(m, x1, x2)
+        return x1, v1, x2, v2
+    x3, v3 = displacement(m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, tau, sine, cosine)
+    return x3, v3, x3, v3
+
+
+def common_position(m, x1, x2):
+    """The centre of mass, where both masses are put at an impact: they differ by rounding alone."""
+    return (x1 + m[at.MU] * x2) / (1.0 + m[at.MU])
+
+
+def move_origin(m, tau):
+    """Let a new state begin ``tau`` after the start of the present one, (5), without losing digits over millions of states."""
+    total = m[at.ORIGIN] + tau
+    part = total - m[at.ORIGIN]
+    error = (m[at.ORIGIN] - (total - part)) + (tau - part)
+    low = m[at.ORIGIN_LOW] + error
+    m[at.ORIGIN] = total + low
+    m[at.ORIGIN_LOW] = low - (m[at.ORIGIN] - total)
+    m[at.TURN] = fraction(m[at.TURN] + m[at.ETA_TURNS] * tau)
+    m[at.SEGMENT_AGE] += tau
+
+
+def begin(m, x1, v1, x2, v2, lowest):
+    """Begin the state that follows from displacements and velocities.
+
+    Parameters
+    ----------
+    m : flat memory
+        Origin and phase already moved to the new state's start.
+    x1, v1, x2, v2 : float
+        m, and m per unit of tau.
+    lowest : int
+        First derivative of f that may decide on the boundary: 1 where f is known to vanish, at a release, else 0.
+    """
+    if m[at.MODE] == at.GLUED:
+        begin_common(m, at.GLUED, x1, v1)
+        m[at.CLEAR] = INFINITE
+        return
+    if x2 > x1:
+        begin_flight(m, x1, v1, x2, v2)
+        return
+    x = common_position(m, x1, x2) if x2 < x1 else x1
+    if v1 > v2:
+        v1, v2 = collide(m, x, v1, v2)
+    if v2 > v1:
+        begin_flight(m, x, v1, x, v2)
+        leave(m, 1, v2 - v1, gap_acceleration(m, x, v1, v2))
+        return
+    order, value = first_derivative(m, x, v1, lowest)
+    if value > 0.0:
+        begin_flight(m, x, v1, x, v1)
+        leave(m, order + 2, value, 0.0)
+        return
+    if m[at.MODE] == at.FLIGHT:
+        m[at.CONTACT_COUNT] += 1.0
+    begin_common(m, at.CONTACT, x, v1)
+    if order == 1:
+        _, _, curvature, _, _, _ = evaluate(m, 0.0)
+        leave(m, 1, -value, curvature)
+    else:
+        leave(m, order, -value, 0.0)
+
+
+def gap_acceleration(m, x, v1, v2):
+    """Gap's second derivative with both masses at ``x``: what they do not share of (6)."""
+    pull_1 = 2.0 * m[at.BRANCH_1 + at.DAMPING] * v1 + m[at.BRANCH_1 + at.OMEGA_SQUARED] * x
+    pull_2 = 2.0 * m[at.BRANCH_2 + at.DAMPING] * v2 + m[at.BRANCH_2 + at.OMEGA_SQUARED] * x
+    return pull_1 - pull_2
+
+
+def collide(m, x, v1, v2):
+    """Velocities after an impact; both the same where chattering ends in permanent contact."""
+    closing = v1 - v2
+    common = common_velocity(m, v1, v2)
+    time = m[at.START_TIME] + (m[at.ORIGIN] + m[at.ORIGIN_LOW]) / m[at.OMEGA]
+    if sticks(m, m[at.E] * closing, contact_force(m, x, common)):
+        count_impact(m, time, closing, 1.0)
+        return common, common
+    count_impact(m, time, closing, (1.0 - m[at.E]) * (1.0 + m[at.E]))
+    return restitution(m, v1, v2)
+
+
+def begin_flight(m, x1, v1, x2, v2):
+    """A flight from initial conditions; its barrier is the gap."""
+    m[at.MODE] = at.FLIGHT
+    sine, cosine = sincos_turns(m[at.TURN])
+    cubic = cubic_at(m, m[at.SEGMENT_AGE])
+    set_cubic_response(m, at.BRANCH_1, at.CUBIC_A, cubic)
+    set_cubic_response(m, at.BRANCH_2, at.CUBIC_B, cubic)
+    set_free(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
+    set_free(m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
+    set_gap(m)
+    open_end(m)
+
+
+def begin_common(m, mode, x, v):
+    """Both masses as one, in permanent contact or glued; its barrier is the contact force."""
+    m[at.MODE] = mode
+    sine, cosine = sincos_turns(m[at.TURN])
+    set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.SEGMENT_AGE]))
+    set_free(m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
+    set_contact_force(m)
+    open_end(m)
+
+
+def open_end(m):
+    """The state's end is not known yet."""
+    m[at.CLEAR] = 0.0
+    m[at.END] = INFINITE
+    m[at.END_KIND] = at.END_OPEN
+
+
+def leave(m, order, value, curvature):
+    """Leave a start on the boundary: no root lies before CLEAR.
+
+    Parameters
+    ----------
+    m : flat memory
+        With the new state's barrier.
+    order : int
+        Of the barrier's first derivative that does not vanish; -1 if all vanish.
+    value : float
+        That derivative, > 0.
+    curvature : float
+        The second derivative, where ``order`` is 1.
+    """
+    if order == 0:
+        return
+    if order < 0:
+        m[at.CLEAR] = INFINITE
+    elif order <= 2:
+        branch = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
+        a, b, c = bounds(m, branch, 3)
+        slope = value if order == 1 else 0.0
+        m[at.CLEAR] = clear_step(0.0, slope, curvature if order == 1 else value, a + b + c)
+    else:
+        branch = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
+        a, b, c = bounds(m, branch, order + 1)
+        bound = a + b + c  # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of zero
+        m[at.CLEAR] = 0.5 * (order + 1) * value / bound if bound > 0.0 else INFINITE
+
+
+def end_state(m):
+    """Carry out the end of the present state and begin the next one."""
+    tau = m[at.END]
+    x1, v1, x2, v2 = state_at(m, tau)
+    move_origin(m, tau)
+    event = m[at.END_KIND] == at.END_EVENT
+    if event and m[at.MODE] == at.FLIGHT:
+        x = common_position(m, x1, x2)
+        begin(m, x, v1, x, v2, 0)
+    else:
+        begin(m, x1, v1, x2, v2, 1 if event else 0)

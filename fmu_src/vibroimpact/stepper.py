@@ -1,0 +1,112 @@
+"""The two entry points: an instance is one flat memory, initialised once and then advanced from one communication point to the next."""
+
+from . import memory as at
+from .excitation import begin_segment, inputs_changed
+from .maximum import largest_gap
+from .motion import begin, end_state, move_origin, state_at
+from .elementary import TWO_PI, fraction
+from .outputs import momentum, write, write_impulse
+from .parameters import derive
+from .roots import walk
+
+WORK_BASE = 100000.0  # evaluations of the barrier a step may take whatever its length,
+WORK_RATE = 64.0  # and in a time gamma, the shortest flight that is told from sticking,
+WORK_MOST = 1e8  # and at the very most: some ten seconds, compiled
+
+
+def initialize(m, time):
+    """Begin at ``time`` (s) from the parameters, start values and inputs in ``m``.
+
+    Returns
+    -------
+    int
+        OK, or one of the codes of :mod:`.memory`.
+    """
+    derive(m)
+    m[at.START_TIME] = time
+    m[at.TIME] = time
+    for i in range(at.ORIGIN, at.SIZE):
+        if i != at.START_TIME:
+            m[i] = 0.0
+    for i in range(at.IMPACT_COUNT, at.TIME):
+        m[i] = 0.0
+    m[at.BOX_IMPULSE] = 0.0
+    m[at.BOX_IMPULSE_MOMENT] = 0.0
+    if m[at.X2_START] < m[at.X1_START]:
+        return at.START_OVERLAP
+    if m[at.BONDED] != 0.0 and (m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]):
+        return at.START_BONDED
+    m[at.TURN] = fraction(m[at.PHASE_START] / TWO_PI)
+    code = begin_segment(m)
+    if code != at.OK:
+        return code
+    m[at.WORK_LIMIT] = WORK_BASE
+    m[at.MODE] = at.GLUED if m[at.BONDED] != 0.0 else at.CONTACT
+    begin(m, m[at.X1_START], m[at.V1_START] / m[at.OMEGA], m[at.X2_START], m[at.V2_START] / m[at.OMEGA], 0)
+    write(m, 0.0)
+    m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
+    return at.OK
+
+
+def local_time(m, time):
+    """Time since the present state's start, in units of tau (4)."""
+    tau = (m[at.OMEGA] * (time - m[at.START_TIME]) - m[at.ORIGIN]) - m[at.ORIGIN_LOW]
+    return tau if tau > 0.0 else 0.0
+
+
+def advance(m, time):
+    """Advance to the communication point ``time`` (s) with the inputs in ``m``.
+
+    Returns
+    -------
+    int
+        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be thrown away.
+    """
+    h = time - m[at.TIME]
+    fastest = max(m[at.FASTEST], m[at.BOX_FREQUENCY] / m[at.OMEGA])
+    m[at.WORK] = 0.0
+    m[at.WORK_LIMIT] = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA])
+    momentum_before, moment_before = momentum(m)
+    now = local_time(m, m[at.TIME])
+    turn = fraction(m[at.TURN] + m[at.ETA_TURNS] * now)
+    if inputs_changed(m):
+        code = renew_segment(m, now)
+        if code != at.OK:
+            return code
+        now = 0.0
+    tau = run_states(m, time, now)
+    if m[at.WORK] >= m[at.WORK_LIMIT]:
+        return at.UNFINISHED
+    m[at.TIME] = time
+    write(m, tau)
+    if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
+        m[at.X_REL_MAX] = m[at.X_REL]
+    write_impulse(m, h, momentum_before, moment_before, turn)
+    check = m[at.X1] + m[at.X2] + m[at.V1] + m[at.V2] + m[at.BOX_FORCE] + m[at.IMPACT_ENERGY]
+    return at.OK if check - check == 0.0 else at.NOT_FINITE
+
+
+def renew_segment(m, now):
+    """Begin a segment with the present inputs, ``now`` after the present state's start; positions and phase are continuous."""
+    x1, v1, x2, v2 = state_at(m, now)
+    move_origin(m, now)
+    code = begin_segment(m)
+    if code == at.OK:
+        begin(m, x1, v1, x2, v2, 0)
+    return code
+
+
+def run_states(m, time, now):
+    """Run through all states that end by ``time``; returns the present state's age there."""
+    watch = m[at.X_REL_MAX_ON] != 0.0
+    m[at.X_REL_MAX] = m[at.X_REL] if watch else 0.0
+    while True:
+        tau = local_time(m, time)
+        walk(m, tau)
+        stop = tau if m[at.END] > tau else m[at.END]
+        if watch and m[at.MODE] == at.FLIGHT:
+            m[at.X_REL_MAX] = largest_gap(m, now, stop, m[at.X_REL_MAX])
+        if m[at.END_KIND] == at.END_OPEN or m[at.END] > tau or m[at.WORK] >= m[at.WORK_LIMIT]:
+            return tau
+        end_state(m)
+        now = 0.0
