@@ -11,6 +11,9 @@ import sys
 LIBRARIES = {("linux", "x86_64"): "kernel-x86_64-linux.so", ("win32", "amd64"): "kernel-x86_64-windows.dll"}
 
 
+loaded = {}  # libraries of this process by path: ctypes makes new classes at every load
+
+
 def load_compiled(folder):
     """Entry points ``(initialize, advance)`` of the library in ``folder``, or None.
 
@@ -28,6 +31,8 @@ def load_compiled(folder):
     path = os.path.join(folder, name or "none")
     if os.environ.get("VIBROIMPACT_PURE_PYTHON", "0") not in ("", "0") or not os.path.isfile(path):
         return None
+    if path in loaded:
+        return loaded[path]
     try:
         library = ctypes.CDLL(path)
         entries = library.initialize, library.advance
@@ -36,4 +41,5 @@ def load_compiled(folder):
     for entry in entries:
         entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
         entry.restype = ctypes.c_int
+    loaded[path] = entries
     return entries

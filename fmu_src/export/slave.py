@@ -22,6 +22,11 @@ class FmuError(Exception):
     """A user's mistake or an unfinished step, as one line."""
 
 
+def keep(thing):
+    """Take one more reference to an object that pythonfmu is going to release once too often."""
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(thing))
+
+
 class Slave:
     """Mixed into pythonfmu's ``Fmi2Slave``; the subclass sets ``model`` (a :class:`.table.Model`) and ``fingerprint`` (str)."""
 
@@ -57,7 +62,7 @@ class Slave:
         """Give the call an error status, with ``text`` as its message."""
         self.report(text)
         for kept in (type(self), self, self.log_queue):
-            ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
+            keep(kept)
         raise FmuError(text.replace("%", "%%"))  # the text ends up as a printf format
 
     def complain(self, text):

@@ -1,0 +1,113 @@
+"""The pythonfmu form of a model: the Python kernel inside, with its compiled form beside it where one can be made.
+
+Two FMUs, or an FMU and its host, share modules of the same name in one process. So everything embedded lies in one package under a
+content-hashed name, the script bears the hash too, and pythonfmu builds in a process of its own.
+"""
+
+import logging
+import subprocess
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+
+import pythonfmu
+
+from .archive import fingerprint, guid_of, read_folder, write_archive
+from .compile_kernel import NoCompiler, compile_library
+from .documentation import documentation_files
+from .model_description import fmi2_xml
+
+log = logging.getLogger(__name__)
+ROOT = Path(__file__).resolve().parents[1]
+RUNTIME = ("__init__.py", "export/__init__.py", "export/table.py", "export/slave.py", "export/compiled.py")
+MODEL_FILES = ("__init__.py", "variables.py", "model.py")
+SCRIPT = '''"""The slave of {name}; the class has to be defined here, all else is in the package."""
+
+from pythonfmu.fmi2slave import Fmi2Slave
+
+from {package}.export.slave import Slave, keep
+from {package}.{folder}.model import MODEL
+
+keep(globals())  # pythonfmu runs this script, then releases its namespace, which it only borrowed
+
+
+class {name}(Slave, Fmi2Slave):
+    """{description}."""
+
+    model = MODEL
+    fingerprint = "{digest}"
+'''
+BUILD = """
+import sys
+from pythonfmu.builder import FmuBuilder
+script, package, target = sys.argv[1:]
+FmuBuilder.build_FMU(script, dest=target, project_files=[package])
+"""
+
+
+def embedded_sources(kernel, folder):
+    """Files of the embedded package, by their path in it."""
+    files = {name: (ROOT / name).read_bytes() for name in RUNTIME}
+    files.update({f"{folder}/{name}": (ROOT / folder / name).read_bytes() for name in MODEL_FILES})
+    files.update(read_folder(ROOT / kernel, f"{kernel}/"))
+    return files
+
+
+def source_digest(kernel, folder):
+    """Fingerprint of all that decides the numbers; the GUID is made of it."""
+    sources = embedded_sources(kernel, folder)
+    return fingerprint({**sources, "pythonfmu": pythonfmu.__version__.encode(), "script": SCRIPT.encode()})
+
+
+def guid(kernel, folder):
+    """The GUID an FMU of the present sources bears."""
+    return guid_of(source_digest(kernel, folder))
+
+
+def export(model, kernel, folder, target):
+    """Write ``target/NAME.fmu``.
+
+    Parameters
+    ----------
+    model : Model
+    kernel, folder : str
+        Packages below ``fmu_src``: the kernel's and the model's.
+    target : Path
+
+    Returns
+    -------
+    Path
+        The FMU.
+    """
+    sources = embedded_sources(kernel, folder)
+    digest = source_digest(kernel, folder)
+    with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
+        files = run_pythonfmu(model, folder, sources, digest, Path(scratch))
+    files["modelDescription.xml"] = fmi2_xml(model, guid_of(digest))
+    files.update(documentation_files(model, ROOT / folder, digest))
+    path = Path(target) / f"{model.name}.fmu"
+    write_archive(path, files)
+    return path
+
+
+def run_pythonfmu(model, folder, sources, digest, scratch):
+    """Let pythonfmu put script, package and its own binaries together; returns the archive's files."""
+    package = scratch / "source" / f"fmu_{digest[:12]}"
+    for name, content in sources.items():
+        (package / name).parent.mkdir(parents=True, exist_ok=True)
+        (package / name).write_bytes(content)
+    try:
+        compile_library(f"fmu_src.{folder}.model", package)
+    except NoCompiler as reason:
+        log.warning("%s: no compiled kernel, the FMU will run in pure Python: %s", model.name, reason)
+    script = scratch / "source" / f"{model.name}_{digest[:12]}.py"
+    text = SCRIPT.format(name=model.name, package=package.name, folder=folder, description=model.description, digest=digest)
+    script.write_text(text, encoding="utf-8")
+    built = scratch / "built.fmu"
+    command = [sys.executable, "-c", BUILD, str(script), str(package), str(built)]
+    done = subprocess.run(command, cwd=scratch, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(f"pythonfmu could not build {model.name}: {(done.stderr.strip().splitlines() or ['no reason given'])[-1]}")
+    with zipfile.ZipFile(built) as archive:
+        return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/") and "__pycache__" not in name}

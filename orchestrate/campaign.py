@@ -1,0 +1,94 @@
+"""Several sweeps side by side: one process each, a progress bar over all, every one resumable.
+
+A sweep is sequential by nature, each eta starts from the end of the last; different cases and directions share nothing.
+"""
+
+import multiprocessing
+import os
+import signal
+import sqlite3
+import time
+from concurrent.futures import FIRST_EXCEPTION, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+
+from tqdm import tqdm
+
+from .errors import UserError
+from .store import Journal
+from .sweep import run
+
+POLL = 0.2  # s between looks at the journals
+
+
+def journal_path(result):
+    """Where the journal of a result file lies."""
+    return Path(f"{result}.journal")
+
+
+def work(plan, fmu, result):
+    """One sweep in a worker process; the parent answers interrupts."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    journal = Journal(journal_path(result), plan.identity())
+    try:
+        run(plan, fmu, journal)
+    finally:
+        journal.close()
+
+
+def count(result):
+    """Rows in a sweep's journal, read while it is being written."""
+    try:
+        database = sqlite3.connect(f"file:{journal_path(result)}?mode=ro", uri=True, timeout=5.0)
+        try:
+            return database.execute("SELECT COUNT(*) FROM rows").fetchone()[0]
+        finally:
+            database.close()
+    except sqlite3.Error:
+        return 0
+
+
+def run_all(plans, fmu, results, jobs=None):
+    """Run plans on all cores until each has a complete journal.
+
+    Parameters
+    ----------
+    plans : list of Plan
+    fmu : path-like
+    results : list of Path
+        Result file of each plan.
+    jobs : int, optional
+        Processes at once; all cores by default.
+
+    Raises
+    ------
+    UserError
+        Of the first sweep that fails; the journals keep what was computed.
+    KeyboardInterrupt
+        After the workers were stopped.
+    """
+    total = sum(len(plan.etas) for plan in plans)
+    jobs = min(len(plans), jobs or os.cpu_count() or 1)
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(jobs, mp_context=context)
+    workers = getattr(pool, "_processes", {})
+    done_before = sum(map(count, results))
+    bar = tqdm(total=total, initial=done_before, unit="eta", desc="sweep", dynamic_ncols=True, smoothing=0.1)
+    try:
+        futures = [pool.submit(work, plan, fmu, result) for plan, result in zip(plans, results, strict=True)]
+        pending = set(futures)
+        while pending:
+            finished, pending = wait(pending, timeout=POLL, return_when=FIRST_EXCEPTION)
+            bar.update(sum(map(count, results)) - bar.n)
+            for future in finished:
+                future.result()
+    except BrokenProcessPool:
+        raise UserError("a worker process ended without a word (killed, or out of memory); the same command goes on from where it was") from None
+    except BaseException:
+        for process in list((workers or {}).values()):
+            process.terminate()
+        raise
+    finally:
+        bar.close()
+        pool.shutdown(wait=True, cancel_futures=True)
+        time.sleep(0)

@@ -1,0 +1,5 @@
+"""A user's mistake, as one line."""
+
+
+class UserError(Exception):
+    """Names the thing, its value and what is allowed; the command line prints it and exits with 2."""

@@ -1,0 +1,132 @@
+"""Results on disk: a journal while a run is under way, a NetCDF file when it is complete.
+
+The journal is an SQLite database, one row an eta, one transaction a row: a process killed at any moment loses the row it was computing, a
+full disk the row it was writing. The NetCDF file appears whole or not at all.
+"""
+
+import json
+import sqlite3
+from pathlib import Path
+
+import numpy as np
+
+from . import __version__
+from .errors import UserError
+
+
+class Journal:
+    """Rows of floats that belong to one run.
+
+    Parameters
+    ----------
+    path : Path
+    identity : dict
+        What decides the numbers; a journal of another identity is refused.
+    """
+
+    def __init__(self, path, identity):
+        self.path = Path(path)
+        text = json.dumps(identity, sort_keys=True)
+        try:
+            self._db = sqlite3.connect(self.path, timeout=30.0, isolation_level=None)
+            self._db.execute("PRAGMA journal_mode=WAL")
+            self._db.execute("CREATE TABLE IF NOT EXISTS identity (text TEXT)")
+            self._db.execute("CREATE TABLE IF NOT EXISTS rows (i INTEGER PRIMARY KEY, data BLOB)")
+            self._db.execute("INSERT INTO identity SELECT ? WHERE NOT EXISTS (SELECT * FROM identity)", (text,))
+            found = self._db.execute("SELECT text FROM identity").fetchone()[0]
+        except sqlite3.Error as error:
+            raise UserError(f"{self.path}: not usable as a journal ({error}); allowed is a writable place, or a journal of this run") from None
+        if found != text:
+            self.close()
+            raise UserError(f"{self.path}: the journal of another run ({difference(json.loads(found), identity)}); remove it or choose another --output")
+
+    @staticmethod
+    def normal(identity):
+        """An identity as it comes back from disk."""
+        return json.loads(json.dumps(identity))
+
+    def close(self):
+        """Close the database."""
+        self._db.close()
+
+    def length(self):
+        """Number of rows; they are entered in order, so this is the next index."""
+        return self._db.execute("SELECT COUNT(*) FROM rows").fetchone()[0]
+
+    def row(self, index):
+        """One row, as an ndarray of floats."""
+        return np.frombuffer(self._db.execute("SELECT data FROM rows WHERE i = ?", (index,)).fetchone()[0])
+
+    def rows(self):
+        """All rows, shape (length, row length)."""
+        return np.array([np.frombuffer(data) for (data,) in self._db.execute("SELECT data FROM rows ORDER BY i")])
+
+    def append(self, index, row):
+        """Enter a row."""
+        try:
+            self._db.execute("INSERT INTO rows VALUES (?, ?)", (index, np.asarray(row, dtype=float).tobytes()))
+        except sqlite3.Error as error:
+            raise UserError(f"{self.path}: cannot be written ({error}); what was computed before is kept, the same command goes on from there") from None
+
+    def remove(self):
+        """Delete the journal, once its contents are in a result file."""
+        self.close()
+        for suffix in ("", "-wal", "-shm"):
+            Path(f"{self.path}{suffix}").unlink(missing_ok=True)
+
+
+def difference(found, wanted):
+    """Where two identities differ, for a message."""
+    for key in sorted(set(found) | set(wanted)):
+        a, b = found.get(key), wanted.get(key)
+        if a != b:
+            if isinstance(a, dict) and isinstance(b, dict):
+                return difference(a, b)
+            return f"{key} = {shorten(a)} there, {shorten(b)} here"
+    return "no difference"
+
+
+def shorten(value):
+    """A value for a message: long lists by their ends."""
+    if isinstance(value, (list, tuple)) and len(value) > 4:
+        return f"[{value[0]}, {value[1]}, ... {value[-1]}] ({len(value)} values)"
+    return json.dumps(value)
+
+
+def read_identity(path):
+    """Identity of a complete result file.
+
+    Raises
+    ------
+    UserError
+        Where the file is not a result of this project.
+    """
+    import xarray
+
+    try:
+        with xarray.open_dataset(path, engine="netcdf4") as dataset:
+            return json.loads(dataset.attrs["identity"])
+    except Exception:
+        raise UserError(f"{path}: not a result of this project; allowed is a path that is free, or holds one") from None
+
+
+def write_netcdf(dataset, path, identity):
+    """Write a result file, whole or not at all.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+    path : Path
+    identity : dict
+    """
+    path = Path(path)
+    dataset.attrs.update(Conventions="CF-1.10", source=f"vibroimpact {__version__}", identity=json.dumps(identity, sort_keys=True))
+    temporary = path.with_name(path.name + ".tmp")
+    compression = {name: {"zlib": True, "complevel": 4} for name, variable in dataset.data_vars.items() if variable.size > 10000}
+    try:
+        dataset.to_netcdf(temporary, engine="netcdf4", encoding=compression)
+        temporary.replace(path)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written ({error}); what was computed is kept, the same command goes on from there") from None
+    finally:
+        temporary.unlink(missing_ok=True)
