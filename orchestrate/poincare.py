@@ -17,12 +17,19 @@ def multiplicity(samples, tolerance):
     -------
     int
         0 where no n up to a quarter of the samples does: irregular.
+
+    Notes
+    -----
+    Only the later half of the samples is compared: at low damping and high frequency a transient outlives hundreds of periods. A
+    quasi-periodic response narrower than the tolerance counts as periodic.
     """
     samples = np.asarray(samples, dtype=float)
+    limit = max(1, len(samples) // 4)
+    samples = samples[len(samples) // 2 :]
     scale = np.abs(samples).max(axis=0)
     scale[scale == 0.0] = 1.0
     scaled = samples / scale
-    for n in range(1, len(samples) // 4 + 1):
+    for n in range(1, min(limit, len(samples) - 1) + 1):
         if np.abs(scaled[n:] - scaled[:-n]).max() <= tolerance:
             return n
     return 0

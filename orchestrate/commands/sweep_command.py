@@ -34,7 +34,7 @@ def add_parser(commands):
     option("--case", action="append", metavar="KEY=VALUE,...", help=f"parameter set, of {case_text()}; repeat it for several, run side by side")
     option("--transient", type=int, default=500, help="periods dropped at each eta (default: %(default)s)")
     option("--samples", type=int, default=200, help="stroboscopic samples kept at each eta (default: %(default)s)")
-    option("--tolerance", type=float, default=1e-3, help="relative deviation within which a state repeats (default: %(default)s)")
+    option("--tolerance", type=float, default=1e-2, help="relative deviation within which a state repeats (default: %(default)s)")
     option("--fmu", type=Path, help="FMU to use (default: the one in build/, exported first where missing or out of date)")
     option("--output", type=Path, default=Path("results"), help="folder of the results (default: %(default)s)")
     option("--jobs", type=int, default=os.cpu_count() or 1, help="processes at once (default: all cores)")
