@@ -1,6 +1,6 @@
 """What the FMU carries beside its code, made through the FMU itself: ``python -m orchestrate.assets``.
 
-Pictures of the documentation, ``model.png``, and the reference result. They are kept in the repository, so that an export does not depend on the
+Pictures of the documentation, ``model.png``, and the reference result; also the README's variable table. They are kept in the repository, so that an export does not depend on the
 version of a plotting library; a test compares the reference result with what the FMU gives.
 """
 
@@ -11,12 +11,14 @@ from pathlib import Path
 import numpy as np
 
 from .build import default_fmu
-from .fmu import Instance
+from .fmu import Instance, describe
 
 MODEL = "TwoMassImpactOscillator"
 FOLDER = Path(__file__).resolve().parents[1] / "fmu_src" / "oscillator"
 STEP, STOP = 0.05, 60.0
 INPUTS = ("box_amplitude", "box_frequency", "box_acceleration")
+TABLE_BEGIN = "<!-- variables: generated from fmu_src/oscillator/variables.py, kept so by a test -->"
+TABLE_END = "<!-- end of variables -->"
 OUTPUTS = ("x1", "x2", "v1", "v2", "x_rel", "box_force", "contact_force", "phase", "impact_energy")
 
 
@@ -76,6 +78,23 @@ def example(fmu, eta=0.4, transient=500, periods=2, points=600):
     return np.array(times[1:]), dict(zip(names, np.array(rows).T, strict=True))
 
 
+def variable_table(path):
+    """The README's variable table, from the FMU's own description."""
+    lines = ["| name | causality | unit | start | meaning |", "|---|---|---|---|---|"]
+    for variable in describe(path).variables.values():
+        kind = variable.causality if variable.causality != "parameter" else f"parameter, {variable.variability}"
+        unit = variable.unit or variable.type
+        lines.append(f"| `{variable.name}` | {kind} | {unit} | {'' if variable.start is None else variable.start} | {variable.description} |")
+    return "\n".join(lines) + "\n"
+
+
+def with_table(readme, table):
+    """The README with its variable table replaced."""
+    head, rest = readme.split(TABLE_BEGIN + "\n")
+    _, tail = rest.split(TABLE_END)
+    return f"{head}{TABLE_BEGIN}\n{table}{TABLE_END}{tail}"
+
+
 def main():
     """Write all of it."""
     from .figures.fmu_pictures import draw_example, draw_scheme
@@ -85,6 +104,8 @@ def main():
     draw_scheme(FOLDER / "documentation" / "scheme.png")
     draw_scheme(FOLDER / "model.png", width=2.4)
     draw_example(*example(fmu), FOLDER / "documentation" / "plot.svg")
+    readme = Path("README.md")
+    readme.write_text(with_table(readme.read_text(encoding="utf-8"), variable_table(fmu)), encoding="utf-8")
 
 
 if __name__ == "__main__":
