@@ -12,7 +12,7 @@ import struct
 import sys
 
 from .compiled import load_compiled
-from .table import BOOLEAN, INTEGER, REAL
+from .table import BOOLEAN, INTEGER, REAL, explain
 
 INSTANTIATED, INITIALIZING, STEPPING, TERMINATED = 0.0, 1.0, 2.0, 3.0
 STATE_MAGIC = b"vibroimpact state "
@@ -100,7 +100,7 @@ class Slave:
         if self._stale:
             code = self._initialize(self._memory, self._start_time)
             if code:
-                self.refuse(self.model.explain(self._memory, code, self._start_time))
+                self.refuse(explain(self.model, self._memory, code))
             self._stale = False
 
     def terminate(self):
@@ -134,7 +134,7 @@ class Slave:
         code = self._advance(self._memory, time)
         if not code:
             return ""
-        problem = self.model.explain(self._memory, code, time)
+        problem = explain(self.model, self._memory, code)
         self._memory = before
         return problem
 

@@ -3,6 +3,7 @@
 Standard library only: this file travels inside the FMU.
 """
 
+import re
 from dataclasses import dataclass
 from math import isfinite
 
@@ -94,8 +95,8 @@ class Model:
         Slot of the communication point reached.
     initialize, advance : callable
         The kernel's entry points, ``(memory, time) -> code``; 0 is success.
-    explain : callable
-        ``(memory, code, time) -> str``: what a code says, as one line.
+    messages : dict of int to str
+        What a code of the entry points says, as one line, see :func:`explain`.
     stop_time, step_size : float
         Default experiment, s.
     """
@@ -110,6 +111,20 @@ class Model:
     time_slot: int
     initialize: object
     advance: object
-    explain: object
+    messages: dict
     stop_time: float
     step_size: float
+
+
+def explain(model, memory, code):
+    """What a return code of the kernel says, as one line.
+
+    In a message ``{12}`` stands for the number in slot 12, ``{12:flight|contact}`` for one of the words, chosen by it. The native FMU
+    fills in the same texts.
+    """
+
+    def fill(match):
+        value = memory[int(match.group(1))]
+        return match.group(2)[1:].split("|")[int(value)] if match.group(2) else repr(float(value))
+
+    return re.sub(r"\{(\d+)(:[^}]*)?\}", fill, model.messages[code])

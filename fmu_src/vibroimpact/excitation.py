@@ -4,6 +4,8 @@ A segment lasts as long as the inputs stay as they are. With a jerk, snap or cra
 Relative to the box a mass is driven by minus the box's acceleration: ``a Omega^2 sin(phase)`` minus the cubic.
 """
 
+import math
+
 from . import memory as at
 from .elementary import TWO_PI
 
@@ -65,6 +67,7 @@ def set_harmonic(m, b, harmonic):
     twice = 2.0 * m[b + at.DAMPING] * eta
     square = detuning * detuning + twice * twice
     if square <= 4.0 * NEAR_RESONANCE * m[b + at.OMEGA_SQUARED] * m[b + at.OMEGA_SQUARED]:
+        m[at.REPORT] = m[at.OMEGA] * math.sqrt(m[b + at.OMEGA_SQUARED])
         return True
     m[harmonic] = -forcing * twice / square
     m[harmonic + 1] = forcing * detuning / square

@@ -45,8 +45,8 @@ END_OPEN, END_EVENT, END_RENEWAL = 0.0, 1.0, 2.0
 # -- book-keeping -----------------------------------------------------------------------------------------------------
 START_TIME = 125
 WORK, WORK_LIMIT = 126, 127  # evaluations spent and allowed in this step
-STEP_ORIGIN_TURN = 128  # phase at the beginning of the step, in turns
-SIZE = 129
+TARGET, REPORT = 128, 129  # for messages: the time a step was to reach, and what a return code is about
+SIZE = 130
 
 # -- return codes of the entry points ---------------------------------------------------------------------------------
 OK, UNFINISHED, RESONANCE_1, RESONANCE_2, RESONANCE_3, NOT_FINITE, START_OVERLAP, START_BONDED = 0, 1, 2, 3, 4, 5, 6, 7

@@ -64,6 +64,7 @@ def advance(m, time):
     """
     h = time - m[at.TIME]
     fastest = max(m[at.FASTEST], m[at.BOX_FREQUENCY] / m[at.OMEGA])
+    m[at.TARGET] = time
     m[at.WORK] = 0.0
     m[at.WORK_LIMIT] = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA])
     momentum_before, moment_before = momentum(m)
@@ -76,6 +77,7 @@ def advance(m, time):
         now = 0.0
     tau = run_states(m, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:
+        m[at.REPORT] = m[at.START_TIME] + m[at.ORIGIN] / m[at.OMEGA]
         return at.UNFINISHED
     m[at.TIME] = time
     write(m, tau)
