@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from fmu_src.export import pythonfmu_form
+from fmu_src.export import native_form, pythonfmu_form
 from fmu_src.oscillator.model import MODEL as OSCILLATOR
 
 from .errors import UserError
 
-FORMS = {"fmi2-python": pythonfmu_form.export}
+FORMS = {"fmi2-python": pythonfmu_form.export, "fmi2": native_form.export_fmi2, "fmi3": native_form.export_fmi3}
 MODELS = {"TwoMassImpactOscillator": (OSCILLATOR, "vibroimpact", "oscillator")}
 PREFERENCE = ("fmi2-python",)  # the form taken where the user names none, best first
 

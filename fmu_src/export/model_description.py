@@ -30,6 +30,14 @@ COSIMULATION = {
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
 }
+NATIVE_COSIMULATION = {
+    "canHandleVariableCommunicationStepSize": "true",
+    "canInterpolateInputs": "true",
+    "maxOutputDerivativeOrder": "1",
+    "canNotUseMemoryManagementFunctions": "true",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
+}
 LOG_CATEGORIES = {"logStatusError": "Errors: what was wrong, its value and what is allowed", "logAll": "All messages"}
 
 
@@ -77,6 +85,11 @@ def fmi2_xml(model, guid, cosimulation=COSIMULATION):
     add_structure(root, model)
     ET.indent(root)
     return ET.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
+
+
+def fmi2_native_xml(model, guid):
+    """The model description of the native form."""
+    return fmi2_xml(model, guid, NATIVE_COSIMULATION)
 
 
 def add_units(root, model):

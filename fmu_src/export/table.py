@@ -32,6 +32,10 @@ class Variable:
         Order of magnitude.
     initial_dependencies : tuple of str
         The variables known at the start that the calculated initial value depends on.
+    input_derivatives : int
+        How many of the variables that follow in the table are its time derivatives.
+    derivative : str
+        The output that is its time derivative, where there is one.
     """
 
     name: str
@@ -47,6 +51,8 @@ class Variable:
     maximum: "float | None" = None
     nominal: float = 1.0
     initial_dependencies: tuple = ()
+    input_derivatives: int = 0
+    derivative: str = ""
 
     @property
     def calculated(self):
@@ -81,6 +87,40 @@ class Variable:
 
 
 @dataclass(frozen=True)
+class Array:
+    """An array of FMI 3.0 over variables that stand in the table one after the other.
+
+    Attributes
+    ----------
+    name, description : str
+    first : str
+        Name of the first variable.
+    size : int
+    """
+
+    name: str
+    description: str
+    first: str
+    size: int
+
+
+@dataclass(frozen=True)
+class Clock:
+    """A triggered output clock of FMI 3.0.
+
+    Attributes
+    ----------
+    name, description : str
+    counter : str
+        The variable that grows with each tick.
+    """
+
+    name: str
+    description: str
+    counter: str
+
+
+@dataclass(frozen=True)
 class Model:
     """A model as the exporters see it.
 
@@ -91,14 +131,16 @@ class Model:
         In the order of the slots, from 0 without gaps.
     memory_size : int
         Number of floats of an instance's memory.
-    time_slot : int
-        Slot of the communication point reached.
+    time_slot, stop_slot : int
+        Slots of the communication point reached, and of the flag that ends a step at its first event.
     initialize, advance : callable
         The kernel's entry points, ``(memory, time) -> code``; 0 is success.
     messages : dict of int to str
         What a code of the entry points says, as one line, see :func:`explain`.
     stop_time, step_size : float
         Default experiment, s.
+    arrays : tuple of Array
+    clock : Clock or None
     """
 
     name: str
@@ -109,11 +151,14 @@ class Model:
     variables: tuple
     memory_size: int
     time_slot: int
+    stop_slot: int
     initialize: object
     advance: object
     messages: dict
     stop_time: float
     step_size: float
+    arrays: tuple = ()
+    clock: "Clock | None" = None
 
 
 def explain(model, memory, code):

@@ -1,6 +1,6 @@
 """``TwoMassImpactOscillator`` as the exporters see it. Standard library only: it travels inside the FMU."""
 
-from ..export.table import Model
+from ..export.table import Array, Clock, Model
 from ..vibroimpact import memory as at
 from ..vibroimpact import stepper
 from .variables import VARIABLES
@@ -36,9 +36,15 @@ MODEL = Model(
     variables=VARIABLES,
     memory_size=at.SIZE,
     time_slot=at.TIME,
+    stop_slot=at.STOP_AT_IMPACT,
     initialize=stepper.initialize,
     advance=stepper.advance,
     messages=MESSAGES,
     stop_time=157.0,
     step_size=0.1,
+    arrays=(
+        Array("positions", "Displacements x1, x2 relative to the box", "x1", 2),
+        Array("velocities", "Velocities v1, v2 relative to the box", "v1", 2),
+    ),
+    clock=Clock("impact", "Ticks at each impact", "impact_count"),
 )

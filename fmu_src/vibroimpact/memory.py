@@ -40,13 +40,14 @@ CUBIC_A, CUBIC_B = 98, 102  # response to the cubic: value and three derivatives
 BARRIER_HARMONIC, BARRIER_CUBIC, BARRIER_FREE_A, BARRIER_FREE_B = 106, 108, 112, 114
 BOUND_3, BOUND_4 = 116, 119  # bounds of its third and fourth derivative: steady part, free part A, free part B
 CLEAR, END, END_KIND = 122, 123, 124  # no root before CLEAR; the state's end once found
-END_OPEN, END_EVENT, END_RENEWAL = 0.0, 1.0, 2.0
+END_OPEN, END_EVENT, END_RENEWAL, END_STOPPED = 0.0, 1.0, 2.0, 3.0
 
 # -- book-keeping -----------------------------------------------------------------------------------------------------
 START_TIME = 125
 WORK, WORK_LIMIT = 126, 127  # evaluations spent and allowed in this step
 TARGET, REPORT = 128, 129  # for messages: the time a step was to reach, and what a return code is about
-SIZE = 130
+STOP_AT_IMPACT = 130  # set from outside: a step ends at its first impact
+SIZE = 131
 
 # -- return codes of the entry points ---------------------------------------------------------------------------------
 OK, UNFINISHED, RESONANCE_1, RESONANCE_2, RESONANCE_3, NOT_FINITE, START_OVERLAP, START_BONDED = 0, 1, 2, 3, 4, 5, 6, 7

@@ -25,9 +25,8 @@ def initialize(m, time):
     derive(m)
     m[at.START_TIME] = time
     m[at.TIME] = time
-    for i in range(at.ORIGIN, at.SIZE):
-        if i != at.START_TIME:
-            m[i] = 0.0
+    for i in range(at.ORIGIN, at.START_TIME):
+        m[i] = 0.0
     for i in range(at.IMPACT_COUNT, at.TIME):
         m[i] = 0.0
     m[at.BOX_IMPULSE] = 0.0
@@ -55,14 +54,15 @@ def local_time(m, time):
 
 
 def advance(m, time):
-    """Advance to the communication point ``time`` (s) with the inputs in ``m``.
+    """Advance to the communication point ``time`` (s) with the inputs in ``m``, or to the first impact where STOP_AT_IMPACT is set.
 
     Returns
     -------
     int
         OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be thrown away.
     """
-    h = time - m[at.TIME]
+    before = m[at.TIME]
+    h = time - before
     fastest = max(m[at.FASTEST], m[at.BOX_FREQUENCY] / m[at.OMEGA])
     m[at.TARGET] = time
     m[at.WORK] = 0.0
@@ -79,6 +79,10 @@ def advance(m, time):
     if m[at.WORK] >= m[at.WORK_LIMIT]:
         m[at.REPORT] = m[at.START_TIME] + m[at.ORIGIN] / m[at.OMEGA]
         return at.UNFINISHED
+    if m[at.END_KIND] == at.END_STOPPED:
+        time = min(time, m[at.IMPACT_TIME])
+        h = time - before
+        m[at.END_KIND] = at.END_OPEN
     m[at.TIME] = time
     write(m, tau)
     if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
@@ -110,5 +114,9 @@ def run_states(m, time, now):
             m[at.X_REL_MAX] = largest_gap(m, now, stop, m[at.X_REL_MAX])
         if m[at.END_KIND] == at.END_OPEN or m[at.END] > tau or m[at.WORK] >= m[at.WORK_LIMIT]:
             return tau
+        impacts = m[at.IMPACT_COUNT]
         end_state(m)
         now = 0.0
+        if m[at.STOP_AT_IMPACT] != 0.0 and m[at.IMPACT_COUNT] > impacts:
+            m[at.END_KIND] = at.END_STOPPED
+            return 0.0
