@@ -5,7 +5,6 @@ first of its derivatives that does not vanish decides. "Vanishes" means: below t
 """
 
 from . import memory as at
-from .elementary import sincos_turns
 from .excitation import cubic_at
 
 ROUNDING = 1e-14
@@ -48,7 +47,7 @@ def first_derivative(m, x, v, lowest):
     value : float
         The derivative, 0 where all vanish.
     """
-    sine, cosine = sincos_turns(m[at.TURN])
+    sine, cosine = m[at.SINE], m[at.COSINE]
     cubic = cubic_at(m, m[at.SEGMENT_AGE])
     twice = 2.0 * m[at.BRANCH_3 + at.DAMPING]
     square = m[at.BRANCH_3 + at.OMEGA_SQUARED]

@@ -39,12 +39,15 @@ def begin_segment(m):
     m[at.FORCING] = m[at.BOX_AMPLITUDE] * eta * eta
     unit = scale * scale
     m[at.CUBIC_ON] = 0.0
+    m[at.CUBIC_PRESENT] = 0.0
     for i in range(4):
         derivative = m[at.BOX_ACCELERATION + i]
         m[at.CUBIC + i] = -derivative * unit
         unit *= scale
-        if i > 0 and derivative != 0.0:
-            m[at.CUBIC_ON] = 1.0
+        if derivative != 0.0:
+            m[at.CUBIC_PRESENT] = 1.0
+            if i > 0:
+                m[at.CUBIC_ON] = 1.0
     m[at.SEGMENT_AGE] = 0.0
     bonded = m[at.BONDED] != 0.0
     if not bonded and set_harmonic(m, at.BRANCH_1, at.HARMONIC_1):

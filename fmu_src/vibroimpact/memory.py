@@ -38,7 +38,9 @@ FREE_A, FREE_B = 94, 96  # c and v + D c of the free part, branch 1 or 3, and 2
 CUBIC_A, CUBIC_B = 98, 102  # response to the cubic: value and three derivatives at the state's start
 # the barrier: positive inside the state, its first root is the state's end
 BARRIER_HARMONIC, BARRIER_CUBIC, BARRIER_FREE_A, BARRIER_FREE_B = 106, 108, 112, 114
-BOUND_3, BOUND_4 = 116, 119  # bounds of its third and fourth derivative: steady part, free part A, free part B
+BOUND = 116  # of its fourth derivative: steady part, free part A, free part B
+SINE, COSINE = 119, 120  # of the phase at the state's start
+CUBIC_PRESENT = 121  # the cubic part of the forcing is not zero
 CLEAR, END, END_KIND = 122, 123, 124  # no root before CLEAR; the state's end once found
 END_OPEN, END_EVENT, END_RENEWAL, END_STOPPED = 0.0, 1.0, 2.0, 3.0
 

@@ -3,7 +3,7 @@
 from . import memory as at
 from .excitation import begin_segment, inputs_changed
 from .maximum import largest_gap
-from .motion import begin, end_state, move_origin, state_at
+from .motion import begin, end_state, move_origin, set_turn, state_at
 from .elementary import TWO_PI, fraction
 from .outputs import momentum, write, write_impulse
 from .parameters import derive
@@ -35,7 +35,7 @@ def initialize(m, time):
         return at.START_OVERLAP
     if m[at.BONDED] != 0.0 and (m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]):
         return at.START_BONDED
-    m[at.TURN] = fraction(m[at.PHASE_START] / TWO_PI)
+    set_turn(m, m[at.PHASE_START] / TWO_PI)
     code = begin_segment(m)
     if code != at.OK:
         return code
