@@ -2,7 +2,7 @@
 
 from xml.etree import ElementTree as ET
 
-from .model_description import LOG_CATEGORIES, add_units, number
+from .model_description import LOG_CATEGORIES, add_units, number, start_text
 from .table import BOOLEAN, INTEGER, REAL
 
 TYPES = {REAL: "Float64", INTEGER: "Int32", BOOLEAN: "Boolean"}
@@ -52,7 +52,8 @@ def fmi3_xml(model, token):
     time = {"name": "time", "valueReference": str(model.time_slot), "description": "Time", "causality": "independent", "variability": "continuous"}
     ET.SubElement(variables, "Float64", time, unit="s")
     for variable in model.variables:
-        add_variable(variables, variable)
+        if not variable.series:
+            add_variable(variables, variable)
     for i, array in enumerate(model.arrays):
         add_array(variables, model, array, ARRAY_BASE + i)
     if model.clock:
@@ -86,10 +87,11 @@ def add_variable(parent, variable):
             if value is not None:
                 typed.set(key, number(value))
         typed.set("nominal", number(variable.nominal))
-    elif variable.minimum is not None:
-        typed.set("min", str(int(variable.minimum)))
+    for key, value in (("min", variable.minimum), ("max", variable.maximum)):
+        if value is not None and variable.type == INTEGER:
+            typed.set(key, str(int(value)))
     if not variable.calculated:
-        typed.set("start", number(variable.start) if variable.type == REAL else str(bool(variable.start)).lower())
+        typed.set("start", start_text(variable))
 
 
 def elements(model, array):
@@ -110,8 +112,10 @@ def add_structure(root, model):
     """Dependencies: outputs belong to the last communication point, so none depends on an input as it is set now."""
     structure = ET.SubElement(root, "ModelStructure")
     slots = {variable.name: variable.slot for variable in model.variables}
-    calculated = [(v.slot, sorted(slots[name] for name in v.initial_dependencies)) for v in model.variables if v.calculated]
+    calculated = [(v.slot, sorted(slots[name] for name in v.initial_dependencies)) for v in model.variables if v.causality == "output"]
     for i, array in enumerate(model.arrays):
+        if elements(model, array)[0].causality != "output":
+            continue
         names = {name for variable in elements(model, array) for name in variable.initial_dependencies}
         calculated.append((ARRAY_BASE + i, sorted(slots[name] for name in names)))
     if model.clock:

@@ -66,6 +66,8 @@ def model_header(model, token, digest):
         f"#define MODEL_TOKEN {c_string(token)}",
         f"#define STATE_MAGIC {c_string('vibroimpact state ' + digest)}",
         f"#define MEMORY_SIZE {model.memory_size}",
+        f"#define SKIP_FIRST {model.written_only[0]}",
+        f"#define SKIP_COUNT {model.written_only[1]}",
         f"#define TIME_SLOT {model.time_slot}",
         f"#define STOP_SLOT {model.stop_slot}",
         f"#define VARIABLE_COUNT {len(model.variables)}u",

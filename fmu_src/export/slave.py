@@ -130,12 +130,14 @@ class Slave:
 
     def step(self, time):
         """Advance; on failure the memory is put back and the reason returned."""
-        before = self._array(*self._memory)
+        first, count = self.model.written_only
+        head, tail = self._memory[:first], self._memory[first + count :]
         code = self._advance(self._memory, time)
         if not code:
             return ""
         problem = explain(self.model, self._memory, code)
-        self._memory = before
+        self._memory[:first] = head
+        self._memory[first + count :] = tail
         return problem
 
     # -- values -------------------------------------------------------------------------------------------------------

@@ -36,6 +36,8 @@ class Variable:
         How many of the variables that follow in the table are its time derivatives.
     derivative : str
         The output that is its time derivative, where there is one.
+    series : str
+        Name of the array it is an element of, where FMI 3.0 has the array alone.
     """
 
     name: str
@@ -53,11 +55,12 @@ class Variable:
     initial_dependencies: tuple = ()
     input_derivatives: int = 0
     derivative: str = ""
+    series: str = ""
 
     @property
     def calculated(self):
         """Whether the FMU computes the variable, so that nobody can set it."""
-        return self.causality == "output"
+        return self.causality in ("output", "local")
 
     @property
     def fixed(self):
@@ -131,6 +134,8 @@ class Model:
         In the order of the slots, from 0 without gaps.
     memory_size : int
         Number of floats of an instance's memory.
+    written_only : tuple of int
+        First slot and number of slots that a step writes and never reads: a step that fails need not put them back.
     time_slot, stop_slot : int
         Slots of the communication point reached, and of the flag that ends a step at its first event.
     initialize, advance : callable
@@ -150,6 +155,7 @@ class Model:
     license: str
     variables: tuple
     memory_size: int
+    written_only: tuple
     time_slot: int
     stop_slot: int
     initialize: object

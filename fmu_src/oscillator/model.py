@@ -35,6 +35,7 @@ MODEL = Model(
     license="MIT",
     variables=VARIABLES,
     memory_size=at.SIZE,
+    written_only=(at.X1_SAMPLE, 4 * at.SAMPLES),
     time_slot=at.TIME,
     stop_slot=at.STOP_AT_IMPACT,
     initialize=stepper.initialize,
@@ -45,6 +46,10 @@ MODEL = Model(
     arrays=(
         Array("positions", "Displacements x1, x2 relative to the box", "x1", 2),
         Array("velocities", "Velocities v1, v2 relative to the box", "v1", 2),
+        Array("x1_sample", "x1 at equal parts of the last step, as many as sample_count", "x1_sample[1]", at.SAMPLES),
+        Array("x2_sample", "x2 at equal parts of the last step", "x2_sample[1]", at.SAMPLES),
+        Array("v1_sample", "v1 at equal parts of the last step", "v1_sample[1]", at.SAMPLES),
+        Array("v2_sample", "v2 at equal parts of the last step", "v2_sample[1]", at.SAMPLES),
     ),
     clock=Clock("impact", "Ticks at each impact", "impact_count"),
 )

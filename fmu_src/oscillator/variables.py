@@ -38,7 +38,17 @@ def start(name, slot, unit, description):
 DISCRETE = {"variability": "discrete"}
 COUNT = {"variability": "discrete", "type": INTEGER, "minimum": 0}
 
-VARIABLES = (
+
+
+def samples(name, slot, unit, description):
+    """A local variable for each state kept inside a step."""
+    return tuple(
+        Variable(f"{name}[{i + 1}]", slot + i, f"{description}, sample {i + 1} of the last step", "local", unit, initial="calculated", series=name)
+        for i in range(at.SAMPLES)
+    )
+
+
+SCALARS = (
     parameter("m1", at.M1, "kg", 1.0, "Mass 1", minimum=TINY, maximum=LARGE),
     parameter("m2", at.M2, "kg", 1.0, "Mass 2", minimum=TINY, maximum=LARGE),
     parameter("k1", at.K1, "N/m", 1.0, "Stiffness between mass 1 and the box", minimum=TINY, maximum=LARGE),
@@ -81,4 +91,22 @@ VARIABLES = (
     output("impact_energy", at.IMPACT_ENERGY, "J", "Energy lost in impacts since the start", ALL, minimum=0.0, **DISCRETE),
     output("x_rel_max", at.X_REL_MAX, "m", "Largest gap over the last communication step, exact, not sampled", ("x1_start", "x2_start", "x_rel_max_on"), minimum=0.0),
     output("contact_count", at.CONTACT_COUNT, "", "Permanent contacts begun by impacts since the start", ALL, **COUNT),
+    parameter(
+        "sample_count",
+        at.SAMPLE_COUNT,
+        "",
+        0,
+        "States kept inside each step, at equal parts of it, the last one at its end: x1_sample and so on; 0 for none",
+        type=INTEGER,
+        variability="tunable",
+        minimum=0,
+        maximum=at.SAMPLES,
+    ),
+)
+VARIABLES = (
+    SCALARS
+    + samples("x1_sample", at.X1_SAMPLE, "m", "x1")
+    + samples("x2_sample", at.X2_SAMPLE, "m", "x2")
+    + samples("v1_sample", at.V1_SAMPLE, "m/s", "v1")
+    + samples("v2_sample", at.V2_SAMPLE, "m/s", "v2")
 )

@@ -27,7 +27,9 @@ def initialize(m, time):
     m[at.TIME] = time
     for i in range(at.ORIGIN, at.START_TIME):
         m[i] = 0.0
-    for i in range(at.IMPACT_COUNT, at.TIME):
+    for i in range(at.IMPACT_COUNT, at.SAMPLE_COUNT):
+        m[i] = 0.0
+    for i in range(at.X1_SAMPLE, at.TIME):
         m[i] = 0.0
     m[at.BOX_IMPULSE] = 0.0
     m[at.BOX_IMPULSE_MOMENT] = 0.0
@@ -75,7 +77,8 @@ def advance(m, time):
         if code != at.OK:
             return code
         now = 0.0
-    tau = run_states(m, time, now)
+    m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
+    tau = run_samples(m, before, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:
         m[at.REPORT] = m[at.START_TIME] + m[at.ORIGIN] / m[at.OMEGA]
         return at.UNFINISHED
@@ -102,10 +105,32 @@ def renew_segment(m, now):
     return code
 
 
+def run_samples(m, start, time, now):
+    """Run to ``time``, keeping the states at equal parts of the step on the way; returns the present state's age there."""
+    count = int(m[at.SAMPLE_COUNT])
+    for i in range(count - 1):
+        now = run_states(m, start + (time - start) * ((i + 1.0) / count), now)
+        if m[at.END_KIND] == at.END_STOPPED:
+            return now
+        keep_sample(m, i, now)
+    now = run_states(m, time, now)
+    if count > 0:
+        keep_sample(m, count - 1, now)
+    return now
+
+
+def keep_sample(m, i, tau):
+    """Keep the state at the present state's age ``tau`` as sample ``i``."""
+    x1, v1, x2, v2 = state_at(m, tau)
+    m[at.X1_SAMPLE + i] = x1
+    m[at.X2_SAMPLE + i] = x2
+    m[at.V1_SAMPLE + i] = m[at.OMEGA] * v1
+    m[at.V2_SAMPLE + i] = m[at.OMEGA] * v2
+
+
 def run_states(m, time, now):
     """Run through all states that end by ``time``; returns the present state's age there."""
     watch = m[at.X_REL_MAX_ON] != 0.0
-    m[at.X_REL_MAX] = m[at.X_REL] if watch else 0.0
     while True:
         tau = local_time(m, time)
         walk(m, tau)

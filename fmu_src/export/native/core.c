@@ -167,13 +167,16 @@ Status step(Instance *instance, const char *call, double current, double size) {
         append(text, " s, where the last step ended");
         return refuse(instance, call, text);
     }
-    double before[MEMORY_SIZE];
-    memcpy(before, state->memory, sizeof before);
+    double before[MEMORY_SIZE - SKIP_COUNT];  /* what the step only writes need not be put back */
+    size_t head = SKIP_FIRST * sizeof(double), tail = sizeof before - head;
+    memcpy(before, state->memory, head);
+    memcpy(before + SKIP_FIRST, state->memory + SKIP_FIRST + SKIP_COUNT, tail);
     state->memory[STOP_SLOT] = instance->early_return;
     int code = kernel_advance(state->memory, current + size);
     if (!code) return OK;
     explain(text, state->memory, code);
-    memcpy(state->memory, before, sizeof before);
+    memcpy(state->memory, before, head);
+    memcpy(state->memory + SKIP_FIRST + SKIP_COUNT, before + SKIP_FIRST, tail);
     return refuse(instance, call, text);
 }
 
