@@ -11,9 +11,9 @@ from fmu_src.oscillator.model import MODEL as OSCILLATOR
 from .errors import UserError
 
 log = logging.getLogger(__name__)
-FORMS = {"fmi2-python": pythonfmu_form.export, "fmi2": native_form.export_fmi2, "fmi3": native_form.export_fmi3}
-MODELS = {"TwoMassImpactOscillator": (OSCILLATOR, "vibroimpact", "oscillator")}
-GUIDS = {
+FORMS: dict = {"fmi2-python": pythonfmu_form.export, "fmi2": native_form.export_fmi2, "fmi3": native_form.export_fmi3}
+MODELS: dict = {"TwoMassImpactOscillator": (OSCILLATOR, "vibroimpact", "oscillator")}
+GUIDS: dict = {
     "fmi2-python": pythonfmu_form.guid,
     "fmi2": functools.partial(native_form.guid, version="fmi2"),
     "fmi3": functools.partial(native_form.guid, version="fmi3"),

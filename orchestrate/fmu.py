@@ -186,11 +186,11 @@ class Instance:
             size += sum(length for _, length in found)
         array = (c_uint * len(references))(*references)
         values = (c_double * size)()
+        arguments: list = [self._fmu.component, array, len(references), values]
         if self.description.fmi_version.startswith("3"):
-            arguments = (self._fmu.component, array, len(references), values, size)
             get = self._fmu.fmi3GetFloat64
+            arguments.append(size)
         else:
-            arguments = (self._fmu.component, array, len(references), values)
             get = self._fmu.fmi2GetReal
 
         def read():

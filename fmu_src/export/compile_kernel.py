@@ -14,6 +14,7 @@ import sys
 import tempfile
 import types
 from pathlib import Path
+from typing import Any
 
 from .linking import PLATFORMS, NoCompiler
 
@@ -81,7 +82,8 @@ def link_ir(entries):
     """One optimised LLVM module of all entry points, everything else internal to it."""
     import llvmlite.binding as llvm
 
-    module, names = None, {}
+    module: Any = None
+    names = {}
     for name, (ir, native_name) in entries.items():
         ir = re.sub(r"^declare double @sqrt\(double\).*$", "declare double @llvm.sqrt.f64(double)", ir, flags=re.M)
         if ir.count("declare double @llvm.sqrt.f64(double)") > 1:

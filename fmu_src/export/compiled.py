@@ -14,7 +14,7 @@ LIBRARIES = {  # machine: platform and file name
 }
 
 
-loaded = {}  # libraries of this process by path: ctypes makes new classes at every load
+loaded: dict = {}  # libraries of this process by path: ctypes makes new classes at every load
 
 
 def load_compiled(folder):

@@ -1,7 +1,7 @@
 """From object files and C sources to shared libraries, for each platform an FMU has a binary for.
 
-The compiler is the one of the PyPI package ziglang, which compiles for every platform on every machine and gives the same bytes everywhere; where that is
-missing, the machine's own compiler serves its own platform.
+The compiler is the one of the PyPI package ziglang, which compiles for every platform on every machine and gives the same bytes everywhere;
+where that is missing, the machine's own compiler serves its own platform.
 """
 
 import importlib.util

@@ -42,15 +42,15 @@ def fmi3_xml(model, token):
         generationTool=f"vibroimpact {model.version}",
         variableNamingConvention="flat",
     )
-    ET.SubElement(root, "CoSimulation", modelIdentifier=model.name, **COSIMULATION)
+    ET.SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **COSIMULATION})
     add_units(root, model)
     categories = ET.SubElement(root, "LogCategories")
     for name, description in LOG_CATEGORIES.items():
         ET.SubElement(categories, "Category", name=name, description=description)
     ET.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=number(model.stop_time), stepSize=number(model.step_size))
     variables = ET.SubElement(root, "ModelVariables")
-    time = {"name": "time", "valueReference": str(model.time_slot), "description": "Time", "causality": "independent", "variability": "continuous"}
-    ET.SubElement(variables, "Float64", time, unit="s")
+    time = {"name": "time", "valueReference": str(model.time_slot), "description": "Time", "causality": "independent"}
+    ET.SubElement(variables, "Float64", {**time, "variability": "continuous", "unit": "s"})
     for variable in model.variables:
         if not variable.series:
             add_variable(variables, variable)

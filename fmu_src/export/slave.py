@@ -10,6 +10,7 @@ import ctypes
 import os
 import struct
 import sys
+from typing import Any
 
 from .compiled import load_compiled
 from .table import BOOLEAN, INTEGER, REAL, explain
@@ -30,8 +31,11 @@ def keep(thing):
 class Slave:
     """Mixed into pythonfmu's ``Fmi2Slave``; the subclass sets ``model`` (a :class:`.table.Model`) and ``fingerprint`` (str)."""
 
-    model = None
+    model: Any = None
     fingerprint = ""
+    instance_name: str
+    log_queue: list
+    log: Any
 
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
@@ -46,7 +50,7 @@ class Slave:
         self._phase = INSTANTIATED
         self._start_time = 0.0
         self._stale = True  # outputs do not belong to the values set yet (initialisation mode)
-        self._checked = {REAL: None, INTEGER: None, BOOLEAN: None}
+        self._checked: dict = {REAL: None, INTEGER: None, BOOLEAN: None}
 
     # -- failing without a crash --------------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ HIGHEST = 5  # with a cubic forcing, from rest, some derivative of f up to the f
 
 
 def contact_force(m, x, v):
-    """f of (18): the acceleration with which the gap would open at displacement ``x`` and common velocity ``v``."""
+    """The f of (18): the acceleration with which the gap would open at displacement ``x`` and common velocity ``v``."""
     return m[at.FORCE_V] * v + m[at.FORCE_X] * x
 
 

@@ -1,10 +1,10 @@
 """The two entry points: an instance is one flat memory, initialised once and then advanced from one communication point to the next."""
 
 from . import memory as at
+from .elementary import TWO_PI, fraction
 from .excitation import begin_segment, inputs_changed
 from .maximum import largest_gap
 from .motion import begin, end_state, move_origin, set_turn, state_at
-from .elementary import TWO_PI, fraction
 from .outputs import momentum, write, write_impulse
 from .parameters import derive
 from .roots import walk
