@@ -22,7 +22,8 @@ MESSAGES = {
     at.RESONANCE_2: resonance("mass 2", "d2"),
     at.RESONANCE_3: resonance("both masses together", "d1 + d2"),
     at.NOT_FINITE: f"the motion leaves the range of floating-point numbers in the step to time = {{{at.TARGET}}} s: "
-    f"box_amplitude = {{{at.BOX_AMPLITUDE}}} m, box_frequency = {{{at.BOX_FREQUENCY}}} rad/s, box_acceleration = {{{at.BOX_ACCELERATION}}} m/s2; allowed is what keeps it finite",
+    f"box_amplitude = {{{at.BOX_AMPLITUDE}}} m, box_frequency = {{{at.BOX_FREQUENCY}}} rad/s, "
+    f"box_acceleration = {{{at.BOX_ACCELERATION}}} m/s2; allowed is what keeps it finite",
     at.START_OVERLAP: f"x2_start = {{{at.X2_START}}} m: allowed is x2_start >= x1_start = {{{at.X1_START}}} m",
     at.START_BONDED: f"bonded = true with x2_start = {{{at.X2_START}}} m, v2_start = {{{at.V2_START}}} m/s: "
     f"allowed is x2_start = x1_start = {{{at.X1_START}}} m and v2_start = v1_start = {{{at.V1_START}}} m/s",
