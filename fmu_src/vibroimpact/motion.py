@@ -192,6 +192,7 @@ def leave(m, order, value, h2, h3):
 
 def end_state(m):
     """Carry out the end of the present state and begin the next one."""
+    m[at.WORK] += 1.0
     tau = m[at.END]
     x1, v1, x2, v2 = state_at(m, tau)
     move_origin(m, tau)

@@ -6,6 +6,9 @@ from . import memory as at
 from .elementary import TWO_PI
 
 
+SAME = 1e-15  # relative difference below which two quotients of parameters are equal but for rounding
+
+
 def derive(m):
     """Fill the derived constants of ``m`` from its parameters."""
     omega = math.sqrt(m[at.K1] / m[at.M1])  # (2)
@@ -15,6 +18,10 @@ def derive(m):
     damping_2 = m[at.D2] / (2.0 * omega * m[at.M2])
     damping_3 = (m[at.D1] + m[at.D2]) / (2.0 * omega * (m[at.M1] + m[at.M2]))
     omega_2_squared = kappa / mu  # (7); omega_1 = 1
+    if abs(omega_2_squared - 1.0) <= SAME:  # two oscillators that are alike must not part or touch by rounding
+        omega_2_squared = 1.0
+    if abs(damping_2 - damping_1) <= SAME * damping_1:
+        damping_2 = damping_1
     m[at.OMEGA] = omega
     m[at.MU] = mu
     m[at.FORCE_V] = 2.0 * (damping_1 - damping_2)  # (18)

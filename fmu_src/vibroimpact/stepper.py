@@ -46,7 +46,7 @@ def initialize(m, time):
     begin(m, m[at.X1_START], m[at.V1_START] / m[at.OMEGA], m[at.X2_START], m[at.V2_START] / m[at.OMEGA], 0)
     write(m, 0.0)
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
-    return at.OK
+    return finite(m)
 
 
 def local_time(m, time):
@@ -91,8 +91,15 @@ def advance(m, time):
     if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
         m[at.X_REL_MAX] = m[at.X_REL]
     write_impulse(m, h, momentum_before, moment_before, turn)
-    check = m[at.X1] + m[at.X2] + m[at.V1] + m[at.V2] + m[at.BOX_FORCE] + m[at.IMPACT_ENERGY]
-    return at.OK if check - check == 0.0 else at.NOT_FINITE
+    return finite(m)
+
+
+def finite(m):
+    """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
+    total = 0.0
+    for i in range(at.X1, at.CONTACT_COUNT):
+        total += m[i]
+    return at.OK if total - total == 0.0 else at.NOT_FINITE
 
 
 def renew_segment(m, now):
