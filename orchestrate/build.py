@@ -9,6 +9,7 @@ from fmu_src.export.linking import NoCompiler
 from fmu_src.oscillator.model import MODEL as OSCILLATOR
 
 from .errors import UserError
+from .fmu import describe
 
 log = logging.getLogger(__name__)
 FORMS: dict = {"fmi2-python": pythonfmu_form.export, "fmi2": native_form.export_fmi2, "fmi3": native_form.export_fmi3}
@@ -48,13 +49,23 @@ def build(folder, forms=tuple(FORMS)):
     return written
 
 
+def up_to_date(form, name, folder):
+    """Whether a model's FMU of a form is there and made of the present sources."""
+    path = Path(folder) / form / f"{name}.fmu"
+    return path.is_file() and describe(path).guid == GUIDS[form](*MODELS[name][1:])
+
+
+def refresh(folder, forms=tuple(FORMS)):
+    """Export what is missing or out of date."""
+    stale = [form for form in forms if not all(up_to_date(form, name, folder) for name in MODELS)]
+    return build(folder, stale)
+
+
 def default_fmu(name, folder):
     """Path of a model's FMU, exported first where there is none or its sources have changed."""
-    from .fmu import describe
-
     for form in PREFERENCE:
         path = Path(folder) / form / f"{name}.fmu"
-        if path.is_file() and describe(path).guid == GUIDS[form](*MODELS[name][1:]):
+        if up_to_date(form, name, folder):
             return path
         print(f"exporting {path} ...", flush=True)
         if build(folder, [form]):

@@ -13,7 +13,7 @@ from .barrier import evaluate
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
-TRIALS = 3
+TRIALS = 6
 
 
 def parabola_root(h0, h1, h2):
@@ -53,21 +53,27 @@ def clear_step(h0, h1, h2, h3, bound, reach):
     float
         > 0.
     """
-    s = parabola_root(h0, h1, h2)
-    if s > reach:
-        s = reach
-    clear = parabola_root(h0, h1, lowest_curvature(h2, h3, bound, s))
+    far = parabola_root(h0, h1, h2)
+    if far > reach:
+        far = reach
+    clear = parabola_root(h0, h1, lowest_curvature(h2, h3, bound, far))
+    if h1 >= 0.0 and h2 > 0.0:  # rising, and no parabola below turns down before the lowest curvature vanishes
+        rising = parabola_root(h2, (h3 if h3 < 0.0 else 0.0) * (1.0 / 3.0), bound * (-1.0 / 6.0))
+        if rising > clear:
+            clear = rising
+    if clear >= far:
+        return far
     for _ in range(TRIALS):
-        if clear >= s:
-            return s
-        if clear > 0.7 * s:
-            return clear
-        s = math.sqrt(clear * s)
+        if clear > 0.7 * far:
+            break
+        s = math.sqrt(clear * far)
         root = parabola_root(h0, h1, lowest_curvature(h2, h3, bound, s))
         if root >= s:
-            return s
-        if root > clear:
-            clear = root
+            clear = s
+        else:
+            far = s
+            if root > clear:
+                clear = root
     return clear
 
 
