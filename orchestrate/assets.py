@@ -1,10 +1,11 @@
 """What the FMU carries beside its code, made through the FMU itself: ``python -m orchestrate.assets``.
 
-Pictures of the documentation, ``model.png``, and the reference result; also the README's variable table. They are kept in the repository, so that an export does not depend on the
-version of a plotting library; a test compares the reference result with what the FMU gives.
+Pictures of the documentation, ``model.png``, and the reference result; also the README's variable table. They are kept in the repository, so that
+an export does not depend on the version of a plotting library; a test compares the reference result with what the FMU gives.
 """
 
 import csv
+import itertools
 import math
 from pathlib import Path
 
@@ -38,7 +39,7 @@ def reference_rows(fmu):
     with Instance(fmu) as instance:
         instance.initialize(0.0, **dict(zip(INPUTS, input_at(0.0), strict=True)))
         rows = [[times[0], *instance.get(*OUTPUTS)]]
-        for time, target in zip(times, times[1:]):
+        for time, target in itertools.pairwise(times):
             instance.set(**dict(zip(INPUTS, input_at(time), strict=True)))
             instance.step(time, target)
             rows.append([target, *instance.get(*OUTPUTS)])
@@ -72,7 +73,7 @@ def example(fmu, eta=0.4, transient=500, periods=2, points=600):
     with Instance(fmu) as instance:
         instance.initialize(0.0, box_amplitude=1.0 / eta**2, box_frequency=eta)
         rows = []
-        for time, target in zip(times, times[1:]):
+        for time, target in itertools.pairwise(times):
             instance.step(time, target)
             rows.append([float(value) for value in instance.get(*names)])
     return np.array(times[1:]), dict(zip(names, np.array(rows).T, strict=True))
@@ -103,7 +104,8 @@ def main():
     write_reference(fmu, FOLDER / "reference")
     draw_scheme(FOLDER / "documentation" / "scheme.png")
     draw_scheme(FOLDER / "model.png", width=2.4)
-    draw_example(*example(fmu), FOLDER / "documentation" / "plot.svg")
+    times, values = example(fmu)
+    draw_example(times, values, FOLDER / "documentation" / "plot.svg")
     readme = Path("README.md")
     readme.write_text(with_table(readme.read_text(encoding="utf-8"), variable_table(fmu)), encoding="utf-8")
 

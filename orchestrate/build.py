@@ -1,15 +1,25 @@
 """Export the FMUs, and know whether an exported one is up to date."""
 
+import functools
+import logging
 from pathlib import Path
 
-from fmu_src.export import pythonfmu_form
+from fmu_src.export import native_form, pythonfmu_form
+from fmu_src.export.linking import NoCompiler
 from fmu_src.oscillator.model import MODEL as OSCILLATOR
 
 from .errors import UserError
+from .fmu import describe
 
-FORMS = {"fmi2-python": pythonfmu_form.export}
-MODELS = {"TwoMassImpactOscillator": (OSCILLATOR, "vibroimpact", "oscillator")}
-PREFERENCE = ("fmi2-python",)  # the form taken where the user names none, best first
+log = logging.getLogger(__name__)
+FORMS: dict = {"fmi2-python": pythonfmu_form.export, "fmi2": native_form.export_fmi2, "fmi3": native_form.export_fmi3}
+MODELS: dict = {"TwoMassImpactOscillator": (OSCILLATOR, "vibroimpact", "oscillator")}
+GUIDS: dict = {
+    "fmi2-python": pythonfmu_form.guid,
+    "fmi2": functools.partial(native_form.guid, version="fmi2"),
+    "fmi3": functools.partial(native_form.guid, version="fmi3"),
+}
+PREFERENCE = ("fmi2", "fmi2-python")  # the form taken where the user names none, best first
 
 
 def build(folder, forms=tuple(FORMS)):
@@ -27,19 +37,37 @@ def build(folder, forms=tuple(FORMS)):
     list of Path
         The FMUs written.
     """
-    try:
-        return [FORMS[form](*model, Path(folder) / form) for form in forms for model in MODELS.values()]
-    except OSError as error:
-        raise UserError(f"{folder}: cannot be written ({error.strerror or error}); allowed is a writable folder") from None
+    written = []
+    for form in forms:
+        for name, model in MODELS.items():
+            try:
+                written.append(FORMS[form](*model, Path(folder) / form))
+            except NoCompiler as reason:
+                log.warning("%s: no FMU of the form %s can be made here: %s", name, form, reason)
+            except OSError as error:
+                raise UserError(f"{folder}: cannot be written ({error.strerror or error}); allowed is a writable folder") from None
+    return written
+
+
+def up_to_date(form, name, folder):
+    """Whether a model's FMU of a form is there and made of the present sources."""
+    path = Path(folder) / form / f"{name}.fmu"
+    return path.is_file() and describe(path).guid == GUIDS[form](*MODELS[name][1:])
+
+
+def refresh(folder, forms=tuple(FORMS)):
+    """Export what is missing or out of date."""
+    stale = [form for form in forms if not all(up_to_date(form, name, folder) for name in MODELS)]
+    return build(folder, stale)
 
 
 def default_fmu(name, folder):
     """Path of a model's FMU, exported first where there is none or its sources have changed."""
-    from .fmu import describe
-
-    form = PREFERENCE[0]
-    path = Path(folder) / form / f"{name}.fmu"
-    if not path.is_file() or describe(path).guid != pythonfmu_form.guid(*MODELS[name][1:]):
+    for form in PREFERENCE:
+        path = Path(folder) / form / f"{name}.fmu"
+        if up_to_date(form, name, folder):
+            return path
         print(f"exporting {path} ...", flush=True)
-        build(folder, [form])
-    return path
+        if build(folder, [form]):
+            return path
+    raise AssertionError("the last form needs no compiler")

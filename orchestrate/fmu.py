@@ -1,9 +1,10 @@
 """The one place that talks to FMPy: describe an FMU, instantiate it, set, step, read, save its state."""
 
+import math
 import re
 import shutil
 import tempfile
-from ctypes import c_double, c_uint
+from ctypes import byref, c_double, c_uint
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -68,7 +69,7 @@ def describe(path, model=None):
 
 
 class Instance:
-    """A co-simulation instance of an FMI 2.0 FMU, as a context manager.
+    """A co-simulation instance of an FMI 2.0 or 3.0 FMU, as a context manager.
 
     Parameters
     ----------
@@ -84,21 +85,37 @@ class Instance:
 
     def __init__(self, path, name="instance"):
         import fmpy
-        from fmpy import fmi2
 
         self.description = describe(path)
         self._messages = []
         self._folder = tempfile.mkdtemp(prefix="vibroimpact-")
-        fmpy.extract(str(path), self._folder)
-        found = fmpy.read_model_description(self._folder)
-        self._fmu = fmi2.FMU2Slave(
-            guid=found.guid, unzipDirectory=self._folder, modelIdentifier=found.coSimulation.modelIdentifier, instanceName=name
-        )
+        try:
+            fmpy.extract(str(path), self._folder)
+            found = fmpy.read_model_description(self._folder)
+            identity = {"unzipDirectory": self._folder, "modelIdentifier": found.coSimulation.modelIdentifier, "instanceName": name}
+            make = self._make3 if self.description.fmi_version.startswith("3") else self._make2
+            make({"guid": found.guid, **identity})
+        except BaseException:
+            shutil.rmtree(self._folder, ignore_errors=True)
+            raise
+
+    def _make2(self, identity):
+        import fmpy
+        from fmpy import fmi2
+
+        self._fmu = fmi2.FMU2Slave(**identity)
         self._callbacks = fmi2.fmi2CallbackFunctions()
-        self._callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._log)
+        self._callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._log2)
         self._callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
         self._callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
+        fmpy.logging.addLoggerProxy(byref(self._callbacks))  # messages come as a format with arguments
         self.call("instantiate", callbacks=self._callbacks, loggingOn=True)
+
+    def _make3(self, identity):
+        from fmpy import fmi3
+
+        self._fmu = fmi3.FMU3Slave(**identity)
+        self.call("instantiate", loggingOn=True, logMessage=self._log3)
 
     def __enter__(self):
         return self
@@ -107,8 +124,11 @@ class Instance:
         self._fmu.freeInstance()
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    def _log(self, _environment, _instance, _status, _category, message):
-        self._messages.append(message.decode(errors="replace").replace("%%", "%"))
+    def _log2(self, _environment, _instance, _status, _category, message):
+        self._messages.append(message.decode(errors="replace"))
+
+    def _log3(self, _environment, _status, _category, message):
+        self._messages.append(message.decode(errors="replace"))
 
     def call(self, function, *args, **kwargs):
         """Call a method of FMPy's FMU, with the FMU's message where it fails."""
@@ -138,9 +158,12 @@ class Instance:
 
     def initialize(self, start_time=0.0, **values):
         """Set ``values`` and initialise."""
-        self.call("setupExperiment", startTime=start_time)
         self.set(**values)
-        self.call("enterInitializationMode")
+        if self.description.fmi_version.startswith("3"):
+            self.call("enterInitializationMode", startTime=start_time)
+        else:
+            self.call("setupExperiment", startTime=start_time)
+            self.call("enterInitializationMode")
         self.call("exitInitializationMode")
 
     def reset(self):
@@ -152,29 +175,58 @@ class Instance:
         self.call("doStep", currentCommunicationPoint=time, communicationStepSize=target - time)
 
     def reader(self, *names):
-        """A fast reader of Real variables: a function that fills and returns one array of c_double, in the order of ``names``."""
-        references = (c_uint * len(names))(*[self.variable(name).valueReference for name in names])
-        values = (c_double * len(names))()
-        get, component, count = self._fmu.fmi2GetReal, self._fmu.component, len(names)
+        """A fast reader of Real variables: a function that fills and returns one ctypes array, in the order of ``names``.
+
+        The name of a series (``x1_sample``) stands for all its elements: indexed scalars in FMI 2.0, one array in FMI 3.0.
+        """
+        references, size = [], 0
+        for name in names:
+            found = self.elements(name)
+            references += [variable.valueReference for variable, _ in found]
+            size += sum(length for _, length in found)
+        array = (c_uint * len(references))(*references)
+        values = (c_double * size)()
+        arguments: list = [self._fmu.component, array, len(references), values]
+        if self.description.fmi_version.startswith("3"):
+            get = self._fmu.fmi3GetFloat64
+            arguments.append(size)
+        else:
+            get = self._fmu.fmi2GetReal
 
         def read():
-            get(component, references, count, values)
+            get(*arguments)
             return values
 
         return read
 
+    def elements(self, name):
+        """Variables a name stands for, each with its number of values."""
+        variables = self.description.variables
+        if f"{name}[1]" not in variables:
+            variable = self.variable(name)
+            return [(variable, math.prod(int(dimension.start) for dimension in variable.dimensions or ()))]
+        return [(variables[f"{name}[{i + 1}]"], 1) for i in range(sum(other.startswith(f"{name}[") for other in variables))]
+
     def save_state(self):
         """The whole state, serialised."""
-        state = self.call("getFMUstate")
+        get, serialize, _, _, free = self.state_calls()
+        state = self.call(get)
         try:
-            return self.call("serializeFMUstate", state)
+            return self.call(serialize, state)
         finally:
-            self.call("freeFMUstate", state)
+            self.call(free, state)
 
     def restore_state(self, data):
         """Back to a state that :meth:`save_state` gave."""
-        state = self.call("deSerializeFMUstate", data)
+        _, _, deserialize, put, free = self.state_calls()
+        state = self.call(deserialize, data)
         try:
-            self.call("setFMUstate", state)
+            self.call(put, state)
         finally:
-            self.call("freeFMUstate", state)
+            self.call(free, state)
+
+    def state_calls(self):
+        """FMPy's names of the state functions."""
+        if self.description.fmi_version.startswith("3"):
+            return "getFMUState", "serializeFMUState", "deserializeFMUState", "setFMUState", "freeFMUState"
+        return "getFMUstate", "serializeFMUstate", "deSerializeFMUstate", "setFMUstate", "freeFMUstate"

@@ -38,7 +38,9 @@ class Journal:
             raise UserError(f"{self.path}: not usable as a journal ({error}); allowed is a writable place, or a journal of this run") from None
         if found != text:
             self.close()
-            raise UserError(f"{self.path}: the journal of another run ({difference(json.loads(found), identity)}); remove it or choose another --output")
+            raise UserError(
+                f"{self.path}: the journal of another run ({difference(json.loads(found), identity)}); remove it or choose another --output"
+            )
 
     @staticmethod
     def normal(identity):
@@ -66,7 +68,9 @@ class Journal:
         try:
             self._db.execute("INSERT INTO rows VALUES (?, ?)", (index, np.asarray(row, dtype=float).tobytes()))
         except sqlite3.Error as error:
-            raise UserError(f"{self.path}: cannot be written ({error}); what was computed before is kept, the same command goes on from there") from None
+            raise UserError(
+                f"{self.path}: cannot be written ({error}); what was computed before is kept, the same command goes on from there"
+            ) from None
 
     def remove(self):
         """Delete the journal, once its contents are in a result file."""

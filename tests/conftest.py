@@ -11,9 +11,9 @@ BUILD = ROOT / "build"
 def pytest_configure(config):
     """Export the FMUs where they are missing or out of date."""
     if not hasattr(config, "workerinput"):
-        from orchestrate.build import default_fmu
+        from orchestrate.build import refresh
 
-        default_fmu("TwoMassImpactOscillator", BUILD)
+        refresh(BUILD)
 
 
 @pytest.fixture(scope="session")

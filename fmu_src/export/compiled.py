@@ -8,10 +8,13 @@ import os
 import platform
 import sys
 
-LIBRARIES = {("linux", "x86_64"): "kernel-x86_64-linux.so", ("win32", "amd64"): "kernel-x86_64-windows.dll"}
+LIBRARIES = {  # machine: platform and file name
+    ("linux", "x86_64"): ("x86_64-linux", "kernel-x86_64-linux.so"),
+    ("win32", "amd64"): ("x86_64-windows", "kernel-x86_64-windows.dll"),
+}
 
 
-loaded = {}  # libraries of this process by path: ctypes makes new classes at every load
+loaded: dict = {}  # libraries of this process by path: ctypes makes new classes at every load
 
 
 def load_compiled(folder):
@@ -27,8 +30,8 @@ def load_compiled(folder):
     tuple of ctypes functions, or None
         Each takes an array of c_double and a time, and returns a code.
     """
-    name = LIBRARIES.get((sys.platform, platform.machine().lower()))
-    path = os.path.join(folder, name or "none")
+    _, name = LIBRARIES.get((sys.platform, platform.machine().lower()), ("", "none"))
+    path = os.path.join(folder, name)
     if os.environ.get("VIBROIMPACT_PURE_PYTHON", "0") not in ("", "0") or not os.path.isfile(path):
         return None
     if path in loaded:

@@ -2,7 +2,7 @@
 
 from xml.etree import ElementTree as ET
 
-from .table import REAL
+from .table import BOOLEAN, INTEGER, REAL
 
 UNITS = {  # SI exponents
     "kg": {"kg": 1},
@@ -26,6 +26,14 @@ UNITS = {  # SI exponents
 COSIMULATION = {
     "needsExecutionTool": "true",
     "canHandleVariableCommunicationStepSize": "true",
+    "canNotUseMemoryManagementFunctions": "true",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
+}
+NATIVE_COSIMULATION = {
+    "canHandleVariableCommunicationStepSize": "true",
+    "canInterpolateInputs": "true",
+    "maxOutputDerivativeOrder": "1",
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
@@ -79,6 +87,11 @@ def fmi2_xml(model, guid, cosimulation=COSIMULATION):
     return ET.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n"
 
 
+def fmi2_native_xml(model, guid):
+    """The model description of the native form."""
+    return fmi2_xml(model, guid, NATIVE_COSIMULATION)
+
+
 def add_units(root, model):
     """Definitions of the units in use."""
     definitions = ET.SubElement(root, "UnitDefinitions")
@@ -108,10 +121,18 @@ def add_variable(parent, variable):
             if value is not None:
                 typed.set(key, number(value))
         typed.set("nominal", number(variable.nominal))
-    elif variable.minimum is not None:
-        typed.set("min", str(int(variable.minimum)))
+    for key, value in (("min", variable.minimum), ("max", variable.maximum)):
+        if value is not None and variable.type == INTEGER:
+            typed.set(key, str(int(value)))
     if not variable.calculated:
-        typed.set("start", number(variable.start) if variable.type == REAL else str(bool(variable.start)).lower())
+        typed.set("start", start_text(variable))
+
+
+def start_text(variable):
+    """A start value as XML writes it."""
+    if variable.type == BOOLEAN:
+        return str(bool(variable.start)).lower()
+    return number(variable.start) if variable.type == REAL else str(int(variable.start))
 
 
 def add_structure(root, model):
@@ -121,7 +142,7 @@ def add_structure(root, model):
     outputs = ET.SubElement(structure, "Outputs")
     unknowns = ET.SubElement(structure, "InitialUnknowns")
     for variable in model.variables:
-        if variable.calculated:
+        if variable.causality == "output":
             ET.SubElement(outputs, "Unknown", index=index[variable.name], dependencies="")
             known = sorted(int(index[name]) for name in variable.initial_dependencies)
             ET.SubElement(unknowns, "Unknown", index=index[variable.name], dependencies=" ".join(map(str, known)))

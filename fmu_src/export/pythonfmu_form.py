@@ -14,8 +14,10 @@ from pathlib import Path
 import pythonfmu
 
 from .archive import fingerprint, guid_of, read_folder, write_archive
-from .compile_kernel import NoCompiler, compile_library
+from .compile_kernel import compile_objects
+from .compiled import LIBRARIES
 from .documentation import documentation_files
+from .linking import NoCompiler, link
 from .model_description import fmi2_xml
 
 log = logging.getLogger(__name__)
@@ -98,7 +100,10 @@ def run_pythonfmu(model, folder, sources, digest, scratch):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_bytes(content)
     try:
-        compile_library(f"fmu_src.{folder}.model", package)
+        entry = (ROOT / "export" / "native" / "library.c").read_bytes()
+        objects = compile_objects(f"fmu_src.{folder}.model")
+        for platform, library in LIBRARIES.values():
+            (package / library).write_bytes(link(platform, {"kernel.o": objects[platform], "library.c": entry}))
     except NoCompiler as reason:
         log.warning("%s: no compiled kernel, the FMU will run in pure Python: %s", model.name, reason)
     script = scratch / "source" / f"{model.name}_{digest[:12]}.py"

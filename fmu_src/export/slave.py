@@ -10,9 +10,10 @@ import ctypes
 import os
 import struct
 import sys
+from typing import Any
 
 from .compiled import load_compiled
-from .table import BOOLEAN, INTEGER, REAL
+from .table import BOOLEAN, INTEGER, REAL, explain
 
 INSTANTIATED, INITIALIZING, STEPPING, TERMINATED = 0.0, 1.0, 2.0, 3.0
 STATE_MAGIC = b"vibroimpact state "
@@ -30,8 +31,11 @@ def keep(thing):
 class Slave:
     """Mixed into pythonfmu's ``Fmi2Slave``; the subclass sets ``model`` (a :class:`.table.Model`) and ``fingerprint`` (str)."""
 
-    model = None
+    model: Any = None
     fingerprint = ""
+    instance_name: str
+    log_queue: list
+    log: Any
 
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
@@ -46,7 +50,7 @@ class Slave:
         self._phase = INSTANTIATED
         self._start_time = 0.0
         self._stale = True  # outputs do not belong to the values set yet (initialisation mode)
-        self._checked = {REAL: None, INTEGER: None, BOOLEAN: None}
+        self._checked: dict = {REAL: None, INTEGER: None, BOOLEAN: None}
 
     # -- failing without a crash --------------------------------------------------------------------------------------
 
@@ -100,7 +104,7 @@ class Slave:
         if self._stale:
             code = self._initialize(self._memory, self._start_time)
             if code:
-                self.refuse(self.model.explain(self._memory, code, self._start_time))
+                self.refuse(explain(self.model, self._memory, code))
             self._stale = False
 
     def terminate(self):
@@ -130,12 +134,14 @@ class Slave:
 
     def step(self, time):
         """Advance; on failure the memory is put back and the reason returned."""
-        before = self._array(*self._memory)
+        first, count = self.model.written_only
+        head, tail = self._memory[:first], self._memory[first + count :]
         code = self._advance(self._memory, time)
         if not code:
             return ""
-        problem = self.model.explain(self._memory, code, time)
-        self._memory = before
+        problem = explain(self.model, self._memory, code)
+        self._memory[:first] = head
+        self._memory[first + count :] = tail
         return problem
 
     # -- values -------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 Standard library only: this file travels inside the FMU.
 """
 
+import re
 from dataclasses import dataclass
 from math import isfinite
 
@@ -31,6 +32,12 @@ class Variable:
         Order of magnitude.
     initial_dependencies : tuple of str
         The variables known at the start that the calculated initial value depends on.
+    input_derivatives : int
+        How many of the variables that follow in the table are its time derivatives.
+    derivative : str
+        The output that is its time derivative, where there is one.
+    series : str
+        Name of the array it is an element of, where FMI 3.0 has the array alone.
     """
 
     name: str
@@ -46,11 +53,14 @@ class Variable:
     maximum: "float | None" = None
     nominal: float = 1.0
     initial_dependencies: tuple = ()
+    input_derivatives: int = 0
+    derivative: str = ""
+    series: str = ""
 
     @property
     def calculated(self):
         """Whether the FMU computes the variable, so that nobody can set it."""
-        return self.causality == "output"
+        return self.causality in ("output", "local")
 
     @property
     def fixed(self):
@@ -80,6 +90,40 @@ class Variable:
 
 
 @dataclass(frozen=True)
+class Array:
+    """An array of FMI 3.0 over variables that stand in the table one after the other.
+
+    Attributes
+    ----------
+    name, description : str
+    first : str
+        Name of the first variable.
+    size : int
+    """
+
+    name: str
+    description: str
+    first: str
+    size: int
+
+
+@dataclass(frozen=True)
+class Clock:
+    """A triggered output clock of FMI 3.0.
+
+    Attributes
+    ----------
+    name, description : str
+    counter : str
+        The variable that grows with each tick.
+    """
+
+    name: str
+    description: str
+    counter: str
+
+
+@dataclass(frozen=True)
 class Model:
     """A model as the exporters see it.
 
@@ -90,14 +134,18 @@ class Model:
         In the order of the slots, from 0 without gaps.
     memory_size : int
         Number of floats of an instance's memory.
-    time_slot : int
-        Slot of the communication point reached.
+    written_only : tuple of int
+        First slot and number of slots that a step writes and never reads: a step that fails need not put them back.
+    time_slot, stop_slot : int
+        Slots of the communication point reached, and of the flag that ends a step at its first event.
     initialize, advance : callable
         The kernel's entry points, ``(memory, time) -> code``; 0 is success.
-    explain : callable
-        ``(memory, code, time) -> str``: what a code says, as one line.
+    messages : dict of int to str
+        What a code of the entry points says, as one line, see :func:`explain`.
     stop_time, step_size : float
         Default experiment, s.
+    arrays : tuple of Array
+    clock : Clock or None
     """
 
     name: str
@@ -107,9 +155,27 @@ class Model:
     license: str
     variables: tuple
     memory_size: int
+    written_only: tuple
     time_slot: int
+    stop_slot: int
     initialize: object
     advance: object
-    explain: object
+    messages: dict
     stop_time: float
     step_size: float
+    arrays: tuple = ()
+    clock: "Clock | None" = None
+
+
+def explain(model, memory, code):
+    """What a return code of the kernel says, as one line.
+
+    In a message ``{12}`` stands for the number in slot 12, ``{12:flight|contact}`` for one of the words, chosen by it. The native FMU
+    fills in the same texts.
+    """
+
+    def fill(match):
+        value = memory[int(match.group(1))]
+        return match.group(2)[1:].split("|")[int(value)] if match.group(2) else repr(float(value))
+
+    return re.sub(r"\{(\d+)(:[^}]*)?\}", fill, model.messages[code])

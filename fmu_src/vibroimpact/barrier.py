@@ -7,7 +7,7 @@ and every derivative is bounded in closed form for all later times.
 
 from . import memory as at
 from .elementary import sincos_turns
-from .response import basis
+from .response import basis, rotation, shares_decay
 
 
 def free_derivative(m, b, c, w):
@@ -22,8 +22,9 @@ def set_gap(m):
         m[at.BARRIER_HARMONIC + i] = m[at.HARMONIC_2 + i] - m[at.HARMONIC_1 + i]
         m[at.BARRIER_FREE_A + i] = -m[at.FREE_A + i]
         m[at.BARRIER_FREE_B + i] = m[at.FREE_B + i]
-    for i in range(4):
-        m[at.BARRIER_CUBIC + i] = m[at.CUBIC_B + i] - m[at.CUBIC_A + i]
+    if m[at.CUBIC_PRESENT] != 0.0:
+        for i in range(4):
+            m[at.BARRIER_CUBIC + i] = m[at.CUBIC_B + i] - m[at.CUBIC_A + i]
     set_bounds(m, at.BRANCH_1)
 
 
@@ -33,9 +34,10 @@ def set_contact_force(m):
     h_cos, h_sin, eta = m[at.HARMONIC_3], m[at.HARMONIC_3 + 1], m[at.ETA]
     m[at.BARRIER_HARMONIC] = p * eta * h_sin + q * h_cos
     m[at.BARRIER_HARMONIC + 1] = q * h_sin - p * eta * h_cos
-    for i in range(3):
-        m[at.BARRIER_CUBIC + i] = p * m[at.CUBIC_A + i + 1] + q * m[at.CUBIC_A + i]
-    m[at.BARRIER_CUBIC + 3] = q * m[at.CUBIC_A + 3]
+    if m[at.CUBIC_PRESENT] != 0.0:
+        for i in range(3):
+            m[at.BARRIER_CUBIC + i] = p * m[at.CUBIC_A + i + 1] + q * m[at.CUBIC_A + i]
+        m[at.BARRIER_CUBIC + 3] = q * m[at.CUBIC_A + 3]
     c, w = m[at.FREE_A], m[at.FREE_A + 1]
     c_dot, w_dot = free_derivative(m, at.BRANCH_3, c, w)
     m[at.BARRIER_FREE_A] = p * c_dot + q * c
@@ -46,26 +48,21 @@ def set_contact_force(m):
 
 
 def set_bounds(m, branch_a):
-    """Bounds of the third and fourth derivative, the parts that decay apart from the steady one."""
-    steady, a, b = bounds(m, branch_a, 3)
-    m[at.BOUND_3] = steady
-    m[at.BOUND_3 + 1] = a
-    m[at.BOUND_3 + 2] = b
+    """Bounds of the fourth derivative: the steady part, and the free parts at tau = 0."""
     steady, a, b = bounds(m, branch_a, 4)
-    m[at.BOUND_4] = steady
-    m[at.BOUND_4 + 1] = a
-    m[at.BOUND_4 + 2] = b
+    m[at.BOUND] = steady
+    m[at.BOUND + 1] = a
+    m[at.BOUND + 2] = b
 
 
 def bounds(m, branch_a, order):
-    """Bounds of the barrier's derivative of an order >= 3, at all later times: steady part, free parts A and B at tau = 0."""
+    """Bounds of the barrier's derivative of an order >= 4, at all later times: steady part, free parts A and B at tau = 0."""
     steady = abs(m[at.BARRIER_HARMONIC]) + abs(m[at.BARRIER_HARMONIC + 1])
     for _ in range(order):
         steady *= m[at.ETA]
-    if order == 3:
-        steady += abs(m[at.BARRIER_CUBIC + 3])
     a = free_bound(m, branch_a, at.BARRIER_FREE_A, order)
-    return steady, a, free_bound(m, at.BRANCH_2, at.BARRIER_FREE_B, order)
+    b = free_bound(m, at.BRANCH_2, at.BARRIER_FREE_B, order) if m[at.MODE] == at.FLIGHT else 0.0
+    return steady, a, b
 
 
 def free_bound(m, b, free, order):
@@ -87,30 +84,31 @@ def free_part(m, b, c, w, C, S):
 
 
 def evaluate(m, tau):
-    """The barrier at ``tau``: value, three derivatives, and bounds of the third and fourth from there on.
+    """The barrier at ``tau``: value, three derivatives, and a bound of the fourth from there on.
 
     Returns
     -------
-    h0, h1, h2, h3, bound_3, bound_4 : float
+    h0, h1, h2, h3, bound : float
     """
     m[at.WORK] += 1.0
     flight = m[at.MODE] == at.FLIGHT
     branch_a = at.BRANCH_1 if flight else at.BRANCH_3
-    C, S, decay_a = basis(m, branch_a, tau)
+    C, S, decay = basis(m, branch_a, tau)
     h0, h1, h2, h3 = free_part(m, branch_a, m[at.BARRIER_FREE_A], m[at.BARRIER_FREE_A + 1], C, S)
-    bound_3 = m[at.BOUND_3] + decay_a * m[at.BOUND_3 + 1]
-    bound_4 = m[at.BOUND_4] + decay_a * m[at.BOUND_4 + 1]
+    bound = m[at.BOUND] + decay * m[at.BOUND + 1]
     if flight:
-        C, S, decay_b = basis(m, at.BRANCH_2, tau)
+        if shares_decay(m):
+            C, S = rotation(m, at.BRANCH_2, tau, decay)
+        else:
+            C, S, decay = basis(m, at.BRANCH_2, tau)
         b0, b1, b2, b3 = free_part(m, at.BRANCH_2, m[at.BARRIER_FREE_B], m[at.BARRIER_FREE_B + 1], C, S)
         h0 += b0
         h1 += b1
         h2 += b2
         h3 += b3
-        bound_3 += decay_b * m[at.BOUND_3 + 2]
-        bound_4 += decay_b * m[at.BOUND_4 + 2]
-    eta = m[at.ETA]
+        bound += decay * m[at.BOUND + 2]
     if m[at.FORCING] != 0.0:
+        eta = m[at.ETA]
         s, c = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
         u0 = m[at.BARRIER_HARMONIC] * c + m[at.BARRIER_HARMONIC + 1] * s
         u1 = eta * (m[at.BARRIER_HARMONIC + 1] * c - m[at.BARRIER_HARMONIC] * s)
@@ -119,7 +117,10 @@ def evaluate(m, tau):
         h1 += u1
         h2 -= square * u0
         h3 -= square * u1
-    q2, q3 = m[at.BARRIER_CUBIC + 2], m[at.BARRIER_CUBIC + 3]
-    h0 += m[at.BARRIER_CUBIC] + tau * (m[at.BARRIER_CUBIC + 1] + 0.5 * tau * (q2 + tau * q3 / 3.0))
-    h1 += m[at.BARRIER_CUBIC + 1] + tau * (q2 + 0.5 * tau * q3)
-    return h0, h1, h2 + q2 + tau * q3, h3 + q3, bound_3, bound_4
+    if m[at.CUBIC_PRESENT] != 0.0:
+        q2, q3 = m[at.BARRIER_CUBIC + 2], m[at.BARRIER_CUBIC + 3]
+        h0 += m[at.BARRIER_CUBIC] + tau * (m[at.BARRIER_CUBIC + 1] + 0.5 * tau * (q2 + tau * q3 / 3.0))
+        h1 += m[at.BARRIER_CUBIC + 1] + tau * (q2 + 0.5 * tau * q3)
+        h2 += q2 + tau * q3
+        h3 += q3
+    return h0, h1, h2, h3, bound

@@ -5,7 +5,6 @@ first of its derivatives that does not vanish decides. "Vanishes" means: below t
 """
 
 from . import memory as at
-from .elementary import sincos_turns
 from .excitation import cubic_at
 
 ROUNDING = 1e-14
@@ -13,7 +12,7 @@ HIGHEST = 5  # with a cubic forcing, from rest, some derivative of f up to the f
 
 
 def contact_force(m, x, v):
-    """f of (18): the acceleration with which the gap would open at displacement ``x`` and common velocity ``v``."""
+    """The f of (18): the acceleration with which the gap would open at displacement ``x`` and common velocity ``v``."""
     return m[at.FORCE_V] * v + m[at.FORCE_X] * x
 
 
@@ -48,7 +47,7 @@ def first_derivative(m, x, v, lowest):
     value : float
         The derivative, 0 where all vanish.
     """
-    sine, cosine = sincos_turns(m[at.TURN])
+    sine, cosine = m[at.SINE], m[at.COSINE]
     cubic = cubic_at(m, m[at.SEGMENT_AGE])
     twice = 2.0 * m[at.BRANCH_3 + at.DAMPING]
     square = m[at.BRANCH_3 + at.OMEGA_SQUARED]

@@ -4,6 +4,8 @@ A segment lasts as long as the inputs stay as they are. With a jerk, snap or cra
 Relative to the box a mass is driven by minus the box's acceleration: ``a Omega^2 sin(phase)`` minus the cubic.
 """
 
+import math
+
 from . import memory as at
 from .elementary import TWO_PI
 
@@ -37,12 +39,15 @@ def begin_segment(m):
     m[at.FORCING] = m[at.BOX_AMPLITUDE] * eta * eta
     unit = scale * scale
     m[at.CUBIC_ON] = 0.0
+    m[at.CUBIC_PRESENT] = 0.0
     for i in range(4):
         derivative = m[at.BOX_ACCELERATION + i]
         m[at.CUBIC + i] = -derivative * unit
         unit *= scale
-        if i > 0 and derivative != 0.0:
-            m[at.CUBIC_ON] = 1.0
+        if derivative != 0.0:
+            m[at.CUBIC_PRESENT] = 1.0
+            if i > 0:
+                m[at.CUBIC_ON] = 1.0
     m[at.SEGMENT_AGE] = 0.0
     bonded = m[at.BONDED] != 0.0
     if not bonded and set_harmonic(m, at.BRANCH_1, at.HARMONIC_1):
@@ -65,6 +70,7 @@ def set_harmonic(m, b, harmonic):
     twice = 2.0 * m[b + at.DAMPING] * eta
     square = detuning * detuning + twice * twice
     if square <= 4.0 * NEAR_RESONANCE * m[b + at.OMEGA_SQUARED] * m[b + at.OMEGA_SQUARED]:
+        m[at.REPORT] = m[at.OMEGA] * math.sqrt(m[b + at.OMEGA_SQUARED])
         return True
     m[harmonic] = -forcing * twice / square
     m[harmonic + 1] = forcing * detuning / square

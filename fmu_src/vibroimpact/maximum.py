@@ -2,7 +2,7 @@
 
 from . import memory as at
 from .barrier import evaluate
-from .roots import clear_step, next_step
+from .roots import clear_step, longest_step, next_step
 
 SMALLEST = 1e-9  # least progress, in tau: a summit is flat, nothing is lost
 
@@ -13,20 +13,22 @@ def largest_gap(m, start, stop, highest):
     Climbing, the walk goes to the first root of the gap's slope; elsewhere to the first point that rises above what is known.
     """
     tau = start
+    reach = longest_step(m)
     summit = False
     while m[at.WORK] < m[at.WORK_LIMIT]:
-        h0, h1, h2, h3, bound_3, bound_4 = evaluate(m, tau)
+        h0, h1, h2, h3, bound = evaluate(m, tau)
         if h0 > highest:
             highest = h0
         if tau >= stop:
             break
         if h1 > 0.0 and not summit:
-            step, summit = next_step(h1, h2, h3, bound_4, tau)
+            step, summit = next_step(h1, h2, h3, -bound, 0.0, tau, reach)
         elif highest > h0:
-            step, _ = next_step(highest - h0, -h1, -h2, bound_3, tau)
+            step, _ = next_step(highest - h0, -h1, -h2, -h3, bound, tau, reach)
             summit = False
         else:
-            step = clear_step(0.0, -h1 if h1 < 0.0 else 0.0, -h2, bound_3)
+            scale = 1.0 / bound if bound > 0.0 else 1.0
+            step = clear_step(0.0, -h1 * scale if h1 < 0.0 else 0.0, -h2 * scale, -h3 * scale, bound * scale, reach)
             summit = False
             if step < SMALLEST:
                 step = SMALLEST

@@ -12,7 +12,7 @@ from .elementary import fraction, sincos_turns
 from .excitation import cubic_at, set_cubic_response
 from .impact import common_velocity, count_impact, restitution, sticks
 from .response import displacement, set_free
-from .roots import INFINITE, clear_step
+from .roots import INFINITE, longest_step, step_from
 
 
 def state_at(m, tau):
@@ -47,8 +47,16 @@ def move_origin(m, tau):
     low = m[at.ORIGIN_LOW] + error
     m[at.ORIGIN] = total + low
     m[at.ORIGIN_LOW] = low - (m[at.ORIGIN] - total)
-    m[at.TURN] = fraction(m[at.TURN] + m[at.ETA_TURNS] * tau)
+    set_turn(m, m[at.TURN] + m[at.ETA_TURNS] * tau)
     m[at.SEGMENT_AGE] += tau
+
+
+def set_turn(m, turns):
+    """Phase at the state's start."""
+    m[at.TURN] = fraction(turns)
+    sine, cosine = sincos_turns(m[at.TURN])
+    m[at.SINE] = sine
+    m[at.COSINE] = cosine
 
 
 def begin(m, x1, v1, x2, v2, lowest):
@@ -75,28 +83,34 @@ def begin(m, x1, v1, x2, v2, lowest):
         v1, v2 = collide(m, x, v1, v2)
     if v2 > v1:
         begin_flight(m, x, v1, x, v2)
-        leave(m, 1, v2 - v1, gap_acceleration(m, x, v1, v2))
+        h2, h3 = gap_derivatives(m, x, v1, v2)
+        leave(m, 1, v2 - v1, h2, h3)
         return
     order, value = first_derivative(m, x, v1, lowest)
     if value > 0.0:
         begin_flight(m, x, v1, x, v1)
-        leave(m, order + 2, value, 0.0)
+        _, _, _, h3, _ = evaluate(m, 0.0)
+        leave(m, order + 2, value, value, h3)
         return
     if m[at.MODE] == at.FLIGHT:
         m[at.CONTACT_COUNT] += 1.0
     begin_common(m, at.CONTACT, x, v1)
-    if order == 1:
-        _, _, curvature, _, _, _ = evaluate(m, 0.0)
-        leave(m, 1, -value, curvature)
-    else:
-        leave(m, order, -value, 0.0)
+    h2, h3 = 0.0, 0.0
+    if order > 0:
+        _, _, h2, h3, _ = evaluate(m, 0.0)
+    leave(m, order, -value, h2, h3)
 
 
-def gap_acceleration(m, x, v1, v2):
-    """Gap's second derivative with both masses at ``x``: what they do not share of (6)."""
-    pull_1 = 2.0 * m[at.BRANCH_1 + at.DAMPING] * v1 + m[at.BRANCH_1 + at.OMEGA_SQUARED] * x
-    pull_2 = 2.0 * m[at.BRANCH_2 + at.DAMPING] * v2 + m[at.BRANCH_2 + at.OMEGA_SQUARED] * x
-    return pull_1 - pull_2
+def gap_derivatives(m, x, v1, v2):
+    """Gap's second and third derivative with both masses at ``x``, from (6)."""
+    twice_1, square_1 = 2.0 * m[at.BRANCH_1 + at.DAMPING], m[at.BRANCH_1 + at.OMEGA_SQUARED]
+    twice_2, square_2 = 2.0 * m[at.BRANCH_2 + at.DAMPING], m[at.BRANCH_2 + at.OMEGA_SQUARED]
+    pull_1 = twice_1 * v1 + square_1 * x
+    pull_2 = twice_2 * v2 + square_2 * x
+    drive = m[at.FORCING] * m[at.SINE]
+    if m[at.CUBIC_PRESENT] != 0.0:
+        drive += cubic_at(m, m[at.SEGMENT_AGE])[0]
+    return pull_1 - pull_2, twice_1 * (drive - pull_1) + square_1 * v1 - twice_2 * (drive - pull_2) - square_2 * v2
 
 
 def collide(m, x, v1, v2):
@@ -114,10 +128,11 @@ def collide(m, x, v1, v2):
 def begin_flight(m, x1, v1, x2, v2):
     """A flight from initial conditions; its barrier is the gap."""
     m[at.MODE] = at.FLIGHT
-    sine, cosine = sincos_turns(m[at.TURN])
-    cubic = cubic_at(m, m[at.SEGMENT_AGE])
-    set_cubic_response(m, at.BRANCH_1, at.CUBIC_A, cubic)
-    set_cubic_response(m, at.BRANCH_2, at.CUBIC_B, cubic)
+    sine, cosine = m[at.SINE], m[at.COSINE]
+    if m[at.CUBIC_PRESENT] != 0.0:
+        cubic = cubic_at(m, m[at.SEGMENT_AGE])
+        set_cubic_response(m, at.BRANCH_1, at.CUBIC_A, cubic)
+        set_cubic_response(m, at.BRANCH_2, at.CUBIC_B, cubic)
     set_free(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
     set_free(m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
     set_gap(m)
@@ -127,8 +142,9 @@ def begin_flight(m, x1, v1, x2, v2):
 def begin_common(m, mode, x, v):
     """Both masses as one, in permanent contact or glued; its barrier is the contact force."""
     m[at.MODE] = mode
-    sine, cosine = sincos_turns(m[at.TURN])
-    set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.SEGMENT_AGE]))
+    sine, cosine = m[at.SINE], m[at.COSINE]
+    if m[at.CUBIC_PRESENT] != 0.0:
+        set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.SEGMENT_AGE]))
     set_free(m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
     set_contact_force(m)
     open_end(m)
@@ -141,8 +157,8 @@ def open_end(m):
     m[at.END_KIND] = at.END_OPEN
 
 
-def leave(m, order, value, curvature):
-    """Leave a start on the boundary: no root lies before CLEAR.
+def leave(m, order, value, h2, h3):
+    """Leave a start on the boundary: no root lies before CLEAR; a very short flight's end is found at once.
 
     Parameters
     ----------
@@ -152,23 +168,26 @@ def leave(m, order, value, curvature):
         Of the barrier's first derivative that does not vanish; -1 if all vanish.
     value : float
         That derivative, > 0.
-    curvature : float
-        The second derivative, where ``order`` is 1.
+    h2, h3 : float
+        The second and third derivative; looked at where ``order`` is 1 or 2.
     """
     if order == 0:
         return
     if order < 0:
         m[at.CLEAR] = INFINITE
-    elif order <= 2:
-        branch = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
-        a, b, c = bounds(m, branch, 3)
+        return
+    branch = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
+    if order <= 2:
         slope = value if order == 1 else 0.0
-        m[at.CLEAR] = clear_step(0.0, slope, curvature if order == 1 else value, a + b + c)
-    else:
-        branch = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
-        a, b, c = bounds(m, branch, order + 1)
-        bound = a + b + c  # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of zero
-        m[at.CLEAR] = 0.5 * (order + 1) * value / bound if bound > 0.0 else INFINITE
+        step, found = step_from(0.0, slope, h2 if order == 1 else value, h3, m[at.BOUND] + m[at.BOUND + 1] + m[at.BOUND + 2], 0.0, longest_step(m))
+        m[at.CLEAR] = step
+        if found:
+            m[at.END] = step
+            m[at.END_KIND] = at.END_EVENT
+        return
+    steady, a, b = bounds(m, branch, order + 1)
+    bound = steady + a + b  # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of zero
+    m[at.CLEAR] = 0.5 * (order + 1) * value / bound if bound > 0.0 else INFINITE
 
 
 def end_state(m):

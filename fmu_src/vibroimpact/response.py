@@ -28,8 +28,8 @@ def basis(m, b, tau):
     rate = m[b + at.ENVELOPE_RATE]
     if nu_squared > 0.0:
         decay = exp_decay(damping * tau)
-        s, c = sincos_turns(m[b + at.NU_TURNS] * tau)
-        return decay * c, decay * s / nu, decay if rate == damping else exp_decay(rate * tau)
+        C, S = rotation(m, b, tau, decay)
+        return C, S, decay if rate == damping else exp_decay(rate * tau)
     x = nu * tau
     if x < 0.5:  # sinh(x)/x by its series: the difference of exponentials would cancel
         y = x * x
@@ -42,6 +42,18 @@ def basis(m, b, tau):
     slow = exp_decay(m[b + at.OMEGA_SQUARED] / (damping + nu) * tau)
     fast = exp_decay(2.0 * x)
     return 0.5 * slow * (1.0 + fast), 0.5 * slow * (1.0 - fast) / nu, exp_decay(rate * tau)
+
+
+def rotation(m, b, tau, decay):
+    """C and S of an underdamped branch whose ``e^{-D tau}`` is known."""
+    s, c = sincos_turns(m[b + at.NU_TURNS] * tau)
+    return decay * c, decay * s / m[b + at.NU]
+
+
+def shares_decay(m):
+    """Whether branches 1 and 2 are underdamped alike: one exponential serves both."""
+    same = m[at.BRANCH_1 + at.DAMPING] == m[at.BRANCH_2 + at.DAMPING]
+    return same and m[at.BRANCH_2 + at.NU_SQUARED] > 0.0 and m[at.BRANCH_1 + at.NU_SQUARED] > 0.0
 
 
 def cubic_value(m, response, tau):
@@ -72,7 +84,9 @@ def displacement(m, b, harmonic, free, cubic, tau, sine, cosine):
     C, S, _ = basis(m, b, tau)
     c, w = m[free], m[free + 1]
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
-    q, q_dot = cubic_value(m, cubic, tau)
+    q, q_dot = 0.0, 0.0
+    if m[at.CUBIC_PRESENT] != 0.0:
+        q, q_dot = cubic_value(m, cubic, tau)
     damping = m[b + at.DAMPING]
     x = h_cos * cosine + h_sin * sine + q + (c * C + w * S)
     v = m[at.ETA] * (h_sin * cosine - h_cos * sine) + q_dot
@@ -82,6 +96,9 @@ def displacement(m, b, harmonic, free, cubic, tau, sine, cosine):
 def set_free(m, b, harmonic, free, cubic, x, v, sine, cosine):
     """Free amplitudes c and v + D c from the initial conditions (9): alpha_i and nu_i beta_i of (11)."""
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
-    c = x - (h_cos * cosine + h_sin * sine) - m[cubic]
+    q, q_dot = 0.0, 0.0
+    if m[at.CUBIC_PRESENT] != 0.0:
+        q, q_dot = m[cubic], m[cubic + 1]
+    c = x - (h_cos * cosine + h_sin * sine) - q
     m[free] = c
-    m[free + 1] = v - m[at.ETA] * (h_sin * cosine - h_cos * sine) - m[cubic + 1] + m[b + at.DAMPING] * c
+    m[free + 1] = v - m[at.ETA] * (h_sin * cosine - h_cos * sine) - q_dot + m[b + at.DAMPING] * c

@@ -1,9 +1,9 @@
 """Certified first root of a barrier, (13) and (19).
 
-From a point where h, h', h'' are known and ``|h'''| <= B`` from there on, the cubic ``h + h' s + h'' s^2/2 - B s^3/6`` lies below
-the barrier: up to its first root the barrier has none. The walk steps from one such cubic to the next; nothing is sampled, so no
-root can be skipped, and it converges with third order at a simple root. The walk depends on the state alone, not on
-where the importer's communication points lie: it goes on where it was left.
+From a point where h and three derivatives are known and the fourth is bounded by B from there on, the quartic
+``h + h' s + h'' s^2/2 + h''' s^3/6 - B s^4/24`` lies below the barrier: up to its first root the barrier has none. The walk steps from one
+such quartic to the next; nothing is sampled, so no root can be skipped, and it converges with fourth order at a simple root. The walk depends
+on the state alone, not on where the importer's communication points lie: it goes on where it was left.
 """
 
 import math
@@ -13,6 +13,7 @@ from .barrier import evaluate
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
+TRIALS = 6
 
 
 def parabola_root(h0, h1, h2):
@@ -28,40 +29,52 @@ def parabola_root(h0, h1, h2):
     return INFINITE
 
 
-def clear_step(h0, h1, h2, bound):
-    """A step over which ``h0 + h1 s + h2 s^2/2 - bound s^3/6`` stays positive.
+def lowest_curvature(h2, h3, bound, s):
+    """The parabola ``h0 + h1 t + c t^2/2`` with this c lies below the quartic for ``0 <= t <= s``."""
+    return h2 + s * ((h3 if h3 < 0.0 else 0.0) * (1.0 / 3.0) - bound * s * (1.0 / 12.0))
 
-    For ``s <= a`` that cubic lies above the parabola with ``h2 - bound a/3``, so ``min(a, root of that parabola)`` is safe for every a;
-    the cubic's root is where both agree. Three such steps come close enough.
+
+def clear_step(h0, h1, h2, h3, bound, reach):
+    """A step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 - bound s^4/24`` stays positive.
+
+    For every trial s, ``min(s, first root of the parabola below the quartic up to s)`` is safe; trials close in on the s where both agree.
 
     Parameters
     ----------
-    h0, h1, h2 : float
-        Value and two derivatives, ``h0 > 0``, or ``h0 = 0 < h1``, or ``h0 = h1 = 0 < h2``.
+    h0, h1, h2, h3 : float
+        Value and three derivatives, ``h0 > 0``, or ``h0 = 0 < h1``, or ``h0 = h1 = 0 < h2``. A lower bound will do for h3.
     bound : float
-        Of the third derivative, >= 0.
+        Of the fourth derivative, >= 0.
+    reach : float
+        Longest step wanted, > 0.
 
     Returns
     -------
     float
-        > 0; infinity where the barrier never falls to zero.
+        > 0.
     """
-    guess = parabola_root(h0, h1, h2)
-    if bound <= 0.0:
-        return guess
-    h0, h1, h2 = h0 / bound, h1 / bound, h2 / bound  # units of time only: scaled amplitudes take the same steps
-    rise = h1 if h1 > 0.0 else 0.0
-    reach = 1.5 * (h2 + math.sqrt(h2 * h2 + rise * (8.0 / 3.0)))  # root for h0 = 0
-    if reach > 0.0 and reach < guess:
-        guess = reach
-    elif guess == INFINITE:
-        guess = 1.0 + 6.0 * h0  # level ground: the cubic's root is (6 h0)^(1/3)
-    low = parabola_root(h0, h1, h2 - guess * (1.0 / 3.0))
-    if low >= guess:
-        return guess
-    high = parabola_root(h0, h1, h2 - low * (1.0 / 3.0))  # beyond the cubic's root: `low` lies before it
-    better = parabola_root(h0, h1, h2 - min(high, guess) * (1.0 / 3.0))
-    return better if better > low else low
+    far = parabola_root(h0, h1, h2)
+    if far > reach:
+        far = reach
+    clear = parabola_root(h0, h1, lowest_curvature(h2, h3, bound, far))
+    if h1 >= 0.0 and h2 > 0.0:  # rising, and no parabola below turns down before the lowest curvature vanishes
+        rising = parabola_root(h2, (h3 if h3 < 0.0 else 0.0) * (1.0 / 3.0), bound * (-1.0 / 6.0))
+        if rising > clear:
+            clear = rising
+    if clear >= far:
+        return far
+    for _ in range(TRIALS):
+        if clear > 0.7 * far:
+            break
+        s = math.sqrt(clear * far)
+        root = parabola_root(h0, h1, lowest_curvature(h2, h3, bound, s))
+        if root >= s:
+            clear = s
+        else:
+            far = s
+            if root > clear:
+                clear = root
+    return clear
 
 
 def walk(m, target):
@@ -73,8 +86,8 @@ def walk(m, target):
             m[at.END] = renewal
             m[at.END_KIND] = at.END_RENEWAL
             return
-        h0, h1, h2, _, bound, _ = evaluate(m, tau)
-        step, found = next_step(h0, h1, h2, bound, tau)
+        h0, h1, h2, h3, bound = evaluate(m, tau)
+        step, found = next_step(h0, h1, h2, h3, bound, tau, longest_step(m))
         if found:
             m[at.END] = tau + step
             m[at.END_KIND] = at.END_EVENT
@@ -86,17 +99,59 @@ def renewal_age(m):
     return 1024.0 / max(m[at.FASTEST], m[at.ETA])
 
 
-def next_step(h0, h1, h2, bound, tau):
+def longest_step(m):
+    """Beyond a radian or so of the fastest oscillation the quartic says nothing."""
+    return 6.0 / max(m[at.FASTEST], m[at.ETA])
+
+
+def next_step(h0, h1, h2, h3, bound, tau, reach):
     """One step of the walk, and whether it ends on the root.
 
-    Once the cubic's remainder displaces the parabola's root by less than the rounding of ``tau``, that root is the barrier's.
+    Parameters
+    ----------
+    h0, h1, h2, h3, bound, reach : float
+        As in :func:`clear_step`; any sign of h0.
+    tau : float
+        Where the walk stands. The accuracy wanted is the rounding of a time of the size of ``tau + reach``.
+
+    Returns
+    -------
+    step : float
+    found : bool
     """
     if h0 <= 0.0:
         return 0.0, True
-    root = parabola_root(h0, h1, h2)
-    if root < INFINITE:
-        slope = -(h1 + h2 * root)
-        if bound * root * root * root <= 6.0 * slope * EPS * (tau + root):
-            return root, True
-    step = clear_step(h0, h1, h2, bound)
+    return step_from(h0, h1, h2, h3, bound, tau, reach)
+
+
+def step_from(h0, h1, h2, h3, bound, tau, reach):
+    """As :func:`next_step`, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
+    scale = 1.0 / bound if bound > 0.0 else 1.0  # powers of time only: scaled amplitudes take the same steps
+    h0, h1, h2, h3, bound = h0 * scale, h1 * scale, h2 * scale, h3 * scale, bound * scale
+    step = clear_step(h0, h1, h2, h3, bound, reach)
+    root = taylor_root(h0, h1, h2, h3, bound, step, EPS * (tau + reach))
+    if root > 0.0:
+        return root, True
     return step, step <= EPS * tau
+
+
+def taylor_root(h0, h1, h2, h3, bound, step, accuracy):
+    """The root, where the cubic without the bound gives it to within ``accuracy`` and it is certainly the first; else 0.
+
+    The step before it is clear; from there on the slope is certainly negative, so there is no other root.
+    """
+    root = step
+    slope = -1.0
+    if bound * step * step * step * step > 48.0 * (abs(h1) + abs(h2) * step) * accuracy:
+        return 0.0
+    for _ in range(3):  # Newton's method, from the safe side
+        value = h0 + root * (h1 + root * (h2 * 0.5 + root * h3 * (1.0 / 6.0)))
+        slope = h1 + root * (h2 + root * h3 * 0.5)
+        if slope >= 0.0:
+            return 0.0
+        root -= value / slope
+    square = root * root
+    if bound * square * square > -24.0 * slope * accuracy or root < step or root > 1.5 * step:
+        return 0.0
+    rise = h2 + (h3 if h3 > 0.0 else 0.0) * root * 0.5 + bound * square * (1.0 / 6.0)
+    return root if h1 + rise * (step if rise < 0.0 else root) < 0.0 else 0.0

@@ -1,10 +1,10 @@
 """The two entry points: an instance is one flat memory, initialised once and then advanced from one communication point to the next."""
 
 from . import memory as at
+from .elementary import TWO_PI, fraction
 from .excitation import begin_segment, inputs_changed
 from .maximum import largest_gap
-from .motion import begin, end_state, move_origin, state_at
-from .elementary import TWO_PI, fraction
+from .motion import begin, end_state, move_origin, set_turn, state_at
 from .outputs import momentum, write, write_impulse
 from .parameters import derive
 from .roots import walk
@@ -25,10 +25,11 @@ def initialize(m, time):
     derive(m)
     m[at.START_TIME] = time
     m[at.TIME] = time
-    for i in range(at.ORIGIN, at.SIZE):
-        if i != at.START_TIME:
-            m[i] = 0.0
-    for i in range(at.IMPACT_COUNT, at.TIME):
+    for i in range(at.ORIGIN, at.START_TIME):
+        m[i] = 0.0
+    for i in range(at.IMPACT_COUNT, at.SAMPLE_COUNT):
+        m[i] = 0.0
+    for i in range(at.X1_SAMPLE, at.TIME):
         m[i] = 0.0
     m[at.BOX_IMPULSE] = 0.0
     m[at.BOX_IMPULSE_MOMENT] = 0.0
@@ -36,7 +37,7 @@ def initialize(m, time):
         return at.START_OVERLAP
     if m[at.BONDED] != 0.0 and (m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]):
         return at.START_BONDED
-    m[at.TURN] = fraction(m[at.PHASE_START] / TWO_PI)
+    set_turn(m, m[at.PHASE_START] / TWO_PI)
     code = begin_segment(m)
     if code != at.OK:
         return code
@@ -55,15 +56,17 @@ def local_time(m, time):
 
 
 def advance(m, time):
-    """Advance to the communication point ``time`` (s) with the inputs in ``m``.
+    """Advance to the communication point ``time`` (s) with the inputs in ``m``, or to the first impact where STOP_AT_IMPACT is set.
 
     Returns
     -------
     int
         OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be thrown away.
     """
-    h = time - m[at.TIME]
+    before = m[at.TIME]
+    h = time - before
     fastest = max(m[at.FASTEST], m[at.BOX_FREQUENCY] / m[at.OMEGA])
+    m[at.TARGET] = time
     m[at.WORK] = 0.0
     m[at.WORK_LIMIT] = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA])
     momentum_before, moment_before = momentum(m)
@@ -74,9 +77,15 @@ def advance(m, time):
         if code != at.OK:
             return code
         now = 0.0
-    tau = run_states(m, time, now)
+    m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
+    tau = run_samples(m, before, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:
+        m[at.REPORT] = m[at.START_TIME] + m[at.ORIGIN] / m[at.OMEGA]
         return at.UNFINISHED
+    if m[at.END_KIND] == at.END_STOPPED:
+        time = min(time, m[at.IMPACT_TIME])
+        h = time - before
+        m[at.END_KIND] = at.END_OPEN
     m[at.TIME] = time
     write(m, tau)
     if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
@@ -103,10 +112,32 @@ def renew_segment(m, now):
     return code
 
 
+def run_samples(m, start, time, now):
+    """Run to ``time``, keeping the states at equal parts of the step on the way; returns the present state's age there."""
+    count = int(m[at.SAMPLE_COUNT])
+    for i in range(count - 1):
+        now = run_states(m, start + (time - start) * ((i + 1.0) / count), now)
+        if m[at.END_KIND] == at.END_STOPPED:
+            return now
+        keep_sample(m, i, now)
+    now = run_states(m, time, now)
+    if count > 0:
+        keep_sample(m, count - 1, now)
+    return now
+
+
+def keep_sample(m, i, tau):
+    """Keep the state at the present state's age ``tau`` as sample ``i``."""
+    x1, v1, x2, v2 = state_at(m, tau)
+    m[at.X1_SAMPLE + i] = x1
+    m[at.X2_SAMPLE + i] = x2
+    m[at.V1_SAMPLE + i] = m[at.OMEGA] * v1
+    m[at.V2_SAMPLE + i] = m[at.OMEGA] * v2
+
+
 def run_states(m, time, now):
     """Run through all states that end by ``time``; returns the present state's age there."""
     watch = m[at.X_REL_MAX_ON] != 0.0
-    m[at.X_REL_MAX] = m[at.X_REL] if watch else 0.0
     while True:
         tau = local_time(m, time)
         walk(m, tau)
@@ -115,5 +146,9 @@ def run_states(m, time, now):
             m[at.X_REL_MAX] = largest_gap(m, now, stop, m[at.X_REL_MAX])
         if m[at.END_KIND] == at.END_OPEN or m[at.END] > tau or m[at.WORK] >= m[at.WORK_LIMIT]:
             return tau
+        impacts = m[at.IMPACT_COUNT]
         end_state(m)
         now = 0.0
+        if m[at.STOP_AT_IMPACT] != 0.0 and m[at.IMPACT_COUNT] > impacts:
+            m[at.END_KIND] = at.END_STOPPED
+            return 0.0

@@ -113,7 +113,9 @@ def plans_of(arguments, fmu):
     cases = [parse_case(text) for text in arguments.case or [""]]
     check(arguments, cases, fmu)
     if arguments.direction != "up" and not is_range:
-        raise UserError(f"--direction {arguments.direction} with the list --eta {arguments.eta}: a list is taken in its own order; leave --direction out")
+        raise UserError(
+            f"--direction {arguments.direction} with the list --eta {arguments.eta}: a list is taken in its own order; leave --direction out"
+        )
     orders = {"up": etas, "down": etas[::-1]}
     directions = ("up", "down") if arguments.direction == "both" else (arguments.direction,)
     return {

@@ -1,0 +1,232 @@
+/* Life cycle, checks and messages of an instance; see core.h. */
+#include "core.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TEXT 1024
+
+/* The shortest decimal that reads back as the same number. */
+void number(char *text, double value) {
+    if (isnan(value)) { strcpy(text, "nan"); return; }
+    if (isinf(value)) { strcpy(text, value > 0 ? "inf" : "-inf"); return; }
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, 32, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) break;
+    }
+    if (!strpbrk(text, ".,en")) strcat(text, ".0");
+}
+
+static void append(char *text, const char *part) {
+    strncat(text, part, TEXT - strlen(text) - 1);
+}
+
+static void append_number(char *text, double value) {
+    char digits[40];
+    number(digits, value);
+    append(text, digits);
+}
+
+Status refuse(Instance *instance, const char *call, const char *reason) {
+    char text[TEXT] = "";
+    append(text, call);
+    append(text, ": ");
+    append(text, reason);
+    instance->report(instance, FAILED, text);
+    return FAILED;
+}
+
+bool in_phase(Instance *instance, const char *call, int phases) {
+    static const char *const names[] = {"instantiated", "initialization mode", "step mode", "event mode", "stopped after an error", "terminated"};
+    if (instance->state.phase & phases) return true;
+    char text[TEXT] = "not allowed when ";
+    for (int i = 0; i < 6; i++) if (instance->state.phase == 1 << i) append(text, names[i]);
+    append(text, "; allowed when ");
+    const char *separator = "";
+    for (int i = 0; i < 6; i++) if (phases & 1 << i) { append(text, separator); append(text, names[i]); separator = ", "; }
+    refuse(instance, call, text);
+    return false;
+}
+
+static char *copy(const char *text) {
+    size_t size = strlen(text) + 1;
+    char *made = malloc(size);
+    if (made) memcpy(made, text, size);
+    return made;
+}
+
+Instance *instance_new(const char *name, const char *token, Report report, void *environment, void *logger) {
+    Instance *instance = calloc(1, sizeof *instance);
+    if (!instance) return NULL;
+    instance->report = report;
+    instance->environment = environment;
+    instance->logger = logger;
+    instance->name = copy(name ? name : "");
+    if (!instance->name) { free(instance); return NULL; }
+    if (!token || strcmp(token, MODEL_TOKEN) != 0) {
+        refuse(instance, "instantiate", "the GUID is not that of this FMU: allowed is " MODEL_TOKEN);
+        instance_free(instance);
+        return NULL;
+    }
+    instance_reset(instance);
+    return instance;
+}
+
+void instance_free(Instance *instance) {
+    if (!instance) return;
+    free(instance->name);
+    free(instance);
+}
+
+void instance_reset(Instance *instance) {
+    State *state = &instance->state;
+    memset(state, 0, sizeof *state);
+    for (unsigned i = 0; i < VARIABLE_COUNT; i++) if (!VARIABLES[i].calculated) state->memory[i] = VARIABLES[i].start;
+    state->phase = INSTANTIATED;
+    state->stale = true;
+}
+
+/* A kernel's message with its slots filled in: {12}, or {12:one|two}. */
+static void explain(char *text, const double *memory, int code) {
+    const char *from = code > 0 && code < MESSAGE_COUNT && MESSAGES[code] ? MESSAGES[code] : "failed inside";
+    text[0] = 0;
+    while (*from) {
+        char piece[2] = {*from, 0};
+        if (*from != '{') { append(text, piece); from++; continue; }
+        char *rest;
+        double value = memory[strtol(from + 1, &rest, 10)];
+        if (*rest == ':') {
+            const char *word = rest + 1;
+            for (int skip = (int)value; skip > 0; skip--) while (*word++ != '|') { }
+            while (*word != '|' && *word != '}') { piece[0] = *word++; append(text, piece); }
+            while (*word != '}') word++;
+            from = word + 1;
+        } else {
+            append_number(text, value);
+            from = rest + 1;
+        }
+    }
+}
+
+static Status start(Instance *instance, const char *call) {
+    State *state = &instance->state;
+    if (!state->stale) return OK;
+    int code = kernel_initialize(state->memory, state->start_time);
+    if (code) {
+        char text[TEXT];
+        explain(text, state->memory, code);
+        return refuse(instance, call, text);
+    }
+    state->stale = false;
+    return OK;
+}
+
+Status refresh(Instance *instance) {
+    return instance->state.phase == INITIALIZING ? start(instance, "get") : OK;
+}
+
+Status enter_initialization(Instance *instance, const char *call, double start_time) {
+    if (!in_phase(instance, call, INSTANTIATED)) return FAILED;
+    if (!isfinite(start_time)) {
+        char text[TEXT] = "startTime = ";
+        append_number(text, start_time);
+        append(text, " s: allowed is every finite number");
+        return refuse(instance, call, text);
+    }
+    instance->state.start_time = start_time;
+    instance->state.phase = INITIALIZING;
+    return OK;
+}
+
+Status exit_initialization(Instance *instance, const char *call) {
+    if (!in_phase(instance, call, INITIALIZING)) return FAILED;
+    Status status = start(instance, call);
+    if (status == OK) instance->state.phase = instance->event_mode ? EVENT : STEPPING;
+    return status;
+}
+
+Status step(Instance *instance, const char *call, double current, double size) {
+    if (!in_phase(instance, call, STEPPING)) return FAILED;
+    State *state = &instance->state;
+    char text[TEXT] = "";
+    if (!(size >= 0) || isinf(size)) {
+        append(text, "communicationStepSize = ");
+        append_number(text, size);
+        append(text, " s: allowed is every finite number >= 0");
+        return refuse(instance, call, text);
+    }
+    double reached = state->memory[TIME_SLOT];
+    if (!(fabs(current - reached) <= 1e-9 * (fabs(reached) + size))) {
+        append(text, "currentCommunicationPoint = ");
+        append_number(text, current);
+        append(text, " s: allowed is ");
+        append_number(text, reached);
+        append(text, " s, where the last step ended");
+        return refuse(instance, call, text);
+    }
+    double before[MEMORY_SIZE - SKIP_COUNT];  /* what the step only writes need not be put back */
+    size_t head = SKIP_FIRST * sizeof(double), tail = sizeof before - head;
+    memcpy(before, state->memory, head);
+    memcpy(before + SKIP_FIRST, state->memory + SKIP_FIRST + SKIP_COUNT, tail);
+    state->memory[STOP_SLOT] = instance->early_return;
+    int code = kernel_advance(state->memory, current + size);
+    if (!code) return OK;
+    explain(text, state->memory, code);
+    memcpy(state->memory, before, head);
+    memcpy(state->memory + SKIP_FIRST + SKIP_COUNT, before + SKIP_FIRST, tail);
+    return refuse(instance, call, text);
+}
+
+const Variable *find(Instance *instance, const char *call, unsigned reference, Type type) {
+    if (reference < VARIABLE_COUNT && VARIABLES[reference].type == type) return &VARIABLES[reference];
+    char text[TEXT];
+    snprintf(text, sizeof text, "valueReference = %u: allowed are those of this type in modelDescription.xml", reference);
+    refuse(instance, call, text);
+    return NULL;
+}
+
+Status may_set(Instance *instance, const char *call, const Variable *variable, double value) {
+    const char *reason = NULL;
+    if (variable->calculated) reason = ": an output cannot be set, allowed are parameters and inputs";
+    else if (variable->fixed && !(instance->state.phase & (INSTANTIATED | INITIALIZING)))
+        reason = ": a fixed parameter, to be set before the end of initialisation";
+    else if (variable->type == BOOLEAN || (isfinite(value) && value >= variable->minimum && value <= variable->maximum)) return OK;
+    char text[TEXT] = "";
+    append(text, variable->name);
+    append(text, " = ");
+    append_number(text, value);
+    if (reason) {
+        append(text, reason);
+        return refuse(instance, call, text);
+    }
+    if (variable->unit[0] && strcmp(variable->unit, "1") != 0) { append(text, " "); append(text, variable->unit); }
+    append(text, ": allowed is ");
+    append(text, variable->range);
+    return refuse(instance, call, text);
+}
+
+void state_to_bytes(const State *state, char *bytes) {
+    double head[3] = {state->phase, state->start_time, state->stale + 2 * state->clock};
+    memset(bytes, 0, STATE_HEADER);
+    strcpy(bytes, STATE_MAGIC);
+    memcpy(bytes + STATE_HEADER, head, sizeof head);
+    memcpy(bytes + STATE_HEADER + sizeof head, state->memory, sizeof state->memory);
+}
+
+bool state_from_bytes(State *state, const char *bytes, size_t size) {
+    char header[STATE_HEADER] = STATE_MAGIC;
+    double head[3];
+    if (size != STATE_BYTES || memcmp(bytes, header, STATE_HEADER) != 0) return false;
+    memcpy(head, bytes + STATE_HEADER, sizeof head);
+    int phase = (int)head[0];
+    if (!(head[0] >= 1 && head[0] <= TERMINATED) || (phase & (phase - 1)) || !(head[2] >= 0 && head[2] <= 3)) return false;
+    state->phase = phase;
+    state->start_time = head[1];
+    state->stale = (int)head[2] & 1;
+    state->clock = (int)head[2] & 2;
+    memcpy(state->memory, bytes + STATE_HEADER + sizeof head, sizeof state->memory);
+    return true;
+}

@@ -1,0 +1,66 @@
+/* One instance of a model in C: the kernel's flat memory, a life cycle, and a logger. Generic over model.h, the generated variable table.
+ *
+ * No global mutable state: instances in different threads do not meet. Every message is text, never a format.
+ */
+#ifndef CORE_H
+#define CORE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "model.h"
+
+/* The compiled kernel. */
+int kernel_initialize(double *memory, double time);
+int kernel_advance(double *memory, double time);
+
+typedef enum { OK, WARNING, DISCARD, FAILED, FATAL } Status;  /* numbered as in FMI 2.0 and 3.0 */
+typedef enum { INSTANTIATED = 1, INITIALIZING = 2, STEPPING = 4, EVENT = 8, STOPPED = 16, TERMINATED = 32 } Phase;
+#define ANY_PHASE (INSTANTIATED | INITIALIZING | STEPPING | EVENT | STOPPED | TERMINATED)
+#define NO_LIMIT (-1)
+
+typedef struct Instance Instance;
+typedef void (*Report)(Instance *, Status, const char *text);
+
+typedef struct {  /* what saving an instance has to keep */
+    double memory[MEMORY_SIZE];
+    double start_time;
+    int phase;
+    bool stale;  /* outputs do not belong yet to the values set: initialisation mode */
+    bool clock;  /* the event clock ticks now */
+} State;
+
+struct Instance {
+    State state;
+    Report report;
+    void *environment;
+    void *logger;
+    bool event_mode, early_return;
+    char *name;
+};
+
+Instance *instance_new(const char *name, const char *token, Report report, void *environment, void *logger);
+void instance_free(Instance *);
+void instance_reset(Instance *);
+
+/* Fail with a message; %s only, and numbers through `number`. */
+Status refuse(Instance *, const char *call, const char *text);
+bool in_phase(Instance *, const char *call, int phases);
+
+Status enter_initialization(Instance *, const char *call, double start_time);
+Status exit_initialization(Instance *, const char *call);
+Status step(Instance *, const char *call, double current, double size);
+
+/* Find the variable of a reference, of a type; NULL after a refusal. */
+const Variable *find(Instance *, const char *call, unsigned reference, Type type);
+Status may_set(Instance *, const char *call, const Variable *, double value);
+Status refresh(Instance *);
+
+void number(char *text, double value);
+
+#define STATE_BYTES (STATE_HEADER + sizeof(double) * (MEMORY_SIZE + 3))
+#define STATE_HEADER 64
+void state_to_bytes(const State *, char *bytes);
+bool state_from_bytes(State *, const char *bytes, size_t size);
+
+#endif

@@ -1,0 +1,266 @@
+/* FMI 2.0 for co-simulation onto core.h. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core.h"
+#include "fmi2Functions.h"
+
+#define SETTABLE (INSTANTIATED | INITIALIZING | STEPPING)
+#define READABLE (INITIALIZING | STEPPING | STOPPED | TERMINATED)
+
+static void report(Instance *instance, Status status, const char *text) {
+    const fmi2CallbackFunctions *callbacks = instance->logger;
+    if (callbacks && callbacks->logger)  /* errors are told whether debug logging is on or not */
+        callbacks->logger(instance->environment, instance->name, (fmi2Status)status, "logStatusError", "%s", text);
+}
+
+static fmi2Status refuse2(Instance *instance, const char *call, const char *text) {
+    return (fmi2Status)refuse(instance, call, text);
+}
+
+static bool missing(Instance *instance, const char *call, size_t count, const void *a, const void *b) {
+    if (count == 0 || (a && b)) return false;
+    refuse(instance, call, "a null pointer for an array that is not empty");
+    return true;
+}
+
+const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
+const char *fmi2GetVersion(void) { return fmi2Version; }
+
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources, const fmi2CallbackFunctions *callbacks,
+                              fmi2Boolean visible, fmi2Boolean logging) {
+    (void)resources;
+    (void)visible;
+    (void)logging;
+    if (type != fmi2CoSimulation) guid = NULL;  /* refused with the same message */
+    return instance_new(name, guid, report, callbacks ? callbacks->componentEnvironment : NULL, (void *)callbacks);
+}
+
+void fmi2FreeInstance(fmi2Component c) { instance_free(c); }
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
+    (void)on;
+    (void)count;
+    (void)categories;
+    return c ? fmi2OK : fmi2Error;
+}
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start, fmi2Boolean stop_defined, fmi2Real stop) {
+    (void)tolerance_defined;
+    (void)tolerance;
+    (void)stop_defined;
+    (void)stop;
+    Instance *instance = c;
+    if (!instance) return fmi2Error;
+    Status status = enter_initialization(instance, "fmi2SetupExperiment", start);
+    if (status == OK) instance->state.phase = INSTANTIATED;
+    return (fmi2Status)status;
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
+    Instance *instance = c;
+    return instance ? (fmi2Status)enter_initialization(instance, "fmi2EnterInitializationMode", instance->state.start_time) : fmi2Error;
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
+    return c ? (fmi2Status)exit_initialization(c, "fmi2ExitInitializationMode") : fmi2Error;
+}
+
+fmi2Status fmi2Terminate(fmi2Component c) {
+    Instance *instance = c;
+    if (!instance || !in_phase(instance, "fmi2Terminate", STEPPING | STOPPED)) return fmi2Error;
+    instance->state.phase = TERMINATED;
+    return fmi2OK;
+}
+
+fmi2Status fmi2Reset(fmi2Component c) {
+    if (!c) return fmi2Error;
+    instance_reset(c);
+    return fmi2OK;
+}
+
+#define GETTER(NAME, TYPE, KIND, EXPRESSION)                                                                                     \
+    fmi2Status NAME(fmi2Component c, const fmi2ValueReference refs[], size_t count, TYPE values[]) {                             \
+        Instance *instance = c;                                                                                                  \
+        if (!instance || !in_phase(instance, #NAME, READABLE) || missing(instance, #NAME, count, refs, values)) return fmi2Error; \
+        if (refresh(instance) != OK) return fmi2Error;                                                                           \
+        for (size_t i = 0; i < count; i++) {                                                                                     \
+            if (!find(instance, #NAME, refs[i], KIND)) return fmi2Error;                                                         \
+            double value = instance->state.memory[refs[i]];                                                                      \
+            values[i] = EXPRESSION;                                                                                              \
+        }                                                                                                                        \
+        return fmi2OK;                                                                                                           \
+    }
+
+GETTER(fmi2GetReal, fmi2Real, REAL, value)
+GETTER(fmi2GetInteger, fmi2Integer, INTEGER, (fmi2Integer)value)
+GETTER(fmi2GetBoolean, fmi2Boolean, BOOLEAN, value != 0 ? fmi2True : fmi2False)
+
+#define SETTER(NAME, TYPE, KIND, EXPRESSION)                                                                                     \
+    fmi2Status NAME(fmi2Component c, const fmi2ValueReference refs[], size_t count, const TYPE values[]) {                       \
+        Instance *instance = c;                                                                                                  \
+        if (!instance || !in_phase(instance, #NAME, SETTABLE) || missing(instance, #NAME, count, refs, values)) return fmi2Error; \
+        for (size_t i = 0; i < count; i++) {  /* all or none */                                                                  \
+            const Variable *variable = find(instance, #NAME, refs[i], KIND);                                                     \
+            if (!variable || may_set(instance, #NAME, variable, EXPRESSION) != OK) return fmi2Error;                             \
+        }                                                                                                                        \
+        for (size_t i = 0; i < count; i++) instance->state.memory[refs[i]] = EXPRESSION;                                         \
+        instance->state.stale = true;                                                                                            \
+        return fmi2OK;                                                                                                           \
+    }
+
+SETTER(fmi2SetReal, fmi2Real, REAL, (double)values[i])
+SETTER(fmi2SetInteger, fmi2Integer, INTEGER, (double)values[i])
+SETTER(fmi2SetBoolean, fmi2Boolean, BOOLEAN, (values[i] != fmi2False ? 1.0 : 0.0))
+
+fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference refs[], size_t count, fmi2String values[]) {
+    (void)refs;
+    (void)values;
+    if (!c) return fmi2Error;
+    return count == 0 ? fmi2OK : refuse2(c, "fmi2GetString", "there are no String variables");
+}
+
+fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference refs[], size_t count, const fmi2String values[]) {
+    (void)refs;
+    (void)values;
+    if (!c) return fmi2Error;
+    return count == 0 ? fmi2OK : refuse2(c, "fmi2SetString", "there are no String variables");
+}
+
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *to) {
+    Instance *instance = c;
+    if (!instance) return fmi2Error;
+    if (!to) return refuse2(instance, "fmi2GetFMUstate", "a null pointer");
+    if (!*to) *to = malloc(sizeof(State));
+    if (!*to) return refuse2(instance, "fmi2GetFMUstate", "out of memory");
+    memcpy(*to, &instance->state, sizeof(State));
+    return fmi2OK;
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate from) {
+    Instance *instance = c;
+    if (!instance) return fmi2Error;
+    if (!from) return refuse2(instance, "fmi2SetFMUstate", "a null pointer");
+    memcpy(&instance->state, from, sizeof(State));
+    return fmi2OK;
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
+    if (!c) return fmi2Error;
+    if (!state) return fmi2OK;
+    free(*state);
+    *state = NULL;
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
+    if (!c) return fmi2Error;
+    if (!state || !size) return refuse2(c, "fmi2SerializedFMUstateSize", "a null pointer");
+    *size = STATE_BYTES;
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
+    if (!c) return fmi2Error;
+    if (!state || !bytes) return refuse2(c, "fmi2SerializeFMUstate", "a null pointer");
+    if (size < STATE_BYTES) return refuse2(c, "fmi2SerializeFMUstate", "size: allowed is what fmi2SerializedFMUstateSize gives");
+    state_to_bytes(state, bytes);
+    return fmi2OK;
+}
+
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *to) {
+    if (!c) return fmi2Error;
+    if (!bytes || !to) return refuse2(c, "fmi2DeSerializeFMUstate", "a null pointer");
+    State read;
+    if (!state_from_bytes(&read, bytes, size)) return refuse2(c, "fmi2DeSerializeFMUstate", "allowed are states saved by this FMU (" STATE_MAGIC ")");
+    if (!*to) *to = malloc(sizeof(State));
+    if (!*to) return refuse2(c, "fmi2DeSerializeFMUstate", "out of memory");
+    memcpy(*to, &read, sizeof read);
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[], size_t unknown_count, const fmi2ValueReference knowns[],
+                                        size_t known_count, const fmi2Real seed[], fmi2Real sensitivity[]) {
+    (void)unknowns;
+    (void)unknown_count;
+    (void)knowns;
+    (void)known_count;
+    (void)seed;
+    (void)sensitivity;
+    return c ? refuse2(c, "fmi2GetDirectionalDerivative", "not provided, as modelDescription.xml says") : fmi2Error;
+}
+
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference refs[], size_t count, const fmi2Integer orders[], const fmi2Real values[]) {
+    static const char *const call = "fmi2SetRealInputDerivatives";
+    Instance *instance = c;
+    if (!instance || !in_phase(instance, call, SETTABLE) || missing(instance, call, count, refs, values) || missing(instance, call, count, orders, values))
+        return fmi2Error;
+    for (int write = 0; write < 2; write++)
+        for (size_t i = 0; i < count; i++) {
+            const Variable *input = find(instance, call, refs[i], REAL);
+            if (!input) return fmi2Error;
+            if (!input->input_derivatives || orders[i] < 1 || orders[i] > input->input_derivatives)
+                return refuse2(instance, call, "allowed are " INPUT_DERIVATIVES);
+            const Variable *derivative = input + orders[i];  /* the derivatives of an input follow it in the table */
+            if (write) instance->state.memory[refs[i] + (unsigned)orders[i]] = values[i];
+            else if (may_set(instance, call, derivative, values[i]) != OK) return fmi2Error;
+        }
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference refs[], size_t count, const fmi2Integer orders[], fmi2Real values[]) {
+    static const char *const call = "fmi2GetRealOutputDerivatives";
+    Instance *instance = c;
+    if (!instance || !in_phase(instance, call, READABLE) || missing(instance, call, count, refs, values) || missing(instance, call, count, orders, values))
+        return fmi2Error;
+    if (refresh(instance) != OK) return fmi2Error;
+    for (size_t i = 0; i < count; i++) {
+        const Variable *output = find(instance, call, refs[i], REAL);
+        if (!output) return fmi2Error;
+        if (output->derivative < 0 || orders[i] != 1) return refuse2(instance, call, "allowed are first derivatives of " OUTPUT_DERIVATIVES);
+        values[i] = instance->state.memory[output->derivative];
+    }
+    return fmi2OK;
+}
+
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real current, fmi2Real size, fmi2Boolean no_set_state_prior) {
+    (void)no_set_state_prior;
+    return c ? (fmi2Status)step(c, "fmi2DoStep", current, size) : fmi2Error;
+}
+
+fmi2Status fmi2CancelStep(fmi2Component c) {
+    return c ? refuse2(c, "fmi2CancelStep", "steps are never pending") : fmi2Error;
+}
+
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value) {
+    (void)kind;
+    (void)value;
+    return c ? refuse2(c, "fmi2GetStatus", "steps are never pending") : fmi2Error;
+}
+
+fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
+    Instance *instance = c;
+    if (!instance) return fmi2Error;
+    if (kind != fmi2LastSuccessfulTime || !value) return refuse2(instance, "fmi2GetRealStatus", "allowed is fmi2LastSuccessfulTime");
+    *value = instance->state.memory[TIME_SLOT];
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value) {
+    (void)kind;
+    (void)value;
+    return c ? refuse2(c, "fmi2GetIntegerStatus", "there is no such status") : fmi2Error;
+}
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value) {
+    if (!c) return fmi2Error;
+    if (kind != fmi2Terminated || !value) return refuse2(c, "fmi2GetBooleanStatus", "allowed is fmi2Terminated");
+    *value = fmi2False;
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String *value) {
+    (void)kind;
+    (void)value;
+    return c ? refuse2(c, "fmi2GetStringStatus", "steps are never pending") : fmi2Error;
+}

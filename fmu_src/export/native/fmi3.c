@@ -1,0 +1,353 @@
+/* FMI 3.0 for co-simulation onto core.h: arrays, event mode, and a clock that ticks at each impact. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core.h"
+#include "fmi3Functions.h"
+
+#define SETTABLE (INSTANTIATED | INITIALIZING | STEPPING | EVENT)
+#define READABLE (INITIALIZING | STEPPING | EVENT | STOPPED | TERMINATED)
+
+static void report(Instance *instance, Status status, const char *text) {
+    if (instance->logger) ((fmi3LogMessageCallback)(size_t)instance->logger)(instance->environment, (fmi3Status)status, "logStatusError", text);
+}
+
+static fmi3Status refuse3(Instance *instance, const char *call, const char *text) {
+    return instance ? (fmi3Status)refuse(instance, call, text) : fmi3Error;
+}
+
+static bool missing(Instance *instance, const char *call, size_t count, const void *a, const void *b) {
+    if (count == 0 || (a && b)) return false;
+    refuse(instance, call, "a null pointer for an array that is not empty");
+    return true;
+}
+
+const char *fmi3GetVersion(void) { return fmi3Version; }
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count, const fmi3String categories[]) {
+    (void)on;
+    (void)count;
+    (void)categories;
+    return c ? fmi3OK : fmi3Error;
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
+                                          fmi3InstanceEnvironment environment, fmi3LogMessageCallback log) {
+    (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)environment, (void)log;
+    return NULL;
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
+                                         fmi3Boolean event_mode, fmi3Boolean early_return, const fmi3ValueReference intermediate[],
+                                         size_t intermediate_count, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
+                                         fmi3IntermediateUpdateCallback update) {
+    (void)resources, (void)visible, (void)logging, (void)intermediate, (void)intermediate_count, (void)update;
+    Instance *instance = instance_new(name, token, report, environment, (void *)(size_t)log);
+    if (!instance) return NULL;
+    instance->event_mode = event_mode;
+    instance->early_return = event_mode && early_return && EVENT_CLOCK;
+    return instance;
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
+                                               fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, fmi3ClockUpdateCallback update,
+                                               fmi3LockPreemptionCallback lock, fmi3UnlockPreemptionCallback unlock) {
+    (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)environment, (void)log, (void)update, (void)lock, (void)unlock;
+    return NULL;
+}
+
+void fmi3FreeInstance(fmi3Instance c) { instance_free(c); }
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_defined, fmi3Float64 tolerance, fmi3Float64 start, fmi3Boolean stop_defined,
+                                       fmi3Float64 stop) {
+    (void)tolerance_defined, (void)tolerance, (void)stop_defined, (void)stop;
+    return c ? (fmi3Status)enter_initialization(c, "fmi3EnterInitializationMode", start) : fmi3Error;
+}
+
+static double impacts(const Instance *instance) { return instance->state.memory[EVENT_COUNT_SLOT]; }
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
+    Instance *instance = c;
+    if (!instance) return fmi3Error;
+    Status status = exit_initialization(instance, "fmi3ExitInitializationMode");
+    if (status == OK) instance->state.clock = EVENT_CLOCK && impacts(instance) > 0;
+    return (fmi3Status)status;
+}
+
+static fmi3Status change(Instance *instance, const char *call, int from, Phase to) {
+    if (!instance || !in_phase(instance, call, from)) return fmi3Error;
+    instance->state.phase = to;
+    return fmi3OK;
+}
+
+fmi3Status fmi3EnterEventMode(fmi3Instance c) {
+    Instance *instance = c;
+    if (instance && !instance->event_mode) return refuse3(instance, "fmi3EnterEventMode", "allowed when instantiated with eventModeUsed");
+    return change(instance, "fmi3EnterEventMode", STEPPING, EVENT);
+}
+
+fmi3Status fmi3EnterStepMode(fmi3Instance c) {
+    Instance *instance = c;
+    fmi3Status status = change(instance, "fmi3EnterStepMode", EVENT, STEPPING);
+    if (status == fmi3OK) instance->state.clock = false;
+    return status;
+}
+
+fmi3Status fmi3Terminate(fmi3Instance c) { return change(c, "fmi3Terminate", STEPPING | EVENT | STOPPED, TERMINATED); }
+
+fmi3Status fmi3Reset(fmi3Instance c) {
+    if (!c) return fmi3Error;
+    instance_reset(c);
+    return fmi3OK;
+}
+
+/* Scalars, arrays and time are stretches of the memory: first slot and length of a Float64 reference, length 0 after a refusal. */
+static size_t stretch(Instance *instance, const char *call, fmi3ValueReference reference, size_t *first) {
+    *first = reference;
+    if (reference == TIME_SLOT) return 1;
+    if (reference >= ARRAY_BASE && reference < ARRAY_BASE + ARRAY_COUNT) {
+        *first = ARRAYS[reference - ARRAY_BASE].first;
+        return ARRAYS[reference - ARRAY_BASE].size;
+    }
+    return find(instance, call, reference, REAL) ? 1 : 0;
+}
+
+fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_t count, fmi3Float64 values[], size_t value_count) {
+    static const char *const call = "fmi3GetFloat64";
+    Instance *instance = c;
+    if (!instance || !in_phase(instance, call, READABLE) || missing(instance, call, count, refs, values) || refresh(instance) != OK) return fmi3Error;
+    size_t place = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t first, size = stretch(instance, call, refs[i], &first);
+        if (!size) return fmi3Error;
+        if (size > value_count - place) return refuse3(instance, call, "nValues: too small for the arrays among the value references");
+        memcpy(values + place, instance->state.memory + first, size * sizeof(double));
+        place += size;
+    }
+    return place == value_count ? fmi3OK : refuse3(instance, call, "nValues: more than the value references have");
+}
+
+fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const fmi3Float64 values[], size_t value_count) {
+    static const char *const call = "fmi3SetFloat64";
+    Instance *instance = c;
+    if (!instance || !in_phase(instance, call, SETTABLE) || missing(instance, call, count, refs, values)) return fmi3Error;
+    if (value_count != count) return refuse3(instance, call, "nValues: allowed is one for each value reference, arrays cannot be set");
+    for (size_t i = 0; i < count; i++) {
+        const Variable *variable = find(instance, call, refs[i], REAL);
+        if (!variable || may_set(instance, call, variable, values[i]) != OK) return fmi3Error;
+    }
+    for (size_t i = 0; i < count; i++) instance->state.memory[refs[i]] = values[i];
+    instance->state.stale = true;
+    return fmi3OK;
+}
+
+#define GET_SET(NAME, TYPE, KIND, FROM_MEMORY, TO_MEMORY)                                                                                        \
+    fmi3Status fmi3Get##NAME(fmi3Instance c, const fmi3ValueReference refs[], size_t count, TYPE values[], size_t value_count) {                 \
+        static const char *const call = "fmi3Get" #NAME;                                                                                         \
+        Instance *instance = c;                                                                                                                  \
+        if (!instance || !in_phase(instance, call, READABLE) || missing(instance, call, count, refs, values)) return fmi3Error;                   \
+        if (value_count != count) return refuse3(instance, call, "nValues: allowed is one for each value reference");                            \
+        if (refresh(instance) != OK) return fmi3Error;                                                                                           \
+        for (size_t i = 0; i < count; i++) {                                                                                                     \
+            if (!find(instance, call, refs[i], KIND)) return fmi3Error;                                                                          \
+            double value = instance->state.memory[refs[i]];                                                                                      \
+            values[i] = FROM_MEMORY;                                                                                                             \
+        }                                                                                                                                        \
+        return fmi3OK;                                                                                                                           \
+    }                                                                                                                                            \
+    fmi3Status fmi3Set##NAME(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const TYPE values[], size_t value_count) {           \
+        static const char *const call = "fmi3Set" #NAME;                                                                                         \
+        Instance *instance = c;                                                                                                                  \
+        if (!instance || !in_phase(instance, call, SETTABLE) || missing(instance, call, count, refs, values)) return fmi3Error;                   \
+        if (value_count != count) return refuse3(instance, call, "nValues: allowed is one for each value reference");                            \
+        for (size_t i = 0; i < count; i++) {                                                                                                     \
+            const Variable *variable = find(instance, call, refs[i], KIND);                                                                      \
+            if (!variable || may_set(instance, call, variable, TO_MEMORY) != OK) return fmi3Error;                                               \
+        }                                                                                                                                        \
+        for (size_t i = 0; i < count; i++) instance->state.memory[refs[i]] = TO_MEMORY;                                                          \
+        instance->state.stale = true;                                                                                                            \
+        return fmi3OK;                                                                                                                           \
+    }
+
+GET_SET(Boolean, fmi3Boolean, BOOLEAN, value != 0, (values[i] ? 1.0 : 0.0))
+GET_SET(Int32, fmi3Int32, INTEGER, (fmi3Int32)value, (double)values[i])
+
+/* Types no variable has. */
+#define NONE(NAME, TYPE)                                                                                                                        \
+    fmi3Status fmi3Get##NAME(fmi3Instance c, const fmi3ValueReference refs[], size_t count, TYPE values[], size_t value_count) {                 \
+        (void)refs, (void)values, (void)value_count;                                                                                             \
+        return c && count == 0 ? fmi3OK : refuse3(c, "fmi3Get" #NAME, "there are no variables of this type");                                    \
+    }                                                                                                                                            \
+    fmi3Status fmi3Set##NAME(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const TYPE values[], size_t value_count) {           \
+        (void)refs, (void)values, (void)value_count;                                                                                             \
+        return c && count == 0 ? fmi3OK : refuse3(c, "fmi3Set" #NAME, "there are no variables of this type");                                    \
+    }
+
+NONE(Float32, fmi3Float32)
+NONE(Int8, fmi3Int8)
+NONE(UInt8, fmi3UInt8)
+NONE(Int16, fmi3Int16)
+NONE(UInt16, fmi3UInt16)
+NONE(UInt32, fmi3UInt32)
+NONE(Int64, fmi3Int64)
+NONE(UInt64, fmi3UInt64)
+NONE(String, fmi3String)
+
+fmi3Status fmi3GetBinary(fmi3Instance c, const fmi3ValueReference refs[], size_t count, size_t sizes[], fmi3Binary values[], size_t value_count) {
+    (void)refs, (void)sizes, (void)values, (void)value_count;
+    return c && count == 0 ? fmi3OK : refuse3(c, "fmi3GetBinary", "there are no variables of this type");
+}
+
+fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const size_t sizes[], const fmi3Binary values[], size_t value_count) {
+    (void)refs, (void)sizes, (void)values, (void)value_count;
+    return c && count == 0 ? fmi3OK : refuse3(c, "fmi3SetBinary", "there are no variables of this type");
+}
+
+fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference refs[], size_t count, fmi3Clock values[]) {
+    static const char *const call = "fmi3GetClock";
+    Instance *instance = c;
+    if (!instance || !in_phase(instance, call, EVENT) || missing(instance, call, count, refs, values)) return fmi3Error;
+    for (size_t i = 0; i < count; i++) {
+        if (!EVENT_CLOCK || refs[i] != CLOCK_REFERENCE) return refuse3(instance, call, "valueReference: allowed is that of the clock in modelDescription.xml");
+        values[i] = instance->state.clock ? fmi3ClockActive : fmi3ClockInactive;
+    }
+    return fmi3OK;
+}
+
+fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const fmi3Clock values[]) {
+    (void)refs, (void)values;
+    return c && count == 0 ? fmi3OK : refuse3(c, "fmi3SetClock", "there are no input clocks");
+}
+
+fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Boolean *terminate, fmi3Boolean *nominals, fmi3Boolean *values,
+                                    fmi3Boolean *next_defined, fmi3Float64 *next) {
+    Instance *instance = c;
+    if (!instance || !in_phase(instance, "fmi3UpdateDiscreteStates", EVENT)) return fmi3Error;
+    if (again) *again = fmi3False;
+    if (terminate) *terminate = fmi3False;
+    if (nominals) *nominals = fmi3False;
+    if (values) *values = fmi3False;
+    if (next_defined) *next_defined = fmi3False;
+    if (next) *next = 0.0;
+    instance->state.clock = false;
+    return fmi3OK;
+}
+
+fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) {
+    return c && in_phase(c, "fmi3EvaluateDiscreteStates", INITIALIZING | EVENT) ? fmi3OK : fmi3Error;
+}
+
+fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *to) {
+    Instance *instance = c;
+    if (!instance || !to) return refuse3(instance, "fmi3GetFMUState", "a null pointer");
+    if (!*to) *to = malloc(sizeof(State));
+    if (!*to) return refuse3(instance, "fmi3GetFMUState", "out of memory");
+    memcpy(*to, &instance->state, sizeof(State));
+    return fmi3OK;
+}
+
+fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState from) {
+    Instance *instance = c;
+    if (!instance || !from) return refuse3(instance, "fmi3SetFMUState", "a null pointer");
+    memcpy(&instance->state, from, sizeof(State));
+    return fmi3OK;
+}
+
+fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state) {
+    if (!c) return fmi3Error;
+    if (!state) return fmi3OK;
+    free(*state);
+    *state = NULL;
+    return fmi3OK;
+}
+
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size) {
+    if (!c || !state || !size) return refuse3(c, "fmi3SerializedFMUStateSize", "a null pointer");
+    *size = STATE_BYTES;
+    return fmi3OK;
+}
+
+fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
+    if (!c || !state || !bytes) return refuse3(c, "fmi3SerializeFMUState", "a null pointer");
+    if (size < STATE_BYTES) return refuse3(c, "fmi3SerializeFMUState", "size: allowed is what fmi3SerializedFMUStateSize gives");
+    state_to_bytes(state, (char *)bytes);
+    return fmi3OK;
+}
+
+fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *to) {
+    if (!c || !bytes || !to) return refuse3(c, "fmi3DeserializeFMUState", "a null pointer");
+    State read;
+    if (!state_from_bytes(&read, (const char *)bytes, size)) return refuse3(c, "fmi3DeserializeFMUState", "allowed are states saved by this FMU (" STATE_MAGIC ")");
+    if (!*to) *to = malloc(sizeof(State));
+    if (!*to) return refuse3(c, "fmi3DeserializeFMUState", "out of memory");
+    memcpy(*to, &read, sizeof read);
+    return fmi3OK;
+}
+
+fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const fmi3Int32 orders[], fmi3Float64 values[],
+                                    size_t value_count) {
+    static const char *const call = "fmi3GetOutputDerivatives";
+    Instance *instance = c;
+    if (!instance || !in_phase(instance, call, READABLE) || missing(instance, call, count, refs, values) || missing(instance, call, count, orders, values))
+        return fmi3Error;
+    if (value_count != count) return refuse3(instance, call, "nValues: allowed is one for each value reference");
+    if (refresh(instance) != OK) return fmi3Error;
+    for (size_t i = 0; i < count; i++) {
+        const Variable *output = find(instance, call, refs[i], REAL);
+        if (!output) return fmi3Error;
+        if (output->derivative < 0 || orders[i] != 1) return refuse3(instance, call, "allowed are first derivatives of " OUTPUT_DERIVATIVES);
+        values[i] = instance->state.memory[output->derivative];
+    }
+    return fmi3OK;
+}
+
+fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Float64 size, fmi3Boolean no_set_state_prior, fmi3Boolean *event_needed,
+                      fmi3Boolean *terminate, fmi3Boolean *early, fmi3Float64 *last) {
+    (void)no_set_state_prior;
+    Instance *instance = c;
+    if (!instance || !event_needed || !terminate || !early || !last) return refuse3(instance, "fmi3DoStep", "a null pointer");
+    double before = impacts(instance);
+    Status status = step(instance, "fmi3DoStep", current, size);
+    *terminate = fmi3False;
+    *last = instance->state.memory[TIME_SLOT];
+    *early = status == OK && *last < current + size;
+    instance->state.clock = EVENT_CLOCK && instance->event_mode && status == OK && impacts(instance) > before;
+    *event_needed = instance->state.clock;
+    return (fmi3Status)status;
+}
+
+/* What modelDescription.xml says is not provided. */
+#define ABSENT(NAME, ...)                                                                    \
+    fmi3Status NAME(fmi3Instance c, __VA_ARGS__) { return refuse3(c, #NAME, "not provided, as modelDescription.xml says"); }
+
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+ABSENT(fmi3GetNumberOfVariableDependencies, fmi3ValueReference reference, size_t *count)
+ABSENT(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t elements[], fmi3ValueReference independents[], size_t others[],
+       fmi3DependencyKind kinds[], size_t count)
+ABSENT(fmi3GetDirectionalDerivative, const fmi3ValueReference unknowns[], size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count,
+       const fmi3Float64 seed[], size_t seed_count, fmi3Float64 sensitivity[], size_t sensitivity_count)
+ABSENT(fmi3GetAdjointDerivative, const fmi3ValueReference unknowns[], size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count,
+       const fmi3Float64 seed[], size_t seed_count, fmi3Float64 sensitivity[], size_t sensitivity_count)
+ABSENT(fmi3GetIntervalDecimal, const fmi3ValueReference refs[], size_t count, fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[])
+ABSENT(fmi3GetIntervalFraction, const fmi3ValueReference refs[], size_t count, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
+       fmi3IntervalQualifier qualifiers[])
+ABSENT(fmi3GetShiftDecimal, const fmi3ValueReference refs[], size_t count, fmi3Float64 shifts[])
+ABSENT(fmi3GetShiftFraction, const fmi3ValueReference refs[], size_t count, fmi3UInt64 counters[], fmi3UInt64 resolutions[])
+ABSENT(fmi3SetIntervalDecimal, const fmi3ValueReference refs[], size_t count, const fmi3Float64 intervals[])
+ABSENT(fmi3SetIntervalFraction, const fmi3ValueReference refs[], size_t count, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
+ABSENT(fmi3SetShiftDecimal, const fmi3ValueReference refs[], size_t count, const fmi3Float64 shifts[])
+ABSENT(fmi3SetShiftFraction, const fmi3ValueReference refs[], size_t count, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
+ABSENT(fmi3CompletedIntegratorStep, fmi3Boolean no_set_state_prior, fmi3Boolean *enter_event_mode, fmi3Boolean *terminate)
+ABSENT(fmi3SetTime, fmi3Float64 time)
+ABSENT(fmi3SetContinuousStates, const fmi3Float64 states[], size_t count)
+ABSENT(fmi3GetContinuousStateDerivatives, fmi3Float64 derivatives[], size_t count)
+ABSENT(fmi3GetEventIndicators, fmi3Float64 indicators[], size_t count)
+ABSENT(fmi3GetContinuousStates, fmi3Float64 states[], size_t count)
+ABSENT(fmi3GetNominalsOfContinuousStates, fmi3Float64 nominals[], size_t count)
+ABSENT(fmi3GetNumberOfEventIndicators, size_t *count)
+ABSENT(fmi3GetNumberOfContinuousStates, size_t *count)
+ABSENT(fmi3ActivateModelPartition, fmi3ValueReference clock, fmi3Float64 time)
+
+fmi3Status fmi3EnterConfigurationMode(fmi3Instance c) { return refuse3(c, "fmi3EnterConfigurationMode", "there are no structural parameters"); }
+fmi3Status fmi3ExitConfigurationMode(fmi3Instance c) { return refuse3(c, "fmi3ExitConfigurationMode", "there are no structural parameters"); }
+fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) { return refuse3(c, "fmi3EnterContinuousTimeMode", "this is co-simulation"); }

@@ -1,0 +1,12 @@
+/* The compiled kernel as a library of its own, for the pythonfmu form. */
+#ifdef _WIN32
+#define EXPORT __declspec(dllexport)
+#else
+#define EXPORT __attribute__((visibility("default")))
+#endif
+
+int kernel_initialize(double *memory, double time);
+int kernel_advance(double *memory, double time);
+
+EXPORT int initialize(double *memory, double time) { return kernel_initialize(memory, time); }
+EXPORT int advance(double *memory, double time) { return kernel_advance(memory, time); }

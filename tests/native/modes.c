@@ -1,0 +1,236 @@
+/* Importer in C: `importer BINARY MODE ARGUMENTS`, the same modes for each FMI version. No Python anywhere near it. */
+#include "importer.h"
+
+#include <time.h>
+#ifndef _WIN32
+#include <pthread.h>
+#endif
+
+int checks, failures;
+_Thread_local int messages;
+_Thread_local char message[4096];
+
+static const char *const OUTPUTS[] = {"x1", "x2", "v1", "v2", "phase", "impact_count", "impact_time", "impact_energy"};
+#define OUTPUT_COUNT (sizeof OUTPUTS / sizeof *OUTPUTS)
+
+static double seconds(void) {
+    struct timespec now;
+    timespec_get(&now, TIME_UTC);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* name=value on the command line. */
+static void set_all(void *instance, int count, char **arguments) {
+    for (int i = 0; i < count; i++) {
+        char *equals = strchr(arguments[i], '=');
+        if (!equals) continue;
+        *equals = 0;
+        fmu_set(instance, arguments[i], strtod(equals + 1, NULL));
+        *equals = '=';
+    }
+}
+
+static void outputs(void *instance, double values[OUTPUT_COUNT]) {
+    for (size_t i = 0; i < OUTPUT_COUNT; i++) values[i] = fmu_get(instance, named(OUTPUTS[i]));
+}
+
+/* Harmonic drive of the paper: box_amplitude = 1/eta^2. Chaotic motion for eta around 1.1. */
+static void *driven(double eta) {
+    void *instance = fmu_open("driven");
+    fmu_set(instance, "box_amplitude", 1.0 / (eta * eta));
+    fmu_set(instance, "box_frequency", eta);
+    return instance;
+}
+
+/* Outputs "x1,x2,..." at the times of the standard input, the first one being the start; numbers to the last bit. */
+static void simulate(char *wanted, int count, char **arguments) {
+    const Name *variables[256];
+    int width = 0;
+    for (char *name = strtok(wanted, ","); name && width < 256; name = strtok(NULL, ",")) variables[width++] = named(name);
+    void *instance = fmu_open("simulate");
+    set_all(instance, count, arguments);
+    char line[128];
+    double time = 0.0;
+    for (int row = 0; fgets(line, sizeof line, stdin); row++) {
+        double next = strtod(line, NULL);
+        if (row == 0) fmu_initialize(instance, next);
+        else fmu_step(instance, time, next - time);
+        time = next;
+        for (int i = 0; i < width; i++) printf("%a ", fmu_get(instance, variables[i]));
+        printf("\n");
+    }
+    fmu_close(instance);
+}
+
+/* The files mapped into this process once the FMU has run. */
+static void maps(void) {
+    void *instance = fmu_open("maps");
+    fmu_initialize(instance, 0.0);
+    fmu_step(instance, 0.0, 10.0);
+    char line[1024];
+    FILE *file = fopen("/proc/self/maps", "r");
+    while (file && fgets(line, sizeof line, file)) {
+        char *path = strchr(line, '/');
+        if (path) fputs(path, stdout);
+    }
+    if (file) fclose(file);
+    fmu_close(instance);
+}
+
+static double eta_of(int i) { return 0.3 + 0.0061 * (i % 487); }
+
+static void alone(double eta, int steps, double size, double values[OUTPUT_COUNT]) {
+    void *instance = driven(eta);
+    fmu_initialize(instance, 0.0);
+    for (int k = 0; k < steps; k++) fmu_step(instance, size * k, size);
+    outputs(instance, values);
+    fmu_close(instance);
+}
+
+#ifndef _WIN32
+typedef struct { double eta; int steps; double values[OUTPUT_COUNT]; } Job;
+
+static void *job(void *argument) {
+    Job *own = argument;
+    alone(own->eta, own->steps, 0.25, own->values);
+    return NULL;
+}
+
+static void in_threads(int steps) {
+    enum { THREADS = 4 };
+    Job jobs[THREADS];
+    pthread_t threads[THREADS];
+    for (int i = 0; i < THREADS; i++) {
+        jobs[i] = (Job){.eta = 1.1 + 0.01 * (i / 2), .steps = steps};
+        CHECK(pthread_create(&threads[i], NULL, job, &jobs[i]) == 0);
+    }
+    for (int i = 0; i < THREADS; i++) pthread_join(threads[i], NULL);
+    for (int i = 0; i < THREADS; i++) {
+        double values[OUTPUT_COUNT];
+        alone(jobs[i].eta, steps, 0.25, values);
+        CHECK(values[5] > 0.05 * steps);
+        CHECK(memcmp(values, jobs[i].values, sizeof values) == 0);
+    }
+}
+#endif
+
+/* Instances at once, stepped in turn, have the bits they have alone; so have instances in threads. */
+static void many(int count, int steps, int thread_steps) {
+    void **instances = malloc((size_t)count * sizeof *instances);
+    double *times = calloc((size_t)count, sizeof *times);
+    for (int i = 0; i < count; i++) {
+        instances[i] = driven(eta_of(i));
+        fmu_initialize(instances[i], 0.0);
+    }
+    for (int k = 0; k < steps; k++)
+        for (int i = 0; i < count; i++) fmu_step(instances[i], 0.5 * k, 0.5);
+    double impacts = 0.0;
+    for (int i = 0; i < count; i++) {
+        double together[OUTPUT_COUNT], single[OUTPUT_COUNT];
+        outputs(instances[i], together);
+        fmu_close(instances[i]);
+        alone(eta_of(i), steps, 0.5, single);
+        CHECK(memcmp(together, single, sizeof single) == 0);
+        impacts += single[5];
+    }
+    CHECK(impacts > count);
+    free(times);
+    free(instances);
+#ifndef _WIN32
+    in_threads(thread_steps);
+#else
+    (void)thread_steps;
+#endif
+}
+
+/* Resident memory, kB; 0 where the system does not tell. */
+static long resident(void) {
+    long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (file && fscanf(file, "%*d %ld", &pages) != 1) pages = 0;
+    if (file) fclose(file);
+    return pages * 4;
+}
+
+/* Small steps reach what one step reaches, to the last bit, and take no memory. Dyadic times are exact. */
+static void million(int count) {
+    double small[OUTPUT_COUNT], one[OUTPUT_COUNT];
+    double size = 0x1p-10;
+    void *instance = driven(1.13);
+    fmu_initialize(instance, 0.0);
+    for (int k = 0; k < 1000; k++) fmu_step(instance, size * k, size);
+    long before = resident();
+    for (int k = 1000; k < count; k++) fmu_step(instance, size * k, size);
+    CHECK(resident() - before < 256);
+    outputs(instance, small);
+    fmu_close(instance);
+    alone(1.13, 1, size * count, one);
+    CHECK(memcmp(small, one, sizeof one) == 0);
+    printf("IMPACTS %.0f\n", one[5]);
+}
+
+static void timed(const char *label, int count, double size, int values, char **arguments) {
+    double best = 1e300;
+    for (int round = 0; round < 5; round++) {
+        void *instance = fmu_open("timed");
+        set_all(instance, values, arguments);
+        fmu_initialize(instance, 0.0);
+        double begin = seconds();
+        for (int k = 0; k < count; k++) fmu_step(instance, size * k, size);
+        double each = (seconds() - begin) / count;
+        if (each < best) best = each;
+        CHECK(fmu_get(instance, named("impact_count")) == 0.0);
+        fmu_close(instance);
+    }
+    printf("SPEED %s %.1f ns\n", label, 1e9 * best);
+}
+
+/* Time of a step where no impact falls. */
+static void speed(int count) {
+    static char bonded[] = "bonded=1", apart[] = "x2_start=100", unwatched[] = "x_rel_max_on=0", sampled[] = "sample_count=32", undriven[] = "box_amplitude=0";
+    double flight = 0x1p-20;  /* a flight from 100 m apart ends after 1.5 s */
+    timed("bonded", count, 0x1p-7, 1, (char *[]){bonded});
+    timed("flight", count, flight, 1, (char *[]){apart});
+    timed("flight, x_rel_max off", count, flight, 2, (char *[]){apart, unwatched});
+    timed("flight, x_rel_max off, 32 samples", count / 10, flight, 3, (char *[]){apart, unwatched, sampled});
+    timed("flight, x_rel_max off, undriven", count, flight, 3, (char *[]){apart, unwatched, undriven});
+}
+
+/* A state saved in motion, with one of its numbers overwritten: refused, or else what comes of it. */
+static void corrupt(size_t offset, double value) {
+    void *instance = driven(1.13);
+    fmu_initialize(instance, 0.0);
+    fmu_step(instance, 0.0, 20.0);
+    char *bytes;
+    size_t size = fmu_save(instance, &bytes);
+    if (offset + sizeof value > size) exit(2);
+    memcpy(bytes + offset, &value, sizeof value);
+    messages = 0;
+    if (!fmu_restore(instance, bytes, size)) {
+        CHECK(messages == 1);
+        printf("REFUSED %s\n", message);
+    } else {
+        bool stepped = fmu_try_step(instance, 20.0, 1.0);
+        printf("TAKEN step %s, x1 = %g\n", stepped ? "OK" : message, fmu_get(instance, named("x1")));
+    }
+    free(bytes);
+    fmu_close(instance);
+}
+
+int main(int count, char **arguments) {
+    if (count < 3) return 2;
+    const char *mode = arguments[2];
+#define NUMBER(i) (count > (i) ? atoi(arguments[i]) : 0)
+    fmu_load(arguments[1]);
+    if (strcmp(mode, "simulate") == 0 && count > 3) simulate(arguments[3], count - 4, arguments + 4);
+    else if (strcmp(mode, "maps") == 0) maps();
+    else if (strcmp(mode, "hostile") == 0) hostile();
+    else if (strcmp(mode, "many") == 0 && count > 5) many(NUMBER(3), NUMBER(4), NUMBER(5));
+    else if (strcmp(mode, "million") == 0 && count > 3) million(NUMBER(3));
+    else if (strcmp(mode, "speed") == 0 && count > 3) speed(NUMBER(3));
+    else if (strcmp(mode, "corrupt") == 0 && count > 4) corrupt((size_t)NUMBER(3), strtod(arguments[4], NULL));
+    else return 2;
+    fmu_unload();
+    printf("CHECKS %d FAILURES %d\n", checks, failures);
+    return failures ? 1 : 0;
+}
