@@ -38,6 +38,10 @@ def build(folder, forms=tuple(FORMS)):
         The FMUs written.
     """
     written = []
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{folder}: {error.strerror or error}; allowed is a folder that can be written") from None
     for form in forms:
         for name, model in MODELS.items():
             try:

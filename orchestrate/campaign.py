@@ -7,7 +7,7 @@ import multiprocessing
 import os
 import signal
 import sqlite3
-import time
+import sys
 from concurrent.futures import FIRST_EXCEPTION, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
@@ -15,7 +15,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from .errors import UserError
-from .store import Journal
+from .store import Journal, Lock
 from .sweep import run
 
 POLL = 0.2  # s between looks at the journals
@@ -27,13 +27,18 @@ def journal_path(result):
 
 
 def work(plan, fmu, result):
-    """One sweep in a worker process; the parent answers interrupts."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """One sweep in a worker process; the parent answers interrupts, and tells it to end by SIGTERM."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # by way of the context managers: nothing is left behind
     journal = Journal(journal_path(result), plan.identity())
     try:
-        run(plan, fmu, journal)
+        run(plan, fmu, journal, orphaned(os.getppid()))
     finally:
         journal.close()
+
+
+def orphaned(parent):
+    """A question: has the parent process ended, so that nobody waits for the result?"""
+    return lambda: os.getppid() != parent
 
 
 def count(result):
@@ -67,15 +72,20 @@ def run_all(plans, fmu, results, jobs=None):
     KeyboardInterrupt
         After the workers were stopped.
     """
+    if not plans:
+        return
     total = sum(len(plan.etas) for plan in plans)
     jobs = min(len(plans), jobs or os.cpu_count() or 1)
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(jobs, mp_context=context)
-    workers = getattr(pool, "_processes", {})
     done_before = sum(map(count, results))
     bar = tqdm(total=total, initial=done_before, unit="eta", desc="sweep", dynamic_ncols=True, smoothing=0.1)
+    locks = []
     try:
+        locks += [Lock(result) for result in results]
+        attentive = signal.signal(signal.SIGINT, signal.SIG_IGN)  # workers inherit this from their first instruction on
         futures = [pool.submit(work, plan, fmu, result) for plan, result in zip(plans, results, strict=True)]
+        signal.signal(signal.SIGINT, attentive)
         pending = set(futures)
         while pending:
             finished, pending = wait(pending, timeout=POLL, return_when=FIRST_EXCEPTION)
@@ -85,10 +95,11 @@ def run_all(plans, fmu, results, jobs=None):
     except BrokenProcessPool:
         raise UserError("a worker process ended without a word (killed, or out of memory); the same command goes on from where it was") from None
     except BaseException:
-        for process in list((workers or {}).values()):
+        for process in list((getattr(pool, "_processes", None) or {}).values()):
             process.terminate()
         raise
     finally:
         bar.close()
         pool.shutdown(wait=True, cancel_futures=True)
-        time.sleep(0)
+        for lock in locks:
+            lock.release()

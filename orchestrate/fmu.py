@@ -1,6 +1,7 @@
 """The one place that talks to FMPy: describe an FMU, instantiate it, set, step, read, save its state."""
 
 import math
+import os
 import re
 import shutil
 import tempfile
@@ -86,6 +87,7 @@ class Instance:
     def __init__(self, path, name="instance"):
         import fmpy
 
+        os.environ["VIBROIMPACT_MESSAGES"] = "log"  # the pythonfmu form need not repeat on the error output what is read from its log
         self.description = describe(path)
         self._messages = []
         self._folder = tempfile.mkdtemp(prefix="vibroimpact-")
@@ -95,9 +97,11 @@ class Instance:
             identity = {"unzipDirectory": self._folder, "modelIdentifier": found.coSimulation.modelIdentifier, "instanceName": name}
             make = self._make3 if self.description.fmi_version.startswith("3") else self._make2
             make({"guid": found.guid, **identity})
-        except BaseException:
+        except BaseException as error:
             shutil.rmtree(self._folder, ignore_errors=True)
-            raise
+            if isinstance(error, FmuError) or not isinstance(error, Exception):
+                raise
+            raise UserError(f"FMU {path}: cannot be loaded ({error}); allowed is an FMU with a binary for this machine") from None
 
     def _make2(self, identity):
         import fmpy
@@ -194,7 +198,10 @@ class Instance:
             get = self._fmu.fmi2GetReal
 
         def read():
-            get(*arguments)
+            try:
+                get(*arguments)
+            except Exception as error:
+                raise FmuError("; ".join(self._messages) or str(error)) from None
             return values
 
         return read

@@ -5,6 +5,7 @@ full disk the row it was writing. The NetCDF file appears whole or not at all.
 """
 
 import json
+import shutil
 import sqlite3
 from pathlib import Path
 
@@ -51,22 +52,29 @@ class Journal:
         """Close the database."""
         self._db.close()
 
+    def _query(self, statement, *values):
+        """All answers to a question."""
+        try:
+            return self._db.execute(statement, values).fetchall()
+        except sqlite3.Error as error:
+            raise UserError(f"{self.path}: damaged ({error}); remove it to begin anew") from None
+
     def length(self):
         """Number of rows; they are entered in order, so this is the next index."""
-        return self._db.execute("SELECT COUNT(*) FROM rows").fetchone()[0]
+        return self._query("SELECT COUNT(*) FROM rows")[0][0]
 
     def row(self, index):
         """One row, as an ndarray of floats."""
-        return np.frombuffer(self._db.execute("SELECT data FROM rows WHERE i = ?", (index,)).fetchone()[0])
+        return np.frombuffer(self._query("SELECT data FROM rows WHERE i = ?", index)[0][0])
 
     def rows(self):
         """All rows, shape (length, row length)."""
-        return np.array([np.frombuffer(data) for (data,) in self._db.execute("SELECT data FROM rows ORDER BY i")])
+        return np.array([np.frombuffer(data) for (data,) in self._query("SELECT data FROM rows ORDER BY i")])
 
     def append(self, index, row):
         """Enter a row."""
         try:
-            self._db.execute("INSERT INTO rows VALUES (?, ?)", (index, np.asarray(row, dtype=float).tobytes()))
+            self._db.execute("INSERT OR IGNORE INTO rows VALUES (?, ?)", (index, np.asarray(row, dtype=float).tobytes()))
         except sqlite3.Error as error:
             raise UserError(
                 f"{self.path}: cannot be written ({error}); what was computed before is kept, the same command goes on from there"
@@ -75,12 +83,36 @@ class Journal:
     def remove(self):
         """Delete the journal, once its contents are in a result file."""
         self.close()
+        self.discard(self.path)
+
+    @staticmethod
+    def discard(path):
+        """Delete a journal's files."""
         for suffix in ("", "-wal", "-shm"):
-            Path(f"{self.path}{suffix}").unlink(missing_ok=True)
+            Path(f"{path}{suffix}").unlink(missing_ok=True)
+
+
+class Lock:
+    """Keeps a second command off a run that is under way; released when the process ends, however it ends."""
+
+    def __init__(self, path):
+        self.path = Path(f"{path}.lock")
+        self._db = sqlite3.connect(self.path, timeout=0.0, isolation_level=None)
+        try:
+            self._db.execute("BEGIN EXCLUSIVE")
+        except sqlite3.Error:
+            self._db.close()
+            raise UserError(f"{path}: another process is computing this run; wait for it, or choose another --output") from None
+
+    def release(self):
+        """Let others at it."""
+        self._db.close()
+        self.path.unlink(missing_ok=True)
 
 
 def difference(found, wanted):
     """Where two identities differ, for a message."""
+    found, wanted = Journal.normal(found), Journal.normal(wanted)
     for key in sorted(set(found) | set(wanted)):
         a, b = found.get(key), wanted.get(key)
         if a != b:
@@ -130,7 +162,9 @@ def write_netcdf(dataset, path, identity):
     try:
         dataset.to_netcdf(temporary, engine="netcdf4", encoding=compression)
         temporary.replace(path)
-    except OSError as error:
-        raise UserError(f"{path}: cannot be written ({error}); what was computed is kept, the same command goes on from there") from None
+    except (OSError, RuntimeError) as error:
+        free = shutil.disk_usage(path.parent).free
+        cause = f"{error}, {free} bytes free on the disk"
+        raise UserError(f"{path}: cannot be written ({cause}); what was computed is kept, the same command goes on from there") from None
     finally:
         temporary.unlink(missing_ok=True)

@@ -11,6 +11,11 @@ from .poincare import multiplicity
 SERIES = ("x1_sample", "x2_sample", "v1_sample", "v2_sample")
 
 
+def plain(value):
+    """A number for a file name, to the last digit."""
+    return repr(float(value)).removesuffix(".0")
+
+
 @dataclass(frozen=True)
 class Case:
     """Non-dimensional parameters of the oscillator, (2) and (8), with D1 = D2 = D."""
@@ -28,11 +33,11 @@ class Case:
 
     def label(self):
         """Short name for files and legends; what has its default value is left out, but for e and D."""
-        parts = [f"e{self.e:g}", f"D{self.D:g}"]
+        parts = [f"e{plain(self.e)}", f"D{plain(self.D)}"]
         for name in ("mu", "kappa", "gamma"):
             value = getattr(self, name)
             if value != getattr(Case, name):
-                parts.append(f"{name}{value:g}")
+                parts.append(f"{name}{plain(value)}")
         return "_".join(parts)
 
 
@@ -160,7 +165,7 @@ def sample(instance, plan, period):
     return samples, peak
 
 
-def run(plan, fmu, journal):
+def run(plan, fmu, journal, stop=lambda: False):
     """Sweep, going on where the journal ends.
 
     Parameters
@@ -169,11 +174,15 @@ def run(plan, fmu, journal):
     fmu : path-like
     journal : .store.Journal
         Each response is entered when it is known.
+    stop : callable
+        Asked before each eta; true ends the sweep there.
     """
     done = journal.length()
     start = Response.from_row(journal.row(done - 1)).end if done else (0.0, 0.0, 0.0, 0.0)
     with Instance(fmu, name=plan.case.label()) as instance:
         for index in range(done, len(plan.etas)):
+            if stop():
+                return
             response = respond(instance, plan, plan.etas[index], start)
             journal.append(index, response.row())
             start = response.end

@@ -14,16 +14,18 @@ LIBRARIES = {  # machine: platform and file name
 }
 
 
-loaded: dict = {}  # libraries of this process by path: ctypes makes new classes at every load
+loaded: dict = {}  # libraries of this process: ctypes makes new classes at every load
 
 
-def load_compiled(folder):
+def load_compiled(folder, key):
     """Entry points ``(initialize, advance)`` of the library in ``folder``, or None.
 
     Parameters
     ----------
     folder : str
         Where the library would lie.
+    key : str
+        Name for its contents: a library loaded before under this name serves, wherever it lay.
 
     Returns
     -------
@@ -32,10 +34,12 @@ def load_compiled(folder):
     """
     _, name = LIBRARIES.get((sys.platform, platform.machine().lower()), ("", "none"))
     path = os.path.join(folder, name)
-    if os.environ.get("VIBROIMPACT_PURE_PYTHON", "0") not in ("", "0") or not os.path.isfile(path):
+    if os.environ.get("VIBROIMPACT_PURE_PYTHON", "0") not in ("", "0"):
         return None
-    if path in loaded:
-        return loaded[path]
+    if key in loaded:
+        return loaded[key]
+    if not os.path.isfile(path):
+        return None
     try:
         library = ctypes.CDLL(path)
         entries = library.initialize, library.advance
@@ -44,5 +48,5 @@ def load_compiled(folder):
     for entry in entries:
         entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
         entry.restype = ctypes.c_int
-    loaded[path] = entries
+    loaded[key] = entries
     return entries

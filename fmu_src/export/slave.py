@@ -40,7 +40,8 @@ class Slave:
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
         size = self.model.memory_size
-        kernel = load_compiled(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+        package = __name__.split(".")[0]  # under its content-hashed name; its files lie with this instance, not with the first of the process
+        kernel = load_compiled(os.path.join(kwargs.get("resources") or "", package), package)
         self._initialize = kernel[0] if kernel else self.model.initialize
         self._advance = kernel[1] if kernel else self.model.advance
         self._array = ctypes.c_double * size if kernel else lambda *values: list(values)
@@ -56,6 +57,8 @@ class Slave:
 
     def report(self, text):
         """One line to the error output: importers drop log messages unless asked for, and may take a discarded step for success."""
+        if os.environ.get("VIBROIMPACT_MESSAGES") == "log":  # an importer that reads the log
+            return
         try:
             sys.stderr.write(f"{self.model.name} '{self.instance_name}': {text}\n")
             sys.stderr.flush()

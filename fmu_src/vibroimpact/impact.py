@@ -23,6 +23,7 @@ def sticks(m, separation, force):
 
     Parameters
     ----------
+    m : flat memory
     separation : float
         Gap velocity after the impact, >= 0.
     force : float

@@ -2,9 +2,19 @@
 
 from . import memory as at
 from .barrier import evaluate
-from .roots import clear_step, longest_step, next_step
+from .roots import clear_step, longest_step, next_step, parabola_root
 
 SMALLEST = 1e-9  # least progress, in tau: a summit is flat, nothing is lost
+
+
+def climb(h1, h2, h3, bound, reach):
+    """A step towards the next summit, and whether it ends there: height is of second order in the summit's place, 1e-9 of it will do."""
+    root = parabola_root(h1, h2, h3)
+    if root < reach and bound * root * root * root <= -6e-9 * reach * (h2 + h3 * root):
+        return root, True
+    scale = 1.0 / bound if bound > 0.0 else 1.0
+    step = clear_step(h1 * scale, h2 * scale, h3 * scale, -bound * scale, 0.0, reach)
+    return step, step <= 1e-9 * reach
 
 
 def largest_gap(m, start, stop, highest):
@@ -22,7 +32,7 @@ def largest_gap(m, start, stop, highest):
         if tau >= stop:
             break
         if h1 > 0.0 and not summit:
-            step, summit = next_step(h1, h2, h3, -bound, 0.0, tau, reach)
+            step, summit = climb(h1, h2, h3, bound, reach)
         elif highest > h0:
             step, _ = next_step(highest - h0, -h1, -h2, -h3, bound, tau, reach)
             summit = False

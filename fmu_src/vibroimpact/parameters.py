@@ -5,7 +5,6 @@ import math
 from . import memory as at
 from .elementary import TWO_PI
 
-
 SAME = 1e-15  # relative difference below which two quotients of parameters are equal but for rounding
 
 

@@ -109,10 +109,12 @@ def next_step(h0, h1, h2, h3, bound, tau, reach):
 
     Parameters
     ----------
-    h0, h1, h2, h3, bound, reach : float
+    h0, h1, h2, h3, bound : float
         As in :func:`clear_step`; any sign of h0.
     tau : float
         Where the walk stands. The accuracy wanted is the rounding of a time of the size of ``tau + reach``.
+    reach : float
+        Longest step wanted, > 0.
 
     Returns
     -------

@@ -65,7 +65,7 @@ def parse_etas(text):
         raise UserError(f"--eta {text}: {form}")
     if is_range:
         first, last, step = numbers
-        if last < first or (last - first) / step > 10_000_000:
+        if last < first or (last - first) > 10_000_000 * step:
             raise UserError(f"--eta {text}: {form}, and at most ten million values")
         numbers = [first + i * step for i in range(int((last - first) / step) + 1)]
     if not all(1e-6 <= number <= 1e6 for number in numbers):
@@ -79,6 +79,8 @@ def parse_case(text):
     known = {field.name for field in fields(Case)}
     for part in filter(None, (part.strip() for part in text.split(","))):
         key, _, value = (piece.strip() for piece in part.partition("="))
+        if key in values:
+            raise UserError(f"--case {text}: {key} twice; allowed is each once")
         if key not in known:
             raise UserError(f"--case {text}: {key or part} is no parameter; allowed are {', '.join(sorted(known))}")
         try:
@@ -88,21 +90,37 @@ def parse_case(text):
     return Case(**values)
 
 
+SOURCES = {"m2": "mu", "k2": "kappa", "d1": "D", "d2": "D and mu", "e": "e", "gamma": "gamma"}  # of the FMU's parameters, in a case
+
+
+def check_case(case, fmu):
+    """Whether the FMU has the parameters, and allows the values a case gives them."""
+    for name, value in case.parameters().items():
+        if name not in fmu.variables:
+            raise UserError(f"FMU {fmu.path}: has no variable {name}; allowed is one made by `python -m orchestrate build`")
+        variable = fmu.variables[name]
+        low = float(variable.min) if variable.min is not None else -math.inf
+        high = float(variable.max) if variable.max is not None else math.inf
+        if not (math.isfinite(value) and low <= value <= high):
+            key = SOURCES[name]
+            given = ", ".join(f"{part} = {getattr(case, part):g}" for part in key.split(" and "))
+            rule = (
+                f"allowed is {low:g} <= {key} <= {high:g}" if name == key else f"makes {name} = {value:g}, allowed is {low:g} <= {name} <= {high:g}"
+            )
+            raise UserError(f"--case {given}: {rule}")
+
+
 def check(arguments, cases, fmu):
     """All that can be wrong, before any work is done."""
     for name, lowest in (("transient", 0), ("samples", 1), ("jobs", 1)):
         if getattr(arguments, name) < lowest:
             raise UserError(f"--{name} {getattr(arguments, name)}: allowed is a whole number >= {lowest}")
+    if arguments.samples > 1_000_000:
+        raise UserError(f"--samples {arguments.samples}: allowed are at most 1000000")
     if not (math.isfinite(arguments.tolerance) and arguments.tolerance > 0.0):
         raise UserError(f"--tolerance {arguments.tolerance}: allowed is a number > 0")
     for case in cases:
-        for key, name in (("e", "e"), ("D", "d1"), ("mu", "m2"), ("kappa", "k2"), ("gamma", "gamma")):
-            value, variable = case.parameters()[name], fmu.variables[name]
-            low = float(variable.min) if variable.min is not None else -math.inf
-            high = float(variable.max) if variable.max is not None else math.inf
-            if not (math.isfinite(value) and low <= value <= high):
-                factor = 0.5 if key == "D" else 1.0
-                raise UserError(f"--case {key} = {getattr(case, key):g}: allowed is {factor * low:g} <= {key} <= {factor * high:g}")
+        check_case(case, fmu)
     if len(set(cases)) != len(cases):
         raise UserError("--case: the same parameter set twice; allowed is each once")
 
@@ -152,14 +170,17 @@ def run(arguments):
     todo = {}
     for name, plan in plans.items():
         result = arguments.output / f"{name}.nc"
-        if result.exists() and not arguments.force:
+        if result.exists() and arguments.force:
+            result.unlink()
+            Journal.discard(journal_path(result))
+        if result.exists():
             found, wanted = read_identity(result), Journal.normal(plan.identity())
             if found != wanted:
                 raise UserError(f"{result}: holds another run ({difference(found, wanted)}); choose another --output, or --force to replace it")
             print(f"{result}: complete already")
+            if not result.with_suffix(".png").exists():
+                draw_result(result)
             continue
-        if arguments.force:
-            result.with_suffix(".nc.journal").unlink(missing_ok=True)
         Journal(journal_path(result), plan.identity()).close()
         todo[result] = plan
     run_all(list(todo.values()), fmu.path, list(todo), arguments.jobs)
@@ -170,15 +191,23 @@ def run(arguments):
         print(arguments.output / f"{name}.png")
 
 
+def draw_result(result):
+    """The picture of a result file."""
+    import xarray
+
+    from ..figures.orbit_diagram import draw
+
+    with xarray.open_dataset(result, engine="netcdf4") as data:
+        draw(data, result.with_suffix(".png"))
+
+
 def finish(result, plan, fmu):
     """Result file and picture from a complete journal."""
     from ..campaign import journal_path
-    from ..figures.orbit_diagram import draw
     from ..orbit import dataset
     from ..store import Journal, write_netcdf
 
     journal = Journal(journal_path(result), plan.identity())
-    data = dataset(plan, journal.rows(), fmu)
-    write_netcdf(data, result, plan.identity())
-    draw(data, result.with_suffix(".png"))
+    write_netcdf(dataset(plan, journal.rows(), fmu), result, plan.identity())
+    draw_result(result)
     journal.remove()
