@@ -124,3 +124,16 @@ def evaluate(m, tau):
         h2 += q2 + tau * q3
         h3 += q3
     return h0, h1, h2, h3, bound
+
+
+def rounding(m, tau):
+    """What the barrier's terms at ``tau`` may lose by rounding."""
+    size = abs(m[at.BARRIER_HARMONIC]) + abs(m[at.BARRIER_HARMONIC + 1])
+    branch_a = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
+    size += free_bound(m, branch_a, at.BARRIER_FREE_A, 0) + free_bound(m, at.BRANCH_2, at.BARRIER_FREE_B, 0)
+    if m[at.CUBIC_PRESENT] != 0.0:
+        power = 1.0
+        for i in range(4):
+            size += abs(m[at.BARRIER_CUBIC + i]) * power
+            power *= tau
+    return 4e-15 * size

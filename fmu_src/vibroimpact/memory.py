@@ -52,7 +52,8 @@ START_TIME = 926
 WORK, WORK_LIMIT = 927, 928  # evaluations spent and allowed in this step
 TARGET, REPORT = 929, 930  # for messages: the time a step was to reach, and what a return code is about
 STOP_AT_IMPACT = 931  # set from outside: a step ends at its first impact
-SIZE = 932
+BEGIN = 932  # displacements and velocities at the state's start: x1, v1, x2, v2
+SIZE = 936
 
 # -- return codes of the entry points ---------------------------------------------------------------------------------
 OK, UNFINISHED, RESONANCE_1, RESONANCE_2, RESONANCE_3, NOT_FINITE, START_OVERLAP, START_BONDED = 0, 1, 2, 3, 4, 5, 6, 7

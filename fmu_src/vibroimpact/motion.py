@@ -23,6 +23,8 @@ def state_at(m, tau):
     x1, v1, x2, v2 : float
         m, and m per unit of tau; ``x2 >= x1``.
     """
+    if tau == 0.0:  # exactly what the state began with: a start from rest is at rest
+        return m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
     sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, tau, sine, cosine)
@@ -136,7 +138,7 @@ def begin_flight(m, x1, v1, x2, v2):
     set_free(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
     set_free(m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
     set_gap(m)
-    open_end(m)
+    open_end(m, x1, v1, x2, v2)
 
 
 def begin_common(m, mode, x, v):
@@ -147,11 +149,15 @@ def begin_common(m, mode, x, v):
         set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.SEGMENT_AGE]))
     set_free(m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
     set_contact_force(m)
-    open_end(m)
+    open_end(m, x, v, x, v)
 
 
-def open_end(m):
-    """The state's end is not known yet."""
+def open_end(m, x1, v1, x2, v2):
+    """The state begins here; its end is not known yet."""
+    m[at.BEGIN] = x1
+    m[at.BEGIN + 1] = v1
+    m[at.BEGIN + 2] = x2
+    m[at.BEGIN + 3] = v2
     m[at.CLEAR] = 0.0
     m[at.END] = INFINITE
     m[at.END_KIND] = at.END_OPEN

@@ -9,7 +9,7 @@ on the state alone, not on where the importer's communication points lie: it goe
 import math
 
 from . import memory as at
-from .barrier import evaluate
+from .barrier import evaluate, rounding
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
@@ -87,11 +87,25 @@ def walk(m, target):
             m[at.END_KIND] = at.END_RENEWAL
             return
         h0, h1, h2, h3, bound = evaluate(m, tau)
+        if h0 <= 0.0:
+            h0 = lifted(m, tau, h0, h1)
         step, found = next_step(h0, h1, h2, h3, bound, tau, longest_step(m))
         if found:
             m[at.END] = tau + step
             m[at.END_KIND] = at.END_EVENT
         m[at.CLEAR] = tau + step
+
+
+def lifted(m, tau, h0, h1):
+    """A barrier value that is not positive, or a positive one where it is zero but for rounding and no crossing is in sight.
+
+    Near a start on the boundary the barrier may be smaller than the rounding of its terms for a while; the side was decided when the state
+    began, and holds until the barrier is seen to cross.
+    """
+    floor = rounding(m, tau)
+    if h0 < -floor or floor < -1e-6 * h1:
+        return h0
+    return 2.0 * floor
 
 
 def renewal_age(m):

@@ -1,13 +1,14 @@
 """The two entry points: an instance is one flat memory, initialised once and then advanced from one communication point to the next."""
 
 from . import memory as at
+from .barrier import evaluate
 from .elementary import TWO_PI, fraction
 from .excitation import begin_segment, inputs_changed
 from .maximum import largest_gap
-from .motion import begin, end_state, move_origin, set_turn, state_at
+from .motion import begin, begin_common, begin_flight, end_state, move_origin, set_turn, state_at
 from .outputs import momentum, write, write_impulse
 from .parameters import derive
-from .roots import walk
+from .roots import lifted, walk
 
 WORK_BASE = 100000.0  # evaluations of the barrier a step may take whatever its length,
 WORK_RATE = 64.0  # and in a time gamma, the shortest flight that is told from sticking,
@@ -105,11 +106,24 @@ def finite(m):
 def renew_segment(m, now):
     """Begin a segment with the present inputs, ``now`` after the present state's start; positions and phase are continuous."""
     x1, v1, x2, v2 = state_at(m, now)
+    goes_on = now > 0.0 and m[at.MODE] != at.GLUED and inside(m, now)
     move_origin(m, now)
     code = begin_segment(m)
-    if code == at.OK:
+    if code != at.OK:
+        return code
+    if not goes_on:
         begin(m, x1, v1, x2, v2, 0)
+    elif m[at.MODE] == at.FLIGHT:
+        begin_flight(m, x1, v1, x2, v2)
+    else:
+        begin_common(m, at.CONTACT, x1, v1)
     return code
+
+
+def inside(m, tau):
+    """Whether the barrier has not been crossed, positive or zero but for rounding: gap and contact force do not jump with the inputs."""
+    h0, h1, _, _, _ = evaluate(m, tau)
+    return h0 > 0.0 or lifted(m, tau, h0, h1) > 0.0
 
 
 def run_samples(m, start, time, now):
