@@ -1,0 +1,1 @@
+"""The exported FMU as its users meet it: in a fresh process, through an importer, without the project."""

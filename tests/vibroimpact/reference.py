@@ -1,0 +1,91 @@
+"""Whole trajectories without the kernel: event by event in high precision, and by an ODE solver with event location.
+
+Flights begin and end as in the corrected (12)-(20), in SI units; ``gamma`` counts in units of 1/omega of mass 1.
+"""
+
+import math
+
+import mpmath as mp
+from scipy.integrate import solve_ivp
+
+from . import truth
+
+FLIGHT, CONTACT = "flight", "contact"
+
+
+def collide(values, v1, v2):
+    """Newton's restitution."""
+    m1, m2, e = values["m1"], values["m2"], values["e"]
+    common = (m1 * v1 + m2 * v2) / (m1 + m2)
+    return common - e * m2 / (m1 + m2) * (v1 - v2), common + e * m1 / (m1 + m2) * (v1 - v2)
+
+
+def opening(values, x, v):
+    """Acceleration with which the gap would open with both masses at ``x`` and velocity ``v``."""
+    return (values["k1"] * x + values["d1"] * v) / values["m1"] - (values["k2"] * x + values["d2"] * v) / values["m2"]
+
+
+def event_by_event(values, state, stop):
+    """Events in high precision from a flight.
+
+    Returns
+    -------
+    events : list of (time, kind)
+        Kind: "impact", "stick", "release".
+    state : tuple
+        x1, v1, x2, v2 at ``stop``.
+    """
+    omega = mp.sqrt(mp.mpf(values["k1"]) / values["m1"])
+    time, mode, events, blind = mp.mpf(0), FLIGHT, [], 0.0
+    while True:
+        phase = mp.mpf(values.get("phase_start", 0.0)) + values["box_frequency"] * time
+        if mode == FLIGHT:
+            first, second = truth.apart(values, state, phase)
+            barrier = second - first
+        else:
+            first, barrier = truth.together(values, state[0], state[1], phase)
+            second = first
+        end = truth.first_root(barrier, float(stop - time), blind)
+        age = stop - time if end is None else end
+        state = first(age), first.derivative()(age), second(age), second.derivative()(age)
+        if end is None:
+            return events, state
+        time, blind = time + end, 0.0
+        x, v1, v2 = state[0], state[1], state[3]
+        if mode == CONTACT:
+            mode, blind = FLIGHT, 1e-3  # the gap opens with the third power of time: below rounding at first
+            events.append((time, "release"))
+            continue
+        w1, w2 = collide(values, v1, v2)
+        pull = opening(values, x, w1 + (w2 - w1) * mp.mpf(values["m2"]) / (mp.mpf(values["m1"]) + values["m2"]))
+        if pull < 0 and 2 * (w2 - w1) * omega < values["gamma"] * -pull:
+            w1 = w2 = collide({**values, "e": 0}, v1, v2)[0]
+            mode = CONTACT
+        events.append((time, "stick" if mode == CONTACT else "impact"))
+        state = x, w1, x, w2
+
+
+def impacts_by_solver(values, state, stop):
+    """Times of impacts by a Runge-Kutta solver of eighth order, and the state at ``stop``; without permanent contact."""
+    a, frequency = values["box_amplitude"], values["box_frequency"]
+
+    def slope(t, y):
+        drive = a * frequency**2 * math.sin(frequency * t + values.get("phase_start", 0.0)) - values.get("box_acceleration", 0.0)
+        pull_1 = (values["k1"] * y[0] + values["d1"] * y[1]) / values["m1"]
+        pull_2 = (values["k2"] * y[2] + values["d2"] * y[3]) / values["m2"]
+        return y[1], drive - pull_1, y[3], drive - pull_2
+
+    def gap(t, y):
+        return y[2] - y[0]
+
+    gap.terminal, gap.direction = True, -1
+    time, times = 0.0, []
+    while True:
+        done = solve_ivp(slope, (time, stop), state, "DOP853", rtol=1e-12, atol=1e-14, events=gap, max_step=0.1)
+        time, state = done.t[-1], done.y[:, -1]
+        if done.status == 0:
+            return times, state
+        times.append(time)
+        x = 0.5 * (state[0] + state[2])
+        v1, v2 = collide(values, state[1], state[3])
+        state = [x, v1, x, v2]

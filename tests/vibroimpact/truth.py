@@ -1,0 +1,117 @@
+"""Independent truth: the two oscillators in SI units as sums of complex exponentials, in high precision; first roots by scan and polish.
+
+Nothing here comes from the kernel: no omega, no mu, no branches of damping. Newton's law of each mass, its characteristic roots, and mpmath.
+"""
+
+import mpmath as mp
+import numpy as np
+
+mp.mp.dps = 50
+
+
+class Signal:
+    """``Re sum c_k e^{s_k t} + sum p_k t^k / k!``."""
+
+    def __init__(self, terms, polynomial):
+        self.terms, self.polynomial = terms, polynomial
+        self._coarse = [(complex(c), complex(s)) for c, s in terms], [float(p) for p in polynomial]
+
+    def __sub__(self, other):
+        return self + -1 * other
+
+    def __add__(self, other):
+        return Signal(self.terms + other.terms, [a + b for a, b in zip(self.polynomial, other.polynomial, strict=True)])
+
+    def __rmul__(self, factor):
+        return Signal([(factor * c, s) for c, s in self.terms], [factor * p for p in self.polynomial])
+
+    def derivative(self):
+        return Signal([(c * s, s) for c, s in self.terms], [*self.polynomial[1:], mp.mpf(0)])
+
+    def __call__(self, t):
+        """In high precision."""
+        t = mp.mpf(t)
+        return mp.re(sum(c * mp.exp(s * t) for c, s in self.terms)) + taylor(self.polynomial, t)
+
+    def sample(self, t):
+        """In double precision, on an array."""
+        terms, polynomial = self._coarse
+        return sum((c * np.exp(s * t)).real for c, s in terms) + taylor(polynomial, t)
+
+    def fastest(self):
+        """Largest rate of change."""
+        return max([abs(s) for _, s in self._coarse[0]] + [1e-3])
+
+
+def taylor(derivatives, t):
+    """A polynomial by its derivatives at 0."""
+    value = 0
+    for k in range(len(derivatives), 0, -1):
+        value = derivatives[k - 1] + value * t / k
+    return value
+
+
+def box(values, phase):
+    """The box's acceleration as a Signal; ``values`` are inputs by name, ``phase`` (rad) that of the harmonic part at t = 0."""
+    a, frequency = mp.mpf(values.get("box_amplitude", 1.0)), mp.mpf(values.get("box_frequency", 0.0))
+    cubic = [mp.mpf(values.get(f"box_{name}", 0.0)) for name in ("acceleration", "jerk", "snap", "crackle")]
+    return Signal([(mp.mpc(0, 1) * a * frequency**2 * mp.expj(phase), mp.mpc(0, frequency))], cubic)  # -a Omega^2 sin
+
+
+def oscillator(mass, damping, stiffness, x, v, acceleration):
+    """Displacement relative to a box of the given acceleration, from initial conditions at t = 0."""
+    mass, damping, stiffness = mp.mpf(mass), mp.mpf(damping), mp.mpf(stiffness)
+    forced = [(-c / (s * s + damping / mass * s + stiffness / mass), s) for c, s in acceleration.terms]
+    cubic = [mp.mpf(0)] * 4
+    for _ in range(4):  # mass q'' + damping q' + stiffness q = -mass p: exact after four rounds, p being a cubic
+        first, second = [*cubic[1:], 0], [*cubic[2:], 0, 0]
+        cubic = [(-mass * p - damping * q1 - mass * q2) / stiffness for p, q1, q2 in zip(acceleration.polynomial, first, second, strict=True)]
+    part = Signal(forced, cubic)
+    half = damping / (2 * mass)
+    split = mp.sqrt(mp.mpc(half * half - stiffness / mass))
+    if split == 0:
+        split = mp.mpf(10) ** (-mp.mp.dps // 3)  # critical damping as a limit: wrong by its square
+    fast, slow = -half - split, -half + split
+    c, w = x - part(0), v - part.derivative()(0)
+    free = [((w - fast * c) / (slow - fast), slow), ((slow * c - w) / (slow - fast), fast)]
+    return Signal(forced + free, cubic)
+
+
+def apart(values, state, phase):
+    """Both masses on their own from a state (x1, v1, x2, v2)."""
+    x1, v1, x2, v2 = (mp.mpf(value) for value in state)
+    shaken = box(values, phase)
+    first = oscillator(values["m1"], values["d1"], values["k1"], x1, v1, shaken)
+    return first, oscillator(values["m2"], values["d2"], values["k2"], x2, v2, shaken)
+
+
+def together(values, x, v, phase):
+    """Both masses as one, and the force with which mass 2 is pushed by mass 1 (Newton's law of mass 1)."""
+    m1, d1, k1 = (mp.mpf(values[name]) for name in ("m1", "d1", "k1"))
+    shaken = box(values, phase)
+    common = oscillator(m1 + values["m2"], d1 + values["d2"], k1 + values["k2"], mp.mpf(x), mp.mpf(v), shaken)
+    speed = common.derivative()
+    return common, -1 * (m1 * (speed.derivative() + shaken) + d1 * speed + k1 * common)
+
+
+def polish(signal, low, high):
+    """Root in a bracket."""
+    return mp.findroot(signal, (mp.mpf(low), mp.mpf(high)), solver="anderson", verify=False)
+
+
+def first_root(signal, stop, start=0.0):
+    """First root in ``start < t <= stop``, or None: a scan with hundreds of points a period, each near miss settled by its own minimum."""
+    spacing = 0.02 / signal.fastest()
+    fine = start + np.geomspace(1e-8, 1.0, 60) * min(spacing, stop - start)
+    t = np.concatenate([fine, np.arange(fine[-1] + spacing, stop, spacing), [stop]])
+    h = signal.sample(t)
+    slope = signal.derivative()
+    near = 1e-3 * np.abs(h).max()
+    for i in range(1, len(t)):
+        if h[i] <= 0.0:
+            return polish(signal, t[i - 1], t[i])
+        if i + 1 < len(t) and h[i] <= min(h[i - 1], h[i + 1]) and h[i] < near:
+            bottom = polish(slope, t[i - 1], t[i + 1])
+            if signal(bottom) < 0:
+                return polish(signal, t[i - 1], bottom)
+    return None
