@@ -29,11 +29,14 @@ def journal_path(result):
 def work(plan, fmu, result):
     """One sweep in a worker process; the parent answers interrupts, and tells it to end by SIGTERM."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # by way of the context managers: nothing is left behind
+    alone = orphaned(os.getppid())
     journal = Journal(journal_path(result), plan.identity())
     try:
-        run(plan, fmu, journal, orphaned(os.getppid()))
+        run(plan, fmu, journal, alone)
     finally:
         journal.close()
+    if alone():
+        os._exit(1)  # the pool would wait for orders that never come
 
 
 def orphaned(parent):
@@ -74,24 +77,15 @@ def run_all(plans, fmu, results, jobs=None):
     """
     if not plans:
         return
-    total = sum(len(plan.etas) for plan in plans)
     jobs = min(len(plans), jobs or os.cpu_count() or 1)
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(jobs, mp_context=context)
-    done_before = sum(map(count, results))
-    bar = tqdm(total=total, initial=done_before, unit="eta", desc="sweep", dynamic_ncols=True, smoothing=0.1)
-    locks = []
+    locks: list = []
+    pool = ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"))
     try:
         locks += [Lock(result) for result in results]
         attentive = signal.signal(signal.SIGINT, signal.SIG_IGN)  # workers inherit this from their first instruction on
         futures = [pool.submit(work, plan, fmu, result) for plan, result in zip(plans, results, strict=True)]
         signal.signal(signal.SIGINT, attentive)
-        pending = set(futures)
-        while pending:
-            finished, pending = wait(pending, timeout=POLL, return_when=FIRST_EXCEPTION)
-            bar.update(sum(map(count, results)) - bar.n)
-            for future in finished:
-                future.result()
+        watch(futures, results, sum(len(plan.etas) for plan in plans))
     except BrokenProcessPool:
         raise UserError("a worker process ended without a word (killed, or out of memory); the same command goes on from where it was") from None
     except BaseException:
@@ -99,7 +93,17 @@ def run_all(plans, fmu, results, jobs=None):
             process.terminate()
         raise
     finally:
-        bar.close()
         pool.shutdown(wait=True, cancel_futures=True)
         for lock in locks:
             lock.release()
+
+
+def watch(futures, results, total):
+    """Show the progress until every sweep is complete; raises what a worker raised."""
+    pending = set(futures)
+    with tqdm(total=total, initial=sum(map(count, results)), unit="eta", desc="sweep", dynamic_ncols=True, smoothing=0.1) as bar:
+        while pending:
+            finished, pending = wait(pending, timeout=POLL, return_when=FIRST_EXCEPTION)
+            bar.update(sum(map(count, results)) - bar.n)
+            for future in finished:
+                future.result()

@@ -39,9 +39,8 @@ class Journal:
             raise UserError(f"{self.path}: not usable as a journal ({error}); allowed is a writable place, or a journal of this run") from None
         if found != text:
             self.close()
-            raise UserError(
-                f"{self.path}: the journal of another run ({difference(json.loads(found), identity)}); remove it or choose another --output"
-            )
+            found = identity_of(found, self.path)
+            raise UserError(f"{self.path}: the journal of another run ({difference(found, identity)}); remove it or choose another --output")
 
     @staticmethod
     def normal(identity):
@@ -65,16 +64,22 @@ class Journal:
 
     def row(self, index):
         """One row, as an ndarray of floats."""
-        return np.frombuffer(self._query("SELECT data FROM rows WHERE i = ?", index)[0][0])
+        return self._numbers(self._query("SELECT data FROM rows WHERE i = ?", index)[0][0])
 
     def rows(self):
         """All rows, shape (length, row length)."""
-        return np.array([np.frombuffer(data) for (data,) in self._query("SELECT data FROM rows ORDER BY i")])
+        return np.array([self._numbers(data) for (data,) in self._query("SELECT data FROM rows ORDER BY i")])
+
+    def _numbers(self, data):
+        """A row's floats."""
+        if not isinstance(data, bytes) or len(data) % 8 or not data:
+            raise UserError(f"{self.path}: damaged (a row of {len(data)} bytes); remove it to begin anew")
+        return np.frombuffer(data)
 
     def append(self, index, row):
         """Enter a row."""
         try:
-            self._db.execute("INSERT OR IGNORE INTO rows VALUES (?, ?)", (index, np.asarray(row, dtype=float).tobytes()))
+            self._db.execute("INSERT INTO rows VALUES (?, ?)", (index, np.asarray(row, dtype=float).tobytes()))
         except sqlite3.Error as error:
             raise UserError(
                 f"{self.path}: cannot be written ({error}); what was computed before is kept, the same command goes on from there"
@@ -108,6 +113,14 @@ class Lock:
         """Let others at it."""
         self._db.close()
         self.path.unlink(missing_ok=True)
+
+
+def identity_of(text, path):
+    """An identity from disk."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        raise UserError(f"{path}: damaged (it does not say which run it belongs to); remove it to begin anew") from None
 
 
 def difference(found, wanted):

@@ -104,9 +104,10 @@ def check_case(case, fmu):
         if not (math.isfinite(value) and low <= value <= high):
             key = SOURCES[name]
             given = ", ".join(f"{part} = {getattr(case, part):g}" for part in key.split(" and "))
-            rule = (
-                f"allowed is {low:g} <= {key} <= {high:g}" if name == key else f"makes {name} = {value:g}, allowed is {low:g} <= {name} <= {high:g}"
-            )
+            unit = 0.5 if key == "D" else 1.0  # d1 = 2 D
+            rule = f"allowed is {unit * low:g} <= {key} <= {unit * high:g}"
+            if " and " in key:
+                rule = f"makes {name} = {value:g}, allowed is {low:g} <= {name} <= {high:g}"
             raise UserError(f"--case {given}: {rule}")
 
 

@@ -1,0 +1,1 @@
+"""Tests of the orchestration: its command line as processes, its parts as calls."""

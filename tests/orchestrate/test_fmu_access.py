@@ -1,0 +1,192 @@
+"""The one place that talks to FMPy: what is set is what is read, errors speak with the FMU's words, states come back bit by bit."""
+
+import math
+import subprocess
+import sys
+import tempfile
+
+import pytest
+
+from orchestrate.commands.sweep_command import MODEL
+from orchestrate.errors import UserError
+from orchestrate.fmu import FmuError, Instance, describe
+
+from .command import ROOT, altered_fmu
+from .conftest import FORMS, exported
+
+CHAOS = {"box_amplitude": 1.0 / 1.2**2, "box_frequency": 1.2}
+STATE = ("x1", "x2", "v1", "v2", "x_rel", "x_rel_max", "impact_time", "impact_energy", "phase")
+
+
+@pytest.fixture
+def temporary(tmp_path, monkeypatch):
+    """Where temporary folders go."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    return tmp_path
+
+
+@pytest.fixture
+def instance(any_fmu, temporary):
+    """Make an instance in chaotic motion, at t = 100 s."""
+    with Instance(any_fmu) as instance:
+        instance.initialize(**CHAOS)
+        instance.step(0.0, 100.0)
+        yield instance
+
+
+def trajectory(instance, start, steps=25):
+    """Values along some steps."""
+    values = []
+    for n in range(steps):
+        instance.step(start + 2.0 * n, start + 2.0 * n + 2.0)
+        values.append(instance.get(*STATE, "impact_count", "in_contact"))
+    return values
+
+
+@pytest.mark.parametrize(("form", "version"), list(zip(FORMS, ("2.0", "2.0", "3.0"), strict=True)))
+def test_description(form, version):
+    fmu = exported(form) or pytest.skip(f"no {form} here")
+    found = describe(fmu, MODEL)
+    assert (found.path, found.name, found.fmi_version) == (fmu, MODEL, version)
+    assert found.guid.strip("{}").replace("-", "").isalnum() and len(found.guid) == 38
+    assert found.variables["e"].causality == "parameter" and found.variables["x_rel"].unit == "m"
+    assert describe(str(fmu)).variables.keys() == found.variables.keys()
+    with pytest.raises(UserError, match="Other"):
+        describe(fmu, "Other")
+
+
+def test_what_is_set_is_read(any_fmu, temporary):
+    values = {"m2": 0.1, "e": 0.3, "bonded": True, "box_amplitude": -1.5e-7, "x_rel_max_on": False}
+    with Instance(any_fmu) as instance:
+        instance.set(**values)
+        instance.initialize()
+        assert instance.get(*values) == list(values.values())
+        instance.set(box_frequency=2.0)
+        assert instance.get("box_frequency", "m2") == [2.0, 0.1]
+
+
+def test_reader_agrees_with_get(instance):
+    read = instance.reader(*STATE)
+    time = 100.0
+    for step in (0.0, 0.1, 3.7, 20.0):
+        instance.step(time, time + step)
+        time += step
+        assert list(read()) == instance.get(*STATE)
+    assert list(instance.reader("v2", "x1")()) == instance.get("v2", "x1")
+
+
+def test_get_has_types(instance):
+    count, contact, gap = instance.get("impact_count", "in_contact", "x_rel")
+    assert isinstance(count, int) and count > 0
+    assert contact in (True, False) and isinstance(gap, float)
+
+
+def test_initialize_begins_at_a_time(any_fmu, temporary):
+    with Instance(any_fmu) as instance:
+        instance.initialize(start_time=5.0, x1_start=-0.25, **CHAOS)
+        assert instance.get("x1") == [-0.25]
+        with pytest.raises(FmuError, match="currentCommunicationPoint = 0.0 s: allowed is 5.0 s"):
+            instance.step(0.0, 1.0)
+        instance.step(5.0, 6.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda i: i.set(box_amplitude=math.nan), ["box_amplitude = nan m", "allowed is"]),
+        (lambda i: i.set(box_frequency=-1.0), ["box_frequency = -1.0 rad/s", "allowed is 0.0 <= box_frequency"]),
+        (lambda i: i.set(e=0.5), ["e = 0.5", "fixed"]),
+        (lambda i: i.set(x1=0.5), ["x1 = 0.5", "output"]),
+        (lambda i: i.step(100.0, 99.0), ["communicationStepSize = -1.0 s", "allowed"]),
+        (lambda i: i.step(100.0, math.inf), ["communicationStepSize = inf s", "allowed"]),
+        (lambda i: i.step(50.0, 51.0), ["currentCommunicationPoint = 50.0 s", "allowed is 100.0 s"]),
+        (lambda i: i.restore_state(b"short"), ["allowed are states saved by this FMU"]),
+        (lambda i: i.restore_state(b"?" * len(i.save_state())), ["allowed are states saved by this FMU"]),
+        pytest.param(
+            lambda i: i.reader("in_contact")(),
+            ["in_contact"],
+            marks=pytest.mark.xfail(strict=True, reason="FMPy's FMICallException: 'fmi2GetReal failed with status 4 (fatal)'"),
+        ),
+    ],
+)
+def test_errors_are_the_fmus_words_and_change_nothing(instance, call, words):
+    before = instance.get(*STATE)
+    with pytest.raises(FmuError) as error:
+        call(instance)
+    text = str(error.value)
+    assert all(word in text for word in words), text
+    assert "\n" not in text and "Traceback" not in text
+    assert instance.get(*STATE) == before
+    instance.step(100.0, 101.0)
+
+
+@pytest.mark.parametrize("call", [lambda i: i.get("gap"), lambda i: i.set(gap=1.0), lambda i: i.reader("x1", "gap"), lambda i: i.variable("gap")])
+def test_a_variable_that_is_not_there(instance, call):
+    with pytest.raises(UserError, match="variable gap: the FMU TwoMassImpactOscillator has none"):
+        call(instance)
+
+
+def test_a_restored_state_gives_the_same_bits(instance, any_fmu):
+    state = instance.save_state()
+    assert isinstance(state, bytes)
+    once = trajectory(instance, 100.0)
+    assert len({tuple(values) for values in once}) == len(once)
+    instance.restore_state(state)
+    assert trajectory(instance, 100.0) == once
+    with Instance(any_fmu, name="another") as other:
+        other.initialize()
+        other.restore_state(state)
+        assert trajectory(other, 100.0) == once
+
+
+def test_reset(instance):
+    instance.reset()
+    instance.initialize(**CHAOS)
+    assert instance.get("impact_count", "x1") == [0, 0.0]
+    once = trajectory(instance, 0.0)
+    instance.reset()
+    instance.initialize()
+    assert instance.get("box_frequency") == [0.4]  # start values are back too
+    instance.reset()
+    instance.initialize(**CHAOS)
+    assert trajectory(instance, 0.0) == once
+
+
+def test_temporary_folders_are_removed(any_fmu, temporary):
+    with Instance(any_fmu), Instance(any_fmu, name="second"):
+        assert len(list(temporary.iterdir())) == 2
+    assert list(temporary.iterdir()) == []
+    with pytest.raises(ZeroDivisionError), Instance(any_fmu):
+        raise ZeroDivisionError
+    assert list(temporary.iterdir()) == []
+
+
+def test_an_fmu_without_a_binary_for_this_machine(any_fmu, temporary):
+    fmu = altered_fmu(any_fmu, temporary / "other.fmu", modelIdentifier=(MODEL, "Elsewhere"))
+    with pytest.raises((FmuError, UserError)):
+        Instance(fmu)
+
+
+def test_a_failed_instantiation_leaves_nothing(any_fmu, temporary):
+    fmu = altered_fmu(any_fmu, temporary / "other.fmu", modelIdentifier=(MODEL, "Elsewhere"))
+    with pytest.raises(Exception, match="Elsewhere"):
+        Instance(fmu)
+    assert list(temporary.iterdir()) == [fmu]
+
+
+SECONDS = """
+import sys, time
+from orchestrate.fmu import Instance
+for _ in range(2):
+    with Instance(sys.argv[1]) as instance:
+        instance.initialize(box_amplitude=0.7, box_frequency=1.2)
+        begin = time.perf_counter()
+        instance.step(0.0, 10000.0)
+        print(time.perf_counter() - begin)
+"""
+
+
+def test_the_second_instance_of_a_process_is_as_fast_as_the_first(python_fmu):
+    done = subprocess.run([sys.executable, "-c", SECONDS, str(python_fmu)], cwd=ROOT, capture_output=True, text=True, check=True)
+    first, second = map(float, done.stdout.split())
+    assert second < 8.0 * first + 0.05
