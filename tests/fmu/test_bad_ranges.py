@@ -100,7 +100,7 @@ def test_a_refused_step_leaves_the_instance_where_it_was(fmu, tmp_path):
 
 
 def test_stderr_has_the_message_where_logging_is_off(tmp_path):
-    """pythonfmu tells an importer that has logging off nothing, so the FMU itself does."""
+    """An importer that has logging off is told nothing by pythonfmu, so the FMU itself tells."""
     script = r"""
     f = open_fmu(PATH, logging=False, name="quiet")
     logged = []

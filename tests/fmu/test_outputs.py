@@ -42,9 +42,10 @@ def test_outputs_follow_their_definitions(fmu, tmp_path):
 
 
 def test_paper_displacements_are_zero_without_excitation(fmu, tmp_path):
-    """a eta = 0: zero, not a division by zero."""
+    """Where a eta = 0: zero, not a division by zero."""
     script = """
-    answer([open_fmu(PATH).start(x1_start=-1.0, **still).step(1.0).get("xi1", "xi2", "xi_rel") for still in (dict(box_amplitude=0.0), dict(box_frequency=0.0))])
+    cases = dict(box_amplitude=0.0), dict(box_frequency=0.0)
+    answer([open_fmu(PATH).start(x1_start=-1.0, **still).step(1.0).get("xi1", "xi2", "xi_rel") for still in cases])
     """
     assert run(script, fmu, cwd=tmp_path) == [[0.0] * 3] * 2
 
@@ -82,7 +83,8 @@ def test_largest_gap_between_samples_is_found(fmu, tmp_path):
     """One step over a single summit of known height, and a step that ends before it; off, it stays 0."""
     script = r"""
     values = dict(box_amplitude=0.0, d2=0.0, v2_start=2.0)
-    answer([open_fmu(PATH).start(**values, x_rel_max_on=on).step(end).get("x_rel_max", "x_rel") for on, end in ((True, 2.5), (True, 0.5), (False, 2.5))])
+    cases = (True, 2.5), (True, 0.5), (False, 2.5)
+    answer([open_fmu(PATH).start(**values, x_rel_max_on=on).step(end).get("x_rel_max", "x_rel") for on, end in cases])
     """
     (summit, _), (climbing, gap), (off, _) = run(script, fmu, cwd=tmp_path)
     assert summit == pytest.approx(2.0 / math.sqrt(1.2), rel=1e-14)

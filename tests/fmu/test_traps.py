@@ -1,45 +1,20 @@
 """What pythonfmu 0.7.0 does to an FMU's user, measured, and that this FMU does not pass it on."""
 
-import os
 import re
-import subprocess
-import sys
-import time
+import zipfile
 
 import pytest
 
-from ..fresh import ROOT
 from .driver import FMUS, run, run_with_output
+from .exporting import export_copy
 
 PYTHON = FMUS["fmi2-python"]
-MAPS = r"""
-def compiled_in_use():
-    return any("/kernel-" in line for line in Path("/proc/self/maps").read_text().splitlines())
-"""
-
-
-def export_copy(folder, old, new):
-    """FMU of a copy of the sources with one text in the variable table replaced, exported in a process of its own."""
-    import shutil
-
-    shutil.copytree(ROOT / "fmu_src", folder / "fmu_src", ignore=shutil.ignore_patterns("__pycache__"))
-    table = folder / "fmu_src" / "oscillator" / "variables.py"
-    text = table.read_text()
-    assert text.count(old) == 1
-    table.write_text(text.replace(old, new))
-    code = (
-        "from pathlib import Path; from fmu_src.oscillator.model import MODEL; from fmu_src.export import pythonfmu_form;"
-        "print(pythonfmu_form.export(MODEL, 'vibroimpact', 'oscillator', Path('out')))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(folder)})
-    assert done.returncode == 0, done.stderr
-    return folder / "out" / "TwoMassImpactOscillator.fmu"
 
 
 @pytest.fixture(scope="module")
 def other(tmp_path_factory):
     """An FMU of the same model name whose coefficient of restitution is another one."""
-    return export_copy(tmp_path_factory.mktemp("other"), '"e", at.E, "1", 0.7', '"e", at.E, "1", 0.25')
+    return export_copy(tmp_path_factory.mktemp("other"), [("oscillator/variables.py", '"e", at.E, "1", 0.7', '"e", at.E, "1", 0.25')])
 
 
 def test_two_versions_in_one_process_do_not_share_code(other, tmp_path):
@@ -77,8 +52,8 @@ def test_host_with_modules_of_the_same_names(tmp_path):
     """An importer that is itself written in Python, and has modules named as ours are, keeps them; the FMU does not get them."""
     script = r"""
     import types
-    names = ("fmu_src", "fmu_src.export", "export", "export.slave", "vibroimpact", "vibroimpact.memory", "oscillator", "oscillator.model", "slave", "table",
-             "memory", "model", "variables", "TwoMassImpactOscillator", "stepper", "compiled")
+    names = ("fmu_src", "fmu_src.export", "export", "export.slave", "vibroimpact", "vibroimpact.memory", "oscillator", "oscillator.model",
+             "slave", "table", "memory", "model", "variables", "TwoMassImpactOscillator", "stepper", "compiled")
     hosts = {name: types.ModuleType(name) for name in names}
     sys.modules.update(hosts)
     for name in names:
@@ -98,9 +73,7 @@ def test_host_with_modules_of_the_same_names(tmp_path):
 
 
 def test_script_is_tiny(tmp_path):
-    """pythonfmu reads and runs the script again for each instance: it defines the class and nothing else."""
-    import zipfile
-
+    """The script is read and run again for each instance: it defines the class and nothing else."""
     with zipfile.ZipFile(PYTHON) as archive:
         (name,) = [n for n in archive.namelist() if re.match(r"resources/TwoMassImpactOscillator\w*\.py", n)]
         assert len(archive.read(name)) < 1024
@@ -133,6 +106,28 @@ def test_many_instances_and_resets(tmp_path):
     same, sizes = run(script, PYTHON, cwd=tmp_path)
     assert all(same) and len(same) == 6
     assert sizes[-1] - sizes[1] < 8e6  # bytes; an instance has 8 kB
+
+
+@pytest.mark.parametrize("pure", [False, True])
+def test_instantiation_takes_less_than_a_second(fmu, tmp_path, pure):
+    """The first of a process, with all that is imported, and later ones, to the first step."""
+    if pure and "python" not in fmu.parent.name:
+        pytest.skip("no Python in it")
+    script = r"""
+    import time
+    describe(PATH), Fmu2.folders.update({PATH: fmpy.extract(PATH, tempfile.mkdtemp(dir=Path.cwd()))})
+    seconds = []
+    for k in range(6):
+        begin = time.perf_counter()
+        f = open_fmu(PATH, name=f"instance {k}")
+        made = time.perf_counter()
+        f.start().step(0.1)
+        seconds.append([made - begin, time.perf_counter() - begin])
+    answer(seconds)
+    """
+    for made, stepped in run(script, fmu, cwd=tmp_path, pure=pure):
+        assert made < 1.0
+        assert stepped < 1.0
 
 
 @pytest.mark.parametrize("name", ["%s%n%s%n", "%d %100000d %p", "ü €", "", "a" * 2000, "two\nlines"])

@@ -1,0 +1,150 @@
+"""The FMU as a file: reproducible, named by its contents, valid, complete, and without a trace of the machine that made it."""
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pytest
+from fmpy.validation import validate_fmu
+
+from ..fresh import ROOT
+from .driver import FMUS, run
+from .exporting import export_copy
+
+PYTHON = FMUS["fmi2-python"]
+
+
+def contents(fmu):
+    """Files of an FMU by name."""
+    with zipfile.ZipFile(fmu) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+@pytest.fixture(scope="module")
+def copies(tmp_path_factory):
+    """Two exports of the same sources, from different places and surroundings."""
+    first = export_copy(tmp_path_factory.mktemp("first"), PYTHONHASHSEED="1", TZ="UTC", LC_ALL="C")
+    second = export_copy(tmp_path_factory.mktemp("a second one"), PYTHONHASHSEED="2", TZ="Asia/Tokyo", LC_ALL="C.UTF-8")
+    return first, second
+
+
+def test_two_exports_are_the_same_bytes(copies):
+    first, second = copies
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_guid_belongs_to_the_sources(copies, tmp_path):
+    """Another place, no other GUID; another number in the kernel or the table, another GUID and other module names."""
+    guid = fmpy.read_model_description(str(PYTHON)).guid
+    assert fmpy.read_model_description(str(copies[0])).guid == guid
+    names = set(contents(PYTHON))
+    for number, change in enumerate(
+        [
+            ("oscillator/variables.py", '"e", at.E, "1", 0.7', '"e", at.E, "1", 0.71'),
+            ("vibroimpact/impact.py", '"""Impact:', '"""An impact:'),
+            ("export/slave.py", '"""One line to the error output:', '"""A line to the error output:'),
+        ]
+    ):
+        changed = export_copy(tmp_path / str(number), [change])
+        assert fmpy.read_model_description(str(changed)).guid != guid
+        ours = {name for name in contents(changed) if re.match(r"resources/(fmu_|TwoMass)", name)}
+        assert ours and not ours & names
+
+
+@pytest.mark.slow
+def test_two_complete_builds_are_the_same_bytes(tmp_path):
+    """With everything compiled: all forms."""
+    built = []
+    for name in ("a", "b"):
+        command = [sys.executable, "-m", "orchestrate", "build", "--folder", str(tmp_path / name)]
+        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+        built.append({path.relative_to(tmp_path / name): path.read_bytes() for path in sorted((tmp_path / name).rglob("*.fmu"))})
+    assert set(FMUS) <= {path.parts[0] for path in built[0]}
+    assert built[0] == built[1]
+
+
+def test_fmpy_finds_no_problem(fmu):
+    assert validate_fmu(str(fmu)) == []
+    done = subprocess.run([sys.executable, "-m", "fmpy", "validate", str(fmu)], capture_output=True, text=True)
+    assert done.returncode == 0
+    assert "No problems found" in done.stdout
+
+
+def test_documentation_is_inside(fmu):
+    """A page that explains every variable of the contract, an icon, reference results."""
+    files = contents(fmu)
+    page = files["documentation/index.html"].decode()
+    found = fmpy.read_model_description(str(fmu))
+    for variable in found.modelVariables:
+        if variable.causality in ("parameter", "input", "output") and variable.type != "Clock" and not variable.dimensions:
+            assert re.search(rf"\b{variable.name}\b", page), variable.name
+    for picture in re.findall(r'(?:src|data|href)="([^":#]+\.(?:png|svg|csv))"', page):
+        assert f"documentation/{picture}" in files or str(Path("documentation", picture)) in files, picture
+    assert files["model.png"].startswith(b"\x89PNG")
+    reference = [name for name in files if name.startswith("documentation/reference/") and name.endswith("_ref.csv")]
+    assert reference
+    assert all(len(files[name].splitlines()) > 10 for name in reference)
+
+
+def test_reference_results_are_what_the_fmu_gives(fmu, tmp_path):
+    """The table in documentation/reference, recomputed at its own times with its own inputs."""
+    tables = {}
+    for name, data in contents(fmu).items():
+        if name.startswith("documentation/reference/") and name.endswith(".csv"):
+            head, *lines = data.decode().split()
+            tables["inputs" if name.endswith("_in.csv") else "results"] = (
+                head.split(","),
+                [[float(cell) for cell in line.split(",")] for line in lines],
+            )
+    (tmp_path / "tables.json").write_text(json.dumps(tables))
+    script = r"""
+    tables = json.loads(Path("tables.json").read_text())
+    (_, *inputs), settings = tables["inputs"]
+    (_, *names), rows = tables["results"]
+
+    def values(time):
+        return dict(zip(inputs, [row for row in settings if row[0] <= time][-1][1:]))
+
+    times = [row[0] for row in rows]
+    f = open_fmu(PATH).start(times[0], **values(times[0]))
+    found = [f.get(*names)]
+    for time, target in zip(times, times[1:]):
+        f.set(**values(time))
+        found.append(f.step(target).get(*names))
+    answer(found)
+    """
+    found = run(script, fmu, cwd=tmp_path)
+    names, rows = tables["results"]
+    assert names[0] == "time" and len(rows) > 100
+    for (time, *expected), values in zip(rows, found, strict=True):
+        assert values == pytest.approx(expected, rel=1e-12, abs=1e-12), time
+
+
+def test_no_path_of_the_machine_is_inside(fmu):
+    """No file but pythonfmu's own binaries says where it was made."""
+    places = {"/work/", "/root/", "/home/", "/tmp/", str(ROOT), str(Path.home()), sys.prefix, tempfile.gettempdir()}
+    for name, data in contents(fmu).items():
+        if "python" in fmu.parent.name and name.startswith("binaries/"):
+            continue
+        for place in places - {"/"}:
+            assert place.encode() not in data, (name, place)
+
+
+def test_compiled_kernel_stands_alone(tmp_path):
+    """Nothing outside itself but memset: it runs with every C library."""
+    name, data = next((n, d) for n, d in contents(PYTHON).items() if re.search(r"kernel-x86_64-linux\.so$", n))
+    (tmp_path / "kernel.so").write_bytes(data)
+    nm = ["nm", "-D", "--undefined-only", "kernel.so"]
+    try:
+        done = subprocess.run(nm, cwd=tmp_path, capture_output=True, text=True, check=True)
+    except FileNotFoundError:
+        pytest.skip("no nm here")
+    symbols = {line.split()[-1].split("@")[0] for line in done.stdout.splitlines() if " w " not in line}
+    assert symbols <= {"memset"}, name
+    defined = subprocess.run(["nm", "-D", "--defined-only", "kernel.so"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    assert {line.split()[-1] for line in defined.splitlines() if " T " in line} == {"initialize", "advance"}
