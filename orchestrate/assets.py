@@ -7,6 +7,7 @@ an export does not depend on the version of a plotting library; a test compares 
 import csv
 import itertools
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -83,6 +84,8 @@ def variable_table(path):
     """The README's variable table, from the FMU's own description."""
     lines = ["| name | causality | unit | start | meaning |", "|---|---|---|---|---|"]
     for variable in describe(path).variables.values():
+        if re.search(r"\[(?!1\])\d+\]$", variable.name):  # of a series, the first stands for all
+            continue
         kind = variable.causality if variable.causality != "parameter" else f"parameter, {variable.variability}"
         unit = variable.unit or variable.type
         lines.append(f"| `{variable.name}` | {kind} | {unit} | {'' if variable.start is None else variable.start} | {variable.description} |")
