@@ -172,3 +172,10 @@ def test_the_walk_does_not_depend_on_where_it_is_interrupted():
     advanced(once, 60.0)
     advanced(often, *[0.06 * i for i in range(1, 1000)], 60.0)
     assert once[at.ORIGIN : at.END_KIND + 1] == often[at.ORIGIN : at.END_KIND + 1]
+
+
+@pytest.mark.parametrize("ratio", [0.9, 1 - 1e-4, 1 - 1e-8, 1 - 1e-13, 1.0, 1 + 1e-13, 1 + 1e-8, 1 + 1e-4, 1.1, 20.0])
+def test_the_walk_is_short_around_critical_damping(ratio):
+    m = started(d1=2.0 * ratio, d2=2.0 * ratio * math.sqrt(1.2), x2_start=1.0, v2_start=0.5, x_rel_max_on=0.0)
+    advanced(m, 40.0)
+    assert m[at.WORK] < 400.0

@@ -1,0 +1,334 @@
+/* FMI 2.0 with hostile arguments: each call is refused with one message and changes nothing, and the instance works on. */
+#include <math.h>
+
+#include "importer2.h"
+
+static char *image; /* the instance before a call */
+static size_t image_size;
+
+static void picture(fmi2Component c) {
+    free(image);
+    image_size = fmu_save(c, &image);
+    messages = 0;
+    message[0] = 0;
+}
+
+static bool unchanged(fmi2Component c) {
+    char *now;
+    size_t size = fmu_save(c, &now);
+    bool same = size == image_size && memcmp(now, image, size) == 0;
+    free(now);
+    return same;
+}
+
+static void refused(fmi2Component c, fmi2Status status, const char *file, int line, const char *text) {
+    check(status == fmi2Error || status == fmi2Discard, file, line, text);
+    check(messages == 1 && message[0], file, line, "one message");
+    check(unchanged(c), file, line, "nothing changed");
+}
+#define REFUSED(c, call) (picture(c), refused(c, call, __FILE__, __LINE__, #call))
+#define SAYS(text) CHECK(strstr(message, text) != NULL)
+#define IS_OK(call) CHECK((call) == fmi2OK)
+
+enum { NEW, INITIALIZING, STEPPING, TERMINATED, PHASES };
+
+static fmi2Component in_phase(int phase) {
+    fmi2Component c = fmu_open("%s%n%d");
+    if (phase == NEW) return c;
+    IS_OK(fmi.SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2True, 10.0));
+    IS_OK(fmi.EnterInitializationMode(c));
+    double x;
+    IS_OK(fmi.GetReal(c, &named("x1")->reference, 1, &x));
+    if (phase == INITIALIZING) return c;
+    IS_OK(fmi.ExitInitializationMode(c));
+    fmu_step(c, 0.0, 20.0);
+    if (phase == TERMINATED) IS_OK(fmi.Terminate(c));
+    return c;
+}
+
+static fmi2Status setup(fmi2Component c) { return fmi.SetupExperiment(c, fmi2False, 0.0, 1.0, fmi2False, 0.0); }
+static fmi2Status get_real(fmi2Component c) { double x; return fmi.GetReal(c, &named("x1")->reference, 1, &x); }
+static fmi2Status get_integer(fmi2Component c) { int x; return fmi.GetInteger(c, &named("impact_count")->reference, 1, &x); }
+static fmi2Status get_boolean(fmi2Component c) { int x; return fmi.GetBoolean(c, &named("in_contact")->reference, 1, &x); }
+static fmi2Status set_input(fmi2Component c) { double x = 0.5; return fmi.SetReal(c, &named("box_amplitude")->reference, 1, &x); }
+static fmi2Status set_fixed(fmi2Component c) { double x = 0.5; return fmi.SetReal(c, &named("e")->reference, 1, &x); }
+static fmi2Status set_fixed_boolean(fmi2Component c) { int x = 1; return fmi.SetBoolean(c, &named("bonded")->reference, 1, &x); }
+static fmi2Status set_tunable(fmi2Component c) { int x = 0; return fmi.SetBoolean(c, &named("x_rel_max_on")->reference, 1, &x); }
+static fmi2Status set_integer(fmi2Component c) { int x = 3; return fmi.SetInteger(c, &named("sample_count")->reference, 1, &x); }
+static fmi2Status do_step(fmi2Component c) { double t = 0.0; fmi.GetRealStatus(c, fmi2LastSuccessfulTime, &t); return fmi.DoStep(c, t, 1.0, fmi2True); }
+static fmi2Status set_derivative(fmi2Component c) { int o = 1; double x = 0.1; return fmi.SetRealInputDerivatives(c, &named("box_acceleration")->reference, 1, &o, &x); }
+static fmi2Status get_derivative(fmi2Component c) { int o = 1; double x; return fmi.GetRealOutputDerivatives(c, &named("x1")->reference, 1, &o, &x); }
+
+/* Which call is allowed when. */
+static const struct { fmi2Status (*call)(fmi2Component); bool allowed[PHASES]; } ORDER[] = {
+    {setup, {1, 0, 0, 0}},
+    {get_real, {0, 1, 1, 1}}, {get_integer, {0, 1, 1, 1}}, {get_boolean, {0, 1, 1, 1}},
+    {set_input, {1, 1, 1, 0}}, {set_fixed, {1, 1, 0, 0}}, {set_fixed_boolean, {1, 1, 0, 0}}, {set_tunable, {1, 1, 1, 0}}, {set_integer, {1, 1, 1, 0}},
+    {do_step, {0, 0, 1, 0}}, {set_derivative, {1, 1, 1, 0}}, {get_derivative, {0, 1, 1, 1}},
+};
+
+static void order(void) {
+    for (int phase = 0; phase < PHASES; phase++) {
+        fmi2Component c = in_phase(phase);
+        for (size_t i = 0; i < sizeof ORDER / sizeof *ORDER; i++) {
+            if (!ORDER[i].allowed[phase]) REFUSED(c, ORDER[i].call(c));
+            else {
+                char *saved;
+                size_t size = fmu_save(c, &saved);
+                IS_OK(ORDER[i].call(c));
+                CHECK(fmu_restore(c, saved, size));
+                free(saved);
+            }
+        }
+        if (phase != NEW) REFUSED(c, fmi.EnterInitializationMode(c));
+        if (phase != INITIALIZING) REFUSED(c, fmi.ExitInitializationMode(c));
+        if (phase != STEPPING) REFUSED(c, fmi.Terminate(c));
+        IS_OK(fmi.Reset(c));
+        fmu_initialize(c, 0.0);
+        fmu_step(c, 0.0, 20.0);
+        fmi2Component twin = in_phase(STEPPING);
+        picture(twin);
+        CHECK(unchanged(c)); /* reset forgets everything */
+        fmi.FreeInstance(twin);
+        fmi.FreeInstance(c);
+    }
+}
+
+static void no_instance(void) {
+    unsigned r = 0;
+    double x = 0.0;
+    int n = 1;
+    char byte = 0;
+    size_t size;
+    fmi2FMUstate state = NULL;
+    fmi2String text = "";
+    fmi2Status status;
+    fmi2Status all[] = {
+        fmi.SetDebugLogging(NULL, 1, 0, NULL), fmi.SetupExperiment(NULL, 0, 0.0, 0.0, 0, 0.0), fmi.EnterInitializationMode(NULL),
+        fmi.ExitInitializationMode(NULL), fmi.Terminate(NULL), fmi.Reset(NULL), fmi.GetReal(NULL, &r, 1, &x), fmi.GetInteger(NULL, &r, 1, &n),
+        fmi.GetBoolean(NULL, &r, 1, &n), fmi.GetString(NULL, &r, 1, &text), fmi.SetReal(NULL, &r, 1, &x), fmi.SetInteger(NULL, &r, 1, &n),
+        fmi.SetBoolean(NULL, &r, 1, &n), fmi.SetString(NULL, &r, 1, &text), fmi.GetFMUstate(NULL, &state), fmi.SetFMUstate(NULL, state),
+        fmi.FreeFMUstate(NULL, &state), fmi.SerializedFMUstateSize(NULL, state, &size), fmi.SerializeFMUstate(NULL, state, &byte, 1),
+        fmi.DeSerializeFMUstate(NULL, &byte, 1, &state), fmi.GetDirectionalDerivative(NULL, &r, 1, &r, 1, &x, &x),
+        fmi.SetRealInputDerivatives(NULL, &r, 1, &n, &x), fmi.GetRealOutputDerivatives(NULL, &r, 1, &n, &x), fmi.DoStep(NULL, 0.0, 1.0, 1),
+        fmi.CancelStep(NULL), fmi.GetStatus(NULL, fmi2DoStepStatus, &status), fmi.GetRealStatus(NULL, fmi2LastSuccessfulTime, &x),
+        fmi.GetIntegerStatus(NULL, fmi2DoStepStatus, &n), fmi.GetBooleanStatus(NULL, fmi2Terminated, &n), fmi.GetStringStatus(NULL, fmi2PendingStatus, &text),
+    };
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) CHECK(all[i] == fmi2Error);
+    fmi.FreeInstance(NULL);
+    CHECK(strcmp(fmi.GetVersion(), "2.0") == 0 && strcmp(fmi.GetTypesPlatform(), "default") == 0);
+}
+
+static void instantiation(void) {
+    const char *wrong[] = {NULL, "", "{95159a6c}", "%s%n"};
+    for (size_t i = 0; i < 4; i++) {
+        messages = 0;
+        CHECK(fmi.Instantiate("a", fmi2CoSimulation, wrong[i], NULL, &callbacks, fmi2False, fmi2False) == NULL && messages == 1);
+        SAYS("GUID");
+        CHECK(fmi.Instantiate("a", fmi2CoSimulation, wrong[i], NULL, NULL, fmi2False, fmi2False) == NULL);
+    }
+    messages = 0;
+    CHECK(fmi.Instantiate("a", fmi2ModelExchange, TOKEN, NULL, &callbacks, fmi2False, fmi2False) == NULL && messages == 1);
+    fmi2CallbackFunctions bare = {0}; /* no logger, no memory functions: the FMU needs none */
+    const fmi2CallbackFunctions *given[] = {NULL, &bare, &callbacks};
+    for (int i = 0; i < 3; i++) {
+        fmi2Component c = fmi.Instantiate(i ? "" : NULL, fmi2CoSimulation, TOKEN, NULL, given[i], fmi2True, fmi2False);
+        CHECK(c != NULL);
+        messages = 0;
+        CHECK(fmi.DoStep(c, 0.0, 1.0, fmi2True) == fmi2Error && messages == (i == 2)); /* errors are told with logging off too */
+        fmu_initialize(c, 0.0);
+        fmu_step(c, 0.0, 1.0);
+        fmi.FreeInstance(c);
+    }
+}
+
+static void null_pointers(fmi2Component c) {
+    unsigned r = named("x1")->reference, in = named("box_acceleration")->reference, b = named("x_rel_max_on")->reference, n = named("sample_count")->reference;
+    double x = 0.0;
+    int one = 1;
+    fmi2String text = "";
+    REFUSED(c, fmi.GetReal(c, NULL, 1, &x)); REFUSED(c, fmi.GetReal(c, &r, 1, NULL));
+    REFUSED(c, fmi.GetInteger(c, NULL, 1, &one)); REFUSED(c, fmi.GetInteger(c, &n, 1, NULL));
+    REFUSED(c, fmi.GetBoolean(c, NULL, 1, &one)); REFUSED(c, fmi.GetBoolean(c, &b, 1, NULL));
+    REFUSED(c, fmi.SetReal(c, NULL, 1, &x)); REFUSED(c, fmi.SetReal(c, &in, 1, NULL));
+    REFUSED(c, fmi.SetInteger(c, NULL, 1, &one)); REFUSED(c, fmi.SetInteger(c, &n, 1, NULL));
+    REFUSED(c, fmi.SetBoolean(c, NULL, 1, &one)); REFUSED(c, fmi.SetBoolean(c, &b, 1, NULL));
+    REFUSED(c, fmi.GetString(c, &r, 1, &text)); REFUSED(c, fmi.SetString(c, &r, 1, &text));
+    REFUSED(c, fmi.GetString(c, NULL, 1, NULL)); REFUSED(c, fmi.SetString(c, NULL, 1, NULL));
+    REFUSED(c, fmi.SetRealInputDerivatives(c, NULL, 1, &one, &x)); REFUSED(c, fmi.SetRealInputDerivatives(c, &in, 1, NULL, &x));
+    REFUSED(c, fmi.SetRealInputDerivatives(c, &in, 1, &one, NULL));
+    REFUSED(c, fmi.GetRealOutputDerivatives(c, NULL, 1, &one, &x)); REFUSED(c, fmi.GetRealOutputDerivatives(c, &r, 1, NULL, &x));
+    REFUSED(c, fmi.GetRealOutputDerivatives(c, &r, 1, &one, NULL));
+    REFUSED(c, fmi.GetFMUstate(c, NULL)); REFUSED(c, fmi.SetFMUstate(c, NULL));
+    REFUSED(c, fmi.GetRealStatus(c, fmi2LastSuccessfulTime, NULL)); REFUSED(c, fmi.GetBooleanStatus(c, fmi2Terminated, NULL));
+    REFUSED(c, fmi.GetStatus(c, fmi2DoStepStatus, NULL)); REFUSED(c, fmi.GetIntegerStatus(c, fmi2DoStepStatus, NULL));
+    REFUSED(c, fmi.GetStringStatus(c, fmi2PendingStatus, NULL)); REFUSED(c, fmi.CancelStep(c));
+    REFUSED(c, fmi.GetDirectionalDerivative(c, NULL, 1, NULL, 1, NULL, NULL));
+    IS_OK(fmi.SetDebugLogging(c, fmi2True, 0, NULL));
+    IS_OK(fmi.GetReal(c, NULL, 0, NULL)); IS_OK(fmi.SetReal(c, NULL, 0, NULL)); IS_OK(fmi.GetString(c, NULL, 0, NULL)); IS_OK(fmi.SetString(c, NULL, 0, NULL));
+    IS_OK(fmi.GetInteger(c, NULL, 0, NULL)); IS_OK(fmi.SetInteger(c, NULL, 0, NULL)); IS_OK(fmi.GetBoolean(c, NULL, 0, NULL)); IS_OK(fmi.SetBoolean(c, NULL, 0, NULL));
+    IS_OK(fmi.SetRealInputDerivatives(c, NULL, 0, NULL, NULL)); IS_OK(fmi.GetRealOutputDerivatives(c, NULL, 0, NULL, NULL));
+    IS_OK(fmi.FreeFMUstate(c, NULL)); /* as the standard has it */
+}
+
+/* Every reference with every type: only those of modelDescription.xml. */
+static void references(fmi2Component c) {
+    for (unsigned i = 0; i < 2200; i++) {
+        unsigned r = i < 2100 ? i : i < 2150 ? 0x7fffffc0u + i - 2100 : 0xffffffffu - (i - 2150);
+        const Name *name = NULL;
+        for (size_t k = 0; k < NAME_COUNT; k++) if (NAMES[k].reference == r) name = &NAMES[k];
+        char type = name ? name->type : 0;
+        double x = 0.0;
+        int n = 0;
+        if (type != 'R') { REFUSED(c, fmi.GetReal(c, &r, 1, &x)); REFUSED(c, fmi.SetReal(c, &r, 1, &x)); }
+        if (type != 'I') { REFUSED(c, fmi.GetInteger(c, &r, 1, &n)); REFUSED(c, fmi.SetInteger(c, &r, 1, &n)); }
+        if (type != 'B') { REFUSED(c, fmi.GetBoolean(c, &r, 1, &n)); REFUSED(c, fmi.SetBoolean(c, &r, 1, &n)); }
+        if (type == 'R') { IS_OK(fmi.GetReal(c, &r, 1, &x)); if (!name->settable) REFUSED(c, fmi.SetReal(c, &r, 1, &x)); }
+        if (type == 'I') { IS_OK(fmi.GetInteger(c, &r, 1, &n)); if (!name->settable) REFUSED(c, fmi.SetInteger(c, &r, 1, &n)); }
+        if (type == 'B') { IS_OK(fmi.GetBoolean(c, &r, 1, &n)); if (!name->settable) REFUSED(c, fmi.SetBoolean(c, &r, 1, &n)); }
+    }
+}
+
+/* Every parameter and input outside its range; the ends of the range are inside. */
+static void values(void) {
+    fmi2Component c = in_phase(INITIALIZING);
+    for (size_t i = 0; i < NAME_COUNT; i++) {
+        const Name *name = &NAMES[i];
+        if (!name->settable || name->type != 'R') continue;
+        double bad[] = {NAN, -NAN, INFINITY, -INFINITY, nextafter(name->minimum, -INFINITY), nextafter(name->maximum, INFINITY)};
+        for (size_t k = 0; k < 6; k++) {
+            if (k >= 4 && isfinite(bad[k]) == 0) continue;
+            unsigned pair[] = {named("box_amplitude")->reference, name->reference};
+            double both[] = {0.25, bad[k]};
+            REFUSED(c, fmi.SetReal(c, &name->reference, 1, &bad[k]));
+            SAYS(name->name); SAYS("allowed is"); SAYS(k < 2 ? "nan" : k == 2 ? "inf" : " = ");
+            if (name->reference != pair[0]) REFUSED(c, fmi.SetReal(c, pair, 2, both)); /* all or none */
+        }
+        char *saved;
+        size_t size = fmu_save(c, &saved);
+        if (isfinite(name->minimum)) IS_OK(fmi.SetReal(c, &name->reference, 1, &name->minimum));
+        if (isfinite(name->maximum)) IS_OK(fmi.SetReal(c, &name->reference, 1, &name->maximum));
+        CHECK(fmu_restore(c, saved, size));
+        free(saved);
+    }
+    int count[] = {-1, 201, INT32_MAX, INT32_MIN};
+    for (int i = 0; i < 4; i++) { REFUSED(c, fmi.SetInteger(c, &named("sample_count")->reference, 1, &count[i])); SAYS("sample_count = "); }
+    unsigned x1 = named("x1_start")->reference;
+    double one = 1.0, minus = -1.0;
+    IS_OK(fmi.SetReal(c, &x1, 1, &one)); /* beyond x2_start */
+    messages = 0;
+    CHECK(fmi.ExitInitializationMode(c) == fmi2Error && messages == 1);
+    SAYS("x2_start");
+    IS_OK(fmi.SetReal(c, &x1, 1, &minus));
+    IS_OK(fmi.ExitInitializationMode(c));
+    fmu_step(c, 0.0, 1.0);
+    fmi.FreeInstance(c);
+    c = in_phase(NEW);
+    double starts[] = {NAN, INFINITY, -INFINITY};
+    for (int i = 0; i < 3; i++) { REFUSED(c, fmi.SetupExperiment(c, fmi2False, 0.0, starts[i], fmi2False, 0.0)); SAYS("startTime = "); }
+    fmi.FreeInstance(c);
+}
+
+static void steps(fmi2Component c) {
+    double t = 20.0, none = 0.0;
+    double sizes[] = {-1.0, -5e-324, NAN, -NAN, INFINITY, -INFINITY};
+    for (int i = 0; i < 6; i++) { REFUSED(c, fmi.DoStep(c, t, sizes[i], fmi2True)); SAYS("communicationStepSize = "); }
+    double points[] = {-20.0, 0.0, 19.0, 21.0, NAN, INFINITY, -INFINITY, 1e300};
+    for (int i = 0; i < 8; i++) { REFUSED(c, fmi.DoStep(c, points[i], 1.0, fmi2True)); SAYS("currentCommunicationPoint = "); SAYS("20.0 s"); }
+    IS_OK(fmi.DoStep(c, t, 0.0, fmi2True));
+    IS_OK(fmi.DoStep(c, t, 5e-324, fmi2True));
+    IS_OK(fmi.GetRealStatus(c, fmi2LastSuccessfulTime, &none));
+    CHECK(none == t);
+}
+
+/* A step that fails inside leaves the instance where it was, and the next one goes on from there. */
+static void failing_steps(void) {
+    fmi2Component c = fmu_open("resonance"), twin = fmu_open("twin");
+    double natural = sqrt(1.2), other = 0.5, large = 1e100;
+    fmu_set(c, "d2", 0.0);
+    fmu_set(twin, "d2", 0.0);
+    fmu_initialize(c, 0.0);
+    fmu_initialize(twin, 0.0);
+    fmu_step(c, 0.0, 20.0);
+    fmu_step(twin, 0.0, 20.0);
+    IS_OK(fmi.SetReal(c, &named("box_frequency")->reference, 1, &natural));
+    REFUSED(c, fmi.DoStep(c, 20.0, 1.0, fmi2True));
+    SAYS("box_frequency = 1.09544511501033"); SAYS("d2 > 0");
+    fmu_set(c, "box_frequency", other);
+    fmu_set(twin, "box_frequency", other);
+    fmu_step(c, 20.0, 100.0);
+    fmu_step(twin, 20.0, 100.0);
+    picture(twin);
+    CHECK(unchanged(c));
+    fmi.FreeInstance(twin);
+    fmi.FreeInstance(c);
+    c = fmu_open("overflow");
+    fmu_set(c, "bonded", 1.0);
+    fmu_initialize(c, 0.0);
+    IS_OK(fmi.SetReal(c, &named("box_crackle")->reference, 1, &large));
+    REFUSED(c, fmi.DoStep(c, 0.0, 1e90, fmi2True));
+    SAYS("box_acceleration = 0.0 m/s2");
+    fmu_set(c, "box_crackle", 0.0);
+    fmu_step(c, 0.0, 1.0);
+    fmi.FreeInstance(c);
+}
+
+static void saved_states(fmi2Component c) {
+    char *bytes, *bad;
+    size_t size = fmu_save(c, &bytes), told;
+    fmi2FMUstate state = NULL, other = NULL;
+    double broken[] = {NAN, 0.0, -1.0, 3.0, 64.0, 1e300, INFINITY};
+    CHECK((bad = malloc(size + 1)) != NULL);
+    size_t sizes[] = {0, 1, 63, 64, size - 1, size + 1};
+    memcpy(bad, bytes, size);
+    bad[size] = 0;
+    for (int i = 0; i < 6; i++) { REFUSED(c, fmi.DeSerializeFMUstate(c, bad, sizes[i], &state)); CHECK(state == NULL); }
+    for (size_t i = 0; i < 64; i++) { /* what says whose state this is */
+        bad[i] ^= 4;
+        REFUSED(c, fmi.DeSerializeFMUstate(c, bad, size, &state));
+        bad[i] ^= 4;
+    }
+    for (int i = 0; i < 7; i++) { /* the phase */
+        memcpy(bad + 64, &broken[i], sizeof broken[i]);
+        REFUSED(c, fmi.DeSerializeFMUstate(c, bad, size, &state));
+    }
+    CHECK(state == NULL);
+    IS_OK(fmi.GetFMUstate(c, &state));
+    REFUSED(c, fmi.SerializedFMUstateSize(c, state, NULL)); REFUSED(c, fmi.SerializedFMUstateSize(c, NULL, &told));
+    REFUSED(c, fmi.SerializeFMUstate(c, NULL, bad, size)); REFUSED(c, fmi.SerializeFMUstate(c, state, NULL, size));
+    REFUSED(c, fmi.SerializeFMUstate(c, state, bad, size - 1)); REFUSED(c, fmi.SerializeFMUstate(c, state, bad, 0));
+    REFUSED(c, fmi.DeSerializeFMUstate(c, NULL, size, &other)); REFUSED(c, fmi.DeSerializeFMUstate(c, bytes, size, NULL));
+    fmi2FMUstate same = state;
+    IS_OK(fmi.GetFMUstate(c, &state));
+    CHECK(state == same); /* the memory handed in is used again */
+    IS_OK(fmi.DeSerializeFMUstate(c, bytes, size, &state));
+    CHECK(state == same);
+    IS_OK(fmi.FreeFMUstate(c, &state));
+    CHECK(state == NULL);
+    IS_OK(fmi.FreeFMUstate(c, &state)); /* once more, as the standard has it */
+    free(bad);
+    free(bytes);
+}
+
+void hostile(void) {
+    no_instance();
+    instantiation();
+    order();
+    values();
+    failing_steps();
+    fmi2Component c = in_phase(STEPPING), twin = in_phase(STEPPING);
+    null_pointers(c);
+    references(c);
+    steps(c);
+    saved_states(c);
+    IS_OK(fmi.SetReal(twin, NULL, 0, NULL)); /* what c was told and accepted: nothing, and two steps of no length */
+    fmu_step(twin, 20.0, 0.0);
+    fmu_step(twin, 20.0, 5e-324);
+    fmu_step(c, 20.0, 100.0);
+    fmu_step(twin, 20.0, 100.0);
+    picture(twin);
+    CHECK(unchanged(c));
+    fmi.FreeInstance(c);
+    fmi.FreeInstance(twin);
+    free(image);
+}

@@ -1,0 +1,96 @@
+"""What is in the binaries: FMI functions and the kernel, nothing else; the same bytes each time; the Windows one runs the same."""
+
+import importlib.util
+import os
+import re
+import shutil
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from fmu_src.export import native_form
+from fmu_src.oscillator.model import MODEL
+
+from . import importers
+from .object_files import Elf, Pe
+from .slave import COMMON, harmonic
+
+LIBC = {"calloc", "malloc", "free", "memcpy", "memset", "memcmp", "bcmp", "snprintf", "strtod", "strtol"}
+LIBC |= {"strlen", "strcmp", "strcpy", "strncat", "strpbrk"}
+LOADER = {"__cxa_finalize", "__gmon_start__", "_ITM_deregisterTMCloneTable", "_ITM_registerTMCloneTable", "__stack_chk_fail"}
+WINE = next((path for path in (shutil.which("wine64"), shutil.which("wine"), "/usr/lib/wine/wine64") if path and Path(path).exists()), None)
+ABSENT_IN_CO_SIMULATION = {  # FMI 2.0's header has the functions of both kinds of FMU
+    *("fmi2EnterEventMode", "fmi2NewDiscreteStates", "fmi2EnterContinuousTimeMode", "fmi2CompletedIntegratorStep", "fmi2SetTime"),
+    *("fmi2SetContinuousStates", "fmi2GetDerivatives", "fmi2GetEventIndicators", "fmi2GetContinuousStates", "fmi2GetNominalsOfContinuousStates"),
+}
+
+
+@pytest.fixture(params=["fmi2", "fmi3"])
+def version(request):
+    return request.param
+
+
+def functions_of_header(version):
+    """Every function the standard's header declares for co-simulation."""
+    text = native_form.fmi_headers(version)[f"{version}Functions.h"].decode()
+    return set(re.findall(rf"_Export\s+{version}\w+TYPE\s+({version}\w+)\s*;", text)) - ABSENT_IN_CO_SIMULATION
+
+
+def test_linux_binary_exports_fmi_and_imports_libc(fmus, version, tmp_path):
+    elf = Elf(importers.binary(fmus[version], version, tmp_path).read_bytes())
+    assert len(elf.exports) > 30
+    assert elf.exports == functions_of_header(version)
+    assert elf.imports <= LIBC | LOADER
+    assert elf.needed == {"libc.so.6"}
+
+
+def test_windows_binary_exports_fmi_and_imports_the_system(fmus, version, tmp_path):
+    with zipfile.ZipFile(fmus[version]) as archive:
+        if not [name for name in archive.namelist() if name.endswith(".dll")]:
+            pytest.skip("this FMU was made without ziglang")
+    pe = Pe(importers.binary(fmus[version], version, tmp_path, windows=True).read_bytes())
+    assert pe.machine == 0x8664
+    assert pe.exports == functions_of_header(version)
+    for library in pe.imports:
+        assert re.fullmatch(r"(?i)kernel32\.dll|api-ms-win-crt-[a-z]+-l1-1-0\.dll|ucrtbase\.dll", library)
+    assert not [name for names in pe.imports.values() for name in names if "fma" in name.lower()]
+
+
+def test_there_is_no_global_state_to_share(version, kernel_objects, tmp_path):
+    """No object file has data that could be written: instances and threads cannot meet."""
+    if importers.compiler() is None:
+        pytest.skip("there is no C compiler")
+    importers.rebuild_shim(version, tmp_path, kernel_objects, options=())
+    units = [unit for unit in ("core.c", f"{version}.c") if importers.run_compiler([*importers.compiler(), "-fPIC", "-c", unit], tmp_path) is None]
+    for name in [unit.replace(".c", ".o") for unit in units] + ["kernel.o"]:
+        writable = Elf((tmp_path / name).read_bytes()).writable
+        assert sum(writable.values()) == 0, (name, writable)
+
+
+def test_two_builds_have_the_same_bytes(fmus, version, kernel_objects, tmp_path):
+    """The other build is made now: its own compilation, its own scratch folders."""
+    made = native_form.export(MODEL, "vibroimpact", "oscillator", tmp_path / version, version)
+    assert made.read_bytes() == fmus[version].read_bytes()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(WINE is None, reason="wine is not installed")
+def test_windows_binary_has_the_same_bits(fmus, importer_of, version, tmp_path):
+    """Slow where ziglang and wine are used for the first time: both prepare themselves for minutes."""
+    if not importlib.util.find_spec("ziglang"):
+        pytest.skip("the importer for Windows is compiled by ziglang")
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", "x86_64-windows-gnu"]
+    program = importers.compile_importer(version, fmus[version], tmp_path / "importer", command)
+    windows = importers.Importer(program, importers.binary(fmus[version], version, tmp_path, windows=True), version)
+    wine = {"env": {**os.environ, "WINEPREFIX": str(tmp_path / "prefix"), "WINEDEBUG": "-all"}, "under": (WINE,), "timeout": 600}
+    settings = [f"{name}={value.hex()}" for name, value in harmonic(1.13).items()]
+    times = [16.0 * k for k in range(257)]
+    told = windows.run("simulate", ",".join(COMMON), *settings, times=times, **wine).stdout
+    found = [[float.fromhex(cell) for cell in line.split()] for line in told.splitlines() if not line.startswith("CHECKS")]
+    assert found == importer_of(version).simulate(COMMON, times, **harmonic(1.13))
+    assert found[-1][COMMON.index("impact_count")] > 500
+    assert "FAILURES 0" in windows.run("hostile", **wine).stdout
+    windows.run("many", 200, 40, 0, **wine)
+    windows.run("million", 50_000, **wine)

@@ -1,0 +1,81 @@
+"""Pure Python, its compiled form, native FMI 2.0 and native FMI 3.0 give the same bits, each in a process of its own, through chaos."""
+
+import json
+
+import pytest
+
+from ..fresh import run_fresh
+from .slave import COMMON, STATE, Slave, harmonic
+
+SCRIPT = r"""
+import fmpy
+from fmpy import fmi2, fmi3
+
+path, end, count, values, names = sys.argv[1], float(sys.argv[2]), int(sys.argv[3]), json.loads(sys.argv[4]), json.loads(sys.argv[5])
+folder = fmpy.extract(path, str(Path.cwd() / "fmu"))
+found = fmpy.read_model_description(folder)
+third = found.fmiVersion.startswith("3")
+variables = {v.name: v for v in found.modelVariables}
+make = fmi3.FMU3Slave if third else fmi2.FMU2Slave
+fmu = make(guid=found.guid, unzipDirectory=folder, modelIdentifier=found.coSimulation.modelIdentifier, instanceName="a")
+fmu.instantiate()
+for name, value in values.items():
+    getattr(fmu, "set" + variables[name].type)([variables[name].valueReference], [value])
+if not third:
+    fmu.setupExperiment(startTime=0.0)
+fmu.enterInitializationMode()
+fmu.exitInitializationMode()
+rows = []
+for k in range(count):
+    fmu.doStep(currentCommunicationPoint=end * k / count, communicationStepSize=end / count)
+    rows.append([float(getattr(fmu, "get" + variables[n].type)([variables[n].valueReference])[0]).hex() for n in names])
+answer({"rows": rows, "mapped": sorted({line.split("/", 1)[1].strip() for line in open("/proc/self/maps") if "/" in line})})
+"""
+
+
+def run(fmu, tmp_path, end, count, values, **options):
+    tmp_path.mkdir()
+    arguments = (end, count, json.dumps(values), json.dumps(COMMON))
+    found, done = run_fresh(SCRIPT, fmu, *arguments, cwd=tmp_path, **options)
+    assert "Traceback" not in done.stderr
+    return found
+
+
+@pytest.mark.parametrize(("eta", "end"), [(1.13, 9216.0), (2.9, 8192.0)])
+def test_same_bits_in_every_form(fmus, tmp_path, eta, end):
+    """More than 2,000 impacts: were the last bit different once, the numbers would soon have nothing in common."""
+    values = {**harmonic(eta), "e": 0.7, "d1": 0.01, "d2": 0.01}
+    forms = {
+        "pure Python": run(fmus["fmi2-python"], tmp_path / "pure", end, 64, values, pure=True),
+        "compiled": run(fmus["fmi2-python"], tmp_path / "compiled", end, 64, values),
+        "fmi2": run(fmus["fmi2"], tmp_path / "fmi2", end, 64, values),
+        "fmi3": run(fmus["fmi3"], tmp_path / "fmi3", end, 64, values),
+    }
+    compiled = {name: any("kernel-" in path for path in form.pop("mapped")) for name, form in forms.items()}
+    assert compiled == {"pure Python": False, "compiled": True, "fmi2": False, "fmi3": False}
+    reference = forms.pop("pure Python")["rows"]
+    assert float.fromhex(reference[-1][COMMON.index("impact_count")]) > 2000
+    for name, form in forms.items():
+        for k, (row, expected) in enumerate(zip(form["rows"], reference, strict=True)):
+            different = [output for output, a, b in zip(COMMON, row, expected, strict=True) if a != b]
+            assert not different, f"{name}, step {k}"
+
+
+def test_a_state_saved_by_one_native_form_goes_on_in_the_other(fmus):
+    second, third = Slave(fmus["fmi2"]), Slave(fmus["fmi3"])
+    for one in (second, third):
+        one.start(**harmonic(1.13))
+    second.step(512.0)
+    state = second.fmu.getFMUstate()
+    saved = second.fmu.serializeFMUstate(state)
+    second.fmu.freeFMUstate(state)
+    state = third.fmu.deserializeFMUState(saved)
+    third.fmu.setFMUState(state)
+    third.fmu.freeFMUState(state)
+    third.time = 512.0
+    assert third.get(*STATE) == second.get(*STATE)
+    for one in (second, third):
+        one.step(1024.0)
+    assert third.get(*COMMON) == second.get(*COMMON)
+    second.free()
+    third.free()

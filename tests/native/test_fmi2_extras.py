@@ -1,0 +1,122 @@
+"""Derivatives of inputs and outputs in FMI 2.0, and of outputs in FMI 3.0."""
+
+import math
+
+import pytest
+
+from .slave import COMMON, harmonic, slave
+
+ORDERS = {"box_jerk": 1, "box_snap": 2, "box_crackle": 3}
+
+
+def cubic(k):
+    """Value and derivatives of box_acceleration at the beginning of step k."""
+    return {
+        "box_acceleration": 0.2 * math.sin(k),
+        "box_jerk": 0.1 * math.cos(2 * k),
+        "box_snap": -0.05 * math.sin(3 * k),
+        "box_crackle": 0.02 * math.cos(k),
+    }
+
+
+def set_derivatives(fmu, values):
+    reference = fmu.variables["box_acceleration"].valueReference
+    fmu.set(box_acceleration=values["box_acceleration"])
+    fmu.fmu.setRealInputDerivatives([reference] * 3, list(ORDERS.values()), [values[name] for name in ORDERS])
+
+
+@pytest.mark.parametrize("used", [{"box_jerk"}, {"box_snap"}, {"box_crackle"}, set(ORDERS)], ids=["jerk", "snap", "crackle", "all"])
+def test_input_derivatives_are_the_variables_for_them(fmus, used):
+    """Through impacts, over steps of changing length."""
+    with slave(fmus["fmi2"]) as fmu, slave(fmus["fmi2"]) as twin:
+        for one in (fmu, twin):
+            one.start(**harmonic(1.13))
+        for k in range(400):
+            values = {name: value if name in used or name == "box_acceleration" else 0.0 for name, value in cubic(k).items()}
+            set_derivatives(fmu, values)
+            twin.set(**values)
+            for one in (fmu, twin):
+                one.step(one.time + 0.1 + 0.05 * math.sin(k))
+            assert fmu.get(*COMMON, *ORDERS) == twin.get(*COMMON, *ORDERS)
+        assert fmu.one("impact_count") > 5
+
+
+@pytest.mark.parametrize("phase", ["instantiated", "initialisation"])
+def test_input_derivatives_before_the_first_step(fmus, phase):
+    with slave(fmus["fmi2"]) as fmu, slave(fmus["fmi2"]) as twin:
+        for one in (fmu, twin):
+            if phase == "initialisation":
+                one.fmu.setupExperiment(startTime=0.0)
+                one.fmu.enterInitializationMode()
+        set_derivatives(fmu, cubic(1))
+        twin.set(**cubic(1))
+        for one in (fmu, twin):
+            if phase == "instantiated":
+                one.fmu.setupExperiment(startTime=0.0)
+                one.fmu.enterInitializationMode()
+            one.fmu.exitInitializationMode()
+            one.step(0.5)
+            one.step(20.0)
+        assert fmu.get(*COMMON) == twin.get(*COMMON)
+
+
+def start_in_contact(fmu, setter):
+    """Outputs after inputs were set in initialisation mode by ``setter``, outputs having been looked at before."""
+    fmu.fmu.setupExperiment(startTime=0.0)
+    fmu.fmu.enterInitializationMode()
+    assert fmu.one("in_contact")
+    setter(fmu)
+    found = [fmu.get(*COMMON)]
+    fmu.fmu.exitInitializationMode()
+    found.append(fmu.get(*COMMON))
+    fmu.step(10.0)
+    return [*found, fmu.get(*COMMON)]
+
+
+@pytest.mark.xfail(strict=True, reason="fmi2SetRealInputDerivatives does not make the outputs of initialisation mode stale, as fmi2SetReal does")
+def test_input_derivatives_in_initialisation_mode_after_outputs_were_read(fmus):
+    """A jerk that opens the contact at once; without it the start is one of contact."""
+    with slave(fmus["fmi2"]) as fmu, slave(fmus["fmi2"]) as twin:
+        found = start_in_contact(fmu, lambda one: one.fmu.setRealInputDerivatives([one.variables["box_acceleration"].valueReference], [1], [5.0]))
+        assert found == start_in_contact(twin, lambda one: one.set(box_jerk=5.0))
+        assert not found[0][COMMON.index("in_contact")]
+
+
+@pytest.mark.parametrize("name", ["x1", "m1", "box_amplitude", "box_jerk", "box_crackle", "impact_time"])
+def test_only_box_acceleration_has_input_derivatives(fmus, name):
+    with slave(fmus["fmi2"]) as fmu:
+        fmu.start()
+        assert "box_acceleration" in fmu.refused("setRealInputDerivatives", [fmu.variables[name].valueReference], [1], [0.5])
+
+
+@pytest.mark.parametrize("order", [0, 4, -1, 2**31 - 1, -(2**31)])
+def test_only_three_orders_of_input_derivatives(fmus, order):
+    with slave(fmus["fmi2"]) as fmu:
+        fmu.start()
+        reference = fmu.variables["box_acceleration"].valueReference
+        assert "orders 1 to 3" in fmu.refused("setRealInputDerivatives", [reference] * 2, [1, order], [0.5, 0.5])
+        assert fmu.one("box_jerk") == 0.0  # all or none
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1e101])
+@pytest.mark.parametrize(("name", "order"), list(ORDERS.items()))
+def test_input_derivatives_out_of_range(fmus, name, order, value):
+    with slave(fmus["fmi2"]) as fmu:
+        fmu.start()
+        reference = fmu.variables["box_acceleration"].valueReference
+        assert f"{name} = " in fmu.refused("setRealInputDerivatives", [reference], [order], [value])
+        assert fmu.one(name) == 0.0
+
+
+@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
+def test_output_derivatives_are_the_velocities(fmus, form):
+    with slave(fmus[form]) as fmu:
+        get = fmu.fmu.getOutputDerivatives if fmu.third else fmu.fmu.getRealOutputDerivatives
+        references = [fmu.variables[name].valueReference for name in ("x1", "x2", "x_rel")]
+        fmu.start(**harmonic(1.13))
+        for k in range(200):
+            fmu.step(0.5 * (k + 1))
+            assert get(references, [1, 1, 1]) == fmu.get("v1", "v2", "v_rel")
+        refuse = "getOutputDerivatives" if fmu.third else "getRealOutputDerivatives"
+        for name, order in (("x1", 0), ("x1", 2), ("x1", -1), ("v1", 1), ("phase", 1), ("m1", 1), ("box_acceleration", 1), ("impact_count", 1)):
+            fmu.refused(refuse, [fmu.variables[name].valueReference], [order])
