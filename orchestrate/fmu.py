@@ -11,11 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .errors import UserError
-
-
-class FmuError(RuntimeError):
-    """An FMU refused a call; the text is the FMU's own message."""
+from .errors import FmuError, UserError
 
 
 @dataclass(frozen=True)
@@ -156,8 +152,8 @@ class Instance:
     def set(self, **values):
         """Set variables by name."""
         types: dict = {}
-        for name, value in values.items():
-            types.setdefault(self.variable(name).type, {})[self.variable(name).valueReference] = value
+        for variable, value in zip(map(self.variable, values), values.values(), strict=True):
+            types.setdefault(variable.type, {})[variable.valueReference] = value
         for type_name, chosen in types.items():
             self.call(f"set{type_name}", list(chosen), list(chosen.values()))
 
@@ -194,7 +190,7 @@ class Instance:
         Returns
         -------
         ndarray
-            In the order of ``names``; valid until the next call with the same names.
+            In the order of ``names``, valid until the next call with them.
         """
         if names not in self._readers:
             self._readers[names] = self._reader(names)
@@ -209,9 +205,8 @@ class Instance:
     def _reader(self, names):
         """FMPy's function, its arguments, and the array it fills."""
         found = [element for name in names for element in self.elements(name)]
-        for variable, _ in found:
-            if variable.type not in ("Real", "Float64"):
-                raise FmuError(f"{variable.name}: is {variable.type}; allowed are Real variables")
+        for variable in (variable for variable, _ in found if variable.type not in ("Real", "Float64")):
+            raise FmuError(f"{variable.name}: is {variable.type}; allowed are Real variables")
         references = (c_uint * len(found))(*(variable.valueReference for variable, _ in found))
         values = (c_double * sum(length for _, length in found))()
         arguments = [self._fmu.component, references, len(found), values]
