@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from fmu_src.vibroimpact import memory as at
 from fmu_src.vibroimpact.barrier import evaluate
-from fmu_src.vibroimpact.roots import clear_step, parabola_root, walk
+from fmu_src.vibroimpact.roots import clear_step, parabola_root, taylor_root, walk
 
 from . import truth
 from .kernel import CHAOTIC, DEFAULTS, advanced, examples, pieces, sizes, started, structures
@@ -76,6 +76,17 @@ def test_a_clear_step_is_scale_free(h0, h1, h2, h3, h4, bound, n):
     assume(h0 > 0.0 or h1 > 0.0 or (h1 == 0.0 and h2 > 0.0))
     unit = math.ldexp(1.0, n)
     assert clear_step(unit * h0, unit * h1, unit * h2, unit * h3, unit * h4, unit * bound, REACH) == clear_step(h0, h1, h2, h3, h4, bound, REACH)
+
+
+@examples(300)
+@given(sizes(1e-3, 1.0), sizes(1e-3, 1.0), SIGNED, SIGNED, SIGNED, sizes(1e-3, 10.0), st.floats(0.01, 1.0))
+@example(0.641, 0.0593, -18.0, 79.8, 3.57, 0.1, 0.353)  # these rise somewhere between
+@example(0.531, 0.669, 0.164, -0.0128, 1.85, 0.1, 0.973)
+def test_a_root_by_taylor_is_the_only_one_from_the_clear_step_on(h0, fall, h2, h3, h4, bound, step):
+    root = taylor_root(h0, -fall, h2, h3, h4, bound, step, 1e3)
+    if root > 0.0:
+        for s in (step + (root - step) * i / 20 for i in range(21)):
+            assert -fall + s * (h2 + s * (h3 / 2 + s * (h4 / 6 + s * bound / 24))) < 0.0
 
 
 def test_a_barrier_that_never_falls_has_no_root():
