@@ -49,6 +49,7 @@ def c_variable(model, variable):
         c_number(maximum),
         str(variable.input_derivatives),
         str(slots[variable.derivative]) if variable.derivative else "-1",
+        str(int(bool(variable.series))),
     ]
     return "    {" + ", ".join(cells) + "},"
 
@@ -81,7 +82,7 @@ def model_header(model, token, digest):
         f"#define OUTPUT_DERIVATIVES {c_string(', '.join(outputs) or 'none')}",
         "typedef enum { REAL, INTEGER, BOOLEAN } Type;",
         "typedef struct { const char *name, *unit, *range; Type type; int calculated, fixed; double start, minimum, maximum;",
-        "                 int input_derivatives, derivative; } Variable;",
+        "                 int input_derivatives, derivative, element; } Variable;",
         "static const Variable VARIABLES[] = {",
         *[c_variable(model, variable) for variable in model.variables],
         "};",

@@ -277,7 +277,7 @@ static void saved_states(fmi2Component c) {
     char *bytes, *bad;
     size_t size = fmu_save(c, &bytes), told;
     fmi2FMUstate state = NULL, other = NULL;
-    double broken[] = {NAN, 0.0, -1.0, 3.0, 64.0, 1e300, INFINITY};
+    double broken[] = {NAN, 0.0, -1.0, 3.0, 4.5, 64.0, 1e300, INFINITY};
     CHECK((bad = malloc(size + 1)) != NULL);
     size_t sizes[] = {0, 1, 63, 64, size - 1, size + 1};
     memcpy(bad, bytes, size);
@@ -288,8 +288,14 @@ static void saved_states(fmi2Component c) {
         REFUSED(c, fmi.DeSerializeFMUstate(c, bad, size, &state));
         bad[i] ^= 4;
     }
-    for (int i = 0; i < 7; i++) { /* the phase */
+    for (size_t i = 64; i < size; i += 61) { /* its numbers, and the checksum */
+        bad[i] ^= 1;
+        REFUSED(c, fmi.DeSerializeFMUstate(c, bad, size, &state));
+        bad[i] ^= 1;
+    }
+    for (int i = 0; i < 8; i++) { /* the phase */
         memcpy(bad + 64, &broken[i], sizeof broken[i]);
+        seal(bad, size);
         REFUSED(c, fmi.DeSerializeFMUstate(c, bad, size, &state));
     }
     CHECK(state == NULL);

@@ -193,7 +193,7 @@ static void speed(int count) {
 }
 
 /* A state saved in motion, with one of its numbers overwritten: refused, or else what comes of it. */
-static void corrupt(size_t offset, double value) {
+static void corrupt(size_t offset, double value, bool sealed) {
     void *instance = driven(1.13);
     fmu_initialize(instance, 0.0);
     fmu_step(instance, 0.0, 20.0);
@@ -201,6 +201,7 @@ static void corrupt(size_t offset, double value) {
     size_t size = fmu_save(instance, &bytes);
     if (offset + sizeof value > size) exit(2);
     memcpy(bytes + offset, &value, sizeof value);
+    if (sealed) seal(bytes, size);
     messages = 0;
     if (!fmu_restore(instance, bytes, size)) {
         CHECK(messages == 1);
@@ -224,7 +225,7 @@ int main(int count, char **arguments) {
     else if (strcmp(mode, "many") == 0 && count > 5) many(NUMBER(3), NUMBER(4), NUMBER(5));
     else if (strcmp(mode, "million") == 0 && count > 3) million(NUMBER(3));
     else if (strcmp(mode, "speed") == 0 && count > 3) speed(NUMBER(3));
-    else if (strcmp(mode, "corrupt") == 0 && count > 4) corrupt((size_t)NUMBER(3), strtod(arguments[4], NULL));
+    else if (strcmp(mode, "corrupt") == 0 && count > 4) corrupt((size_t)NUMBER(3), strtod(arguments[4], NULL), count > 5);
     else return 2;
     fmu_unload();
     printf("CHECKS %d FAILURES %d\n", checks, failures);

@@ -18,7 +18,7 @@ from .object_files import Elf, Pe
 from .slave import COMMON, harmonic
 
 LIBC = {"calloc", "malloc", "free", "memcpy", "memset", "memcmp", "bcmp", "snprintf", "strtod", "strtol"}
-LIBC |= {"strlen", "strcmp", "strcpy", "strncat", "strpbrk"}
+LIBC |= {"strlen", "strchr", "strcmp", "strcpy", "strncat", "strpbrk"}
 LOADER = {"__cxa_finalize", "__gmon_start__", "_ITM_deregisterTMCloneTable", "_ITM_registerTMCloneTable", "__stack_chk_fail"}
 WINE = next((path for path in (shutil.which("wine64"), shutil.which("wine"), "/usr/lib/wine/wine64") if path and Path(path).exists()), None)
 ABSENT_IN_CO_SIMULATION = {  # FMI 2.0's header has the functions of both kinds of FMU

@@ -109,7 +109,10 @@ static size_t stretch(Instance *instance, const char *call, fmi3ValueReference r
         *first = ARRAYS[reference - ARRAY_BASE].first;
         return ARRAYS[reference - ARRAY_BASE].size;
     }
-    return find(instance, call, reference, REAL) ? 1 : 0;
+    if (!find(instance, call, reference, REAL)) return 0;
+    if (!VARIABLES[reference].element) return 1;
+    refuse(instance, call, "valueReference: allowed is that of the array, not of an element");
+    return 0;
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_t count, fmi3Float64 values[], size_t value_count) {
@@ -308,12 +311,12 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Float64 size, fmi
     if (!instance || !event_needed || !terminate || !early || !last) return refuse3(instance, "fmi3DoStep", "a null pointer");
     double before = impacts(instance);
     Status status = step(instance, "fmi3DoStep", current, size);
-    *terminate = fmi3False;
+    *event_needed = *terminate = *early = fmi3False;
     *last = instance->state.memory[TIME_SLOT];
-    *early = status == OK && *last < current + size;
-    instance->state.clock = EVENT_CLOCK && instance->event_mode && status == OK && impacts(instance) > before;
-    *event_needed = instance->state.clock;
-    return (fmi3Status)status;
+    if (status != OK) return (fmi3Status)status;
+    *early = *last < current + size;
+    *event_needed = instance->state.clock = EVENT_CLOCK && instance->event_mode && impacts(instance) > before;
+    return fmi3OK;
 }
 
 /* What modelDescription.xml says is not provided. */
