@@ -8,7 +8,7 @@ from pathlib import Path
 from .archive import fingerprint, guid_of, read_folder, write_archive
 from .compile_kernel import compile_objects
 from .documentation import documentation_files
-from .linking import PLATFORMS, link
+from .linking import PLATFORMS, link_all
 from .model_description import fmi2_native_xml
 from .model_description3 import ARRAY_BASE, CLOCK_REFERENCE, fmi3_xml
 from .pythonfmu_form import ROOT, embedded_sources
@@ -145,8 +145,8 @@ def export(model, kernel, folder, target, version):
     objects = compile_objects(f"fmu_src.{folder}.model")
     sources = {**shim_sources(version), **fmi_headers(version), "model.h": model_header(model, token, digest)}
     files = {"modelDescription.xml": XML[version](model, token)}
-    for name, platform in PLATFORMS.items():
-        binary = link(name, {**sources, "kernel.o": objects[name]})
+    for name, binary in link_all(objects, sources).items():
+        platform = PLATFORMS[name]
         files[f"binaries/{getattr(platform, version)}/{model.name}{platform.suffix}"] = binary
     files.update(documentation_files(model, ROOT / folder, digest))
     files.update(read_folder(ROOT / kernel, f"documentation/{kernel}/"))

@@ -21,12 +21,20 @@ SANITIZE = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-o
 WARNINGS = ("-std=gnu11", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
 
 
+def own_compiler():
+    """The machine's C compiler, as a command; None where there is none."""
+    own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    return [own] if own else None
+
+
+def ziglang(target="native"):
+    """The C compiler of ziglang, as a command; None where it is not installed."""
+    return [sys.executable, "-m", "ziglang", "cc", "-target", target] if importlib.util.find_spec("ziglang") else None
+
+
 def compiler():
     """A C compiler for this machine, as a command; None where there is none."""
-    own = shutil.which("cc")
-    if own:
-        return [own]
-    return [sys.executable, "-m", "ziglang", "cc"] if importlib.util.find_spec("ziglang") else None
+    return own_compiler() or ziglang()
 
 
 def run_compiler(command, folder):
@@ -75,7 +83,7 @@ def compile_importer(version, fmu, folder, command=None, options=("-O1", "-g")):
     number = version[-1]
     sources = [HERE / name for name in ("modes.c", f"importer{number}.c", f"hostile{number}.c")]
     target = folder / f"importer{number}.exe"
-    windows = "-target" in (command or ())
+    windows = any("windows" in word for word in command or ())
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
     run_compiler([*(command or compiler()), *WARNINGS, *options, f"-I{folder}", "-o", target, *sources, *libraries], folder)
     return target

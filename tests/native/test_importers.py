@@ -8,7 +8,7 @@ import pytest
 
 from fmu_src.vibroimpact import memory as at
 
-from .importers import Importer, binary
+from .importers import Importer, binary, compile_importer, ziglang
 from .slave import COMMON, harmonic, slave
 
 HEADER, HEAD = 64, 3  # bytes before the numbers of a serialised state, and numbers before the memory
@@ -46,6 +46,16 @@ def test_there_is_no_python_in_the_process(importer):
     assert not [name for name in mapped if "python" in name.lower()]
     system = {"libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "ld-linux-x86-64.so.2"}
     assert mapped - {importer.library.name, importer.program.name} <= system
+
+
+def test_importer_compiled_by_ziglang(fmus, importer, tmp_path):
+    """What is compiled where the machine has no C compiler; and another compiler's eye on the importer."""
+    if ziglang() is None:
+        pytest.skip("ziglang is not installed")
+    other = Importer(compile_importer(importer.version, fmus[importer.version], tmp_path, ziglang()), importer.library, importer.version)
+    times = uneven_times(300.0)
+    assert other.simulate(COMMON, times, **harmonic(1.13)) == importer.simulate(COMMON, times, **harmonic(1.13))
+    assert "FAILURES 0" in other.run("hostile").stdout
 
 
 def test_hostile_calls_are_refused_and_change_nothing(importer):
