@@ -148,8 +148,9 @@ static long resident(void) {
     return pages * 4;
 }
 
-/* Small steps reach what one step reaches, to the last bit, and take no memory. Dyadic times are exact. */
-static void million(int count) {
+/* Small steps reach what one step reaches, to the last bit, and take no memory, if that is to be looked at: valgrind grows by itself.
+ * Dyadic times are exact. */
+static void million(int count, bool look) {
     double small[OUTPUT_COUNT], one[OUTPUT_COUNT];
     double size = 0x1p-10;
     void *instance = driven(1.13);
@@ -157,7 +158,7 @@ static void million(int count) {
     for (int k = 0; k < 1000; k++) fmu_step(instance, size * k, size);
     long before = resident();
     for (int k = 1000; k < count; k++) fmu_step(instance, size * k, size);
-    CHECK(count < 100000 || resident() - before < 256); /* kB; a short run under a sanitizer grows by itself */
+    CHECK(!look || resident() - before < 256); /* kB */
     outputs(instance, small);
     fmu_close(instance);
     alone(1.13, 1, size * count, one);
@@ -223,7 +224,7 @@ int main(int count, char **arguments) {
     else if (strcmp(mode, "maps") == 0) maps();
     else if (strcmp(mode, "hostile") == 0) hostile();
     else if (strcmp(mode, "many") == 0 && count > 5) many(NUMBER(3), NUMBER(4), NUMBER(5));
-    else if (strcmp(mode, "million") == 0 && count > 3) million(NUMBER(3));
+    else if (strcmp(mode, "million") == 0 && count > 3) million(NUMBER(3), count < 5);
     else if (strcmp(mode, "speed") == 0 && count > 3) speed(NUMBER(3));
     else if (strcmp(mode, "corrupt") == 0 && count > 4) corrupt((size_t)NUMBER(3), strtod(arguments[4], NULL), count > 5);
     else return 2;
