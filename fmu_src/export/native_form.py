@@ -17,6 +17,7 @@ HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
     "fmi3": ("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h"),
 }
+SHIM = {"fmi2": ("core.h", "core.c", "fmi2.c"), "fmi3": ("core.h", "core.c", "fmi3.c", "fmi3_absent.c")}
 XML = {"fmi2": fmi2_native_xml, "fmi3": fmi3_xml}
 
 
@@ -100,7 +101,7 @@ def model_header(model, token, digest):
 def shim_sources(version):
     """C sources of the shim for an FMI version."""
     folder = ROOT / "export" / "native"
-    return {name: (folder / name).read_bytes() for name in ("core.h", "core.c", f"{version}.c")}
+    return {name: (folder / name).read_bytes() for name in SHIM[version]}
 
 
 def fmi_headers(version):

@@ -81,12 +81,17 @@ def compile_importer(version, fmu, folder, command=None, options=("-O1", "-g")):
     for name, content in native_form.fmi_headers(version).items():
         (folder / name).write_bytes(content)
     number = version[-1]
-    sources = [HERE / name for name in ("modes.c", f"importer{number}.c", f"hostile{number}.c")]
+    sources = [HERE / name for name in ("modes.c", f"importer{number}.c", f"hostile{number}.c", f"arguments{number}.c")]
     target = folder / f"importer{number}.exe"
     windows = any("windows" in word for word in command or ())
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
     run_compiler([*(command or compiler()), *WARNINGS, *options, f"-I{folder}", "-o", target, *sources, *libraries], folder)
     return target
+
+
+def units(version):
+    """The shim's C files."""
+    return [name for name in native_form.shim_sources(version) if name.endswith(".c")]
 
 
 def rebuild_shim(version, folder, objects, options=SANITIZE):
@@ -100,7 +105,7 @@ def rebuild_shim(version, folder, objects, options=SANITIZE):
         (folder / name).write_bytes(content)
     target = folder / "rebuilt.so"
     fixed = ("-shared", "-fPIC", "-fvisibility=hidden", "-g", "-O1", "-ffp-contract=off")
-    command = [*compiler(), *fixed, *options, "-o", target, "core.c", f"{version}.c", "kernel.o"]
+    command = [*compiler(), *fixed, *options, "-o", target, *units(version), "kernel.o"]
     run_compiler(command, folder)
     return target
 
