@@ -127,17 +127,16 @@ def inside(m, tau):
 
 
 def run_samples(m, start, time, now):
-    """Run to ``time``, keeping the states at equal parts of the step on the way; returns the present state's age there."""
+    """Run to ``time``, keeping the states at equal parts of the step on the way; returns the present state's age there.
+
+    Where the step stops at an impact, the samples that are left show the state there.
+    """
     count = int(m[at.SAMPLE_COUNT])
-    for i in range(count - 1):
-        now = run_states(m, start + (time - start) * ((i + 1.0) / count), now)
-        if m[at.STOPPED] != 0.0:
-            return now
+    for i in range(count):
+        if m[at.STOPPED] == 0.0:
+            now = run_states(m, start + (time - start) * ((i + 1.0) / count) if i + 1 < count else time, now)
         keep_sample(m, i, now)
-    now = run_states(m, time, now)
-    if count > 0:
-        keep_sample(m, count - 1, now)
-    return now
+    return now if count > 0 else run_states(m, time, now)
 
 
 def keep_sample(m, i, tau):

@@ -82,7 +82,6 @@ def test_sample_count_out_of_range(fmus, native_fmu, count):
         assert f"{ROOM}" in message
 
 
-@pytest.mark.xfail(strict=True, reason="a step that returns early at an impact leaves samples after it as the step before wrote them")
 def test_samples_of_a_step_that_returns_early_end_where_it_ends(fmus):
     with slave(fmus["fmi3"], event_mode=True, early_return=True) as fmu:
         fmu.start(sample_count=8, **harmonic(1.13))
