@@ -131,8 +131,8 @@ def link_all(objects, files):
     for name in PLATFORMS:
         try:
             made[name] = link(name, {**files, "kernel.o": objects[name]})
-        except NoCompiler as reason:
-            reasons.append(reason)
+        except NoCompiler as error:
+            reasons.append(error)
     if not made:
         raise reasons[0]
     for reason in reasons:

@@ -128,10 +128,9 @@ def test_a_forged_state_with_a_value_out_of_range_is_refused(importer, index, va
     assert importer.run("corrupt", slot(index), value, "sealed").stdout.startswith("REFUSED")
 
 
-@pytest.mark.parametrize(("index", "value"), HIDDEN)
-def test_a_forged_hidden_state_does_not_crash(importer, index, value):
+def test_no_forged_state_crashes(importer):
     """Made by somebody who knows the checksum: wrong in, wrong out, but the process lives."""
-    assert importer.run("corrupt", slot(index), value, "sealed").stdout.startswith(("REFUSED", "TAKEN"))
+    assert int(re.search(r"TAKEN (\d+)\n.* FAILURES 0", importer.run("forge").stdout).group(1)) > 1000
 
 
 @pytest.mark.parametrize("number", [0, 1, 2])
