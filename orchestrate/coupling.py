@@ -35,6 +35,7 @@ SHAKER_OUTPUTS = (
 Y, V, A, JERK, ANGLE, SPEED, E_MOTOR, E_DAMPER, E_FORCE, E_STORED = range(10)
 MOST_ITERATIONS = 40
 CONVERGED = 1e-14  # change of the force between two iterations, over its size
+BEGIN = (1, 1, 2, 4, 8)  # parts of the first step in sixteenths, of schemes that cannot iterate: nothing is known yet to extrapolate from
 PASSES = {"gauss-seidel": 1, "rollback": 2, "iterated": MOST_ITERATIONS}
 ALGORITHMS = ("jacobi", "jacobi-derivative", *PASSES)
 
@@ -91,13 +92,20 @@ class Master:
         self.x, self.s = self.oscillator.get(), self.shaker.get()
         self.voltage = math.nan
         self.slope = 0.0  # of the force, at the present communication point
-        self.force_before = self.acceleration_before = self.h_before = 0.0
+        self.force_before = self.h_before = 0.0
+        self.acceleration_before = (0.0, 0.0)  # and its derivative
         self.ledger = Ledger(setup, self.x, self.s)
         self._step = {"jacobi": self._jacobi, "jacobi-derivative": self._jacobi_derivative}.get(scheme.algorithm, self._seidel)
 
     def step(self, voltage, h=None):
         """One communication step at a constant voltage (V), of length ``h`` (s) instead of the scheme's where given."""
         h = h or self.scheme.h
+        begin = self.time
+        for part in (16,) if self.h_before or PASSES.get(self.scheme.algorithm, 1) > 1 else BEGIN:
+            self._one_step(voltage, h * part / 16)
+        self.time = begin + h
+
+    def _one_step(self, voltage, h):
         if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
             self.voltage = voltage
             self.s = self._look(self.x)
@@ -106,7 +114,8 @@ class Master:
         force = self.force_of(x, x_new, h)
         self.slope = end_slope(force, h)
         self.ledger.add(x, x_new, s, s_new, acceleration, force, h)
-        self.force_before, self.acceleration_before, self.h_before = x[R], s[A], h
+        jerk = s[JERK] if self.h_before else acceleration[1]  # at the start the force's slope was not known
+        self.force_before, self.acceleration_before, self.h_before = x[R], (s[A], jerk), h
         self.time += h
         self.x, self.s = x_new, self._look(x_new)
 
@@ -131,14 +140,20 @@ class Master:
         """The acceleration over a step that the shaker has done, as the oscillator is told it."""
         s = self.s
         if not self.scheme.matched:
-            return parabola(self.acceleration_before, s[A], s_new[A], self.h_before, h)
+            return parabola(self.acceleration_before[0], s[A], s_new[A], self.h_before, h)
         mean = (s_new[V] - s[V]) / h
         return matched_cubic(s[A], s_new[A], mean, mean - ((s_new[Y] - s[Y]) / h - s[V]) / h, h)
 
     def _extrapolated_acceleration(self):
-        """Value and derivative now, curvature from the point before."""
+        """Value and derivative now, curvature from the value before; where a rollback follows, a cubic with the derivative before too."""
         a, jerk, h = self.s[A], self.s[JERK], self.h_before
-        return a, jerk, 2.0 * (self.acceleration_before - a + jerk * h) / (h * h) if h else 0.0, 0.0
+        if not h:
+            return a, jerk, 0.0, 0.0
+        bend = (self.acceleration_before[0] - a + jerk * h) / (h * h)
+        if self.scheme.algorithm == "gauss-seidel":
+            return a, jerk, 2.0 * bend, 0.0
+        twist = ((self.acceleration_before[1] - jerk) / h + 2.0 * bend) / h
+        return a, jerk, 2.0 * (bend + twist * h), 6.0 * twist
 
     # -- the schemes --------------------------------------------------------------------------------------------------
 
@@ -160,6 +175,7 @@ class Master:
     def _seidel(self, h):
         """Oscillator, then shaker; once, twice, or until the force does not change."""
         passes = PASSES[self.scheme.algorithm]
+        passes = MOST_ITERATIONS if passes > 1 and not self.h_before else passes
         acceleration, last = self._extrapolated_acceleration(), None
         if passes > 1:
             self.oscillator.save()

@@ -19,6 +19,8 @@ class Setup:
         kg, rad/s.
     mu, kappa, D, e, gamma : float
         The structure's numbers, as in a sweep.
+    damping_ratio : float
+        d2/m2 over d1/m1: where it is not 1, the force on the box jumps at an impact.
     bonded : bool
         The undamaged structure.
     box_mass, Omega_b, D_b : float
@@ -43,6 +45,7 @@ class Setup:
     kappa: float = 1.2
     e: float = 0.7
     gamma: float = 1e-4
+    damping_ratio: float = 1.0
     bonded: bool = False
     Omega_b: float = 0.1
     D_b: float = 0.005
@@ -81,7 +84,7 @@ class Setup:
         """Parameters of ``TwoMassImpactOscillator``; its own harmonic box motion is off."""
         damping, stiffness = 2.0 * self.D * self.omega * self.m1, self.m1 * self.omega**2
         masses = {"m1": self.m1, "m2": self.mu * self.m1, "k1": stiffness, "k2": self.kappa * stiffness}
-        losses = {"d1": damping, "d2": self.mu * damping, "e": self.e, "gamma": self.gamma}
+        losses = {"d1": damping, "d2": self.damping_ratio * self.mu * damping, "e": self.e, "gamma": self.gamma}
         return {**masses, **losses, "bonded": self.bonded, "box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
 
     def shaker(self):
