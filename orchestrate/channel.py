@@ -29,7 +29,7 @@ class Channel:
         save, restore, free = ("GetFMUState", "SetFMUState", "FreeFMUState") if self._v3 else ("GetFMUstate", "SetFMUstate", "FreeFMUstate")
         prefix = "fmi3" if self._v3 else "fmi2"
         self._save, self._restore, self._free = (getattr(self._fmu, prefix + name) for name in (save, restore, free))
-        self._reused = not getattr(instance.description, "needs_tool", False)
+        self._reused = not instance.description.needs_tool  # pythonfmu makes a new state each time
         self._states: dict = {}
 
     def _array(self, names):
