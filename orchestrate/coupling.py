@@ -202,6 +202,18 @@ class Master:
         """Whether an iteration has changed nothing but roundings."""
         return all(abs(x[i] - last[i]) <= CONVERGED * (abs(x[i]) + abs(last[i])) for i in (R, IMPULSE, MOMENT))
 
+    def memory(self):
+        """What the master itself remembers, as a list of floats: with both FMUs' states, all that a run goes on from."""
+        own = [self.time, self.voltage, self.slope, self.force_before, self.h_before, *self.acceleration_before]
+        return [*own, *self.ledger.memory(), *self.x, *self.s]
+
+    def remember(self, numbers):
+        """The inverse of :meth:`memory`."""
+        self.time, self.voltage, self.slope, self.force_before, self.h_before = numbers[:5]
+        self.acceleration_before = (numbers[5], numbers[6])
+        self.ledger.remember(numbers[7 : -len(self.x) - len(self.s)])
+        self.x, self.s = numbers[-len(self.x) - len(self.s) : -len(self.s)], numbers[-len(self.s) :]
+
     def close(self):
         """Free the states kept in the FMUs."""
         self.oscillator.close()

@@ -70,6 +70,15 @@ class Ledger:
             "dampers": self.lost - x[7],
         }
 
+    def memory(self):
+        """The accounts, as a list of floats."""
+        return [self.lost, self.defect, self.sizes, *self.start.values()]
+
+    def remember(self, numbers):
+        """The inverse of :meth:`memory`."""
+        self.lost, self.defect, self.sizes = numbers[:3]
+        self.start = dict(zip(self.start, numbers[3:], strict=True))
+
     def entries(self, x, s):
         """Accounts since the ledger was opened, J; ``missing`` is what does not add up, ``defect`` the part of the exchange in it."""
         found = {name: value - self.start[name] for name, value in self._entries(x, s).items()}
