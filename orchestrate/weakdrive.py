@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from .coupling import A, ANGLE, OSCILLATOR, SHAKER, SPEED, V1, X1, Master, Scheme, Y
+from .coupling import ANGLE, OSCILLATOR, SHAKER, SPEED, V1, X1, A, Master, Scheme, Y
 from .fmu import Instance
 from .setups import TURN, Setup
 
