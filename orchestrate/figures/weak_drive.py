@@ -34,7 +34,7 @@ def draw(datasets, theory, path):
             axes[0, 0].plot(data.eta0[part], data.Omega[part], style, color=colour, lw=1.2, label=name)
             axes[0, 1].plot(data.Omega[part], data.amplitude[part], style, color=colour, lw=1.2, label=name)
             if label == "delaminated":
-                axes[1, 0].plot(data.Omega[part], data.impacts[part], "." if style == "-" else "x", ms=2.5, color=colour, alpha=0.4, label=name)
+                impacts(axes[1, 0], data, part, style, name)
         mark_jumps(axes[0, 0], data, colour)
         histories(axes[2], data, colour)
     if theory:
@@ -44,6 +44,17 @@ def draw(datasets, theory, path):
     label_axes(axes)
     limits(axes[0], datasets)
     save(figure, path)
+
+
+def impacts(axes, data, part, style, name):
+    """Impacts of each revolution, and their running mean."""
+    speed, count = data.Omega.values[part], data.impacts.values[part]
+    colour = "C3" if style == "-" else "C1"
+    axes.plot(speed, count, ".", ms=2.0, color=colour, alpha=0.3)
+    if len(count) > WINDOW:
+        mean = np.convolve(count, np.full(WINDOW, 1.0 / WINDOW), "valid")
+        axes.plot(np.convolve(speed, np.full(WINDOW, 1.0 / WINDOW), "valid"), mean, style, color=colour, lw=1.2, label=f"{name}, mean of {WINDOW}")
+    axes.set_yscale("log")
 
 
 def mark_jumps(axes, data, colour):
