@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from .channel import Channel
 from .errors import UserError
 from .ledger import Ledger
-from .polynomials import end_slope, matched_cubic, parabola
+from .polynomials import end_slope, matched_cubic, parabola, work
 
 OSCILLATOR, SHAKER = "TwoMassImpactOscillator", "MotorShaker"
 OSCILLATOR_INPUTS = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
@@ -34,6 +34,7 @@ SHAKER_OUTPUTS = (
 )
 Y, V, A, JERK, ANGLE, SPEED, E_MOTOR, E_DAMPER, E_FORCE, E_STORED = range(10)
 MOST_ITERATIONS = 40
+SHORTEST = 1e-3  # of the scheme's step: shorter ones are not halved
 CONVERGED = 1e-14  # change of the force between two iterations, over its size
 BEGIN = (1, 1, 2, 4, 8)  # parts of the first step in sixteenths, of schemes that cannot iterate: nothing is known yet to extrapolate from
 PASSES = {"gauss-seidel": 1, "rollback": 2, "iterated": MOST_ITERATIONS}
@@ -52,17 +53,26 @@ class Scheme:
         Communication step, s.
     matched : bool
         Exchange forces and accelerations that are exact on average; else through points only.
+    tolerance : float
+        Halve steps whose defect is larger than this part of the work exchanged in them; 0: never. Needs a scheme that goes back.
     """
 
     algorithm: str = "rollback"
     h: float = 0.1
     matched: bool = True
+    tolerance: float = 0.0
 
     def __post_init__(self):
         if self.algorithm not in ALGORITHMS:
             raise UserError(f"algorithm {self.algorithm}: allowed are {', '.join(ALGORITHMS)}")
         if not (math.isfinite(self.h) and self.h > 0.0):
             raise UserError(f"communication step {self.h}: allowed is a number > 0")
+        if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
+            raise UserError(f"tolerance {self.tolerance}: allowed is a number >= 0, 0 for steps as they are")
+        if self.tolerance and PASSES.get(self.algorithm, 1) == 1:
+            raise UserError(
+                f"tolerance {self.tolerance} with algorithm {self.algorithm}, which cannot go back: allowed is 0, or rollback or iterated"
+            )
 
 
 class Master:
@@ -82,13 +92,15 @@ class Master:
     x, s : list of float
         Outputs of both sides at ``time``, in the order of ``OSCILLATOR_OUTPUTS`` and ``SHAKER_OUTPUTS``.
     ledger : Ledger
+    halved : int
+        Steps that the tolerance has halved.
     """
 
     def __init__(self, oscillator, shaker, setup, scheme, start_time=0.0):
         self.oscillator = Channel(oscillator, OSCILLATOR_INPUTS, OSCILLATOR_OUTPUTS)
         self.shaker = Channel(shaker, SHAKER_INPUTS, SHAKER_OUTPUTS)
         self.scheme = scheme
-        self.time = start_time
+        self.time, self.halved = start_time, 0
         self.x, self.s = self.oscillator.get(), self.shaker.get()
         self.voltage = math.nan
         self.slope = 0.0  # of the force, at the present communication point
@@ -112,8 +124,17 @@ class Master:
         x, s = self.x, self.s
         acceleration, x_new, s_new = self._step(h)
         force = self.force_of(x, x_new, h)
+        defect = s_new[E_FORCE] - s[E_FORCE] - work(force, s[V], acceleration, h)
+        exchanged = abs(s_new[E_FORCE] - s[E_FORCE]) + abs(s_new[E_MOTOR] - s[E_MOTOR])
+        if self.scheme.tolerance and abs(defect) > self.scheme.tolerance * exchanged and h > SHORTEST * self.scheme.h:
+            self.oscillator.restore()
+            self.shaker.restore()
+            self.halved += 1
+            self._one_step(voltage, 0.5 * h)
+            self._one_step(voltage, 0.5 * h)
+            return
         self.slope = end_slope(force, h)
-        self.ledger.add(x, x_new, s, s_new, acceleration, force, h)
+        self.ledger.add(x, x_new, acceleration, defect, h)
         jerk = s[JERK] if self.h_before else acceleration[1]  # at the start the force's slope was not known
         self.force_before, self.acceleration_before, self.h_before = x[R], (s[A], jerk), h
         self.time += h

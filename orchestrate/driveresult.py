@@ -1,10 +1,12 @@
-"""From the revolutions of a run to a labelled dataset."""
+"""From the revolutions of a run to a labelled dataset, and the voltages at which the speed jumps."""
+
+import math
 
 import numpy as np
 import xarray
 
 from . import averaged
-from .weakdrive import COLUMNS, jumps
+from .weakdrive import COLUMNS
 
 NAMES = {
     "time": "time at the revolution's end, times omega",
@@ -69,6 +71,7 @@ def dataset(plan, rows, fmus):
         "turn_time": schedule.settle + schedule.rise,
         "algorithm": plan.scheme.algorithm,
         "step": plan.scheme.h,
+        "tolerance": plan.scheme.tolerance,
         "jump_up": up,
         "jump_down": down,
         "missing_over_motor_work": missing,
@@ -79,3 +82,30 @@ def dataset(plan, rows, fmus):
         for name, (eta0, _) in zip(("up", "down"), averaged.folds(setup), strict=False):
             found.attrs[f"averaged_jump_{name}"] = eta0
     return found
+
+
+def jumps(rows, plan):
+    """The voltages at which the speed jumps, up and down; NaN where it does not.
+
+    The slip eta0 - Omega is what the vibration takes from the motor. It falls at the jump up and rises at the jump down; where it passes half of
+    its largest value on that way is where the jump is said to be.
+    """
+    schedule, time, eta0, slip = plan.schedule, rows[:, 0], rows[:, 1], rows[:, 1] - rows[:, 2]
+    turn, rising = schedule.settle + schedule.rise, schedule.last > schedule.first
+    there = (time > schedule.settle) & (time <= turn)
+    return first_fall(eta0, slip, there if rising else time > turn), first_rise(eta0, slip, time > turn if rising else there)
+
+
+def first_fall(eta0, slip, part):
+    """Where the slip falls below half of its largest value, after that."""
+    level, where = slip[part], eta0[part]
+    after = np.flatnonzero(level < 0.5 * level.max(initial=-math.inf))
+    after = after[after > np.argmax(level)] if level.size else after
+    return float(where[after[0]]) if after.size else math.nan
+
+
+def first_rise(eta0, slip, part):
+    """Where the slip rises above half of its largest value."""
+    level, where = slip[part], eta0[part]
+    after = np.flatnonzero(level > 0.5 * level.max(initial=-math.inf))
+    return float(where[after[0]]) if after.size and after[0] > 0 else math.nan

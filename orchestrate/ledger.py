@@ -8,7 +8,7 @@ The defect of a step is the difference between the work that one side gives and 
 sufficient: two sides may agree on a wrong motion.
 """
 
-from .polynomials import product, quartic, work
+from .polynomials import product, quartic
 
 
 class Ledger:
@@ -44,8 +44,8 @@ class Ledger:
         m1, m2, _, _ = self._numbers
         return self.relative_energy(x) + velocity * (m1 * x[2] + m2 * x[3] + 0.5 * (m1 + m2) * velocity)
 
-    def add(self, x, x_new, s, s_new, acceleration, force, h):
-        """Enter a step: outputs of both sides before and after it, what the oscillator was told, what it answered."""
+    def add(self, x, x_new, acceleration, defect, h):
+        """Enter a step: the oscillator's outputs before and after it, what it was told, and the step's defect."""
         m1, m2, _, _ = self._numbers
         mass = m1 + m2
         a0, a1, a2, a3 = acceleration
@@ -56,7 +56,6 @@ class Ledger:
         momentum = quartic(ends, slopes, mean)
         told = h * product(momentum, (a0, a1 * h, a2 * h * h / 2.0, a3 * h * h * h / 6.0))
         self.lost += self.relative_energy(x) - self.relative_energy(x_new) - told
-        defect = (s_new[8] - s[8]) - work(force, s[1], acceleration, h)
         self.defect += defect
         self.sizes += abs(defect)
 

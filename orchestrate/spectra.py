@@ -22,9 +22,11 @@ def record(setup, fmus, eta0, count, h):
     setup : Setup
     fmus : (path-like, path-like)
         Oscillator and shaker.
-    eta0, h : float
-        Voltage, and time between the samples, non-dimensional.
+    eta0 : float
+        Voltage.
     count : int
+    h : float
+        Time between the samples, in 1/omega.
 
     Returns
     -------

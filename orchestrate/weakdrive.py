@@ -4,13 +4,13 @@ A run is cut into chunks; the journal keeps each with the states of both FMUs an
 """
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import replace
 
 import numpy as np
 
-from .coupling import ANGLE, OSCILLATOR, SHAKER, SPEED, V1, X1, A, Master, Scheme, Y
+from .coupling import ANGLE, OSCILLATOR, SHAKER, SPEED, V1, X1, A, Master, Y
 from .fmu import Instance
-from .setups import TURN, Setup
+from .setups import TURN
 
 CHUNK = 2000  # steps between two entries in the journal
 COLUMNS = (
@@ -18,84 +18,6 @@ COLUMNS = (
     *("motor", "box_damper", "impact_loss", "stored", "dampers", "missing", "defect", "defect_sizes"),
 )
 ACCOUNTS = {"impact_loss": "impacts"}  # names in the ledger, where they differ
-
-
-@dataclass(frozen=True)
-class Schedule:
-    """The voltage over time: settle, there, back; eta0 and 1/omega.
-
-    Attributes
-    ----------
-    first, last : float
-        Ends of eta0; the same for a constant voltage.
-    rate : float
-        Change of eta0 per unit time, > 0; on average, where ``increment`` is not 0.
-    settle : float
-        Time at ``first`` before.
-    increment : float
-        Height of steps; 0 for a ramp.
-    back : bool
-        Whether it goes back to ``first`` again.
-    """
-
-    first: float
-    last: float
-    rate: float
-    settle: float = 300.0
-    increment: float = 0.0
-    back: bool = True
-
-    @property
-    def rise(self):
-        """Time the voltage takes from one end to the other."""
-        return abs(self.last - self.first) / self.rate
-
-    @property
-    def duration(self):
-        """Time of the whole run."""
-        return self.settle + self.rise * (2 if self.back else 1)
-
-    def eta0(self, time):
-        """Voltage at a time."""
-        ramp = min(max(time - self.settle, 0.0), self.duration - self.settle)
-        there = ramp <= self.rise
-        change = self.rate * (ramp if there else 2.0 * self.rise - ramp)
-        if self.increment:
-            count = change / self.increment
-            change = self.increment * (math.floor(count + 1e-9) if there else math.ceil(count - 1e-9))
-        return self.first + math.copysign(min(change, abs(self.last - self.first)), self.last - self.first)
-
-
-@dataclass(frozen=True)
-class Plan:
-    """One run.
-
-    Attributes
-    ----------
-    setup : Setup
-    schedule : Schedule
-    scheme : Scheme
-        With its step in 1/omega.
-    speed : float
-        At the start, over omega.
-    guids : tuple of str
-        Of the FMUs that compute it.
-    """
-
-    setup: Setup
-    schedule: Schedule
-    scheme: Scheme
-    speed: float
-    guids: tuple
-
-    def identity(self):
-        """All that decides the numbers, as plain data."""
-        return asdict(self)
-
-    @property
-    def steps(self):
-        """Number of communication steps."""
-        return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
 
 class Revolutions:
@@ -172,7 +94,7 @@ class Run:
         voltage = plan.schedule.eta0(0.0) * setup.volts
         oscillator.initialize(**setup.oscillator())
         shaker.initialize(**setup.shaker(), speed_start=plan.speed * setup.omega, voltage=voltage)
-        self.master = Master(oscillator, shaker, setup, Scheme(plan.scheme.algorithm, plan.scheme.h / setup.omega, plan.scheme.matched))
+        self.master = Master(oscillator, shaker, setup, replace(plan.scheme, h=plan.scheme.h / setup.omega))
         self.revolutions = Revolutions(setup)
         self.revolutions.begin(self.master, 0.0, 0.0, 0.0)
 
@@ -241,30 +163,3 @@ def run(plan, fmus, journal, progress=lambda done: None):
             progress(state.done)
         state.master.close()
     return np.concatenate([rows_of(journal.row(i)) for i in range(index)])
-
-
-def jumps(rows, plan):
-    """The voltages at which the speed jumps, up and down; NaN where it does not.
-
-    The slip eta0 - Omega is what the vibration takes from the motor. It falls at the jump up and rises at the jump down; where it passes half of
-    its largest value on that way is where the jump is said to be.
-    """
-    schedule, time, eta0, slip = plan.schedule, rows[:, 0], rows[:, 1], rows[:, 1] - rows[:, 2]
-    turn, rising = schedule.settle + schedule.rise, schedule.last > schedule.first
-    there = (time > schedule.settle) & (time <= turn)
-    return first_fall(eta0, slip, there if rising else time > turn), first_rise(eta0, slip, time > turn if rising else there)
-
-
-def first_fall(eta0, slip, part):
-    """Where the slip falls below half of its largest value, after that."""
-    level, where = slip[part], eta0[part]
-    after = np.flatnonzero(level < 0.5 * level.max(initial=-math.inf))
-    after = after[after > np.argmax(level)] if level.size else after
-    return float(where[after[0]]) if after.size else math.nan
-
-
-def first_rise(eta0, slip, part):
-    """Where the slip rises above half of its largest value."""
-    level, where = slip[part], eta0[part]
-    after = np.flatnonzero(level > 0.5 * level.max(initial=-math.inf))
-    return float(where[after[0]]) if after.size and after[0] > 0 else math.nan

@@ -36,6 +36,7 @@ def add_parser(commands):
     option("--settle", type=float, default=300.0, help="time at the first voltage, in 1/omega (default: %(default)s)")
     option("--one-way", action="store_true", help="do not come back")
     option("--step", type=float, default=0.1, help="communication step, in 1/omega (default: %(default)s)")
+    option("--tolerance", type=float, default=0.0, help="halve steps with a larger defect, over the work exchanged in them (default: never)")
     option("--algorithm", default="rollback", help="master, see docs/coupling.md (default: %(default)s)")
     option("--oscillator", type=Path, help="FMU of the structure (default: the one in build/, exported first where missing or out of date)")
     option("--shaker", type=Path, help="FMU of the motor (default: likewise)")
@@ -72,7 +73,7 @@ def parse_range(text):
 def plans_of(arguments, guids):
     """The runs, by name."""
     from ..coupling import ALGORITHMS, Scheme
-    from ..weakdrive import Plan, Schedule
+    from ..schedule import Plan, Schedule
 
     one_of("setup", arguments.setup, tuple(SETUPS))
     one_of("structure", arguments.structure, STRUCTURES)
@@ -88,7 +89,7 @@ def plans_of(arguments, guids):
     if schedule.duration / arguments.step > 1e9:
         raise UserError(f"--rate {rate}: the run would take {schedule.duration / arguments.step:.2g} steps; allowed are 1e9")
     structures = ("bonded", "delaminated") if arguments.structure == "both" else (arguments.structure,)
-    scheme, setup = Scheme(arguments.algorithm, arguments.step), SETUPS[arguments.setup]
+    scheme, setup = Scheme(arguments.algorithm, arguments.step, tolerance=arguments.tolerance), SETUPS[arguments.setup]
     return {
         f"couple_{setup.name}_{name}": Plan(setup.as_bonded() if name == "bonded" else setup, schedule, scheme, first, guids) for name in structures
     }

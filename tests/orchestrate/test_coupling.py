@@ -9,7 +9,7 @@ from orchestrate.coupling import ALGORITHMS, Scheme
 from orchestrate.errors import UserError
 from orchestrate.setups import QUICK
 
-from .coupled import GRID, history, master, settled
+from .coupled import GRID, history, master, settled, state_of
 from .monolithic import Monolith
 
 TIME = 40.0
@@ -91,6 +91,21 @@ def test_a_small_defect_does_not_prove_accuracy(jumping):
     assert ledger["defect_sizes"] < 3e-4 * ledger["motor"] and error > 5e-4
 
 
+def test_steps_are_halved_where_their_defect_is_large(quick):
+    """Around impacts and wherever the step is too long; the motion is the better for it."""
+    rows, errors, halved = {}, {}, {}
+    for tolerance in (0.0, 1e-7):
+        with master(QUICK, Scheme("rollback", 0.4, tolerance=tolerance), quick.state) as m:
+            rows[tolerance] = [quick.state]
+            for _ in range(round(quick.time / 0.4)):
+                m.step(quick.voltage)
+                rows[tolerance].append(state_of(m))
+            halved[tolerance] = m.halved
+        errors[tolerance] = np.abs(np.array(rows[tolerance]) - quick.truth[::2])[:, 0].max()
+    assert halved[0.0] == 0 < halved[1e-7]
+    assert errors[1e-7] < 0.1 * errors[0.0]
+
+
 @pytest.mark.parametrize("form", ["fmi2", "fmi3"])
 def test_all_forms_give_the_same_bits(form):
     """States are saved and restored by the native and by the pythonfmu form alike."""
@@ -126,7 +141,9 @@ def test_the_clock_is_kept(algorithm):
         assert m.time == pytest.approx(100.0, abs=1e-9)
 
 
-@pytest.mark.parametrize(("arguments", "parts"), [(("euler", 0.1), ["euler", "rollback"]), (("jacobi", 0.0), ["0.0", "> 0"])])
+@pytest.mark.parametrize(
+    ("arguments", "parts"), [(("euler", 0.1), ["euler", "rollback"]), (("jacobi", 0.0), ["0.0", "> 0"]), (("jacobi", 0.1, True, 1e-6), ["rollback"])]
+)
 def test_mistakes(arguments, parts):
     with pytest.raises(UserError) as caught:
         Scheme(*arguments)

@@ -5,8 +5,10 @@ import pytest
 
 from orchestrate import averaged
 from orchestrate.coupling import OSCILLATOR, SHAKER, Scheme
+from orchestrate.driveresult import jumps
+from orchestrate.schedule import Plan, Schedule
 from orchestrate.setups import BEAM, QUICK
-from orchestrate.weakdrive import COLUMNS, Plan, Schedule, jumps, run
+from orchestrate.weakdrive import COLUMNS, run
 
 from ..conftest import BUILD
 
