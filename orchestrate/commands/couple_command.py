@@ -7,7 +7,7 @@ from pathlib import Path
 from ..errors import UserError
 from ..setups import SETUPS
 
-DEFAULTS = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 2e-5)}  # voltages and rate
+DEFAULTS = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 5e-6)}  # voltages and rate
 STRUCTURES = ("bonded", "delaminated", "both")
 EPILOG = """examples:
   python -m orchestrate couple                                   quick: voltage up and down, bonded and delaminated
@@ -31,7 +31,7 @@ def add_parser(commands):
     option("--setup", default="quick", help=f"parameter set, of {', '.join(SETUPS)} (default: %(default)s)")
     option("--structure", default="both", help=f"of {', '.join(STRUCTURES)} (default: %(default)s)")
     option("--eta0", help="FIRST:LAST, voltage as no-load speed over omega (default: 1.2:1.65 for quick, 1.25:1.6 for beam)")
-    option("--rate", type=float, help="change of eta0 in a time 1/omega (default: 1e-4 for quick, 2e-5 for beam)")
+    option("--rate", type=float, help="change of eta0 in a time 1/omega (default: 1e-4 for quick, 5e-6 for beam)")
     option("--increment", type=float, default=0.0, help="change in steps of this height, at the same mean rate (default: a ramp)")
     option("--settle", type=float, default=300.0, help="time at the first voltage, in 1/omega (default: %(default)s)")
     option("--one-way", action="store_true", help="do not come back")
