@@ -20,19 +20,24 @@ from dataclasses import dataclass
 
 from .channel import Channel
 from .errors import UserError
+from .exchange import (
+    E_FORCE,
+    E_MOTOR,
+    IMPULSE,
+    JERK,
+    MOMENT,
+    OSCILLATOR_INPUTS,
+    OSCILLATOR_OUTPUTS,
+    SHAKER_INPUTS,
+    SHAKER_OUTPUTS,
+    A,
+    R,
+    V,
+    Y,
+)
 from .ledger import Ledger
 from .polynomials import end_slope, matched_cubic, parabola, work
 
-OSCILLATOR, SHAKER = "TwoMassImpactOscillator", "MotorShaker"
-OSCILLATOR_INPUTS = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
-OSCILLATOR_OUTPUTS = ("x1", "x2", "v1", "v2", "box_force", "box_impulse", "box_impulse_moment", "impact_energy")
-X1, X2, V1, V2, R, IMPULSE, MOMENT, IMPACT_ENERGY = range(8)
-SHAKER_INPUTS = ("box_force", "box_force_1", "box_force_2", "box_force_3", "voltage")
-SHAKER_OUTPUTS = (
-    *("box_position", "box_velocity", "box_acceleration", "box_jerk", "angle", "speed"),
-    *("motor_energy", "box_damper_energy", "box_force_work", "stored_energy"),
-)
-Y, V, A, JERK, ANGLE, SPEED, E_MOTOR, E_DAMPER, E_FORCE, E_STORED = range(10)
 MOST_ITERATIONS = 40
 SHORTEST = 1e-3  # of the scheme's step: shorter ones are not halved
 CONVERGED = 1e-14  # change of the force between two iterations, over its size

@@ -8,6 +8,7 @@ The defect of a step is the difference between the work that one side gives and 
 sufficient: two sides may agree on a wrong motion.
 """
 
+from .exchange import E_DAMPER, E_MOTOR, E_STORED, IMPACT_ENERGY, V1, V2, X1, X2, R, V
 from .polynomials import product, quartic
 
 
@@ -37,12 +38,12 @@ class Ledger:
     def relative_energy(self, x):
         """Energy of the structure, seen from the box."""
         m1, m2, k1, k2 = self._numbers
-        return 0.5 * (m1 * x[2] * x[2] + m2 * x[3] * x[3] + k1 * x[0] * x[0] + k2 * x[1] * x[1])
+        return 0.5 * (m1 * x[V1] * x[V1] + m2 * x[V2] * x[V2] + k1 * x[X1] * x[X1] + k2 * x[X2] * x[X2])
 
     def energy(self, x, velocity):
         """Energy of the structure, the box moving with ``velocity``."""
         m1, m2, _, _ = self._numbers
-        return self.relative_energy(x) + velocity * (m1 * x[2] + m2 * x[3] + 0.5 * (m1 + m2) * velocity)
+        return self.relative_energy(x) + velocity * (m1 * x[V1] + m2 * x[V2] + 0.5 * (m1 + m2) * velocity)
 
     def add(self, x, x_new, acceleration, defect, h):
         """Enter a step: the oscillator's outputs before and after it, what it was told, and the step's defect."""
@@ -50,9 +51,9 @@ class Ledger:
         mass = m1 + m2
         a0, a1, a2, a3 = acceleration
         a_end = a0 + h * (a1 + 0.5 * h * (a2 + h * a3 / 3.0))
-        ends = (m1 * x[2] + m2 * x[3], m1 * x_new[2] + m2 * x_new[3])
-        slopes = (-h * (x[4] + mass * a0), -h * (x_new[4] + mass * a_end))
-        mean = (m1 * (x_new[0] - x[0]) + m2 * (x_new[1] - x[1])) / h
+        ends = (m1 * x[V1] + m2 * x[V2], m1 * x_new[V1] + m2 * x_new[V2])
+        slopes = (-h * (x[R] + mass * a0), -h * (x_new[R] + mass * a_end))
+        mean = (m1 * (x_new[X1] - x[X1]) + m2 * (x_new[X2] - x[X2])) / h
         momentum = quartic(ends, slopes, mean)
         told = h * product(momentum, (a0, a1 * h, a2 * h * h / 2.0, a3 * h * h * h / 6.0))
         self.lost += self.relative_energy(x) - self.relative_energy(x_new) - told
@@ -62,11 +63,11 @@ class Ledger:
     def _entries(self, x, s):
         """Accounts at a communication point, since the instances' start."""
         return {
-            "motor": s[6],
-            "box_damper": s[7],
-            "impacts": x[7],
-            "stored": s[9] + self.energy(x, s[1]),
-            "dampers": self.lost - x[7],
+            "motor": s[E_MOTOR],
+            "box_damper": s[E_DAMPER],
+            "impacts": x[IMPACT_ENERGY],
+            "stored": s[E_STORED] + self.energy(x, s[V]),
+            "dampers": self.lost - x[IMPACT_ENERGY],
         }
 
     def memory(self):

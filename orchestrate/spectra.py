@@ -8,7 +8,8 @@ import math
 
 import numpy as np
 
-from .coupling import OSCILLATOR, SHAKER, SPEED, V1, Master, Scheme, V
+from .coupling import Master, Scheme
+from .exchange import OSCILLATOR, SHAKER, SPEED, V1, V
 from .fmu import Instance
 
 SETTLE = 800.0  # 1/omega

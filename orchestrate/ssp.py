@@ -8,7 +8,7 @@ import zipfile
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from .coupling import OSCILLATOR, OSCILLATOR_INPUTS, SHAKER
+from .exchange import OSCILLATOR, OSCILLATOR_INPUTS, SHAKER
 
 NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",

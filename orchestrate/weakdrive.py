@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from .coupling import ANGLE, OSCILLATOR, SHAKER, SPEED, V1, X1, A, Master, Y
+from .coupling import Master
+from .exchange import ANGLE, OSCILLATOR, SHAKER, SPEED, V1, X1, A, V, Y
 from .fmu import Instance
 from .setups import TURN
 
@@ -35,7 +36,7 @@ class Revolutions:
     def begin(self, m, turn, time, impacts):
         """A revolution begins."""
         x, y = m.x[X1], m.s[Y]
-        self.numbers = [turn, time, impacts, x, x, y, y, m.x[V1], m.s[Y + 1], 0.0]
+        self.numbers = [turn, time, impacts, x, x, y, y, m.x[V1], m.s[V], 0.0]
 
     def add(self, m, count):
         """Look at the state after a step.
@@ -52,12 +53,12 @@ class Revolutions:
             In the order of ``COLUMNS``, when a revolution is complete.
         """
         n = self.numbers
-        for place, value, velocity, before in ((3, m.x[X1], m.x[V1], n[7]), (5, m.s[Y], m.s[Y + 1], n[8])):
+        for place, value, velocity, before in ((3, m.x[X1], m.x[V1], n[7]), (5, m.s[Y], m.s[V], n[8])):
             if before * velocity < 0.0:  # between the points it has turned round: as a parabola
                 value += 0.5 * velocity * velocity / (before - velocity) * m.h_before
             n[place] = max(n[place], value)
             n[place + 1] = min(n[place + 1], value)
-        n[7], n[8] = m.x[V1], m.s[Y + 1]
+        n[7], n[8] = m.x[V1], m.s[V]
         n[9] = max(n[9], abs(m.s[A]))
         turn = math.floor(m.s[ANGLE] / TURN)
         if turn <= n[0]:

@@ -8,6 +8,7 @@ LIMIT = 1e30  # of start values and inputs: squares, sums and energies of them s
 BOX = ("box_mass", "box_stiffness", "box_damping", "position_start", "velocity_start")
 ROTOR = ("unbalance_mass", "unbalance_radius", "rotor_inertia", "angle_start", "speed_start")
 CIRCUIT = ("motor_constant", "armature_resistance", "armature_inductance", "current_start", "speed_start")
+STORED = (*(name for name in BOX if name != "box_damping"), *ROTOR)
 FORCE = ("box_force", "box_force_1")
 ALL = (*BOX, *ROTOR, *(name for name in CIRCUIT if name not in ROTOR), "voltage")
 
@@ -79,6 +80,6 @@ OUTPUTS = (
     output("motor_energy", at.MOTOR_ENERGY, "J", "Mechanical work of the motor since the start, integral of motor_power"),
     output("box_damper_energy", at.BOX_DAMPER_ENERGY, "J", "Energy lost in the damper of the box's suspension since the start"),
     output("box_force_work", at.BOX_FORCE_WORK, "J", "Work of box_force on the box since the start"),
-    output("stored_energy", at.STORED_ENERGY, "J", "Kinetic energy of box and rotor, and energy of the box's spring", (*BOX, *ROTOR)),
+    output("stored_energy", at.STORED_ENERGY, "J", "Kinetic energy of box and rotor, and energy of the box's spring", STORED),
 )
 VARIABLES = PARAMETERS + INPUTS + OUTPUTS

@@ -98,7 +98,7 @@ def plans_of(arguments, guids):
 def run(arguments):
     """Carry it out."""
     from ..build import default_fmu
-    from ..coupling import OSCILLATOR, SHAKER
+    from ..exchange import OSCILLATOR, SHAKER
     from ..fmu import describe
     from .sweep_command import open_output
 

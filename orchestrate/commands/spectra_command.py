@@ -31,7 +31,7 @@ def run(arguments):
     number("samples", arguments.samples, 64, 10_000_000)
     number("step", arguments.step, 1e-4, 1.0)
     from ..build import default_fmu
-    from ..coupling import OSCILLATOR, SHAKER
+    from ..exchange import OSCILLATOR, SHAKER
     from ..figures.spectra import draw
     from ..spectra import record, spectrum
     from .sweep_command import open_output

@@ -10,6 +10,7 @@ from fmpy.validation import validate_fmu
 from ..fresh import ROOT
 from ..shaker.truth import solve
 from .driver import BUILD, FORMS, run
+from .exporting import export_copy
 
 FMUS = {form: BUILD / form / "MotorShaker.fmu" for form in FORMS}
 # The contract's table, typed in here: name, causality, unit.
@@ -51,6 +52,18 @@ def test_valid_and_as_the_contract_says(fmu):
     variables = {variable.name: variable for variable in fmpy.read_model_description(str(fmu)).modelVariables}
     for name, causality, unit in (entry.split() for entry in CONTRACT.split("|")):
         assert (variables[name].causality, variables[name].unit) == (causality, unit), name
+
+
+def test_exports_are_the_same_bytes_and_named_by_their_sources(tmp_path):
+    """The elementary functions, which lie with the other kernel, are among the sources."""
+    packages = ("shaker", "drive")
+    first = export_copy(tmp_path / "first", packages=packages, PYTHONHASHSEED="1", TZ="UTC")
+    second = export_copy(tmp_path / "a second one", packages=packages, PYTHONHASHSEED="2", TZ="Asia/Tokyo")
+    assert first.read_bytes() == second.read_bytes()
+    guid = fmpy.read_model_description(str(first)).guid
+    assert guid == fmpy.read_model_description(str(FMUS["fmi2-python"])).guid
+    changed = export_copy(tmp_path / "changed", [("vibroimpact/elementary.py", "EXP_ZERO = 700.0", "EXP_ZERO = 701.0")], packages)
+    assert fmpy.read_model_description(str(changed)).guid != guid
 
 
 def test_dependencies_tell_what_follows_an_input_at_once(fmu):

@@ -4,7 +4,8 @@ import contextlib
 
 import numpy as np
 
-from orchestrate.coupling import ANGLE, OSCILLATOR, SHAKER, SPEED, V1, V2, X1, X2, Master, Scheme, V, Y
+from orchestrate.coupling import Master, Scheme
+from orchestrate.exchange import ANGLE, OSCILLATOR, SHAKER, SPEED, V1, V2, X1, X2, V, Y
 from orchestrate.fmu import Instance
 
 from ..conftest import BUILD

@@ -4,7 +4,8 @@ from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
 
 from orchestrate import ssp
-from orchestrate.coupling import OSCILLATOR, SHAKER, SPEED, X1, Scheme
+from orchestrate.coupling import Scheme
+from orchestrate.exchange import OSCILLATOR, SHAKER, SPEED, X1
 from orchestrate.setups import QUICK
 
 from ..conftest import BUILD

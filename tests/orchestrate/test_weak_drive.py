@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from orchestrate import averaged
-from orchestrate.coupling import OSCILLATOR, SHAKER, Scheme
+from orchestrate.coupling import Scheme
 from orchestrate.driveresult import jumps
+from orchestrate.exchange import OSCILLATOR, SHAKER
 from orchestrate.schedule import Plan, Schedule
 from orchestrate.setups import BEAM, QUICK
 from orchestrate.weakdrive import COLUMNS, run
