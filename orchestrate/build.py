@@ -3,6 +3,7 @@
 import functools
 from pathlib import Path
 
+from fmu_src.drive.model import MODEL as SHAKER
 from fmu_src.export import native_form, pythonfmu_form
 from fmu_src.export.linking import NoCompiler, say_pure_python
 from fmu_src.oscillator.model import MODEL as OSCILLATOR
@@ -11,7 +12,10 @@ from .errors import UserError
 from .fmu import describe
 
 FORMS: dict = {"fmi2-python": pythonfmu_form.export, "fmi2": native_form.export_fmi2, "fmi3": native_form.export_fmi3}
-MODELS: dict = {"TwoMassImpactOscillator": (OSCILLATOR, "vibroimpact", "oscillator")}
+MODELS: dict = {
+    "TwoMassImpactOscillator": (OSCILLATOR, "vibroimpact", "oscillator"),
+    "MotorShaker": (SHAKER, "shaker", "drive"),
+}
 GUIDS: dict = {
     "fmi2-python": pythonfmu_form.guid,
     "fmi2": functools.partial(native_form.guid, version="fmi2"),
@@ -20,8 +24,8 @@ GUIDS: dict = {
 PREFERENCE = ("fmi2", "fmi2-python")  # the form taken where the user names none, best first
 
 
-def build(folder, forms=tuple(FORMS)):
-    """Export all models in the given forms.
+def build(folder, forms=tuple(FORMS), names=tuple(MODELS)):
+    """Export models in the given forms.
 
     Parameters
     ----------
@@ -29,6 +33,8 @@ def build(folder, forms=tuple(FORMS)):
         The build folder.
     forms : sequence of str
         Of ``FORMS``.
+    names : sequence of str
+        Of ``MODELS``.
 
     Returns
     -------
@@ -41,9 +47,9 @@ def build(folder, forms=tuple(FORMS)):
     except OSError as error:
         raise UserError(f"{folder}: {error.strerror or error}; allowed is a folder that can be written") from None
     for form in forms:
-        for model in MODELS.values():
+        for name in names:
             try:
-                written.append(FORMS[form](*model, Path(folder) / form))
+                written.append(FORMS[form](*MODELS[name], Path(folder) / form))
             except NoCompiler as reason:
                 say_pure_python(reason)
             except OSError as error:
@@ -54,13 +60,19 @@ def build(folder, forms=tuple(FORMS)):
 def up_to_date(form, name, folder):
     """Whether a model's FMU of a form is there and made of the present sources."""
     path = Path(folder) / form / f"{name}.fmu"
-    return path.is_file() and describe(path).guid == GUIDS[form](*MODELS[name][1:])
+    try:
+        return path.is_file() and describe(path).guid == GUIDS[form](*MODELS[name][1:])
+    except UserError:  # damaged: to be made anew
+        return False
 
 
 def refresh(folder, forms=tuple(FORMS)):
     """Export what is missing or out of date."""
-    stale = [form for form in forms if not all(up_to_date(form, name, folder) for name in MODELS)]
-    return build(folder, stale)
+    written = []
+    for form in forms:
+        stale = [name for name in MODELS if not up_to_date(form, name, folder)]
+        written += build(folder, [form], stale)
+    return written
 
 
 def default_fmu(name, folder):
@@ -70,6 +82,6 @@ def default_fmu(name, folder):
         if up_to_date(form, name, folder):
             return path
         print(f"exporting {path} ...", flush=True)
-        if build(folder, [form]):
+        if build(folder, [form], [name]):
             return path
     raise AssertionError("the last form needs no compiler")

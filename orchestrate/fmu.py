@@ -24,6 +24,8 @@ class Description:
     name, guid, fmi_version : str
     variables : dict
         FMPy's ScalarVariable by name.
+    needs_tool : bool
+        Whether it needs a tool of its own, such as a Python.
     """
 
     path: Path
@@ -31,6 +33,7 @@ class Description:
     guid: str
     fmi_version: str
     variables: dict
+    needs_tool: bool = False
 
 
 def describe(path, model=None):
@@ -64,7 +67,7 @@ def describe(path, model=None):
     if found.coSimulation is None or (model and found.modelName != model):
         raise UserError(f"FMU {path}: model {found.modelName}; allowed is {model or 'a model'} for co-simulation")
     variables = {variable.name: variable for variable in found.modelVariables}
-    return Description(path, found.modelName, str(found.guid), found.fmiVersion, variables)
+    return Description(path, found.modelName, str(found.guid), found.fmiVersion, variables, bool(found.coSimulation.needsExecutionTool))
 
 
 class Instance:

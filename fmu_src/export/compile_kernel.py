@@ -20,7 +20,6 @@ from .linking import PLATFORMS, NoCompiler
 
 CPU = "x86-64-v2"
 SETTINGS = {"NUMBA_CPU_NAME": CPU, "NUMBA_CPU_FEATURES": "", "NUMBA_OPT": "3", "NUMBA_CACHE_DIR": os.devnull}
-ENTRIES = ("initialize", "advance")  # named kernel_initialize and kernel_advance in the object
 
 
 @functools.cache
@@ -51,15 +50,21 @@ def compile_objects(model_module):
         return {name: (Path(folder) / f"{name}.o").read_bytes() for name in PLATFORMS}
 
 
-def jit_kernel(package):
-    """Replace every function of an imported package by its Numba dispatcher."""
+def kernel_modules(model_module):
+    """Names of the modules imported so far that the model's kernel is made of: all but the model's own and the exporters'."""
+    root = __package__.rsplit(".", 1)[0]
+    others = (__package__, model_module.rsplit(".", 1)[0])
+    return [name for name in sorted(sys.modules) if name.startswith(root + ".") and not name.startswith(others)]
+
+
+def jit_kernel(names):
+    """Replace every function of imported modules by its Numba dispatcher."""
     import numba
 
-    modules = [module for name, module in sorted(sys.modules.items()) if name.startswith(package + ".")]
     dispatchers = {}
-    for module in modules:
+    for module in map(sys.modules.__getitem__, names):
         for name, value in list(vars(module).items()):
-            if isinstance(value, types.FunctionType) and value.__module__.startswith(package):
+            if isinstance(value, types.FunctionType) and value.__module__ in names:
                 if value not in dispatchers:
                     dispatchers[value] = numba.njit(error_model="numpy")(value)
                 setattr(module, name, dispatchers[value])
@@ -128,9 +133,8 @@ def emit_object(text, platform):
 def main(model_module, folder):
     """Write one object file a platform; see :func:`compile_objects`."""
     model = importlib.import_module(model_module).MODEL
-    package = model.advance.__module__.rsplit(".", 1)[0]
-    dispatchers = jit_kernel(package)
-    entries = {f"kernel_{name}": entry_ir(dispatchers[getattr(model, name)], model.memory_size) for name in ENTRIES}
+    dispatchers = jit_kernel(kernel_modules(model_module))
+    entries = {f"kernel_{name}": entry_ir(dispatchers[function], model.memory_size) for name, function in model.entries.items()}
     text = str(link_ir(entries))
     for name, platform in PLATFORMS.items():
         (Path(folder) / f"{name}.o").write_bytes(emit_object(text, platform))

@@ -17,8 +17,8 @@ LIBRARIES = {  # machine: platform and file name
 loaded: dict = {}  # libraries of this process: ctypes makes new classes at every load
 
 
-def load_compiled(folder, key):
-    """Entry points ``(initialize, advance)`` of the library in ``folder``, or None.
+def load_compiled(folder, key, names=("initialize", "advance")):
+    """Entry points of the library in ``folder``, or None.
 
     Parameters
     ----------
@@ -26,10 +26,12 @@ def load_compiled(folder, key):
         Where the library would lie.
     key : str
         Name for its contents: a library loaded before under this name serves, wherever it lay.
+    names : sequence of str
+        The entry points wanted.
 
     Returns
     -------
-    tuple of ctypes functions, or None
+    list of ctypes functions, or None
         Each takes an array of c_double and a time, and returns a code.
     """
     _, name = LIBRARIES.get((sys.platform, platform.machine().lower()), ("", "none"))
@@ -42,7 +44,7 @@ def load_compiled(folder, key):
         return None
     try:
         library = ctypes.CDLL(path)
-        entries = library.initialize, library.advance
+        entries = [getattr(library, name) for name in names]
     except (OSError, AttributeError):  # another C library, a damaged file: the source runs everywhere
         return None
     for entry in entries:

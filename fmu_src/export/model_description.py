@@ -21,7 +21,18 @@ UNITS = {  # SI exponents
     "N": {"kg": 1, "m": 1, "s": -2},
     "N.s": {"kg": 1, "m": 1, "s": -1},
     "N.s2": {"kg": 1, "m": 1},
+    "N/s": {"kg": 1, "m": 1, "s": -3},
+    "N/s2": {"kg": 1, "m": 1, "s": -4},
+    "N/s3": {"kg": 1, "m": 1, "s": -5},
+    "N.m": {"kg": 1, "m": 2, "s": -2},
     "J": {"kg": 1, "m": 2, "s": -2},
+    "W": {"kg": 1, "m": 2, "s": -3},
+    "kg.m2": {"kg": 1, "m": 2},
+    "A": {"A": 1},
+    "V": {"kg": 1, "m": 2, "s": -3, "A": -1},
+    "Ohm": {"kg": 1, "m": 2, "s": -3, "A": -2},
+    "H": {"kg": 1, "m": 2, "s": -2, "A": -2},
+    "N.m/A": {"kg": 1, "m": 2, "s": -2, "A": -1},
 }
 COSIMULATION = {
     "needsExecutionTool": "true",
@@ -95,7 +106,7 @@ def fmi2_native_xml(model, guid):
 def add_units(root, model):
     """Definitions of the units in use."""
     definitions = ET.SubElement(root, "UnitDefinitions")
-    used = {variable.unit for variable in model.variables}
+    used = {variable.unit for variable in model.variables} | {"s"}  # of time
     for name, exponents in UNITS.items():
         if name in used:
             unit = ET.SubElement(definitions, "Unit", name=name)
@@ -136,13 +147,13 @@ def start_text(variable):
 
 
 def add_structure(root, model):
-    """Dependencies: outputs belong to the last communication point, so none depends on an input as it is set now."""
+    """Dependencies: outputs belong to the last communication point, so few depend on an input as it is set now."""
     structure = ET.SubElement(root, "ModelStructure")
     index = {variable.name: str(i + 1) for i, variable in enumerate(model.variables)}
     outputs = ET.SubElement(structure, "Outputs")
     unknowns = ET.SubElement(structure, "InitialUnknowns")
     for variable in model.variables:
         if variable.causality == "output":
-            ET.SubElement(outputs, "Unknown", index=index[variable.name], dependencies="")
-            known = sorted(int(index[name]) for name in variable.initial_dependencies)
-            ET.SubElement(unknowns, "Unknown", index=index[variable.name], dependencies=" ".join(map(str, known)))
+            for parent, names in ((outputs, variable.dependencies), (unknowns, variable.initial_dependencies)):
+                known = sorted(int(index[name]) for name in names)
+                ET.SubElement(parent, "Unknown", index=index[variable.name], dependencies=" ".join(map(str, known)))

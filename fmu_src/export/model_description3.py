@@ -13,8 +13,8 @@ COSIMULATION = {
     "canGetAndSetFMUState": "true",
     "canSerializeFMUState": "true",
     "maxOutputDerivativeOrder": "1",
-    "hasEventMode": "true",
 }
+EVENT_MODE = {"hasEventMode": "true"}  # of models with a clock
 
 
 def fmi3_xml(model, token):
@@ -42,7 +42,7 @@ def fmi3_xml(model, token):
         generationTool=f"vibroimpact {model.version}",
         variableNamingConvention="flat",
     )
-    ET.SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **COSIMULATION})
+    ET.SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **COSIMULATION, **(EVENT_MODE if model.clock else {})})
     add_units(root, model)
     categories = ET.SubElement(root, "LogCategories")
     for name, description in LOG_CATEGORIES.items():
@@ -109,18 +109,15 @@ def add_array(parent, model, array, reference):
 
 
 def add_structure(root, model):
-    """Dependencies: outputs belong to the last communication point, so none depends on an input as it is set now."""
+    """Dependencies: outputs belong to the last communication point, so few depend on an input as it is set now."""
     structure = ET.SubElement(root, "ModelStructure")
-    slots = {variable.name: variable.slot for variable in model.variables}
-    calculated = [(v.slot, sorted(slots[name] for name in v.initial_dependencies)) for v in model.variables if v.causality == "output"]
-    for i, array in enumerate(model.arrays):
-        if elements(model, array)[0].causality != "output":
-            continue
-        names = {name for variable in elements(model, array) for name in variable.initial_dependencies}
-        calculated.append((ARRAY_BASE + i, sorted(slots[name] for name in names)))
+    calculated = [(v.slot, [v]) for v in model.variables if v.causality == "output"]
+    arrays = [(ARRAY_BASE + i, elements(model, array)) for i, array in enumerate(model.arrays)]
+    calculated += [(reference, members) for reference, members in arrays if members[0].causality == "output"]
     if model.clock:
         calculated.append((CLOCK_REFERENCE, []))
-    for reference, _ in calculated:
-        ET.SubElement(structure, "Output", valueReference=str(reference), dependencies="")
-    for reference, known in calculated:
-        ET.SubElement(structure, "InitialUnknown", valueReference=str(reference), dependencies=" ".join(map(str, known)))
+    for kind, attribute in (("Output", "dependencies"), ("InitialUnknown", "initial_dependencies")):
+        for reference, members in calculated:
+            names = {name for variable in members for name in getattr(variable, attribute)}
+            known = sorted(v.slot for v in model.variables if v.name in names)
+            ET.SubElement(structure, kind, valueReference=str(reference), dependencies=" ".join(map(str, known)))

@@ -5,13 +5,13 @@ import math
 from importlib import resources
 from pathlib import Path
 
-from .archive import fingerprint, guid_of, read_folder, write_archive
+from .archive import fingerprint, guid_of, write_archive
 from .compile_kernel import compile_objects
 from .documentation import documentation_files
 from .linking import PLATFORMS, link_all
 from .model_description import fmi2_native_xml
 from .model_description3 import ARRAY_BASE, CLOCK_REFERENCE, fmi3_xml
-from .pythonfmu_form import ROOT, embedded_sources
+from .pythonfmu_form import ROOT, embedded_sources, kernel_sources
 
 HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
@@ -73,6 +73,7 @@ def model_header(model, token, digest):
         f"#define TIME_SLOT {model.time_slot}",
         f"#define STOP_SLOT {model.stop_slot}",
         f"#define VARIABLE_COUNT {len(model.variables)}u",
+        f"#define REFRESH {int(model.refresh is not None)}",
         f"#define EVENT_CLOCK {int(model.clock is not None)}",
         f"#define EVENT_COUNT_SLOT {slots[model.clock.counter] if model.clock else 0}",
         f"#define CLOCK_REFERENCE {CLOCK_REFERENCE}u",
@@ -150,7 +151,7 @@ def export(model, kernel, folder, target, version):
         platform = PLATFORMS[name]
         files[f"binaries/{getattr(platform, version)}/{model.name}{platform.suffix}"] = binary
     files.update(documentation_files(model, ROOT / folder, digest))
-    files.update(read_folder(ROOT / kernel, f"documentation/{kernel}/"))
+    files.update({f"documentation/{name}": content for name, content in kernel_sources(kernel).items()})
     path = Path(target) / f"{model.name}.fmu"
     write_archive(path, files)
     return path

@@ -4,6 +4,7 @@ Two FMUs, or an FMU and its host, share modules of the same name in one process.
 content-hashed name, the script bears the hash too, and pythonfmu builds in a process of its own.
 """
 
+import re
 import subprocess
 import sys
 import tempfile
@@ -46,11 +47,20 @@ FmuBuilder.build_FMU(script, dest=target, project_files=[package])
 """
 
 
+def kernel_sources(kernel):
+    """Files of a kernel, and those of other kernels that it takes (``from ..OTHER.MODULE import ...``), by their path below ``fmu_src``."""
+    files = read_folder(ROOT / kernel, f"{kernel}/")
+    text = b"\n".join(files.values()).decode()
+    for other, module in sorted(set(re.findall(r"^from \.\.(\w+)\.(\w+) import ", text, flags=re.M))):
+        files.update({f"{other}/{name}": (ROOT / other / name).read_bytes() for name in ("__init__.py", f"{module}.py")})
+    return files
+
+
 def embedded_sources(kernel, folder):
     """Files of the embedded package, by their path in it."""
     files = {name: (ROOT / name).read_bytes() for name in RUNTIME}
     files.update({f"{folder}/{name}": (ROOT / folder / name).read_bytes() for name in MODEL_FILES})
-    files.update(read_folder(ROOT / kernel, f"{kernel}/"))
+    files.update(kernel_sources(kernel))
     return files
 
 
@@ -100,7 +110,7 @@ def run_pythonfmu(model, folder, sources, digest, scratch):
     try:
         entry = (ROOT / "export" / "native" / "library.c").read_bytes()
         objects = compile_objects(f"fmu_src.{folder}.model")
-        libraries = link_all(objects, {"library.c": entry})
+        libraries = link_all(objects, {"library.c": entry}, ("-DREFRESH",) if model.refresh else ())
         for platform, library in LIBRARIES.values():
             if platform in libraries:
                 (package / library).write_bytes(libraries[platform])

@@ -41,9 +41,9 @@ class Slave:
         super().__init__(**kwargs)
         size = self.model.memory_size
         package = __name__.split(".")[0]  # under its content-hashed name; its files lie with this instance, not with the first of the process
-        kernel = load_compiled(os.path.join(kwargs.get("resources") or "", package), package)
-        self._initialize = kernel[0] if kernel else self.model.initialize
-        self._advance = kernel[1] if kernel else self.model.advance
+        entries = self.model.entries
+        kernel = load_compiled(os.path.join(kwargs.get("resources") or "", package), package, tuple(entries))
+        self._entries = dict(zip(entries, kernel)) if kernel else entries
         self._array = ctypes.c_double * size if kernel else lambda *values: list(values)
         self._memory = self._array(*([0.0] * size))
         for variable in self.model.variables:
@@ -105,10 +105,21 @@ class Slave:
     def start(self):
         """Initialise the kernel with the present values."""
         if self._stale:
-            code = self._initialize(self._memory, self._start_time)
-            if code:
-                self.refuse(explain(self.model, self._memory, code))
-            self._stale = False
+            self.enter("initialize", self._start_time)
+
+    def enter(self, entry, time):
+        """Call the kernel for outputs that belong to the values set."""
+        code = self._entries[entry](self._memory, time)
+        if code:
+            self.refuse(explain(self.model, self._memory, code))
+        self._stale = False
+
+    def catch_up(self):
+        """Outputs for the values set since they were computed."""
+        if self._phase == INITIALIZING:
+            self.start()
+        elif self._phase == STEPPING and self.model.refresh:
+            self.enter("refresh", self._memory[self.model.time_slot])
 
     def terminate(self):
         """End of the simulation run; values can still be read."""
@@ -139,7 +150,7 @@ class Slave:
         """Advance; on failure the memory is put back and the reason returned."""
         first, count = self.model.written_only
         head, tail = self._memory[:first], self._memory[first + count :]
-        code = self._advance(self._memory, time)
+        code = self._entries["advance"](self._memory, time)
         if not code:
             return ""
         problem = explain(self.model, self._memory, code)
@@ -163,10 +174,9 @@ class Slave:
         if vrs != self._checked[kind]:
             self.find(vrs, kind)
             self._checked[kind] = list(vrs)
-        if self._phase == INITIALIZING:
-            self.start()
-        memory = self._memory
-        return [memory[vr] for vr in vrs]
+        if self._stale:
+            self.catch_up()
+        return list(map(self._memory.__getitem__, vrs))
 
     def get_real(self, vrs):
         """Values of Real variables."""
@@ -220,8 +230,7 @@ class Slave:
 
     def _get_fmu_state(self):
         header = (STATE_MAGIC + self.fingerprint.encode()).ljust(64, b"\0")
-        stale = 1.0 if self._stale else 0.0
-        numbers = (self._phase, self._start_time, stale) + tuple(self._memory)
+        numbers = (self._phase, self._start_time, float(self._stale)) + tuple(self._memory)
         return header + struct.pack(f"<{len(numbers)}d", *numbers)
 
     def _set_fmu_state(self, state):
@@ -229,8 +238,7 @@ class Slave:
         if not isinstance(state, bytes) or len(state) != len(reference) or state[:64] != reference[:64]:
             self.refuse(f"FMU state: allowed are states saved by this FMU ({self.model.name}, {self.fingerprint})")
         numbers = struct.unpack(f"<{(len(state) - 64) // 8}d", state[64:])
-        self._phase, self._start_time = numbers[0], numbers[1]
-        self._stale = numbers[2] != 0.0
+        self._phase, self._start_time, self._stale = numbers[0], numbers[1], numbers[2] != 0.0
         self._memory = self._array(*numbers[3:])
 
     @staticmethod

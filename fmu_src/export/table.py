@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from math import isfinite
 
 REAL, INTEGER, BOOLEAN = "Real", "Integer", "Boolean"
+HUGE = 1e100  # squares and energies of what an importer may set stay finite
+TINY, LARGE = 1e-30, 1e30
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,8 @@ class Variable:
         Allowed range, both included.
     nominal : float
         Order of magnitude.
+    dependencies : tuple of str
+        The inputs that the output follows at once, without a step.
     initial_dependencies : tuple of str
         The variables known at the start that the calculated initial value depends on.
     input_derivatives : int
@@ -52,6 +56,7 @@ class Variable:
     minimum: "float | None" = None
     maximum: "float | None" = None
     nominal: float = 1.0
+    dependencies: tuple = ()
     initial_dependencies: tuple = ()
     input_derivatives: int = 0
     derivative: str = ""
@@ -87,6 +92,22 @@ class Variable:
         lower = "" if self.minimum is None else f"{self.minimum!r} <= "
         upper = "" if self.maximum is None else f" <= {self.maximum!r}"
         return f"{lower}{self.name}{upper}"
+
+
+def parameter(name, slot, unit, start, description, **more):
+    """A parameter, fixed unless said otherwise."""
+    more = {"variability": "fixed", **more}
+    return Variable(name, slot, description, "parameter", unit, initial="exact", start=start, **more)
+
+
+def drive(name, slot, unit, start, description, **more):
+    """An input."""
+    return Variable(name, slot, description, "input", unit, start=start, **{"minimum": -HUGE, "maximum": HUGE, **more})
+
+
+def output(name, slot, unit, description, known=(), **more):
+    """An output, calculated from the start values ``known``."""
+    return Variable(name, slot, description, "output", unit, initial="calculated", initial_dependencies=tuple(known), **more)
 
 
 @dataclass(frozen=True)
@@ -140,6 +161,8 @@ class Model:
         Slots of the communication point reached, and of the flag that ends a step at its first event.
     initialize, advance : callable
         The kernel's entry points, ``(memory, time) -> code``; 0 is success.
+    refresh : callable or None
+        A third one, of a model with outputs that follow an input at once: the outputs for the inputs as set now.
     messages : dict of int to str
         What a code of the entry points says, as one line, see :func:`explain`.
     stop_time, step_size : float
@@ -165,6 +188,13 @@ class Model:
     step_size: float
     arrays: tuple = ()
     clock: "Clock | None" = None
+    refresh: object = None
+
+    @property
+    def entries(self):
+        """The kernel's entry points by name, in the order in which compiled forms give them."""
+        given = {"initialize": self.initialize, "advance": self.advance, "refresh": self.refresh}
+        return {name: function for name, function in given.items() if function is not None}
 
 
 def explain(model, memory, code):

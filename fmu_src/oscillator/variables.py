@@ -1,10 +1,7 @@
 """The variable table of ``TwoMassImpactOscillator``. Standard library only: it travels inside the FMU."""
 
-from ..export.table import BOOLEAN, INTEGER, Variable
+from ..export.table import BOOLEAN, HUGE, INTEGER, LARGE, TINY, Variable, drive, output, parameter
 from ..vibroimpact import memory as at
-
-HUGE = 1e100  # squares and energies of what an importer may set stay finite
-TINY, LARGE = 1e-30, 1e30
 
 MECHANICS = ("m1", "m2", "k1", "k2", "d1", "d2")
 STARTS = ("x1_start", "x2_start", "v1_start", "v2_start")
@@ -12,22 +9,6 @@ DRIVE = ("phase_start", "box_amplitude", "box_frequency")
 EXTRA = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
 MASS_1, MASS_2 = ("x1_start", "v1_start"), ("x2_start", "v2_start")
 ALL = MECHANICS + ("e", "gamma", "bonded") + STARTS + DRIVE + EXTRA  # after an impact at the start
-
-
-def parameter(name, slot, unit, start, description, **more):
-    """A parameter, fixed unless said otherwise."""
-    more = {"variability": "fixed", **more}
-    return Variable(name, slot, description, "parameter", unit, initial="exact", start=start, **more)
-
-
-def drive(name, slot, unit, start, description, **more):
-    """An input."""
-    return Variable(name, slot, description, "input", unit, start=start, **{"minimum": -HUGE, "maximum": HUGE, **more})
-
-
-def output(name, slot, unit, description, known=(), **more):
-    """An output, calculated from the start values ``known``."""
-    return Variable(name, slot, description, "output", unit, initial="calculated", initial_dependencies=tuple(known), **more)
 
 
 def start(name, slot, unit, description):

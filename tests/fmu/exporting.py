@@ -12,17 +12,17 @@ EXPORT = """
 from pathlib import Path
 from fmu_src.export import pythonfmu_form
 from fmu_src.export.linking import NoCompiler
-from fmu_src.oscillator.model import MODEL
+from fmu_src.FOLDER.model import MODEL
 
 def no_compiler(*_):
     raise NoCompiler("not wanted here")
 
 pythonfmu_form.compile_objects = no_compiler
-pythonfmu_form.export(MODEL, "vibroimpact", "oscillator", Path("out"))
+pythonfmu_form.export(MODEL, "KERNEL", "FOLDER", Path("out"))
 """
 
 
-def export_copy(folder, changes=(), **environment):
+def export_copy(folder, changes=(), packages=("vibroimpact", "oscillator"), **environment):
     """Path of the pythonfmu FMU of a copy of the sources.
 
     Parameters
@@ -31,6 +31,8 @@ def export_copy(folder, changes=(), **environment):
         Where the copy goes.
     changes : sequence of (str, str, str)
         File below ``fmu_src``, text that stands there once, and what replaces it.
+    packages : (str, str)
+        Kernel and model.
     """
     shutil.copytree(ROOT / "fmu_src", folder / "fmu_src", ignore=shutil.ignore_patterns("__pycache__"))
     for name, old, new in changes:
@@ -39,6 +41,13 @@ def export_copy(folder, changes=(), **environment):
         assert text.count(old) == 1
         path.write_text(text.replace(old, new))
     environment = {**os.environ, "PYTHONPATH": str(folder), **environment}
-    done = subprocess.run([sys.executable, "-c", EXPORT], cwd=folder, capture_output=True, text=True, env=environment)
+    done = subprocess.run(
+        [sys.executable, "-c", EXPORT.replace("KERNEL", packages[0]).replace("FOLDER", packages[1])],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        env=environment,
+    )
     assert done.returncode == 0, done.stderr
-    return folder / "out" / "TwoMassImpactOscillator.fmu"
+    (made,) = (folder / "out").iterdir()
+    return made

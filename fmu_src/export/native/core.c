@@ -125,7 +125,19 @@ static Status start(Instance *instance, const char *call) {
 }
 
 Status refresh(Instance *instance) {
-    return instance->state.phase == INITIALIZING ? start(instance, "get") : OK;
+    State *state = &instance->state;
+    if (state->phase == INITIALIZING) return start(instance, "get");
+#if REFRESH
+    if (!state->stale || !(state->phase & (STEPPING | EVENT))) return OK;
+    int code = kernel_refresh(state->memory, state->memory[TIME_SLOT]);
+    if (code) {
+        char text[TEXT];
+        explain(text, state->memory, code);
+        return refuse(instance, "get", text);
+    }
+    state->stale = false;
+#endif
+    return OK;
 }
 
 Status enter_initialization(Instance *instance, const char *call, double start_time) {

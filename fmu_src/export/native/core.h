@@ -13,6 +13,7 @@
 /* The compiled kernel. */
 int kernel_initialize(double *memory, double time);
 int kernel_advance(double *memory, double time);
+int kernel_refresh(double *memory, double time);  /* where REFRESH is 1 */
 
 typedef enum { OK, WARNING, DISCARD, FAILED, FATAL } Status;  /* numbered as in FMI 2.0 and 3.0 */
 typedef enum { INSTANTIATED = 1, INITIALIZING = 2, STEPPING = 4, EVENT = 8, STOPPED = 16, TERMINATED = 32 } Phase;
@@ -26,7 +27,7 @@ typedef struct {  /* what saving an instance has to keep */
     double memory[MEMORY_SIZE];
     double start_time;
     int phase;
-    bool stale;  /* outputs do not belong yet to the values set: initialisation mode */
+    bool stale;  /* outputs do not belong yet to the values set: in initialisation mode; where REFRESH is 1, later too */
     bool clock;  /* the event clock ticks now */
 } State;
 

@@ -10,3 +10,8 @@ int kernel_advance(double *memory, double time);
 
 EXPORT int initialize(double *memory, double time) { return kernel_initialize(memory, time); }
 EXPORT int advance(double *memory, double time) { return kernel_advance(memory, time); }
+
+#ifdef REFRESH
+int kernel_refresh(double *memory, double time);
+EXPORT int refresh(double *memory, double time) { return kernel_refresh(memory, time); }
+#endif

@@ -1,0 +1,1 @@
+"""``MotorShaker``: variable table, error texts, documentation and reference results."""
