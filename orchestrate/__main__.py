@@ -6,10 +6,10 @@ import re
 import sys
 
 from . import __version__
-from .commands import build_command, sweep_command
+from .commands import build_command, paper_command, sweep_command
 from .errors import UserError
 
-COMMANDS = (build_command, sweep_command)
+COMMANDS = (build_command, sweep_command, paper_command)
 
 
 def parser():

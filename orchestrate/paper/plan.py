@@ -1,0 +1,80 @@
+"""What the paper consists of: the jobs in the order of their needs, and which of their results each part of the report shows."""
+
+from dataclasses import dataclass
+
+from ..errors import UserError
+from .figure_job import NUMBERS, figure_job
+from .resolution import CASES
+from .sweeps import steady_job, sweep_job
+
+ORBITS = {"6": "elastic", "10": "damped", "11": "plastic"}  # figures that are sweeps
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the report.
+
+    Attributes
+    ----------
+    name : str
+        As ``--figures`` names it.
+    module : str
+        In ``orchestrate.figures``; empty for the table of claims.
+    jobs : tuple of str
+        Names of the results it shows.
+    """
+
+    name: str
+    module: str
+    jobs: tuple
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Jobs by name in an order that respects their needs, and parts by name."""
+
+    jobs: dict
+    parts: dict
+
+    def needed(self, parts):
+        """Jobs that parts need, in order."""
+        wanted = {job for part in parts for job in part.jobs}
+        for job in reversed(self.jobs.values()):
+            if job.name in wanted:
+                wanted |= set(job.needs())
+        return [job for job in self.jobs.values() if job.name in wanted]
+
+    def choose(self, text):
+        """Parts of a list such as ``5,7``, all by default.
+
+        Raises
+        ------
+        UserError
+            With the offending name and the allowed ones.
+        """
+        if text is None:
+            return list(self.parts.values())
+        names = [name.strip() for name in text.split(",")]
+        for name in names:
+            if name not in self.parts:
+                raise UserError(f"--figures {text}: {name or 'nothing'} is none; allowed are {', '.join(self.parts)}")
+        return [part for name, part in self.parts.items() if name in names]
+
+
+def make(resolution, guid):
+    """The plan.
+
+    Parameters
+    ----------
+    resolution : Resolution
+    guid : str
+        Of the FMU.
+    """
+    ups = {name: sweep_job(case, "up", resolution, guid) for name, case in CASES.items()}
+    downs = {name: sweep_job(case, "down", resolution, guid) for name, case in CASES.items()}
+    steadies = {name: steady_job(sweep, resolution) for name, sweep in ups.items()}
+    curves = {str(number): figure_job(number, resolution, list(ups.values()), guid) for number in NUMBERS}
+    jobs = [*ups.values(), *downs.values(), *steadies.values(), *curves.values()]
+    shown = {**{name: (ups[case],) for name, case in ORBITS.items()}, **{name: (job,) for name, job in curves.items()}}
+    parts = [Part(name, f"figure{name}", tuple(job.name for job in shown[name])) for name in sorted(shown, key=int)]
+    return Plan({job.name: job for job in jobs}, {part.name: part for part in parts})
