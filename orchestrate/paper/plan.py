@@ -3,8 +3,13 @@
 from dataclasses import dataclass
 
 from ..errors import UserError
+from .coexistence import coexistence_jobs
+from .exponents import exponent_job
 from .figure_job import NUMBERS, figure_job
+from .gamma import gamma_job
+from .maps import map_jobs
 from .resolution import CASES
+from .spectra import SpectrumJob
 from .sweeps import steady_job, sweep_job
 
 ORBITS = {"6": "elastic", "10": "damped", "11": "plastic"}  # figures that are sweeps
@@ -71,10 +76,18 @@ def make(resolution, guid):
         Of the FMU.
     """
     ups = {name: sweep_job(case, "up", resolution, guid) for name, case in CASES.items()}
-    downs = {name: sweep_job(case, "down", resolution, guid) for name, case in CASES.items()}
-    steadies = {name: steady_job(sweep, resolution) for name, sweep in ups.items()}
+    downs = [sweep_job(case, "down", resolution, guid) for case in CASES.values()]
+    steadies = [steady_job(sweep, resolution) for sweep in ups.values()]
     curves = {str(number): figure_job(number, resolution, list(ups.values()), guid) for number in NUMBERS}
-    jobs = [*ups.values(), *downs.values(), *steadies.values(), *curves.values()]
-    shown = {**{name: (ups[case],) for name, case in ORBITS.items()}, **{name: (job,) for name, job in curves.items()}}
-    parts = [Part(name, f"figure{name}", tuple(job.name for job in shown[name])) for name in sorted(shown, key=int)]
+    exponents = [exponent_job(sweep, resolution) for sweep in ups.values()]
+    attractors, basin = coexistence_jobs(ups["elastic"], resolution)
+    maps = map_jobs(resolution, guid)
+    spectra = SpectrumJob("spectra", guid, ups["elastic"].name)
+    further = {"lyapunov": exponents, "attractors": [attractors], "basin": [basin], "maps": maps, "spectra": [spectra]}
+    evidence = [attractors, *maps[1:2], *exponents, *steadies, curves["7"], *ups.values(), *downs, gamma_job(guid)]
+    jobs = [*ups.values(), *downs, *steadies, *curves.values(), gamma_job(guid), *exponents, attractors, basin, *maps, spectra]
+    shown = {**{name: [ups[case]] for name, case in ORBITS.items()}, **{name: [job] for name, job in curves.items()}}
+    parts = [Part("claims", "", tuple(job.name for job in evidence))]
+    parts += [Part(name, f"figure{name}", tuple(job.name for job in shown[name])) for name in sorted(shown, key=int)]
+    parts += [Part(name, name, tuple(job.name for job in some)) for name, some in further.items()]
     return Plan({job.name: job for job in jobs}, {part.name: part for part in parts})

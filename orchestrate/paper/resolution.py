@@ -8,7 +8,6 @@ from ..sweep import Case
 
 ELASTIC, DAMPED, PLASTIC = Case(0.7, 0.005), Case(0.7, 0.05), Case(0.3, 0.005)  # sections 3, 4.1 and 4.2
 CASES = {"elastic": ELASTIC, "damped": DAMPED, "plastic": PLASTIC}
-BASIN_ETA = 1.14  # of the basin picture, inside 1.07-1.37
 
 
 @dataclass(frozen=True)
@@ -43,18 +42,23 @@ class Resolution:
     name: str = "full"
     transient: int = 500
     samples: int = 200
-    steady: int = 200
+    steady: int = 100
     skip: int = 2000
     keep: int = 500
-    long_run: int = 4000
+    long_run: int = 2500
     attractor_step: float = 0.005
-    starts: int = 100
+    starts: int = 60
     basin: int = 160
     settle: int = 400
-    map_etas: int = 121
-    map_rows: int = 41
+    map_etas: int = 181
+    map_rows: int = 51
     map_settle: int = 300
     map_keep: int = 60
+
+    def attractor_etas(self):
+        """Frequencies at which coexisting attractors are looked for: finely up to 1.4, coarsely beyond."""
+        step = self.attractor_step
+        return tuple(float(eta) for eta in np.round(np.concatenate([np.arange(0.44, 1.4, step), np.arange(1.4, 8.0, 10 * step)]), 6))
 
     def etas(self):
         """The paper's 0.1 <= eta <= 8.0 by 0.001, upwards."""
@@ -69,7 +73,7 @@ QUICK = Resolution(
     steady=40,
     skip=300,
     keep=100,
-    long_run=800,
+    long_run=600,
     attractor_step=0.02,
     starts=20,
     basin=40,
