@@ -79,24 +79,37 @@ def run(arguments):
     run_jobs(whole.needed(parts), fmu.path, output, partial(workers, arguments.jobs, arguments.cluster))
     drawn = [part for part in parts if part.module]
     pictures = [show(part, output) for part in drawn]
-    claims = table(output, whole, resolution) if any(part.name == "claims" for part in parts) else []
+    claims = [row for part in parts if part.name == "claims" for row in table(output, part.jobs)]
     print(report.write(output, drawn, pictures, {"resolution": resolution, "fmu": fmu, "claims": claims}))
 
 
-def table(output, whole, resolution):
+def table(output, jobs):
     """The table of claims, kept beside the report as JSON too."""
-    return []
+    import json
+
+    from ..paper.claims import table as check_all
+    from ..store import write_whole
+
+    claims = check_all({name: load(output, name) for name in jobs})
+    write_whole(output / "claims.json", (json.dumps(claims, indent=1, ensure_ascii=False) + "\n").encode())
+    for row in claims:
+        print(f"{row['section']:4} {row['verdict']:7} {row['text']}: paper {row['printed']}, found {row['found']}")
+    return claims
+
+
+def load(output, name):
+    """A result's dataset."""
+    import xarray
+
+    return xarray.load_dataset(output / f"{name}.nc", engine="netcdf4")
 
 
 def show(part, output):
     """Draw a part from its data files; returns the path of its PNG."""
-    import xarray
-
     from ..figures.canvas import save
 
     module = import_module(f"orchestrate.figures.{part.module}")
-    data = [xarray.load_dataset(output / f"{name}.nc", engine="netcdf4") for name in part.jobs]
     path = output / part.module
-    save(module.draw(*data), path)
+    save(module.draw(*[load(output, name) for name in part.jobs]), path)
     print(f"{path}.png")
     return Path(f"{path}.png")

@@ -7,7 +7,7 @@ import jinja2
 
 from .. import __version__
 from ..store import write_whole
-from .claim import WORDS
+from .claims.claim import WORDS
 
 
 def write(output, parts, pictures, content):

@@ -40,7 +40,7 @@ class Claim:
         How it is found.
     tolerance : str
     check : callable
-        From :class:`.data.Results` to a :class:`Finding`.
+        From :class:`.results.Results` to a :class:`Finding`.
     """
 
     section: str
@@ -67,9 +67,9 @@ def rounds_to(value, printed):
     return abs(value - float(printed)) <= half_unit(printed) + 1e-9
 
 
-def limit_at(low, high, printed, why=""):
+def limit_at(edges, printed, why=""):
     """The finding for a limit between two neighbouring frequencies: do they touch what rounds to the printed one?"""
-    slack = half_unit(printed) + 1e-9
+    (low, high), slack = edges, half_unit(printed) + 1e-9
     found = low <= float(printed) + slack and high >= float(printed) - slack
     return Finding(f"between {low:.3f} and {high:.3f}", YES if found else NO, why)
 
