@@ -13,6 +13,7 @@ from .resolution import ELASTIC
 
 MOST = 6  # attractors kept at a frequency, the most frequent first
 BOX = 3.0  # half width of the box of starts, in units of the up-sweep's largest gap at that frequency
+APART = 0.2  # impacts per period by which two periodic attractors of the basin picture differ at least
 BASIN_RANGE = (1.07, 1.37)
 
 
@@ -85,7 +86,7 @@ def random_starts(count, scale, seed):
 
 @dataclass(frozen=True)
 class BasinJob(Job):
-    """A plane of starts at the frequency of 1.07-1.37 whose two most frequent attractors share the starts most evenly.
+    """A plane of starts at the frequency of 1.07-1.37 whose two most frequent attractors are periodic and share the starts most evenly.
 
     Attributes
     ----------
@@ -109,7 +110,11 @@ class BasinJob(Job):
     def frequency(self, inputs):
         """The frequency, and half the width of the plane."""
         data = inputs[self.attractors].sel(eta=slice(*BASIN_RANGE))
-        eta = float(data.share.isel(attractor=1).idxmax())
+        shares, impacts = data.share.isel(attractor=1), data.impacts_per_period
+        periodic = (data.multiplicity.isel(attractor=slice(0, 2)) > 0).all("attractor")
+        apart = np.abs(impacts.isel(attractor=0) - impacts.isel(attractor=1)) > APART
+        clear = shares.where(periodic & apart, 0.0)
+        eta = float((clear if float(clear.max()) > 0.0 else shares).idxmax())
         return eta, BOX * float(inputs[self.sweep].xi_rel_max.sel(eta=eta, method="nearest"))
 
     def axes(self, scale):

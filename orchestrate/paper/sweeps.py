@@ -79,6 +79,7 @@ FIELDS = {
     "contacts": "permanent contacts begun per excitation period",
     "contact_share": "share of the time from the beginnings of permanent contacts to the next impacts",
     "closing_max": "largest closing velocity",
+    "closing_min": "least closing velocity",
     "closing_sum": "sum of closing velocities per excitation period",
     "distance_min": "least time between successive impacts, over T",
     "distance_max": "largest time between successive impacts, over T",
@@ -168,6 +169,7 @@ def strengths(impacts, span, periods):
     distances = np.diff(impacts.time) / span
     return {
         "closing_max": impacts.closing.max(initial=0.0),
+        "closing_min": "least closing velocity",
         "closing_sum": impacts.closing.sum() / periods,
         "distance_min": distances.min(initial=math.inf),
         "distance_max": distances.max(initial=0.0),
