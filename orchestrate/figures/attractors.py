@@ -7,9 +7,11 @@ CAPTION = (
     "Random starts, e = 0.7, D = 0.005. Above: largest xi_Rel of each attractor found, its size the share of starts that lead to it; black: "
     "periodic, red: not periodic. Below: number of attractors; where responses are irregular the number depends on the clustering's threshold."
 )
+ARTEFACT = "Where an impact falls on the sampling phase itself, samples show either side of it, and a periodic response may count as another kind."
 METHOD = (
     "At each frequency random starts in a box three times the up-sweep's largest gap, followed for at least 300 eta periods and sampled; responses "
-    "are clustered by multiplicity, impacts per period, largest gap, mean and deviation of the samples (2 % for periodic ones, 25 % for others)."
+    "are clustered by multiplicity, impacts per period, largest gap, mean and deviation of the samples (2 % for periodic ones, 25 % for others). "
+    + ARTEFACT
 )
 
 

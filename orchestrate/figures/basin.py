@@ -3,7 +3,7 @@
 TITLE = "Basins of attraction"
 CAPTION = (
     "Which attractor a start leads to: gap and gap velocity at phase 0, mass 1 at rest in its middle; e = 0.7, D = 0.005. The frequency is the one "
-    "of 1.07-1.37 at which random starts share themselves most evenly between two attractors."
+    "of 1.07-1.37 at which random starts share themselves most evenly between two periodic attractors."
 )
 METHOD = "Each point is a start of the FMU, followed until settled and told apart as in the random starts."
 SHOWN = 5  # attractors with a colour of their own
