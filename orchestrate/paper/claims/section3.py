@@ -35,8 +35,8 @@ def contact_limit(results):
     row, slow = up.sel(eta=0.425, method="nearest"), results.steady("elastic").sel(eta=0.43, method="nearest")
     why = (
         f"Chattering stops being complete at {low:.3f}, on the way up and down, whatever gamma: {np.nanmin(gammas):.3f} to {np.nanmax(gammas):.3f} "
-        f"for 1e-5 to 5e-2. At 0.425 the response has {float(row.impacts_per_period):.0f} impacts and no contact; at 0.43 the slowest impact closes at "
-        f"{float(slow.closing_min / slow.closing_max):.1e} of the fastest, far above the paper's gamma of 1e-4."
+        f"for 1e-5 to 5e-2. At 0.425 the response has {float(row.impacts_per_period):.0f} impacts and no contact; at 0.43 the slowest impact closes "
+        f"at {float(slow.closing_min / slow.closing_max):.1e} of the fastest, far above the paper's gamma of 1e-4."
     )
     return limit_at((low, high), "0.43", why)
 

@@ -111,11 +111,12 @@ def two_impacts_from(results):
     """Where the response with two impacts begins, and why that may look like 0.85."""
     up, down, exponents = results.up("damped"), results.down("damped"), between(results.exponent("damped"), 0.76, 0.95)
     rest = results.get("map_D").sel(D=0.05, method="nearest").impacts_per_period.sel(eta=slice(0.7, 0.9))
-    top = int(exponents.exponent.values.argmax())
+    top = exponents.isel(eta=int(exponents.exponent.values.argmax()))
+    from_rest = float(rest.eta[int((rest < 2.5).values.argmax())])
     why = (
-        f"On the way down {lower_edge(down, kind(down, 1, 2), 1.0)[1]:.3f}, from rest {float(rest.eta[int((rest < 2.5).values.argmax())]):.2f}: initial "
-        f"conditions do not explain 0.85. The response nearly doubles its period there: its exponent rises to {float(exponents.exponent[top]):.4f} at "
-        f"{float(exponents.eta[top]):.3f}, and at D = 0.005 it does so and turns chaotic."
+        f"On the way down {lower_edge(down, kind(down, 1, 2), 1.0)[1]:.3f}, from rest {from_rest:.2f}: initial "
+        f"conditions do not explain 0.85. The response nearly doubles its period there: its exponent rises to {float(top.exponent):.4f} at "
+        f"{float(top.eta):.3f}, and at D = 0.005 it does so and turns chaotic."
     )
     return limit_at(lower_edge(up, kind(up, 1, 2), 1.0), "0.85", why)
 
