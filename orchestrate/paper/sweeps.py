@@ -121,7 +121,7 @@ class SteadyJob(Job):
         """Some frequencies."""
         with EventInstance(fmu) as instance:
             rows = [list(steady(instance, self.case, eta, start, self.periods).values()) for eta, start in items]
-        return {"rows": np.array(rows)}
+        return {"rows": np.array(rows, dtype=float)}
 
     def dataset(self, table, inputs):
         """One variable a property, over eta upwards."""
@@ -169,7 +169,7 @@ def strengths(impacts, span, periods):
     distances = np.diff(impacts.time) / span
     return {
         "closing_max": impacts.closing.max(initial=0.0),
-        "closing_min": "least closing velocity",
+        "closing_min": impacts.closing.min(initial=math.inf),
         "closing_sum": impacts.closing.sum() / periods,
         "distance_min": distances.min(initial=math.inf),
         "distance_max": distances.max(initial=0.0),

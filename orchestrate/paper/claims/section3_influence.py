@@ -38,9 +38,10 @@ def peak_height(results):
 def peak_place(results):
     """Where the largest gap is."""
     up, down = results.up("elastic").xi_rel_max, results.down("elastic").xi_rel_max
+    others = int(results.get("attractors").number.sel(eta=1.045, method="nearest")) - 1
     why = (
-        f"At 1.045 it is {float(up.sel(eta=1.045, method='nearest')):.2f}. The sweep downwards has its peak at {float(down.idxmax()):.3f} too; the "
-        "response is the only one found from random starts there: the place is misprinted or was read off."
+        f"At 1.045 it is {float(up.sel(eta=1.045, method='nearest')):.2f}. The sweep downwards has its peak at {float(down.idxmax()):.3f} too, and "
+        f"random starts find {others or 'no'} other response there: the place is misprinted or was read off."
     )
     return number_at(float(up.idxmax()), "1.045", 3, why)
 
@@ -95,7 +96,7 @@ def second_region(results, printed, upper):
     remaining = np.exp(-0.005 * 500 * 2 * np.pi / float(printed))
     why = (
         f"At {printed} the response is {'2T' if upper else 'T'}-periodic to {spread:.1e} after the periods dropped, exponent "
-        f"{float(row.exponent):.4f} +- {float(row.error):.4f}: stable, but slowly decaying, e^(-D tau) being {remaining:.1e} after 500 T, so "
+        f"{float(row.exponent):.5f} +- {float(row.error):.5f}: stable, but slowly decaying, e^(-D tau) being {remaining:.1e} after 500 T, so "
         "that transients widen the samples and the limit read depends on how narrow a band still counts as a line."
     )
     return limit_at(limit, printed, why)
