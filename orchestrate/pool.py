@@ -29,7 +29,6 @@ def compute_chunk(job, fmu, items, carry):
 
 def attend(parent):
     """End this worker when its parent has ended: nobody waits for its results."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent answers interrupts
 
     def watch():
         while os.getppid() == parent:
@@ -48,8 +47,12 @@ class Local:
         self._pool = ProcessPoolExecutor(jobs, mp_context=context, initializer=attend, initargs=(os.getpid(),))
 
     def submit(self, *task):
-        """Hand out a chunk."""
-        return self._pool.submit(compute_chunk, *task)
+        """Hand out a chunk; a process started for it is deaf to Ctrl-C from its first instruction on."""
+        attentive = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        try:
+            return self._pool.submit(compute_chunk, *task)
+        finally:
+            signal.signal(signal.SIGINT, attentive)
 
     def room(self):
         """Chunks worth having under way: one more than are computed."""

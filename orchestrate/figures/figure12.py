@@ -1,5 +1,7 @@
 """Figure 12: phase curves of both masses at the main resonance peak of the three cases, one scale."""
 
+import numpy as np
+
 from ..curves import curve, panel_at
 from ..paper.resolution import CASES
 
@@ -27,7 +29,8 @@ def draw(data):
     from .canvas import BLACK, RED
     from .canvas import panels as make
 
-    figure, axes = make(1, 3, (12, 4.4), sharex=True, sharey=True)
+    figure, axes = make(1, 3, (12, 4.6))
+    reach = 1.08 * float(np.abs(data.state).max())
     for index, plane in enumerate(axes):
         state = data.state.values[data.panel_of.values == index]
         plane.plot(state[:, 0], state[:, 2], "-", color=BLACK, linewidth=1.0, label=r"$m_1$")
@@ -35,7 +38,7 @@ def draw(data):
         values = [float(data[name][index]) for name in ("e", "D", "eta")]
         plane.set_title(rf"({'abc'[index]}) $e = {values[0]:g}$, $D = {values[1]:g}$, $\eta = {values[2]:.3f}$")
         plane.set_xlabel(r"$\xi_i$")
-        plane.set_aspect("equal")
+        plane.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
     axes[0].set_ylabel(r"$\xi'_i$")
     axes[0].legend(fontsize=8)
     return figure

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from .command import ROOT
+from .command import ROOT, children, is_alive
 from .conftest import exported
 from .papers import Papers
 
@@ -81,6 +81,28 @@ def test_kill_9_loses_no_finished_chunk(papers, whole_maps):
     assert finished == whole_maps["map_e"]
     assert {name: papers.result(name).read_bytes() for name in whole_maps} == whole_maps
     assert not [name for name in papers.files() if name.endswith((".journal", ".tmp", ".lock"))]
+
+
+def test_ctrl_c_is_one_line_and_leaves_nothing_running(papers):
+    process = papers.start(*PARTS)
+    seen = papers.wait_for_chunks(process, "map_e", 2)
+    below = list(children(process.pid))
+    done = papers.kill(process, signal.SIGINT)
+    assert done.complaint("interrupted", "goes on from here", code=130)
+    assert papers.chunks("map_e") >= seen
+    assert below and not any(map(is_alive, below))
+
+
+def test_workers_end_when_their_parent_is_killed(papers):
+    process = papers.start(*PARTS)
+    papers.wait_for_chunks(process, "map_e", 2)
+    below = [pid for pid, command in children(process.pid).items() if "spawn_main" in command]
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    stop = time.monotonic() + 20.0
+    while any(map(is_alive, below)) and time.monotonic() < stop:
+        time.sleep(0.05)
+    assert len(below) == (os.cpu_count() or 1) and not any(map(is_alive, below))
 
 
 def test_a_sequential_sweep_goes_on_after_kill_9(papers, tmp_path, event_fmu):
