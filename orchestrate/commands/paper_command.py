@@ -79,22 +79,32 @@ def run(arguments):
     run_jobs(whole.needed(parts), fmu.path, output, partial(workers, arguments.jobs, arguments.cluster))
     drawn = [part for part in parts if part.module]
     pictures = [show(part, output) for part in drawn]
-    claims = [row for part in parts if part.name == "claims" for row in table(output, part.jobs)]
-    print(report.write(output, drawn, pictures, {"resolution": resolution, "fmu": fmu, "claims": claims}))
+    found: dict = {"claims": [], "regions": [], "answers": []}
+    for part in parts:
+        if part.name == "claims":
+            found = findings(output, part.jobs)
+    print(report.write(output, drawn, pictures, {"resolution": resolution, "fmu": fmu, **found}))
 
 
-def table(output, jobs):
-    """The table of claims, kept beside the report as JSON too."""
+def findings(output, jobs):
+    """The table of claims and what goes beyond them, kept beside the report as JSON too."""
     import json
 
+    from ..paper.claims import answers
     from ..paper.claims import table as check_all
     from ..store import write_whole
 
-    claims = check_all({name: load(output, name) for name in jobs})
-    write_whole(output / "claims.json", (json.dumps(claims, indent=1, ensure_ascii=False) + "\n").encode())
-    for row in claims:
+    data = {name: load(output, name) for name in jobs}
+    found = {"claims": check_all(data), "regions": answers.regions(data), "answers": answers.sentences(data)}
+    write_whole(output / "claims.json", (json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode())
+    for row in found["claims"]:
         print(f"{row['section']:4} {row['verdict']:7} {row['text']}: paper {row['printed']}, found {row['found']}")
-    return claims
+    for row in found["regions"]:
+        print(
+            f"{row['case']:18} {row['region']:13} {row['verdict']:16} chaotic {row['chaotic']:5} neutral {row['neutral']:5} largest {row['largest']}"
+        )
+    print("\n".join(found["answers"]))
+    return found
 
 
 def load(output, name):

@@ -84,7 +84,18 @@ def make(resolution, guid):
     maps = map_jobs(resolution, guid)
     spectra = SpectrumJob("spectra", guid, ups["elastic"].name)
     further = {"lyapunov": exponents, "attractors": [attractors], "basin": [basin], "maps": maps, "spectra": [spectra]}
-    evidence = [attractors, *maps[1:2], *exponents, *steadies, *(curves[name] for name in ("5", "7", "12")), *ups.values(), *downs, gamma_job(guid)]
+    evidence = [
+        attractors,
+        basin,
+        *maps,
+        spectra,
+        *exponents,
+        *steadies,
+        *(curves[name] for name in ("5", "7", "12")),
+        *ups.values(),
+        *downs,
+        gamma_job(guid),
+    ]
     jobs = [*ups.values(), *downs, *steadies, *curves.values(), gamma_job(guid), *exponents, attractors, basin, *maps, spectra]
     shown = {**{name: [ups[case]] for name, case in ORBITS.items()}, **{name: [job] for name, job in curves.items()}}
     parts = [Part("claims", "", tuple(job.name for job in evidence))]
