@@ -181,7 +181,7 @@ class Progress:
         if not self.complete and self.done == self.job.chunks():
             write_netcdf(self.job.dataset(self.journal.table(), self._inputs), self.result, self.identity)
             self.journal.remove()
-            self.complete = True
+            self.complete, self._inputs = True, {}
         return self.complete
 
     def close(self):

@@ -73,7 +73,7 @@ class Cluster:
         try:
             from distributed import Client
         except ImportError:
-            raise UserError('--cluster: needs Dask; `pip install "vibroimpact[cluster]"` brings it') from None
+            raise UserError('--cluster: needs Dask; `pip install -e ".[cluster]"` in the clone brings it') from None
         try:
             self._client = Client(address, timeout="10s", set_as_default=False)
         except (OSError, ValueError, TypeError) as error:

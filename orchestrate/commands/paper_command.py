@@ -28,7 +28,7 @@ def add_parser(commands):
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     option = parser.add_argument
-    option("--figures", metavar="NAME,...", help="parts of it: 5 to 12, or a name as the report has it (default: all)")
+    option("--figures", metavar="NAME,...", help="some of it: 5 to 12, claims, lyapunov, attractors, basin, maps, spectra (default: all)")
     option("--quick", action="store_true", help="reduced resolution: the same frequencies, fewer periods, starts and map points")
     option("--fmu", type=Path, help="FMI 3.0 FMU to use (default: the one in build/, exported first where missing or out of date)")
     option("--output", type=Path, help="folder of the results (default: results/paper, with --quick results/paper-quick)")
