@@ -6,10 +6,10 @@ import re
 import sys
 
 from . import __version__
-from .commands import build_command, couple_command, spectra_command, sweep_command
+from .commands import build_command, couple_command, paper_command, spectra_command, sweep_command
 from .errors import UserError
 
-COMMANDS = (build_command, sweep_command, couple_command, spectra_command)
+COMMANDS = (build_command, sweep_command, paper_command, couple_command, spectra_command)
 
 
 def parser():

@@ -85,6 +85,8 @@ class Instance:
     the end of the simulation.
     """
 
+    EVENTS: dict = {}  # how an FMI 3.0 FMU is asked for its events
+
     def __init__(self, path, name="instance"):
         import fmpy
 
@@ -121,7 +123,7 @@ class Instance:
         from fmpy import fmi3
 
         self._fmu = fmi3.FMU3Slave(**identity)
-        self.call("instantiate", loggingOn=True, logMessage=self._log3)
+        self.call("instantiate", loggingOn=True, logMessage=self._log3, **self.EVENTS)
 
     def __enter__(self):
         return self

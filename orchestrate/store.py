@@ -182,3 +182,15 @@ def write_netcdf(dataset, path, identity):
         raise UserError(f"{path}: cannot be written ({cause}); what was computed is kept, the same command goes on from there") from None
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def write_whole(path, content):
+    """Write bytes into a file, whole or not at all."""
+    temporary = Path(path).with_name(Path(path).name + ".tmp")
+    try:
+        temporary.write_bytes(content)
+        temporary.replace(path)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written ({error.strerror or error}); the same command goes on from there") from None
+    finally:
+        temporary.unlink(missing_ok=True)

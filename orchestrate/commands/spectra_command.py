@@ -32,7 +32,7 @@ def run(arguments):
     number("step", arguments.step, 1e-4, 1.0)
     from ..build import default_fmu
     from ..exchange import OSCILLATOR, SHAKER
-    from ..figures.spectra import draw
+    from ..figures.drive_spectra import draw
     from ..spectra import record, spectrum
     from .sweep_command import open_output
 

@@ -10,7 +10,7 @@ from matplotlib import pyplot as plt  # noqa: E402 - after the backend was chose
 
 
 def draw(dataset, path):
-    """Draw an orbit diagram in the paper's manner, with the impacts per period below it.
+    """Draw an orbit diagram into a file.
 
     Parameters
     ----------
@@ -19,6 +19,18 @@ def draw(dataset, path):
     path : Path
         PNG file; written whole or not at all.
     """
+    figure = picture(dataset)
+    temporary = Path(path).with_name(Path(path).name + ".tmp")
+    try:
+        figure.savefig(temporary, dpi=150, format="png")
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+        plt.close(figure)
+
+
+def picture(dataset):
+    """An orbit diagram in the paper's manner, with the impacts per period below it; returns the figure."""
     order = np.argsort(dataset.eta.values, kind="stable")
     eta = dataset.eta.values[order]
     samples = dataset.xi_rel.values[order]
@@ -39,10 +51,4 @@ def draw(dataset, path):
     bottom.set_xlim(eta.min(), eta.max() if eta.max() > eta.min() else eta.min() + 1e-3)
     for axes in (top, bottom):
         axes.grid(True, which="major", alpha=0.3)
-    temporary = Path(path).with_name(Path(path).name + ".tmp")
-    try:
-        figure.savefig(temporary, dpi=150, format="png")
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
-        plt.close(figure)
+    return figure

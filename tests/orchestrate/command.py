@@ -27,7 +27,7 @@ class Done:
     @property
     def complaints(self):
         """Lines of the error output without the progress bar."""
-        text = re.sub(r"sweep: [^\r\n]*?\[[^\]\r\n]*\]", "\n", self.err)
+        text = re.sub(r"(?:sweep|paper): [^\r\n]*?\[[^\]\r\n]*\]", "\n", self.err)
         return [line.strip() for line in re.split(r"[\r\n]+", text) if line.strip()]
 
     @property
@@ -60,6 +60,8 @@ class Sweeps:
     fmu : Path
     """
 
+    COMMAND = "sweep"
+
     def __init__(self, folder, fmu):
         self.output = Path(folder) / "results"
         self.temporary = Path(folder) / "temporary"
@@ -75,7 +77,7 @@ class Sweeps:
             if preexec_fn:
                 preexec_fn()
 
-        command = [sys.executable, "-m", "orchestrate", "sweep", "--fmu", self.fmu, "--output", self.output, *options]
+        command = [sys.executable, "-m", "orchestrate", self.COMMAND, "--fmu", self.fmu, "--output", self.output, *options]
         process = subprocess.Popen(
             list(map(str, command)),
             cwd=ROOT,

@@ -88,8 +88,9 @@ def test_a_kernel_imports_math_and_itself_only(file, allowed):
 
 
 def test_numbers_know_nothing_of_pictures_and_commands():
-    below = {"orchestrate/sweep.py", "orchestrate/poincare.py", "orchestrate/store.py", "orchestrate/fmu.py", "orchestrate/orbit.py"}
-    below |= {f"orchestrate/{name}.py" for name in ("channel", "coupling", "ledger", "weakdrive", "averaged", "driveresult", "spectra", "ssp")}
+    names = ("sweep", "poincare", "store", "fmu", "orbit", "trace", "flow", "lyapunov", "curves", "attractors", "jobs")
+    names += ("channel", "coupling", "ledger", "weakdrive", "averaged", "driveresult", "spectra", "ssp")
+    below = {f"orchestrate/{name}.py" for name in names}
     assert below <= set(FILES)
     assert not below & users("orchestrate.figures", "orchestrate.commands", "orchestrate.campaign", "orchestrate.build")
 

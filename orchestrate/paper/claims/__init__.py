@@ -1,0 +1,18 @@
+"""The paper's claims, section by section, each checked against what was computed."""
+
+from . import section3, section3_influence, section4, section5
+from .results import Results
+
+CLAIMS = (*section3.CLAIMS, *section3_influence.CLAIMS, *section4.CLAIMS, *section5.CLAIMS)
+
+
+def table(datasets):
+    """All claims with what was found, as a list of dicts of text.
+
+    Parameters
+    ----------
+    datasets : dict of xarray.Dataset
+        By name.
+    """
+    results = Results(datasets)
+    return [claim.row(results) for claim in CLAIMS]

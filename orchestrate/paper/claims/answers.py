@@ -1,0 +1,80 @@
+"""What the paper could not ask: chaos region by region with its uncertainty, where a delamination shows best, what coexists, what is heard."""
+
+import numpy as np
+
+from ...lyapunov import SIGMAS
+from ..maps import RANGES
+from ..resolution import CASES
+from .results import Results, between, shares
+
+REGIONS = ((0.43, 0.89), (0.9, 1.06), (1.07, 1.37), (1.37, 2.61), (2.61, 3.77), (3.77, 4.72), (4.72, 5.75), (5.75, 6.76), (6.76, 7.96))
+LEAST = 0.01  # share of chaotic or neutral responses from which a region is called so
+
+
+def regions(datasets):
+    """The verdict on each region of each case, as a list of dicts of text.
+
+    Parameters
+    ----------
+    datasets : dict of xarray.Dataset
+        By name.
+    """
+    results, rows = Results(datasets), []
+    for name, case in CASES.items():
+        for low, high in REGIONS:
+            chaotic, neutral, top, error, eta = shares(results.exponent(name), low, high)
+            count = between(results.exponent(name), low, high).sizes["eta"]
+            verdict = "chaotic in part" if chaotic > LEAST else "neutral in part" if neutral > LEAST else "periodic"
+            numbers = {"chaotic": f"{100 * chaotic:.0f} %", "neutral": f"{100 * neutral:.0f} %", "count": str(count)}
+            largest = f"{top:.4f} ± {SIGMAS * error:.4f} at {eta:.3f}"
+            rows.append(
+                {"case": f"e = {case.e:g}, D = {case.D:g}", "region": f"{low:g} to {high:g}", **numbers, "largest": largest, "verdict": verdict}
+            )
+    return rows
+
+
+def sentences(datasets):
+    """The other answers, a sentence each.
+
+    Parameters
+    ----------
+    datasets : dict of xarray.Dataset
+        By name.
+    """
+    return [*(strongest(datasets[f"map_{parameter}"], parameter) for parameter in RANGES), coexisting(datasets["basin"]), heard(datasets["spectra"])]
+
+
+def strongest(data, parameter):
+    """Where the largest impulse of a map is, and how far it stays within half of that."""
+    impulses = data.impulse_max
+    best = impulses.where(impulses == impulses.max(), drop=True)
+    near = impulses.max(parameter) > 0.5 * impulses.max()
+    etas = data.eta.values[near.values]
+    eta, value = float(best.eta[0]), float(best[parameter][0])
+    return (
+        f"Over (eta, {parameter}) the largest impulse is {float(impulses.max()):.3g} m_1 omega a eta^2, at eta = {eta:.2f}, {parameter} = "
+        f"{value:.3g}; "
+        f"more than half of it is reached for some {parameter} from eta = {etas.min():.2f} to {etas.max():.2f}."
+    )
+
+
+def coexisting(data):
+    """What the basin picture holds."""
+    kinds = []
+    for k in range(min(4, data.sizes["attractor"])):
+        n = int(data.multiplicity[k])
+        impacts = float(data.impacts_per_period[k])
+        kinds.append(f"{f'{n}T-periodic' if n else 'not periodic'} with {impacts:.2f} impacts per T from {100 * float(data.share[k]):.1f} %")
+    return f"At eta = {data.attrs['eta']:.3f} a plane of {data.attractor_of.size} starts leads to: {'; '.join(kinds)}."
+
+
+def heard(data):
+    """How much of the delaminated structure's acceleration lies above the excitation's frequency."""
+    shown = data.isel(eta=0)
+    above = shown.where(shown.order > 1.5, drop=True)
+    first = float(shown.amplitude.sel(kind="delaminated").max())
+    bonded, delaminated, sampled = (float(np.abs(above.amplitude.sel(kind=kind)).max()) / first for kind in ("bonded", "delaminated", "sampled"))
+    return (
+        f"At eta = {float(shown.eta):.3f} the largest line above the excitation's frequency is {delaminated:.3f} of the largest of all in the "
+        f"delaminated structure's acceleration ({sampled:.3f} in sampled accelerations, which lack the impulses), {bonded:.1e} in the bonded one's."
+    )

@@ -1,0 +1,85 @@
+"""How finely the paper is computed: in full as printed, or reduced for a quick look and for CI."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..sweep import Case
+
+ELASTIC, DAMPED, PLASTIC = Case(0.7, 0.005), Case(0.7, 0.05), Case(0.3, 0.005)  # sections 3, 4.1 and 4.2
+CASES = {"elastic": ELASTIC, "damped": DAMPED, "plastic": PLASTIC}
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """Sizes of all that is computed.
+
+    Attributes
+    ----------
+    name : str
+    transient, samples : int
+        Periods dropped and kept at each eta of a sweep.
+    steady : int
+        Periods after the sweep followed impact by impact.
+    skip, keep : int
+        Periods dropped and kept for phase curves (section 3.2).
+    long_run : int
+        Periods of the long runs that decide between regular and chaotic.
+    attractor_step : float
+        Of eta, where coexisting attractors are looked for.
+    starts : int
+        Random starts at each.
+    basin : int
+        Starts along each side of the basin picture.
+    settle : int
+        Periods before a response from a random start counts as settled.
+    map_etas, map_rows : int
+        Values along the sides of a parameter map.
+    map_settle, map_keep : int
+        Periods dropped and kept at each of its points.
+    """
+
+    name: str = "full"
+    transient: int = 500
+    samples: int = 200
+    steady: int = 100
+    skip: int = 2000
+    keep: int = 500
+    long_run: int = 2500
+    attractor_step: float = 0.005
+    starts: int = 60
+    basin: int = 160
+    settle: int = 400
+    map_etas: int = 181
+    map_rows: int = 51
+    map_settle: int = 300
+    map_keep: int = 60
+
+    def attractor_etas(self):
+        """Frequencies at which coexisting attractors are looked for: finely up to 1.4, coarsely beyond."""
+        step = self.attractor_step
+        return tuple(float(eta) for eta in np.round(np.concatenate([np.arange(0.44, 1.4, step), np.arange(1.4, 8.0, 10 * step)]), 6))
+
+    def etas(self):
+        """The paper's 0.1 <= eta <= 8.0 by 0.001, upwards."""
+        return tuple(float(eta) for eta in np.arange(100, 8001) / 1000.0)
+
+
+FULL = Resolution()
+QUICK = Resolution(
+    name="quick",
+    transient=200,
+    samples=80,
+    steady=40,
+    skip=300,
+    keep=100,
+    long_run=600,
+    attractor_step=0.02,
+    starts=20,
+    basin=40,
+    settle=150,
+    map_etas=41,
+    map_rows=11,
+    map_settle=80,
+    map_keep=20,
+)
