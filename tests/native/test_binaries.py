@@ -42,6 +42,7 @@ def test_linux_binary_exports_fmi_and_imports_libc(fmus, version, tmp_path):
     assert elf.exports == functions_of_header(version)
     assert elf.imports <= LIBC | LOADER
     assert elf.needed == {"libc.so.6"}
+    assert sum(elf.writable.values()) <= 16  # the start-up code of some compilers has a flag and a pointer
 
 
 def test_windows_binary_exports_fmi_and_imports_the_system(fmus, version, tmp_path):
@@ -63,7 +64,7 @@ def test_there_is_no_global_state_to_share(version, kernel_objects, tmp_path):
     importers.rebuild_shim(version, tmp_path, kernel_objects, options=())
     units = importers.units(version)
     for unit in units:
-        importers.run_compiler([*importers.compiler(), "-fPIC", "-c", unit], tmp_path)
+        importers.run_compiler([*importers.compiler(), "-fPIC", "-O2", "-c", unit], tmp_path)
     for name in [unit.replace(".c", ".o") for unit in units] + ["kernel.o"]:
         writable = Elf((tmp_path / name).read_bytes()).writable
         assert sum(writable.values()) == 0, (name, writable)

@@ -73,12 +73,11 @@ def test_a_million_small_steps(importer):
 
 
 def test_speed_of_a_step_without_impact(importer):
-    """A bound with a wide margin, of processor time; the numbers are printed."""
+    """Under 0.3 us of processor time is wanted and found on a machine of 2.6 GHz; the bound is wide, the numbers are printed."""
     found = dict(re.findall(r"SPEED (.*) ([\d.]+) ns", importer.run("speed", 50_000).stdout))
     print(importer.version, found)
-    assert float(found["bonded"]) < 2000.0
-    assert float(found["flight"]) < 4000.0
-    assert float(found["flight, x_rel_max off"]) < 2000.0
+    for kind in ("bonded", "flight", "flight, x_rel_max off"):
+        assert float(found[kind]) < 900.0
 
 
 def test_two_versions_in_one_process_do_not_meet(fmus, importer_of, tmp_path):
