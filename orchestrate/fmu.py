@@ -113,7 +113,7 @@ class Instance:
 
         self._fmu = fmi2.FMU2Slave(**identity)
         self._callbacks = fmi2.fmi2CallbackFunctions()
-        self._callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._log2)
+        self._callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._log)
         self._callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
         self._callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
         fmpy.logging.addLoggerProxy(byref(self._callbacks))  # messages come as a format with arguments
@@ -123,7 +123,7 @@ class Instance:
         from fmpy import fmi3
 
         self._fmu = fmi3.FMU3Slave(**identity)
-        self.call("instantiate", loggingOn=True, logMessage=self._log3, **self.EVENTS)
+        self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
 
     def __enter__(self):
         return self
@@ -132,11 +132,9 @@ class Instance:
         self._fmu.freeInstance()
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    def _log2(self, _environment, _instance, _status, _category, message):
-        self._messages.append(message.decode(errors="replace"))
-
-    def _log3(self, _environment, _status, _category, message):
-        self._messages.append(message.decode(errors="replace"))
+    def _log(self, *arguments):
+        """Keep a message; it is the last argument in both FMI versions."""
+        self._messages.append(arguments[-1].decode(errors="replace"))
 
     def call(self, function, *args, **kwargs):
         """Call a method of FMPy's FMU, with the FMU's message where it fails."""
