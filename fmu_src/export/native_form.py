@@ -11,7 +11,7 @@ from .documentation import documentation_files
 from .linking import PLATFORMS, link_all
 from .model_description import fmi2_native_xml
 from .model_description3 import ARRAY_BASE, CLOCK_REFERENCE, fmi3_xml
-from .pythonfmu_form import ROOT, embedded_sources, kernel_sources
+from .pythonfmu_form import ROOT, embedded_sources, exporters, kernel_sources
 
 HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
@@ -117,8 +117,8 @@ def source_digest(kernel, folder):
 
 
 def guid(kernel, folder, version):
-    """The GUID (instantiation token) of the native form."""
-    return guid_of(fingerprint({**shim_sources(version), "sources": source_digest(kernel, folder).encode()}))
+    """The GUID (instantiation token) of the native form: of the sources, and of the exporters that make the FMU from them."""
+    return guid_of(fingerprint({**exporters(), "version": version.encode(), "sources": source_digest(kernel, folder).encode()}))
 
 
 def export(model, kernel, folder, target, version):

@@ -70,9 +70,14 @@ def source_digest(kernel, folder):
     return fingerprint({**sources, "pythonfmu": pythonfmu.__version__.encode(), "script": SCRIPT.encode()})
 
 
+def exporters():
+    """Files of the exporters: a change of theirs makes another FMU too."""
+    return read_folder(ROOT / "export", "export/")
+
+
 def guid(kernel, folder):
     """The GUID an FMU of the present sources bears."""
-    return guid_of(source_digest(kernel, folder))
+    return guid_of(fingerprint({**exporters(), "sources": source_digest(kernel, folder).encode()}))
 
 
 def export(model, kernel, folder, target):
@@ -94,7 +99,7 @@ def export(model, kernel, folder, target):
     digest = source_digest(kernel, folder)
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
         files = run_pythonfmu(model, folder, sources, digest, Path(scratch))
-    files["modelDescription.xml"] = fmi2_xml(model, guid_of(digest))
+    files["modelDescription.xml"] = fmi2_xml(model, guid(kernel, folder))
     files.update(documentation_files(model, ROOT / folder, digest))
     path = Path(target) / f"{model.name}.fmu"
     write_archive(path, files)

@@ -15,6 +15,8 @@ from . import importers
 from .slave import COMMON, harmonic
 from .test_bit_identity import run
 
+ONE = ("TwoMassImpactOscillator",)
+
 
 def forms(paths):
     return [path.parent.name for path in paths]
@@ -33,7 +35,7 @@ def same_run(fmu, other, tmp_path):
 
 def test_without_a_compiler_there_is_the_pythonfmu_fmu_and_one_line(fmus, hide, tmp_path, caplog):
     hide("ziglang", "own")
-    made = build(tmp_path / "build")
+    made = build(tmp_path / "build", names=ONE)
     assert forms(made) == ["fmi2-python"]
     (line,) = caplog.messages
     assert "no C compiler" in line and "ziglang" in line and "pure Python" in line and "\n" not in line
@@ -45,7 +47,7 @@ def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(fmus, hide
     hide("ziglang")
     if importers.own_compiler() is None:
         pytest.skip("the machine has no C compiler of its own")
-    made = build(tmp_path / "build")
+    made = build(tmp_path / "build", names=ONE)
     assert forms(made) == ["fmi2-python", "fmi2", "fmi3"]
     (line,) = caplog.messages
     assert "for x86_64-linux alone" in line and "ziglang" in line
@@ -65,7 +67,7 @@ def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(fmus, hide
 
 def test_without_a_compiler_of_its_own_the_machine_makes_the_same_bytes(fmus, hide, tmp_path, caplog):
     hide("own")
-    made = build(tmp_path, ["fmi2", "fmi3"])
+    made = build(tmp_path, ["fmi2", "fmi3"], ONE)
     assert [path.read_bytes() for path in made] == [fmus[form].read_bytes() for form in ("fmi2", "fmi3")]
     assert not caplog.messages
 
@@ -79,5 +81,5 @@ def test_without_numba_the_command_line_says_one_line(tmp_path):
     assert done.returncode == 0
     (line,) = done.stderr.splitlines()
     assert line.endswith("pure Python: No module named 'numba'")
-    (made,) = done.stdout.splitlines()
-    assert "fmi2-python" in made
+    made = done.stdout.splitlines()
+    assert made and all("fmi2-python" in line for line in made)
