@@ -47,10 +47,14 @@ class Local:
         self._pool = ProcessPoolExecutor(jobs, mp_context=context, initializer=attend, initargs=(os.getpid(),))
 
     def submit(self, *task):
-        """Hand out a chunk; a process started for it is deaf to Ctrl-C from its first instruction on."""
+        """Hand out a chunk."""
+        return self.call(compute_chunk, *task)
+
+    def call(self, function, *arguments):
+        """Hand out any call; a process started for it is deaf to Ctrl-C from its first instruction on."""
         attentive = signal.signal(signal.SIGINT, signal.SIG_IGN)
         try:
-            return self._pool.submit(compute_chunk, *task)
+            return self._pool.submit(function, *arguments)
         finally:
             signal.signal(signal.SIGINT, attentive)
 
@@ -146,6 +150,14 @@ def run(jobs, fmu, folder, make_pool):
         for state in states.values():
             state.close()
         lock.release()
+
+
+def spread(function, tasks, jobs):
+    """Results of a function for each tuple of arguments, in order, on so many processes of this machine."""
+    if min(jobs, len(tasks)) < 2:
+        return [function(*task) for task in tasks]
+    with workers(min(jobs, len(tasks))) as pool:
+        return [future.result() for future in [pool.call(function, *task) for task in tasks]]
 
 
 class Runner:

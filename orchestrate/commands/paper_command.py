@@ -65,7 +65,7 @@ def run(arguments):
     from ..paper import plan, report
     from ..paper.resolution import FULL, QUICK
     from ..pool import run as run_jobs
-    from ..pool import workers
+    from ..pool import spread, workers
 
     resolution = QUICK if arguments.quick else FULL
     if arguments.jobs < 1:
@@ -78,7 +78,9 @@ def run(arguments):
     open_output(output)
     run_jobs(whole.needed(parts), fmu.path, output, partial(workers, arguments.jobs, arguments.cluster))
     drawn = [part for part in parts if part.module]
-    pictures = [show(part, output) for part in drawn]
+    pictures = spread(show, [(part, output) for part in drawn], arguments.jobs)
+    for picture in pictures:
+        print(picture)
     found: dict = {"claims": [], "regions": [], "answers": []}
     for part in parts:
         if part.name == "claims":
@@ -121,5 +123,4 @@ def show(part, output):
     module = import_module(f"orchestrate.figures.{part.module}")
     path = output / part.module
     save(module.draw(*[load(output, name) for name in part.jobs]), path)
-    print(f"{path}.png")
     return Path(f"{path}.png")

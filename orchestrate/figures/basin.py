@@ -22,7 +22,7 @@ def draw(data):
     plane.pcolormesh(data.gap, data.rate, labels, cmap=ListedColormap(colours), vmin=-0.5, vmax=SHOWN + 0.5, rasterized=True)
     for k in range(min(SHOWN, data.sizes["attractor"])):
         n, impacts, gap = (float(data[name][k]) for name in ("multiplicity", "impacts_per_period", "xi_rel_max"))
-        kind = f"{n:.0f}T" if n else "not periodic"
+        kind = f"{int(n) if n > 1 else ''}T" if n else "not periodic"
         label = f"{kind}, {impacts:.2f} impacts per T, largest gap {gap:.3g}: {float(data.share[k]):.1%}"
         plane.plot([], [], "s", color=colours[k], label=label)
     plane.set(xlabel=rf"{XI_REL}(0)", ylabel=rf"{XI_REL_RATE}(0)", title=rf"$\eta = {float(data.attrs['eta']):.3f}$")

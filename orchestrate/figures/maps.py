@@ -45,5 +45,6 @@ def draw(*maps):
             plane.set_title(title if row == 0 else "")
             plane.set_yscale("log" if parameter == "D" else "linear")
             plane.grid(False)
-            plane.set(ylabel=rf"$\{parameter}$" if parameter == "kappa" else f"${parameter}$" if column == 0 else "", xlabel=r"$\eta$")
+            label = r"$\kappa$" if parameter == "kappa" else f"${parameter}$"
+            plane.set(ylabel="" if column else label, xlabel=r"$\eta$")
     return figure

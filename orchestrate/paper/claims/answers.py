@@ -64,7 +64,9 @@ def coexisting(data):
     for k in range(min(4, data.sizes["attractor"])):
         n = int(data.multiplicity[k])
         impacts = float(data.impacts_per_period[k])
-        kinds.append(f"{f'{n}T-periodic' if n else 'not periodic'} with {impacts:.2f} impacts per T from {100 * float(data.share[k]):.1f} %")
+        kinds.append(
+            f"{f'{n if n > 1 else str()}T-periodic' if n else 'not periodic'} with {impacts:.2f} impacts per T from {100 * float(data.share[k]):.1f} %"
+        )
     return f"At eta = {data.attrs['eta']:.3f} a plane of {data.attractor_of.size} starts leads to: {'; '.join(kinds)}."
 
 
