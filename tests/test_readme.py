@@ -7,6 +7,8 @@ import pytest
 
 from orchestrate import __main__, assets
 
+from .conftest import BUILD
+
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -16,8 +18,10 @@ def test_the_test_command_is_what_ci_runs():
     assert f"```\n{command}\n```" in README
 
 
-def test_the_variable_table_is_the_fmus(python_fmu):
-    assert assets.with_table(README, assets.variable_table(python_fmu)) == README
+@pytest.mark.parametrize("reference", assets.REFERENCES, ids=lambda reference: reference.model)
+def test_the_variable_tables_are_the_fmus(reference):
+    table = assets.variable_table(BUILD / "fmi2-python" / f"{reference.model}.fmu")
+    assert assets.with_table(README, reference, table) == README
 
 
 @pytest.mark.parametrize("command", sorted(set(re.findall(r"python -m orchestrate (\w+)", README))))

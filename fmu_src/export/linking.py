@@ -107,7 +107,7 @@ def link(name, files, options=()):
         return (Path(folder) / target).read_bytes()
 
 
-def link_all(objects, files, options=()):
+def link_all(objects, files):
     """The same library for every platform this machine can link for; the others are left out, and said to be.
 
     Parameters
@@ -116,8 +116,6 @@ def link_all(objects, files, options=()):
         The compiled kernel by platform.
     files : dict of str to bytes
         Sources and headers.
-    options : sequence of str
-        Further options of the compiler.
 
     Returns
     -------
@@ -132,7 +130,7 @@ def link_all(objects, files, options=()):
     made, reasons = {}, []
     for name in PLATFORMS:
         try:
-            made[name] = link(name, {**files, "kernel.o": objects[name]}, options)
+            made[name] = link(name, {**files, "kernel.o": objects[name]})
         except NoCompiler as error:
             reasons.append(error)
     if not made:

@@ -113,9 +113,9 @@ def run_pythonfmu(model, folder, sources, digest, scratch):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_bytes(content)
     try:
-        entry = (ROOT / "export" / "native" / "library.c").read_bytes()
+        entry = (b"#define REFRESH\n" if model.refresh else b"") + (ROOT / "export" / "native" / "library.c").read_bytes()
         objects = compile_objects(f"fmu_src.{folder}.model")
-        libraries = link_all(objects, {"library.c": entry}, ("-DREFRESH",) if model.refresh else ())
+        libraries = link_all(objects, {"library.c": entry})
         for platform, library in LIBRARIES.values():
             if platform in libraries:
                 (package / library).write_bytes(libraries[platform])
