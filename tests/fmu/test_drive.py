@@ -7,10 +7,11 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
-from ..fresh import ROOT
+from ..fresh import ROOT, run_fresh
 from ..shaker.truth import solve
 from .driver import BUILD, FORMS, run
 from .exporting import export_copy
+from .test_importers import COSIM
 
 FMUS = {form: BUILD / form / "MotorShaker.fmu" for form in FORMS}
 # The contract's table, typed in here: name, causality, unit.
@@ -179,6 +180,30 @@ def test_failed_step_leaves_the_instance_where_it_was(fmu, tmp_path):
     answer([kept, f.step(0.02).outputs() == g.outputs()])
     """
     assert run(script, fmu, cwd=tmp_path) == [True, True]
+
+
+@pytest.mark.parametrize("form", ["fmi2-python", "fmi2"])
+def test_libcosim(form, tmp_path):
+    """Another reader of the XML and another loop: the same bits."""
+    pytest.importorskip("libcosimpy")
+    script = COSIM.replace('observer.last_integer_values(index, [variables["impact_count"]])', "None")
+    names = ["box_position", "box_velocity", "angle", "speed", "motor_energy"]
+    values = {"voltage": 7.0, "speed_start": 20.0}
+    (rows, _, known), done = run_fresh(
+        script, FMUS[form], json.dumps(values), json.dumps(names), 0.03125, 64, cwd=tmp_path, env={"VIBROIMPACT_MESSAGES": ""}
+    )
+    expected = run(
+        r"""
+        f, names = open_fmu(PATH).start(**json.loads(sys.argv[2])), json.loads(sys.argv[3])
+        answer([f.step(k * 0.03125).get(*names) for k in range(1, 65)])
+        """,
+        FMUS[form],
+        json.dumps(values),
+        json.dumps(names),
+        cwd=tmp_path,
+    )
+    assert [row[1:] for row in rows] == expected
+    assert known > 30 and "error" not in done.stderr.lower()
 
 
 def test_reference_result(fmu, tmp_path):
