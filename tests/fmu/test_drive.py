@@ -78,6 +78,36 @@ def test_dependencies_tell_what_follows_an_input_at_once(fmu):
     }
 
 
+def test_initial_dependencies_are_true(fmu, tmp_path):
+    """Each start value in turn is changed: no output moves at the start that does not name it, and every one that is named moves something."""
+    script = r"""
+    base = dict(angle_start=0.4, speed_start=30.0, position_start=0.01, velocity_start=0.2, voltage=5.0, box_force=2.0, box_force_1=3.0)
+    inductive = {**base, "armature_inductance": 0.1, "current_start": 0.3}
+    found = {}
+
+    def at_start(values):
+        f = open_fmu(PATH)
+        f.set(**values)
+        f.enter()
+        try:
+            return f.outputs()
+        finally:
+            f.free()
+
+    settable = [v for v in describe(PATH).modelVariables if v.causality in ("parameter", "input")]
+    for start in (base, inductive):
+        plain = at_start(start)
+        for v in settable:
+            other = at_start({**start, v.name: 1.25 * start.get(v.name, float(v.start)) + 0.001})
+            found.setdefault(v.name, set()).update(key for key in plain if plain[key] != other[key])
+    answer({name: sorted(keys) for name, keys in found.items()})
+    """
+    moved = run(script, fmu, cwd=tmp_path)
+    known = {u.variable.name: {v.name for v in u.dependencies or ()} for u in fmpy.read_model_description(str(fmu)).initialUnknowns}
+    assert {(name, key) for name, keys in moved.items() for key in keys if name not in known[key]} == set()
+    assert {(name, key) for key, names in known.items() for name in names if key not in moved[name]} == set()
+
+
 def test_the_forms_give_the_same_bits_and_states_resume(tmp_path):
     ends = []
     for form, pure in (*((form, False) for form in FORMS), ("fmi2-python", True)):
