@@ -142,8 +142,8 @@ def carry_out(result, plan, fmus, force):
         return result
     lock = Lock(result)
     try:
-        if force:
-            result.unlink(missing_ok=True)
+        if force and result.exists():  # once: interrupted, it goes on as any other
+            result.unlink()
             Journal.discard(journal_path(result))
         journal = Journal(journal_path(result), plan.identity())
         with tqdm(total=plan.steps, unit="step", unit_scale=True, desc=result.stem, dynamic_ncols=True) as bar:
@@ -182,7 +182,8 @@ def report(result):
 
     with xarray.open_dataset(result, engine="netcdf4") as data:
         found = data.attrs
-        print(f"{result}: {data.sizes['revolution']} revolutions, jump up at eta0 = {found['jump_up']:.4f}, down at {found['jump_down']:.4f}")
+        up, down = (f"at eta0 = {found[name]:.4f}" if math.isfinite(found[name]) else "none" for name in ("jump_up", "jump_down"))
+        print(f"{result}: {data.sizes['revolution']} revolutions; jump up {up}, jump down {down}")
         missing, defects = found["missing_over_motor_work"], found["defects_over_motor_work"]
         print(f"  of the motor's work {missing:.1e} is missing, the steps' defects are {defects:.1e} (small ones alone do not prove accuracy)")
         if max(abs(missing), defects) > LIMIT:

@@ -7,10 +7,11 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
-from ..fresh import ROOT
+from ..fresh import ROOT, run_fresh
 from ..shaker.truth import solve
 from .driver import BUILD, FORMS, run
 from .exporting import export_copy
+from .test_importers import COSIM
 
 FMUS = {form: BUILD / form / "MotorShaker.fmu" for form in FORMS}
 # The contract's table, typed in here: name, causality, unit.
@@ -75,6 +76,36 @@ def test_dependencies_tell_what_follows_an_input_at_once(fmu):
         "box_jerk": {"voltage", "box_force", "box_force_1"},
         **{name: {"voltage"} for name in electric},
     }
+
+
+def test_initial_dependencies_are_true(fmu, tmp_path):
+    """Each start value in turn is changed: no output moves at the start that does not name it, and every one that is named moves something."""
+    script = r"""
+    base = dict(angle_start=0.4, speed_start=30.0, position_start=0.01, velocity_start=0.2, voltage=5.0, box_force=2.0, box_force_1=3.0)
+    inductive = {**base, "armature_inductance": 0.1, "current_start": 0.3}
+    found = {}
+
+    def at_start(values):
+        f = open_fmu(PATH)
+        f.set(**values)
+        f.enter()
+        try:
+            return f.outputs()
+        finally:
+            f.free()
+
+    settable = [v for v in describe(PATH).modelVariables if v.causality in ("parameter", "input")]
+    for start in (base, inductive):
+        plain = at_start(start)
+        for v in settable:
+            other = at_start({**start, v.name: 1.25 * start.get(v.name, float(v.start)) + 0.001})
+            found.setdefault(v.name, set()).update(key for key in plain if plain[key] != other[key])
+    answer({name: sorted(keys) for name, keys in found.items()})
+    """
+    moved = run(script, fmu, cwd=tmp_path)
+    known = {u.variable.name: {v.name for v in u.dependencies or ()} for u in fmpy.read_model_description(str(fmu)).initialUnknowns}
+    assert {(name, key) for name, keys in moved.items() for key in keys if name not in known[key]} == set()
+    assert {(name, key) for key, names in known.items() for name in names if key not in moved[name]} == set()
 
 
 def test_the_forms_give_the_same_bits_and_states_resume(tmp_path):
@@ -170,7 +201,7 @@ def test_failed_step_leaves_the_instance_where_it_was(fmu, tmp_path):
     f = open_fmu(PATH).start(voltage=5.0, armature_inductance=1e-4).step(0.01)
     before = f.outputs()
     try:
-        f.step(1e4)
+        f.step(10.0)
     except Refused as refusal:
         pass
     f.time = 0.01
@@ -179,6 +210,30 @@ def test_failed_step_leaves_the_instance_where_it_was(fmu, tmp_path):
     answer([kept, f.step(0.02).outputs() == g.outputs()])
     """
     assert run(script, fmu, cwd=tmp_path) == [True, True]
+
+
+@pytest.mark.parametrize("form", ["fmi2-python", "fmi2"])
+def test_libcosim(form, tmp_path):
+    """Another reader of the XML and another loop: the same bits."""
+    pytest.importorskip("libcosimpy")
+    script = COSIM.replace('observer.last_integer_values(index, [variables["impact_count"]])', "None")
+    names = ["box_position", "box_velocity", "angle", "speed", "motor_energy"]
+    values = {"voltage": 7.0, "speed_start": 20.0}
+    (rows, _, known), done = run_fresh(
+        script, FMUS[form], json.dumps(values), json.dumps(names), 0.03125, 64, cwd=tmp_path, env={"VIBROIMPACT_MESSAGES": ""}
+    )
+    expected = run(
+        r"""
+        f, names = open_fmu(PATH).start(**json.loads(sys.argv[2])), json.loads(sys.argv[3])
+        answer([f.step(k * 0.03125).get(*names) for k in range(1, 65)])
+        """,
+        FMUS[form],
+        json.dumps(values),
+        json.dumps(names),
+        cwd=tmp_path,
+    )
+    assert [row[1:] for row in rows] == expected
+    assert known > 30 and "error" not in done.stderr.lower()
 
 
 def test_reference_result(fmu, tmp_path):

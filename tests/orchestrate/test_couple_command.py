@@ -36,7 +36,12 @@ def test_result(uninterrupted):
         assert data.sizes["revolution"] > 400
         assert data.Omega.attrs["long_name"] and data.attrs["structure"] == "delaminated"
         assert abs(data.attrs["missing_over_motor_work"]) < 1e-6
-    assert f"{NAME}.nc: " in out and "do not prove accuracy" in out
+    assert f"{NAME}.nc: " in out and "jump up none" in out and "do not prove accuracy" in out
+
+
+def test_a_motor_that_does_not_turn(tmp_path):
+    done = command(tmp_path, "--structure", "bonded", "--eta0", "0:0.001", "--rate", "1e-3", "--settle", "0", "--one-way")
+    assert done.returncode == 2 and "not one revolution" in done.stderr and "Traceback" not in done.stderr
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="signals")
