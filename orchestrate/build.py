@@ -1,17 +1,15 @@
 """Export the FMUs, and know whether an exported one is up to date."""
 
 import functools
-import logging
 from pathlib import Path
 
 from fmu_src.export import native_form, pythonfmu_form
-from fmu_src.export.linking import NoCompiler
+from fmu_src.export.linking import NoCompiler, say_pure_python
 from fmu_src.oscillator.model import MODEL as OSCILLATOR
 
 from .errors import UserError
 from .fmu import describe
 
-log = logging.getLogger(__name__)
 FORMS: dict = {"fmi2-python": pythonfmu_form.export, "fmi2": native_form.export_fmi2, "fmi3": native_form.export_fmi3}
 MODELS: dict = {"TwoMassImpactOscillator": (OSCILLATOR, "vibroimpact", "oscillator")}
 GUIDS: dict = {
@@ -43,11 +41,11 @@ def build(folder, forms=tuple(FORMS)):
     except OSError as error:
         raise UserError(f"{folder}: {error.strerror or error}; allowed is a folder that can be written") from None
     for form in forms:
-        for name, model in MODELS.items():
+        for model in MODELS.values():
             try:
                 written.append(FORMS[form](*model, Path(folder) / form))
             except NoCompiler as reason:
-                log.warning("%s: no FMU of the form %s can be made here: %s", name, form, reason)
+                say_pure_python(reason)
             except OSError as error:
                 raise UserError(f"{folder}: cannot be written ({error.strerror or error}); allowed is a writable folder") from None
     return written

@@ -10,6 +10,7 @@ import sqlite3
 import sys
 from concurrent.futures import FIRST_EXCEPTION, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
 from pathlib import Path
 
 from tqdm import tqdm
@@ -30,11 +31,11 @@ def work(plan, fmu, result):
     """One sweep in a worker process; the parent answers interrupts, and tells it to end by SIGTERM."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # by way of the context managers: nothing is left behind
     alone = orphaned(os.getppid())
-    journal = Journal(journal_path(result), plan.identity())
     try:
-        run(plan, fmu, journal, alone)
-    finally:
-        journal.close()
+        with closing(Journal(journal_path(result), plan.identity())) as journal:
+            run(plan, fmu, journal, alone)
+    except SystemExit:
+        os._exit(1)  # the pool would take the next sweep
     if alone():
         os._exit(1)  # the pool would wait for orders that never come
 

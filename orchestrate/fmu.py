@@ -9,11 +9,9 @@ from ctypes import byref, c_double, c_uint
 from dataclasses import dataclass
 from pathlib import Path
 
-from .errors import UserError
+import numpy as np
 
-
-class FmuError(RuntimeError):
-    """An FMU refused a call; the text is the FMU's own message."""
+from .errors import FmuError, UserError
 
 
 @dataclass(frozen=True)
@@ -92,6 +90,7 @@ class Instance:
         os.environ["VIBROIMPACT_MESSAGES"] = "log"  # the pythonfmu form need not repeat on the error output what is read from its log
         self.description = describe(path)
         self._messages = []
+        self._readers = {}
         self._folder = tempfile.mkdtemp(prefix="vibroimpact-")
         try:
             fmpy.extract(str(path), self._folder)
@@ -154,9 +153,11 @@ class Instance:
 
     def set(self, **values):
         """Set variables by name."""
-        for name, value in values.items():
-            variable = self.variable(name)
-            self.call(f"set{variable.type}", [variable.valueReference], [value])
+        types: dict = {}
+        for variable, value in zip(map(self.variable, values), values.values(), strict=True):
+            types.setdefault(variable.type, {})[variable.valueReference] = value
+        for type_name, chosen in types.items():
+            self.call(f"set{type_name}", list(chosen), list(chosen.values()))
 
     def get(self, *names):
         """Values by name, as a list."""
@@ -180,33 +181,40 @@ class Instance:
         """One communication step from ``time`` to ``target``, s."""
         self.call("doStep", currentCommunicationPoint=time, communicationStepSize=target - time)
 
-    def reader(self, *names):
-        """A fast reader of Real variables: a function that fills and returns one ctypes array, in the order of ``names``.
+    def read(self, *names):
+        """Values of Real variables, in one call of the FMU.
 
-        The name of a series (``x1_sample``) stands for all its elements: indexed scalars in FMI 2.0, one array in FMI 3.0.
+        Parameters
+        ----------
+        *names : str
+            The name of a series (``x1_sample``) stands for all its elements: indexed scalars in FMI 2.0, one array in FMI 3.0.
+
+        Returns
+        -------
+        ndarray
+            In the order of ``names``, valid until the next call with them.
         """
-        references, size = [], 0
-        for name in names:
-            found = self.elements(name)
-            references += [variable.valueReference for variable, _ in found]
-            size += sum(length for _, length in found)
-        array = (c_uint * len(references))(*references)
-        values = (c_double * size)()
-        arguments: list = [self._fmu.component, array, len(references), values]
+        if names not in self._readers:
+            self._readers[names] = self._reader(names)
+        function, arguments, values = self._readers[names]
+        self._messages.clear()
+        try:
+            function(*arguments)
+        except Exception as error:
+            raise FmuError("; ".join(self._messages) or str(error)) from None
+        return values
+
+    def _reader(self, names):
+        """FMPy's function, its arguments, and the array it fills."""
+        found = [element for name in names for element in self.elements(name)]
+        for variable in (variable for variable, _ in found if variable.type not in ("Real", "Float64")):
+            raise FmuError(f"{variable.name}: is {variable.type}; allowed are Real variables")
+        references = (c_uint * len(found))(*(variable.valueReference for variable, _ in found))
+        values = (c_double * sum(length for _, length in found))()
+        arguments = [self._fmu.component, references, len(found), values]
         if self.description.fmi_version.startswith("3"):
-            get = self._fmu.fmi3GetFloat64
-            arguments.append(size)
-        else:
-            get = self._fmu.fmi2GetReal
-
-        def read():
-            try:
-                get(*arguments)
-            except Exception as error:
-                raise FmuError("; ".join(self._messages) or str(error)) from None
-            return values
-
-        return read
+            return self._fmu.fmi3GetFloat64, [*arguments, len(values)], np.frombuffer(values)
+        return self._fmu.fmi2GetReal, arguments, np.frombuffer(values)
 
     def elements(self, name):
         """Variables a name stands for, each with its number of values."""

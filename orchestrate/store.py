@@ -31,6 +31,7 @@ class Journal:
         try:
             self._db = sqlite3.connect(self.path, timeout=30.0, isolation_level=None)
             self._db.execute("PRAGMA journal_mode=WAL")
+            self._db.execute("PRAGMA synchronous=NORMAL")  # a killed process loses nothing written, a power cut perhaps the last rows
             self._db.execute("CREATE TABLE IF NOT EXISTS identity (text TEXT)")
             self._db.execute("CREATE TABLE IF NOT EXISTS rows (i INTEGER PRIMARY KEY, data BLOB)")
             self._db.execute("INSERT INTO identity SELECT ? WHERE NOT EXISTS (SELECT * FROM identity)", (text,))

@@ -152,15 +152,14 @@ def sample(instance, plan, period):
     peak : float
         Largest gap on the way.
     """
-    read = instance.reader(*SERIES)
-    room = len(read()) // len(SERIES)
+    room = len(instance.read(*SERIES)) // len(SERIES)
     samples, peak = np.empty((plan.samples, len(SERIES))), 0.0
     for done in range(0, plan.samples, room):
         count = min(room, plan.samples - done)
         first = plan.transient + done
         instance.set(sample_count=count)
         instance.step(first * period, (first + count) * period)
-        samples[done : done + count] = np.array(read()).reshape(len(SERIES), room)[:, :count].T
+        samples[done : done + count] = instance.read(*SERIES).reshape(len(SERIES), room)[:, :count].T
         peak = max(peak, *instance.get("x_rel_max"))
     return samples, peak
 

@@ -7,10 +7,10 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PRELUDE = f"""
+PRELUDE = """
 import sys, json
 from pathlib import Path
-sys.path[:] = [p for p in sys.path if Path(p or ".").resolve() != Path({str(ROOT)!r})]
+sys.path[:] = [p for p in sys.path if not (Path(p or ".") / "fmu_src").is_dir()]  # this project, or wherever an installation points to
 try:
     import fmu_src
     raise SystemExit("the project is on the path")

@@ -136,8 +136,17 @@ def main(model_module, folder):
         (Path(folder) / f"{name}.o").write_bytes(emit_object(text, platform))
 
 
+def failure(error):
+    """One line on why the kernel could not be compiled."""
+    reason = (str(error).strip().splitlines() or ["no reason given"])[0]
+    if isinstance(error, (NoCompiler, ImportError)):
+        return reason
+    version = getattr(sys.modules.get("numba"), "__version__", "of unknown version")
+    return f"Numba {version} cannot compile the kernel: {type(error).__name__}: {reason}"
+
+
 if __name__ == "__main__":
     try:
         main(*sys.argv[1:])
     except Exception as error:
-        sys.exit(str(error) if isinstance(error, NoCompiler) else f"{type(error).__name__}: {error}")
+        sys.exit(failure(error))

@@ -4,7 +4,9 @@ The compiler is the one of the PyPI package ziglang, which compiles for every pl
 where that is missing, the machine's own compiler serves its own platform.
 """
 
+import functools
 import importlib.util
+import logging
 import shutil
 import subprocess
 import sys
@@ -12,9 +14,22 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+log = logging.getLogger(__name__)
+
 
 class NoCompiler(Exception):
     """Why no binary can be made here, as one line."""
+
+
+@functools.cache
+def say_once(line):
+    """Warn, however many FMUs the line is about."""
+    log.warning("%s", line)
+
+
+def say_pure_python(reason):
+    """Say, once, what is left where no binary can be made."""
+    say_once(f"no binary can be made here, so there will be no native FMU, and the pythonfmu FMU runs in pure Python: {reason}")
 
 
 @dataclass(frozen=True)
@@ -90,3 +105,36 @@ def link(name, files, options=()):
             lines = [line for line in done.stderr.splitlines() if "error" in line] or done.stderr.splitlines() or ["no reason given"]
             raise NoCompiler(f"the C compiler failed for {name}: {lines[0]}")
         return (Path(folder) / target).read_bytes()
+
+
+def link_all(objects, files):
+    """The same library for every platform this machine can link for; the others are left out, and said to be.
+
+    Parameters
+    ----------
+    objects : dict of str to bytes
+        The compiled kernel by platform.
+    files : dict of str to bytes
+        Sources and headers.
+
+    Returns
+    -------
+    dict of str to bytes
+        Library by platform.
+
+    Raises
+    ------
+    NoCompiler
+        Where there is no library at all.
+    """
+    made, reasons = {}, []
+    for name in PLATFORMS:
+        try:
+            made[name] = link(name, {**files, "kernel.o": objects[name]})
+        except NoCompiler as error:
+            reasons.append(error)
+    if not made:
+        raise reasons[0]
+    for reason in reasons:
+        say_once(f"the FMUs will have binaries for {', '.join(made)} alone: {reason}")
+    return made

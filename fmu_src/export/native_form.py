@@ -8,7 +8,7 @@ from pathlib import Path
 from .archive import fingerprint, guid_of, read_folder, write_archive
 from .compile_kernel import compile_objects
 from .documentation import documentation_files
-from .linking import PLATFORMS, link
+from .linking import PLATFORMS, link_all
 from .model_description import fmi2_native_xml
 from .model_description3 import ARRAY_BASE, CLOCK_REFERENCE, fmi3_xml
 from .pythonfmu_form import ROOT, embedded_sources
@@ -17,6 +17,7 @@ HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
     "fmi3": ("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h"),
 }
+SHIM = {"fmi2": ("core.h", "core.c", "fmi2.c"), "fmi3": ("core.h", "core.c", "fmi3.c", "fmi3_absent.c")}
 XML = {"fmi2": fmi2_native_xml, "fmi3": fmi3_xml}
 
 
@@ -49,6 +50,7 @@ def c_variable(model, variable):
         c_number(maximum),
         str(variable.input_derivatives),
         str(slots[variable.derivative]) if variable.derivative else "-1",
+        str(int(bool(variable.series))),
     ]
     return "    {" + ", ".join(cells) + "},"
 
@@ -81,7 +83,7 @@ def model_header(model, token, digest):
         f"#define OUTPUT_DERIVATIVES {c_string(', '.join(outputs) or 'none')}",
         "typedef enum { REAL, INTEGER, BOOLEAN } Type;",
         "typedef struct { const char *name, *unit, *range; Type type; int calculated, fixed; double start, minimum, maximum;",
-        "                 int input_derivatives, derivative; } Variable;",
+        "                 int input_derivatives, derivative, element; } Variable;",
         "static const Variable VARIABLES[] = {",
         *[c_variable(model, variable) for variable in model.variables],
         "};",
@@ -99,7 +101,7 @@ def model_header(model, token, digest):
 def shim_sources(version):
     """C sources of the shim for an FMI version."""
     folder = ROOT / "export" / "native"
-    return {name: (folder / name).read_bytes() for name in ("core.h", "core.c", f"{version}.c")}
+    return {name: (folder / name).read_bytes() for name in SHIM[version]}
 
 
 def fmi_headers(version):
@@ -144,8 +146,8 @@ def export(model, kernel, folder, target, version):
     objects = compile_objects(f"fmu_src.{folder}.model")
     sources = {**shim_sources(version), **fmi_headers(version), "model.h": model_header(model, token, digest)}
     files = {"modelDescription.xml": XML[version](model, token)}
-    for name, platform in PLATFORMS.items():
-        binary = link(name, {**sources, "kernel.o": objects[name]})
+    for name, binary in link_all(objects, sources).items():
+        platform = PLATFORMS[name]
         files[f"binaries/{getattr(platform, version)}/{model.name}{platform.suffix}"] = binary
     files.update(documentation_files(model, ROOT / folder, digest))
     files.update(read_folder(ROOT / kernel, f"documentation/{kernel}/"))

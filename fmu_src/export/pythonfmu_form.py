@@ -4,7 +4,6 @@ Two FMUs, or an FMU and its host, share modules of the same name in one process.
 content-hashed name, the script bears the hash too, and pythonfmu builds in a process of its own.
 """
 
-import logging
 import subprocess
 import sys
 import tempfile
@@ -17,10 +16,9 @@ from .archive import fingerprint, guid_of, read_folder, write_archive
 from .compile_kernel import compile_objects
 from .compiled import LIBRARIES
 from .documentation import documentation_files
-from .linking import NoCompiler, link
+from .linking import NoCompiler, link_all, say_pure_python
 from .model_description import fmi2_xml
 
-log = logging.getLogger(__name__)
 ROOT = Path(__file__).resolve().parents[1]
 RUNTIME = ("__init__.py", "export/__init__.py", "export/table.py", "export/slave.py", "export/compiled.py")
 MODEL_FILES = ("__init__.py", "variables.py", "model.py")
@@ -102,10 +100,12 @@ def run_pythonfmu(model, folder, sources, digest, scratch):
     try:
         entry = (ROOT / "export" / "native" / "library.c").read_bytes()
         objects = compile_objects(f"fmu_src.{folder}.model")
+        libraries = link_all(objects, {"library.c": entry})
         for platform, library in LIBRARIES.values():
-            (package / library).write_bytes(link(platform, {"kernel.o": objects[platform], "library.c": entry}))
+            if platform in libraries:
+                (package / library).write_bytes(libraries[platform])
     except NoCompiler as reason:
-        log.warning("%s: no compiled kernel, the FMU will run in pure Python: %s", model.name, reason)
+        say_pure_python(reason)
     script = scratch / "source" / f"{model.name}_{digest[:12]}.py"
     text = SCRIPT.format(name=model.name, package=package.name, folder=folder, description=model.description, digest=digest)
     script.write_text(text, encoding="utf-8")

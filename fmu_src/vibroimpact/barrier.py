@@ -7,7 +7,8 @@ and every derivative is bounded in closed form for all later times.
 
 from . import memory as at
 from .elementary import sincos_turns
-from .response import basis, rotation, shares_decay
+from .response import bases, basis
+from .series import gap_at
 
 
 def free_derivative(m, b, c, w):
@@ -48,8 +49,8 @@ def set_contact_force(m):
 
 
 def set_bounds(m, branch_a):
-    """Bounds of the fourth derivative: the steady part, and the free parts at tau = 0."""
-    steady, a, b = bounds(m, branch_a, 4)
+    """Bounds of the fifth derivative: the steady part, and the free parts at tau = 0."""
+    steady, a, b = bounds(m, branch_a, 5)
     m[at.BOUND] = steady
     m[at.BOUND + 1] = a
     m[at.BOUND + 2] = b
@@ -74,56 +75,56 @@ def free_bound(m, b, free, order):
 
 
 def free_part(m, b, c, w, C, S):
-    """A free part and its first three derivatives: ``x'' = -2 D x' - omega^2 x``."""
+    """A free part and its first four derivatives: ``x'' = -2 D x' - omega^2 x``."""
     twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
     c_dot, w_dot = free_derivative(m, b, c, w)
     x0 = c * C + w * S
     x1 = c_dot * C + w_dot * S
     x2 = -(twice * x1 + square * x0)
-    return x0, x1, x2, -(twice * x2 + square * x1)
+    x3 = -(twice * x2 + square * x1)
+    return x0, x1, x2, x3, -(twice * x3 + square * x2)
 
 
 def evaluate(m, tau):
-    """The barrier at ``tau``: value, three derivatives, and a bound of the fourth from there on.
+    """The barrier at ``tau``: value, four derivatives, and a bound of the fifth from there on.
 
     Returns
     -------
-    h0, h1, h2, h3, bound : float
+    h0, h1, h2, h3, h4, bound : float
     """
     m[at.WORK] += 1.0
-    flight = m[at.MODE] == at.FLIGHT
-    branch_a = at.BRANCH_1 if flight else at.BRANCH_3
-    C, S, decay = basis(m, branch_a, tau)
-    h0, h1, h2, h3 = free_part(m, branch_a, m[at.BARRIER_FREE_A], m[at.BARRIER_FREE_A + 1], C, S)
-    bound = m[at.BOUND] + decay * m[at.BOUND + 1]
-    if flight:
-        if shares_decay(m):
-            C, S = rotation(m, at.BRANCH_2, tau, decay)
-        else:
-            C, S, decay = basis(m, at.BRANCH_2, tau)
-        b0, b1, b2, b3 = free_part(m, at.BRANCH_2, m[at.BARRIER_FREE_B], m[at.BARRIER_FREE_B + 1], C, S)
-        h0 += b0
-        h1 += b1
-        h2 += b2
-        h3 += b3
-        bound += decay * m[at.BOUND + 2]
+    if m[at.SERIES] != 0.0:
+        h0, h1, h2, h3, h4 = gap_at(m, tau)
+        return h0, h1, h2, h3, h4, m[at.BOUND] + m[at.BOUND + 1] + m[at.BOUND + 2]
+    if m[at.MODE] == at.FLIGHT:
+        C_1, S_1, decay, C_2, S_2, decay_2 = bases(m, tau)
+        h0, h1, h2, h3, h4 = free_part(m, at.BRANCH_1, m[at.BARRIER_FREE_A], m[at.BARRIER_FREE_A + 1], C_1, S_1)
+        b0, b1, b2, b3, b4 = free_part(m, at.BRANCH_2, m[at.BARRIER_FREE_B], m[at.BARRIER_FREE_B + 1], C_2, S_2)
+        h0, h1, h2, h3, h4 = h0 + b0, h1 + b1, h2 + b2, h3 + b3, h4 + b4
+        bound = m[at.BOUND] + decay * m[at.BOUND + 1] + decay_2 * m[at.BOUND + 2]
+    else:
+        C_1, S_1, decay = basis(m, at.BRANCH_3, tau)
+        h0, h1, h2, h3, h4 = free_part(m, at.BRANCH_3, m[at.BARRIER_FREE_A], m[at.BARRIER_FREE_A + 1], C_1, S_1)
+        bound = m[at.BOUND] + decay * m[at.BOUND + 1]
     if m[at.FORCING] != 0.0:
         eta = m[at.ETA]
         s, c = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
         u0 = m[at.BARRIER_HARMONIC] * c + m[at.BARRIER_HARMONIC + 1] * s
         u1 = eta * (m[at.BARRIER_HARMONIC + 1] * c - m[at.BARRIER_HARMONIC] * s)
         square = eta * eta
+        u2 = square * u0
         h0 += u0
         h1 += u1
-        h2 -= square * u0
+        h2 -= u2
         h3 -= square * u1
+        h4 += square * u2
     if m[at.CUBIC_PRESENT] != 0.0:
         q2, q3 = m[at.BARRIER_CUBIC + 2], m[at.BARRIER_CUBIC + 3]
         h0 += m[at.BARRIER_CUBIC] + tau * (m[at.BARRIER_CUBIC + 1] + 0.5 * tau * (q2 + tau * q3 / 3.0))
         h1 += m[at.BARRIER_CUBIC + 1] + tau * (q2 + 0.5 * tau * q3)
         h2 += q2 + tau * q3
         h3 += q3
-    return h0, h1, h2, h3, bound
+    return h0, h1, h2, h3, h4, bound
 
 
 def rounding(m, tau):

@@ -41,11 +41,11 @@ FREE_A, FREE_B = 895, 897  # c and v + D c of the free part, branch 1 or 3, and 
 CUBIC_A, CUBIC_B = 899, 903  # response to the cubic: value and three derivatives at the state's start
 # the barrier: positive inside the state, its first root is the state's end
 BARRIER_HARMONIC, BARRIER_CUBIC, BARRIER_FREE_A, BARRIER_FREE_B = 907, 909, 913, 915
-BOUND = 917  # of its fourth derivative: steady part, free part A, free part B
+BOUND = 917  # of its fifth derivative: steady part, free part A, free part B
 SINE, COSINE = 920, 921  # of the phase at the state's start
 CUBIC_PRESENT = 922  # the cubic part of the forcing is not zero
 CLEAR, END, END_KIND = 923, 924, 925  # no root before CLEAR; the state's end once found
-END_OPEN, END_EVENT, END_RENEWAL, END_STOPPED = 0.0, 1.0, 2.0, 3.0
+END_OPEN, END_EVENT, END_RENEWAL = 0.0, 1.0, 2.0
 
 # -- book-keeping -----------------------------------------------------------------------------------------------------
 START_TIME = 926
@@ -53,7 +53,11 @@ WORK, WORK_LIMIT = 927, 928  # evaluations spent and allowed in this step
 TARGET, REPORT = 929, 930  # for messages: the time a step was to reach, and what a return code is about
 STOP_AT_IMPACT = 931  # set from outside: a step ends at its first impact
 BEGIN = 932  # displacements and velocities at the state's start: x1, v1, x2, v2
-SIZE = 936
+STOPPED = 936  # the step has ended so
+SERIES = 937  # order of the Taylor series that describe a short flight; 0: the closed form does
+SERIES_LONGEST = 12
+SERIES_DRIVE, SERIES_X, SERIES_GAP = 938, 951, 964  # coefficients of the harmonic forcing, of xi_1, and of the gap
+SIZE = 977
 
 # -- return codes of the entry points ---------------------------------------------------------------------------------
 OK, UNFINISHED, RESONANCE_1, RESONANCE_2, RESONANCE_3, NOT_FINITE, START_OVERLAP, START_BONDED = 0, 1, 2, 3, 4, 5, 6, 7

@@ -11,8 +11,9 @@ from .contact import contact_force, first_derivative
 from .elementary import fraction, sincos_turns
 from .excitation import cubic_at, set_cubic_response
 from .impact import common_velocity, count_impact, restitution, sticks
-from .response import displacement, set_free
+from .response import bases, basis, displacement, set_free
 from .roots import INFINITE, longest_step, step_from
+from .series import polynomial, series_order, set_series, short_flight
 
 
 def state_at(m, tau):
@@ -25,14 +26,20 @@ def state_at(m, tau):
     """
     if tau == 0.0:  # exactly what the state began with: a start from rest is at rest
         return m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
+    if m[at.SERIES] != 0.0:
+        x1, v1 = polynomial(m, at.SERIES_X, tau)
+        gap, slope = polynomial(m, at.SERIES_GAP, tau)
+        return x1, v1, x1 + gap if gap > 0.0 else x1, v1 + slope
     sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
     if m[at.MODE] == at.FLIGHT:
-        x1, v1 = displacement(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, tau, sine, cosine)
-        x2, v2 = displacement(m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, tau, sine, cosine)
+        C_1, S_1, _, C_2, S_2, _ = bases(m, tau)
+        x1, v1 = displacement(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, tau, C_1, S_1, sine, cosine)
+        x2, v2 = displacement(m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, tau, C_2, S_2, sine, cosine)
         if x2 < x1:  # by rounding, at the very end of a flight
             x1 = x2 = common_position(m, x1, x2)
         return x1, v1, x2, v2
-    x3, v3 = displacement(m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, tau, sine, cosine)
+    C, S, _ = basis(m, at.BRANCH_3, tau)
+    x3, v3 = displacement(m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, tau, C, S, sine, cosine)
     return x3, v3, x3, v3
 
 
@@ -85,34 +92,24 @@ def begin(m, x1, v1, x2, v2, lowest):
         v1, v2 = collide(m, x, v1, v2)
     if v2 > v1:
         begin_flight(m, x, v1, x, v2)
-        h2, h3 = gap_derivatives(m, x, v1, v2)
-        leave(m, 1, v2 - v1, h2, h3)
+        leave_impact(m, x, v1, v2 - v1)
         return
     order, value = first_derivative(m, x, v1, lowest)
     if value > 0.0:
         begin_flight(m, x, v1, x, v1)
-        _, _, _, h3, _ = evaluate(m, 0.0)
-        leave(m, order + 2, value, value, h3)
+        _, _, _, h3, h4, _ = evaluate(m, 0.0)
+        leave(m, order + 2, value, h3, h4)
         return
     if m[at.MODE] == at.FLIGHT:
         m[at.CONTACT_COUNT] += 1.0
     begin_common(m, at.CONTACT, x, v1)
-    h2, h3 = 0.0, 0.0
+    h2, h3, h4 = 0.0, 0.0, 0.0
     if order > 0:
-        _, _, h2, h3, _ = evaluate(m, 0.0)
-    leave(m, order, -value, h2, h3)
-
-
-def gap_derivatives(m, x, v1, v2):
-    """Gap's second and third derivative with both masses at ``x``, from (6)."""
-    twice_1, square_1 = 2.0 * m[at.BRANCH_1 + at.DAMPING], m[at.BRANCH_1 + at.OMEGA_SQUARED]
-    twice_2, square_2 = 2.0 * m[at.BRANCH_2 + at.DAMPING], m[at.BRANCH_2 + at.OMEGA_SQUARED]
-    pull_1 = twice_1 * v1 + square_1 * x
-    pull_2 = twice_2 * v2 + square_2 * x
-    drive = m[at.FORCING] * m[at.SINE]
-    if m[at.CUBIC_PRESENT] != 0.0:
-        drive += cubic_at(m, m[at.SEGMENT_AGE])[0]
-    return pull_1 - pull_2, twice_1 * (drive - pull_1) + square_1 * v1 - twice_2 * (drive - pull_2) - square_2 * v2
+        _, _, h2, h3, h4, _ = evaluate(m, 0.0)
+    if order == 1:
+        leave_rising(m, -value, h2, h3, h4)
+    else:
+        leave(m, order, -value, h3, h4)
 
 
 def collide(m, x, v1, v2):
@@ -154,6 +151,7 @@ def begin_common(m, mode, x, v):
 
 def open_end(m, x1, v1, x2, v2):
     """The state begins here; its end is not known yet."""
+    m[at.SERIES] = 0.0
     m[at.BEGIN] = x1
     m[at.BEGIN + 1] = v1
     m[at.BEGIN + 2] = x2
@@ -163,37 +161,79 @@ def open_end(m, x1, v1, x2, v2):
     m[at.END_KIND] = at.END_OPEN
 
 
-def leave(m, order, value, h2, h3):
-    """Leave a start on the boundary: no root lies before CLEAR; a very short flight's end is found at once.
+def leave_impact(m, x, v1, slope):
+    """Leave an impact; a short flight's end is found at once.
+
+    Parameters
+    ----------
+    m : flat memory
+        With the new flight's barrier.
+    x, v1, slope : float
+        Common displacement, velocity of mass 1, and gap velocity > 0.
+    """
+    order = series_order(m, slope, contact_force(m, x, v1) - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope)
+    set_series(m, x, v1, slope, order)
+    if order > 4:
+        duration = short_flight(m, order, bound_at_start(m))
+        if duration > 0.0:
+            m[at.SERIES] = order
+            find_end(m, duration)
+            return
+    leave_rising(m, slope, 2.0 * m[at.SERIES_GAP + 2], 6.0 * m[at.SERIES_GAP + 3], 24.0 * m[at.SERIES_GAP + 4])
+
+
+def bound_at_start(m):
+    """Bound of the barrier's fifth derivative over the whole state."""
+    return m[at.BOUND] + m[at.BOUND + 1] + m[at.BOUND + 2]
+
+
+def find_end(m, tau):
+    """The state ends on the barrier's first root, at ``tau``."""
+    m[at.CLEAR] = tau
+    m[at.END] = tau
+    m[at.END_KIND] = at.END_EVENT
+
+
+def leave_rising(m, h1, h2, h3, h4):
+    """Leave a start on the boundary with the barrier's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``: no root lies before CLEAR."""
+    step, found = step_from(0.0, h1, h2, h3, h4, bound_at_start(m), 0.0, longest_step(m))
+    m[at.CLEAR] = step
+    if found:
+        find_end(m, step)
+
+
+def leave(m, order, value, h3, h4):
+    """Leave a start on the boundary where the barrier's first derivative vanishes too.
 
     Parameters
     ----------
     m : flat memory
         With the new state's barrier.
     order : int
-        Of the barrier's first derivative that does not vanish; -1 if all vanish.
+        Of the barrier's first derivative that does not vanish, 0 where the barrier itself does not, -1 if all vanish.
     value : float
         That derivative, > 0.
-    h2, h3 : float
-        The second and third derivative; looked at where ``order`` is 1 or 2.
+    h3, h4 : float
+        The third and fourth derivative; looked at where ``order`` is 2.
     """
     if order == 0:
         return
     if order < 0:
         m[at.CLEAR] = INFINITE
         return
-    branch = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
-    if order <= 2:
-        slope = value if order == 1 else 0.0
-        step, found = step_from(0.0, slope, h2 if order == 1 else value, h3, m[at.BOUND] + m[at.BOUND + 1] + m[at.BOUND + 2], 0.0, longest_step(m))
-        m[at.CLEAR] = step
-        if found:
-            m[at.END] = step
-            m[at.END_KIND] = at.END_EVENT
+    if order == 2:
+        leave_rising(m, 0.0, value, h3, h4)
         return
-    steady, a, b = bounds(m, branch, order + 1)
-    bound = steady + a + b  # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of zero
+    branch = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
+    bound = derivative_bound(m, branch, order + 1)
+    # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of zero
     m[at.CLEAR] = 0.5 * (order + 1) * value / bound if bound > 0.0 else INFINITE
+
+
+def derivative_bound(m, branch, order):
+    """Bound of the barrier's derivative of an order over the whole state."""
+    steady, a, b = bounds(m, branch, order)
+    return steady + a + b
 
 
 def end_state(m):

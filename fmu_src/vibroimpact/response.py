@@ -56,6 +56,16 @@ def shares_decay(m):
     return same and m[at.BRANCH_2 + at.NU_SQUARED] > 0.0 and m[at.BRANCH_1 + at.NU_SQUARED] > 0.0
 
 
+def bases(m, tau):
+    """:func:`basis` of branch 1 and of branch 2."""
+    C_1, S_1, decay_1 = basis(m, at.BRANCH_1, tau)
+    if shares_decay(m):
+        C_2, S_2 = rotation(m, at.BRANCH_2, tau, decay_1)
+        return C_1, S_1, decay_1, C_2, S_2, decay_1
+    C_2, S_2, decay_2 = basis(m, at.BRANCH_2, tau)
+    return C_1, S_1, decay_1, C_2, S_2, decay_2
+
+
 def cubic_value(m, response, tau):
     """Value and first derivative of a cubic kept as value and derivatives at its start."""
     q1, q2, q3 = m[response + 1], m[response + 2], m[response + 3]
@@ -63,7 +73,7 @@ def cubic_value(m, response, tau):
     return value, q1 + tau * (q2 + 0.5 * tau * q3)
 
 
-def displacement(m, b, harmonic, free, cubic, tau, sine, cosine):
+def displacement(m, b, harmonic, free, cubic, tau, C, S, sine, cosine):
     """Displacement and velocity of one oscillator (10).
 
     Parameters
@@ -73,6 +83,8 @@ def displacement(m, b, harmonic, free, cubic, tau, sine, cosine):
         First slots of the branch, its forced amplitudes, free amplitudes and response to the cubic.
     tau : float
         Time since the state's start.
+    C, S : float
+        The branch's :func:`basis` there.
     sine, cosine : float
         Of the excitation's phase there.
 
@@ -81,7 +93,6 @@ def displacement(m, b, harmonic, free, cubic, tau, sine, cosine):
     xi, xi' : float
         m, and m per unit of tau.
     """
-    C, S, _ = basis(m, b, tau)
     c, w = m[free], m[free + 1]
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0

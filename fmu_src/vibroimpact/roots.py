@@ -1,9 +1,9 @@
 """Certified first root of a barrier, (13) and (19).
 
-From a point where h and three derivatives are known and the fourth is bounded by B from there on, the quartic
-``h + h' s + h'' s^2/2 + h''' s^3/6 - B s^4/24`` lies below the barrier: up to its first root the barrier has none. The walk steps from one
-such quartic to the next; nothing is sampled, so no root can be skipped, and it converges with fourth order at a simple root. The walk depends
-on the state alone, not on where the importer's communication points lie: it goes on where it was left.
+From a point where h and four derivatives are known and the fifth is bounded by B from there on, the quintic
+``h + h' s + h'' s^2/2 + h''' s^3/6 + h'''' s^4/24 - B s^5/120`` lies below the barrier: up to its first root the barrier has none. The walk steps
+from one such quintic to the next; nothing is sampled, so no root can be skipped, and it converges with fifth order at a simple root. The walk
+depends on the state alone, not on where the importer's communication points lie: it goes on where it was left.
 """
 
 import math
@@ -13,7 +13,7 @@ from .barrier import evaluate, rounding
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
-TRIALS = 6
+TRIALS = 3
 
 
 def parabola_root(h0, h1, h2):
@@ -29,22 +29,24 @@ def parabola_root(h0, h1, h2):
     return INFINITE
 
 
-def lowest_curvature(h2, h3, bound, s):
-    """The parabola ``h0 + h1 t + c t^2/2`` with this c lies below the quartic for ``0 <= t <= s``."""
-    return h2 + s * ((h3 if h3 < 0.0 else 0.0) * (1.0 / 3.0) - bound * s * (1.0 / 12.0))
+def lowest_curvature(h2, h3, h4, bound, s):
+    """The parabola ``h0 + h1 t + c t^2/2`` with this c lies below the quintic for ``0 <= t <= s``."""
+    bent = h4 * (1.0 / 12.0) - bound * s * (1.0 / 60.0)
+    lowered = h3 * (1.0 / 3.0) + (s * bent if bent < 0.0 else 0.0)
+    return h2 + s * lowered if lowered < 0.0 else h2
 
 
-def clear_step(h0, h1, h2, h3, bound, reach):
-    """A step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 - bound s^4/24`` stays positive.
+def clear_step(h0, h1, h2, h3, h4, bound, reach):
+    """A step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120`` stays positive.
 
-    For every trial s, ``min(s, first root of the parabola below the quartic up to s)`` is safe; trials close in on the s where both agree.
+    For every trial s, ``min(s, first root of the parabola below the quintic up to s)`` is safe; trials close in on the s where both agree.
 
     Parameters
     ----------
-    h0, h1, h2, h3 : float
-        Value and three derivatives, ``h0 > 0``, or ``h0 = 0 < h1``, or ``h0 = h1 = 0 < h2``. A lower bound will do for h3.
+    h0, h1, h2, h3, h4 : float
+        Value and four derivatives, ``h0 > 0``, or ``h0 = 0 < h1``, or ``h0 = h1 = 0 < h2``. A lower bound will do for h4.
     bound : float
-        Of the fourth derivative, >= 0.
+        Of the fifth derivative, >= 0.
     reach : float
         Longest step wanted, > 0.
 
@@ -56,9 +58,10 @@ def clear_step(h0, h1, h2, h3, bound, reach):
     far = parabola_root(h0, h1, h2)
     if far > reach:
         far = reach
-    clear = parabola_root(h0, h1, lowest_curvature(h2, h3, bound, far))
+    clear = parabola_root(h0, h1, lowest_curvature(h2, h3, h4, bound, far))
     if h1 >= 0.0 and h2 > 0.0:  # rising, and no parabola below turns down before the lowest curvature vanishes
-        rising = parabola_root(h2, (h3 if h3 < 0.0 else 0.0) * (1.0 / 3.0), bound * (-1.0 / 6.0))
+        bent = (h4 if h4 < 0.0 else 0.0) * (1.0 / 6.0) - bound * far * (1.0 / 30.0)
+        rising = parabola_root(h2, (h3 if h3 < 0.0 else 0.0) * (1.0 / 3.0), bent)
         if rising > clear:
             clear = rising
     if clear >= far:
@@ -67,7 +70,7 @@ def clear_step(h0, h1, h2, h3, bound, reach):
         if clear > 0.7 * far:
             break
         s = math.sqrt(clear * far)
-        root = parabola_root(h0, h1, lowest_curvature(h2, h3, bound, s))
+        root = parabola_root(h0, h1, lowest_curvature(h2, h3, h4, bound, s))
         if root >= s:
             clear = s
         else:
@@ -86,10 +89,10 @@ def walk(m, target):
             m[at.END] = renewal
             m[at.END_KIND] = at.END_RENEWAL
             return
-        h0, h1, h2, h3, bound = evaluate(m, tau)
+        h0, h1, h2, h3, h4, bound = evaluate(m, tau)
         if h0 <= 0.0:
             h0 = lifted(m, tau, h0, h1)
-        step, found = next_step(h0, h1, h2, h3, bound, tau, longest_step(m))
+        step, found = next_step(h0, h1, h2, h3, h4, bound, tau, longest_step(m))
         if found:
             m[at.END] = tau + step
             m[at.END_KIND] = at.END_EVENT
@@ -114,16 +117,16 @@ def renewal_age(m):
 
 
 def longest_step(m):
-    """Beyond a radian or so of the fastest oscillation the quartic says nothing."""
+    """Beyond a radian or so of the fastest oscillation the quintic says nothing."""
     return 6.0 / max(m[at.FASTEST], m[at.ETA])
 
 
-def next_step(h0, h1, h2, h3, bound, tau, reach):
+def next_step(h0, h1, h2, h3, h4, bound, tau, reach):
     """One step of the walk, and whether it ends on the root.
 
     Parameters
     ----------
-    h0, h1, h2, h3, bound : float
+    h0, h1, h2, h3, h4, bound : float
         As in :func:`clear_step`; any sign of h0.
     tau : float
         Where the walk stands. The accuracy wanted is the rounding of a time of the size of ``tau + reach``.
@@ -137,37 +140,38 @@ def next_step(h0, h1, h2, h3, bound, tau, reach):
     """
     if h0 <= 0.0:
         return 0.0, True
-    return step_from(h0, h1, h2, h3, bound, tau, reach)
+    return step_from(h0, h1, h2, h3, h4, bound, tau, reach)
 
 
-def step_from(h0, h1, h2, h3, bound, tau, reach):
+def step_from(h0, h1, h2, h3, h4, bound, tau, reach):
     """As :func:`next_step`, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
     scale = 1.0 / bound if bound > 0.0 else 1.0  # powers of time only: scaled amplitudes take the same steps
-    h0, h1, h2, h3, bound = h0 * scale, h1 * scale, h2 * scale, h3 * scale, bound * scale
-    step = clear_step(h0, h1, h2, h3, bound, reach)
-    root = taylor_root(h0, h1, h2, h3, bound, step, EPS * (tau + reach))
+    h0, h1, h2, h3, h4, bound = h0 * scale, h1 * scale, h2 * scale, h3 * scale, h4 * scale, bound * scale
+    step = clear_step(h0, h1, h2, h3, h4, bound, reach)
+    root = taylor_root(h0, h1, h2, h3, h4, bound, step, EPS * (tau + reach))
     if root > 0.0:
         return root, True
     return step, step <= EPS * tau
 
 
-def taylor_root(h0, h1, h2, h3, bound, step, accuracy):
-    """The root, where the cubic without the bound gives it to within ``accuracy`` and it is certainly the first; else 0.
+def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
+    """The root, where the quartic without the bound gives it to within ``accuracy`` and it is certainly the first; else 0.
 
     The step before it is clear; from there on the slope is certainly negative, so there is no other root.
     """
     root = step
     slope = -1.0
-    if bound * step * step * step * step > 48.0 * (abs(h1) + abs(h2) * step) * accuracy:
+    square = step * step
+    if bound * square * square * step > 240.0 * (abs(h1) + abs(h2) * step) * accuracy:
         return 0.0
     for _ in range(3):  # Newton's method, from the safe side
-        value = h0 + root * (h1 + root * (h2 * 0.5 + root * h3 * (1.0 / 6.0)))
-        slope = h1 + root * (h2 + root * h3 * 0.5)
+        value = h0 + root * (h1 + root * (h2 * 0.5 + root * (h3 * (1.0 / 6.0) + root * h4 * (1.0 / 24.0))))
+        slope = h1 + root * (h2 + root * (h3 * 0.5 + root * h4 * (1.0 / 6.0)))
         if slope >= 0.0:
             return 0.0
         root -= value / slope
     square = root * root
-    if bound * square * square > -24.0 * slope * accuracy or root < step or root > 1.5 * step:
+    if bound * square * square * root > -120.0 * slope * accuracy or root < step or root > 1.5 * step:
         return 0.0
-    rise = h2 + (h3 if h3 > 0.0 else 0.0) * root * 0.5 + bound * square * (1.0 / 6.0)
+    rise = h2 + (h3 if h3 > 0.0 else 0.0) * root * 0.5 + (h4 if h4 > 0.0 else 0.0) * square * (1.0 / 6.0) + bound * square * root * (1.0 / 24.0)
     return root if h1 + rise * (step if rise < 0.0 else root) < 0.0 else 0.0

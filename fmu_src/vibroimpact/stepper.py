@@ -69,6 +69,7 @@ def advance(m, time):
     fastest = max(m[at.FASTEST], m[at.BOX_FREQUENCY] / m[at.OMEGA])
     m[at.TARGET] = time
     m[at.WORK] = 0.0
+    m[at.STOPPED] = 0.0
     m[at.WORK_LIMIT] = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA])
     momentum_before, moment_before = momentum(m)
     now = local_time(m, m[at.TIME])
@@ -83,10 +84,9 @@ def advance(m, time):
     if m[at.WORK] >= m[at.WORK_LIMIT]:
         m[at.REPORT] = m[at.START_TIME] + m[at.ORIGIN] / m[at.OMEGA]
         return at.UNFINISHED
-    if m[at.END_KIND] == at.END_STOPPED:
+    if m[at.STOPPED] != 0.0:
         time = min(time, m[at.IMPACT_TIME])
         h = time - before
-        m[at.END_KIND] = at.END_OPEN
     m[at.TIME] = time
     write(m, tau)
     if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
@@ -122,22 +122,21 @@ def renew_segment(m, now):
 
 def inside(m, tau):
     """Whether the barrier has not been crossed, positive or zero but for rounding: gap and contact force do not jump with the inputs."""
-    h0, h1, _, _, _ = evaluate(m, tau)
+    h0, h1, _, _, _, _ = evaluate(m, tau)
     return h0 > 0.0 or lifted(m, tau, h0, h1) > 0.0
 
 
 def run_samples(m, start, time, now):
-    """Run to ``time``, keeping the states at equal parts of the step on the way; returns the present state's age there."""
+    """Run to ``time``, keeping the states at equal parts of the step on the way; returns the present state's age there.
+
+    Where the step stops at an impact, the samples that are left show the state there.
+    """
     count = int(m[at.SAMPLE_COUNT])
-    for i in range(count - 1):
-        now = run_states(m, start + (time - start) * ((i + 1.0) / count), now)
-        if m[at.END_KIND] == at.END_STOPPED:
-            return now
+    for i in range(count):
+        if m[at.STOPPED] == 0.0:
+            now = run_states(m, start + (time - start) * ((i + 1.0) / count) if i + 1 < count else time, now)
         keep_sample(m, i, now)
-    now = run_states(m, time, now)
-    if count > 0:
-        keep_sample(m, count - 1, now)
-    return now
+    return now if count > 0 else run_states(m, time, now)
 
 
 def keep_sample(m, i, tau):
@@ -164,5 +163,5 @@ def run_states(m, time, now):
         end_state(m)
         now = 0.0
         if m[at.STOP_AT_IMPACT] != 0.0 and m[at.IMPACT_COUNT] > impacts:
-            m[at.END_KIND] = at.END_STOPPED
+            m[at.STOPPED] = 1.0
             return 0.0

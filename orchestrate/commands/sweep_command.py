@@ -179,6 +179,7 @@ def run(arguments):
             if found != wanted:
                 raise UserError(f"{result}: holds another run ({difference(found, wanted)}); choose another --output, or --force to replace it")
             print(f"{result}: complete already")
+            Journal.discard(journal_path(result))
             if not result.with_suffix(".png").exists():
                 draw_result(result)
             continue
@@ -210,5 +211,5 @@ def finish(result, plan, fmu):
 
     journal = Journal(journal_path(result), plan.identity())
     write_netcdf(dataset(plan, journal.rows(), fmu), result, plan.identity())
-    draw_result(result)
     journal.remove()
+    draw_result(result)

@@ -1,8 +1,16 @@
 """The FMUs, and importers compiled for them once a session."""
 
+import importlib.util
+import os
+import pickle
 import sys
+import time
+from types import SimpleNamespace
 
 import pytest
+
+from fmu_src.export import compile_kernel, linking, native_form, pythonfmu_form
+from orchestrate.build import up_to_date
 
 from ..conftest import BUILD
 from . import importers
@@ -11,27 +19,66 @@ VERSIONS = ("fmi2", "fmi3")
 FORMS = ("fmi2-python", *VERSIONS)
 
 
+def cannot(reason):
+    """Skip where the tools are missing; where they are there and fail, so does the test."""
+    missing = [name for name in ("numba", "ziglang") if importlib.util.find_spec(name) is None]
+    if missing:
+        pytest.skip(f"{', '.join(missing)} missing: {reason}")
+    pytest.fail(f"a new version of Numba or ziglang breaks the way the native FMUs are made: {reason}", pytrace=False)
+
+
 @pytest.fixture(scope="session")
 def fmus():
     """Paths of the FMUs by form; the project's conftest.py has exported what was missing or out of date."""
-    paths = {form: BUILD / form / "TwoMassImpactOscillator.fmu" for form in FORMS}
-    missing = [form for form, path in paths.items() if not path.is_file()]
+    missing = [form for form in FORMS if not up_to_date(form, "TwoMassImpactOscillator", BUILD)]
     if missing:
-        pytest.skip(f"no FMU of the form {', '.join(missing)} can be made here")
-    return paths
+        cannot(f"no FMU of the form {', '.join(missing)} was made")
+    return {form: BUILD / form / "TwoMassImpactOscillator.fmu" for form in FORMS}
+
+
+def compiled_once_more(folder):
+    """The kernel compiled by the first worker that comes here, and what it got for the others."""
+    made = folder / "objects"
+    try:
+        folder.mkdir()
+    except FileExistsError:
+        deadline = time.monotonic() + 240.0
+        while not made.exists() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        return pickle.loads(made.read_bytes())
+    compile_kernel.compile_objects.cache_clear()
+    try:
+        found = compile_kernel.compile_objects("fmu_src.oscillator.model")
+    except linking.NoCompiler as reason:
+        found = reason
+    (folder / "unfinished").write_bytes(pickle.dumps(found))
+    (folder / "unfinished").rename(made)
+    return found
 
 
 @pytest.fixture(scope="session")
-def kernel_objects(fmus):
+def kernel_objects(tmp_path_factory):
     """The kernel compiled once more, for builds made by tests: nothing is left over from the FMUs' own build."""
-    from fmu_src.export.compile_kernel import compile_objects
-    from fmu_src.export.linking import NoCompiler
+    base = tmp_path_factory.getbasetemp()
+    found = compiled_once_more((base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "kernel")
+    return cannot(found) if isinstance(found, Exception) else found
 
-    compile_objects.cache_clear()
-    try:
-        return compile_objects("fmu_src.oscillator.model")
-    except NoCompiler as reason:
-        pytest.skip(str(reason))
+
+@pytest.fixture
+def hide(monkeypatch, kernel_objects):
+    """A function that takes a C compiler away from the exporter: ``"ziglang"``, or ``"own"``, the machine's."""
+    for form in (native_form, pythonfmu_form):
+        monkeypatch.setattr(form, "compile_objects", lambda _: kernel_objects)
+    linking.say_once.cache_clear()
+
+    def away(*names):
+        if "ziglang" in names:
+            monkeypatch.setattr(linking, "importlib", SimpleNamespace(util=SimpleNamespace(find_spec=lambda _: None)))
+        if "own" in names:
+            monkeypatch.setattr(linking, "shutil", SimpleNamespace(which=lambda _: None))
+
+    yield away
+    linking.say_once.cache_clear()
 
 
 @pytest.fixture(scope="session")

@@ -21,12 +21,20 @@ SANITIZE = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-o
 WARNINGS = ("-std=gnu11", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
 
 
+def own_compiler():
+    """The machine's C compiler, as a command; None where there is none."""
+    own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    return [own] if own else None
+
+
+def ziglang(target="native"):
+    """The C compiler of ziglang, as a command; None where it is not installed."""
+    return [sys.executable, "-m", "ziglang", "cc", "-target", target] if importlib.util.find_spec("ziglang") else None
+
+
 def compiler():
     """A C compiler for this machine, as a command; None where there is none."""
-    own = shutil.which("cc")
-    if own:
-        return [own]
-    return [sys.executable, "-m", "ziglang", "cc"] if importlib.util.find_spec("ziglang") else None
+    return own_compiler() or ziglang()
 
 
 def run_compiler(command, folder):
@@ -73,12 +81,17 @@ def compile_importer(version, fmu, folder, command=None, options=("-O1", "-g")):
     for name, content in native_form.fmi_headers(version).items():
         (folder / name).write_bytes(content)
     number = version[-1]
-    sources = [HERE / name for name in ("modes.c", f"importer{number}.c", f"hostile{number}.c")]
+    sources = [HERE / name for name in ("modes.c", f"importer{number}.c", f"hostile{number}.c", f"arguments{number}.c")]
     target = folder / f"importer{number}.exe"
-    windows = "-target" in (command or ())
+    windows = any("windows" in word for word in command or ())
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
     run_compiler([*(command or compiler()), *WARNINGS, *options, f"-I{folder}", "-o", target, *sources, *libraries], folder)
     return target
+
+
+def units(version):
+    """The shim's C files."""
+    return [name for name in native_form.shim_sources(version) if name.endswith(".c")]
 
 
 def rebuild_shim(version, folder, objects, options=SANITIZE):
@@ -92,7 +105,7 @@ def rebuild_shim(version, folder, objects, options=SANITIZE):
         (folder / name).write_bytes(content)
     target = folder / "rebuilt.so"
     fixed = ("-shared", "-fPIC", "-fvisibility=hidden", "-g", "-O1", "-ffp-contract=off")
-    command = [*compiler(), *fixed, *options, "-o", target, "core.c", f"{version}.c", "kernel.o"]
+    command = [*compiler(), *fixed, *options, "-o", target, *units(version), "kernel.o"]
     run_compiler(command, folder)
     return target
 

@@ -8,6 +8,7 @@ import fmpy
 from fmpy import fmi2, fmi3
 from fmpy.fmi1 import FMICallException
 
+STEPS = 100_000  # more than any test takes: one that waits for what never comes has to end
 IMPACT = 2000  # value reference of the clock
 COMMON = ["x1", "x2", "v1", "v2", "x_rel", "v_rel", "xi1", "xi2", "xi_rel", "box_force", "box_impulse", "box_impulse_moment"]
 COMMON += ["contact_force", "in_contact", "phase", "impact_count", "impact_time", "impact_velocity", "impact_energy", "x_rel_max", "contact_count"]
@@ -21,7 +22,7 @@ class Slave:
         description = fmpy.read_model_description(str(path))
         self.third = description.fmiVersion.startswith("3")
         self.variables = {variable.name: variable for variable in description.modelVariables}
-        self.messages, self.time, self.event_mode = [], 0.0, event_mode
+        self.messages, self.time, self.steps, self.event_mode = [], 0.0, 0, event_mode
         self._folder = tempfile.TemporaryDirectory()
         fmpy.extract(str(path), self._folder.name)
         token = description.guid or description.instantiationToken
@@ -78,6 +79,8 @@ class Slave:
 
     def step(self, time):
         """Step towards ``time``; returns whether an event is to be handled and whether the step ended early (FMI 3.0)."""
+        self.steps += 1
+        assert self.steps < STEPS
         told = self.fmu.doStep(currentCommunicationPoint=self.time, communicationStepSize=time - self.time)
         if not self.third:
             self.time = time

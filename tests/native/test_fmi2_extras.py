@@ -73,7 +73,6 @@ def start_in_contact(fmu, setter):
     return [*found, fmu.get(*COMMON)]
 
 
-@pytest.mark.xfail(strict=True, reason="fmi2SetRealInputDerivatives does not make the outputs of initialisation mode stale, as fmi2SetReal does")
 def test_input_derivatives_in_initialisation_mode_after_outputs_were_read(fmus):
     """A jerk that opens the contact at once; without it the start is one of contact."""
     with slave(fmus["fmi2"]) as fmu, slave(fmus["fmi2"]) as twin:

@@ -8,7 +8,7 @@ import pytest
 
 from fmu_src.vibroimpact import memory as at
 
-from .importers import Importer, binary
+from .importers import Importer, binary, compile_importer, ziglang
 from .slave import COMMON, harmonic, slave
 
 HEADER, HEAD = 64, 3  # bytes before the numbers of a serialised state, and numbers before the memory
@@ -48,6 +48,16 @@ def test_there_is_no_python_in_the_process(importer):
     assert mapped - {importer.library.name, importer.program.name} <= system
 
 
+def test_importer_compiled_by_ziglang(fmus, importer, tmp_path):
+    """What is compiled where the machine has no C compiler; and another compiler's eye on the importer."""
+    if ziglang() is None:
+        pytest.skip("ziglang is not installed")
+    other = Importer(compile_importer(importer.version, fmus[importer.version], tmp_path, ziglang()), importer.library, importer.version)
+    times = uneven_times(300.0)
+    assert other.simulate(COMMON, times, **harmonic(1.13)) == importer.simulate(COMMON, times, **harmonic(1.13))
+    assert "FAILURES 0" in other.run("hostile").stdout
+
+
 def test_hostile_calls_are_refused_and_change_nothing(importer):
     done = importer.run("hostile")
     assert int(re.search(r"CHECKS (\d+) FAILURES 0", done.stdout).group(1)) > 30000
@@ -63,12 +73,11 @@ def test_a_million_small_steps(importer):
 
 
 def test_speed_of_a_step_without_impact(importer):
-    """A bound with a wide margin, of processor time; the numbers are printed."""
+    """Under 0.3 us of processor time is wanted and found on a machine of 2.6 GHz; the bound is wide, the numbers are printed."""
     found = dict(re.findall(r"SPEED (.*) ([\d.]+) ns", importer.run("speed", 50_000).stdout))
     print(importer.version, found)
-    assert float(found["bonded"]) < 2000.0
-    assert float(found["flight"]) < 4000.0
-    assert float(found["flight, x_rel_max off"]) < 2000.0
+    for kind in ("bonded", "flight", "flight, x_rel_max off"):
+        assert float(found[kind]) < 900.0
 
 
 def test_two_versions_in_one_process_do_not_meet(fmus, importer_of, tmp_path):
@@ -96,39 +105,43 @@ def test_a_step_that_cannot_finish_ends_with_a_message(importer):
     assert "cannot finish" in done.stderr
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a serialised state has no checksum: what its body says is taken as it is, and may crash or give wrong numbers"
-)
-@pytest.mark.parametrize(
-    ("index", "value"),
-    [
-        (at.SAMPLE_COUNT, "1e6"),  # writes a million numbers into room for 200: the process dies
-        (at.SAMPLE_COUNT, "nan"),
-        (at.MODE, "77"),
-        (at.M1, "-1"),
-        (at.E, "5"),
-        (at.X1, "nan"),
-        (at.TIME, "inf"),
-        (at.ORIGIN, "nan"),
-        (at.IMPACT_COUNT, "-5"),
-    ],
-)
-def test_a_corrupted_state_is_refused(importer, index, value):
-    done = importer.run("corrupt", slot(index), value, success=False)
-    assert done.returncode == 0
-    assert done.stdout.startswith("REFUSED")
+BODY = [
+    (at.SAMPLE_COUNT, "1e6"),  # would write a million numbers into room for 200
+    (at.SAMPLE_COUNT, "nan"),
+    (at.M1, "-1"),
+    (at.E, "5"),
+    (at.BOX_AMPLITUDE, "inf"),
+    (at.TIME, "inf"),
+    (at.TIME, "nan"),
+]
+HIDDEN = [(at.MODE, "77"), (at.X1, "nan"), (at.ORIGIN, "nan"), (at.IMPACT_COUNT, "-5"), (at.END_KIND, "nan")]
 
 
-@pytest.mark.parametrize("number", [0, 2])
-@pytest.mark.parametrize("value", ["nan", "-1", "1e300", "64"])
-def test_a_corrupted_head_of_a_state_is_refused(importer, number, value):
-    assert importer.run("corrupt", HEADER + 8 * number, value).stdout.startswith("REFUSED")
+@pytest.mark.parametrize(("index", "value"), BODY + HIDDEN)
+def test_a_damaged_state_is_refused(importer, index, value):
+    assert importer.run("corrupt", slot(index), value).stdout.startswith("REFUSED")
 
 
-@pytest.mark.xfail(strict=True, reason="phase and flags are cut to integers before they are looked at: 4.5 passes for step mode, 0.5 for no flags")
-@pytest.mark.parametrize(("number", "value"), [(0, "4.5"), (2, "0.5")])
-def test_a_fractional_head_of_a_state_is_refused(importer, number, value):
-    assert importer.run("corrupt", HEADER + 8 * number, value).stdout.startswith("REFUSED")
+@pytest.mark.parametrize(("index", "value"), BODY)
+def test_a_forged_state_with_a_value_out_of_range_is_refused(importer, index, value):
+    assert importer.run("corrupt", slot(index), value, "sealed").stdout.startswith("REFUSED")
+
+
+def test_no_forged_state_crashes(importer):
+    """Made by somebody who knows the checksum: wrong in, wrong out, but the process lives."""
+    assert int(re.search(r"TAKEN (\d+)\n.* FAILURES 0", importer.run("forge").stdout).group(1)) > 1000
+
+
+@pytest.mark.parametrize("number", [0, 1, 2])
+@pytest.mark.parametrize("value", ["nan", "inf"])
+@pytest.mark.parametrize("sealed", [(), ("sealed",)], ids=["damaged", "forged"])
+def test_a_head_that_is_no_number_is_refused(importer, number, value, sealed):
+    assert importer.run("corrupt", HEADER + 8 * number, value, *sealed).stdout.startswith("REFUSED")
+
+
+@pytest.mark.parametrize(("number", "value"), [(0, "-1"), (0, "4.5"), (0, "1e300"), (0, "64"), (2, "-1"), (2, "0.5"), (2, "4"), (2, "1e300")])
+def test_a_forged_phase_or_flag_is_refused(importer, number, value):
+    assert importer.run("corrupt", HEADER + 8 * number, value, "sealed").stdout.startswith("REFUSED")
 
 
 @pytest.mark.parametrize("d1", [0.0, 0.005, 0.0099])

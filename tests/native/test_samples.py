@@ -56,7 +56,6 @@ def test_sample_count_may_change_between_steps(fmu_path):
                 assert fmu.series("x2_sample")[count - 1] == fmu.one("x2")
 
 
-@pytest.mark.xfail(strict=True, reason="maximum.largest_gap takes a root of a lower bound of the slope for a summit and steps over the real one")
 @pytest.mark.parametrize("count", [0, 7, ROOM])
 def test_largest_gap_is_that_of_small_steps(fmu_path, count):
     """Not below what small steps see, and not above by more than a summit differs from the largest of two rounded numbers."""
@@ -83,7 +82,6 @@ def test_sample_count_out_of_range(fmus, native_fmu, count):
         assert f"{ROOM}" in message
 
 
-@pytest.mark.xfail(strict=True, reason="a step that returns early at an impact leaves samples after it as the step before wrote them")
 def test_samples_of_a_step_that_returns_early_end_where_it_ends(fmus):
     with slave(fmus["fmi3"], event_mode=True, early_return=True) as fmu:
         fmu.start(sample_count=8, **harmonic(1.13))

@@ -78,7 +78,6 @@ def test_force_replaces_a_result_of_another_run(sweeps):
     assert netCDF4.Dataset(sweeps.result()).title
 
 
-@pytest.mark.xfail(strict=True, reason="the result is there before the picture: ended in between, the same command never draws it")
 def test_a_failed_picture_is_drawn_by_the_same_command(sweeps):
     picture = sweeps.result().with_suffix(".png")
     picture.mkdir(parents=True)  # stands for a full disk, or a kill, at that moment
@@ -89,7 +88,6 @@ def test_a_failed_picture_is_drawn_by_the_same_command(sweeps):
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="--force begins anew each time, though an interruption says that the same command goes on")
 def test_interrupted_force_goes_on(sweeps):
     process = sweeps.start(*RUN, "--force")
     kept = sweeps.wait_for_rows(process, 30)

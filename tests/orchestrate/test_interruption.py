@@ -132,7 +132,6 @@ def test_no_worker_outlives_the_main_process(sweeps, number):
             os.kill(worker, signal.SIGKILL)
 
 
-@pytest.mark.xfail(strict=False, reason="Ctrl-C starts the sweeps that wait for a process before it ends them")
 def test_ctrl_c_ends_sweeps_that_wait_for_their_turn_too(sweeps):
     cases = [option for e in (0.7, 0.6, 0.5, 0.4) for option in ("--case", f"e={e}")]
     process = sweeps.start("--eta", "1:3:0.0001", *cases, "--jobs", "1")

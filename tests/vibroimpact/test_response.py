@@ -40,7 +40,8 @@ def oscillator(damping, omega_squared, x, v, phase, forcing=FORCING):
 
 def state(m, tau):
     """Displacement and velocity at an age."""
-    return displacement(m, BRANCH, HARMONIC, FREE, CUBIC, tau, *sincos_turns(m[at.TURN] + m[at.ETA] / TWO_PI * tau))
+    C, S, _ = basis(m, BRANCH, tau)
+    return displacement(m, BRANCH, HARMONIC, FREE, CUBIC, tau, C, S, *sincos_turns(m[at.TURN] + m[at.ETA] / TWO_PI * tau))
 
 
 @pytest.mark.parametrize("ratio", DAMPINGS)

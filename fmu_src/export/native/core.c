@@ -100,7 +100,7 @@ static void explain(char *text, const double *memory, int code) {
         double value = memory[strtol(from + 1, &rest, 10)];
         if (*rest == ':') {
             const char *word = rest + 1;
-            for (int skip = (int)value; skip > 0; skip--) while (*word++ != '|') { }
+            for (double skip = value; skip > 0.5 && strchr(word, '|'); skip--) word = strchr(word, '|') + 1;
             while (*word != '|' && *word != '}') { piece[0] = *word++; append(text, piece); }
             while (*word != '}') word++;
             from = word + 1;
@@ -167,13 +167,18 @@ Status step(Instance *instance, const char *call, double current, double size) {
         append(text, " s, where the last step ended");
         return refuse(instance, call, text);
     }
+    double target = current + size;
+    if (target < reached) target = reached;  /* the importer's clock may be a rounding behind */
     double before[MEMORY_SIZE - SKIP_COUNT];  /* what the step only writes need not be put back */
     size_t head = SKIP_FIRST * sizeof(double), tail = sizeof before - head;
     memcpy(before, state->memory, head);
     memcpy(before + SKIP_FIRST, state->memory + SKIP_FIRST + SKIP_COUNT, tail);
     state->memory[STOP_SLOT] = instance->early_return;
-    int code = kernel_advance(state->memory, current + size);
-    if (!code) return OK;
+    int code = kernel_advance(state->memory, target);
+    if (!code) {  /* the time of an impact just after the communication point may round to one before it */
+        if (state->memory[TIME_SLOT] < reached) state->memory[TIME_SLOT] = reached;
+        return OK;
+    }
     explain(text, state->memory, code);
     memcpy(state->memory, before, head);
     memcpy(state->memory + SKIP_FIRST + SKIP_COUNT, before + SKIP_FIRST, tail);
@@ -188,12 +193,16 @@ const Variable *find(Instance *instance, const char *call, unsigned reference, T
     return NULL;
 }
 
+static bool in_range(const Variable *variable, double value) {
+    return variable->type == BOOLEAN || (isfinite(value) && value >= variable->minimum && value <= variable->maximum);
+}
+
 Status may_set(Instance *instance, const char *call, const Variable *variable, double value) {
     const char *reason = NULL;
     if (variable->calculated) reason = ": an output cannot be set, allowed are parameters and inputs";
     else if (variable->fixed && !(instance->state.phase & (INSTANTIATED | INITIALIZING)))
         reason = ": a fixed parameter, to be set before the end of initialisation";
-    else if (variable->type == BOOLEAN || (isfinite(value) && value >= variable->minimum && value <= variable->maximum)) return OK;
+    else if (in_range(variable, value)) return OK;
     char text[TEXT] = "";
     append(text, variable->name);
     append(text, " = ");
@@ -208,25 +217,39 @@ Status may_set(Instance *instance, const char *call, const Variable *variable, d
     return refuse(instance, call, text);
 }
 
+/* FNV-1a: a state damaged on its way is refused. */
+static uint64_t checksum(const char *bytes) {
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < STATE_BYTES - sizeof hash; i++) hash = (hash ^ (unsigned char)bytes[i]) * 0x100000001b3u;
+    return hash;
+}
+
 void state_to_bytes(const State *state, char *bytes) {
     double head[3] = {state->phase, state->start_time, state->stale + 2 * state->clock};
     memset(bytes, 0, STATE_HEADER);
     strcpy(bytes, STATE_MAGIC);
     memcpy(bytes + STATE_HEADER, head, sizeof head);
     memcpy(bytes + STATE_HEADER + sizeof head, state->memory, sizeof state->memory);
+    uint64_t hash = checksum(bytes);
+    memcpy(bytes + STATE_BYTES - sizeof hash, &hash, sizeof hash);
 }
 
 bool state_from_bytes(State *state, const char *bytes, size_t size) {
     char header[STATE_HEADER] = STATE_MAGIC;
     double head[3];
+    uint64_t hash;
     if (size != STATE_BYTES || memcmp(bytes, header, STATE_HEADER) != 0) return false;
+    memcpy(&hash, bytes + STATE_BYTES - sizeof hash, sizeof hash);
+    if (hash != checksum(bytes)) return false;
     memcpy(head, bytes + STATE_HEADER, sizeof head);
-    int phase = (int)head[0];
-    if (!(head[0] >= 1 && head[0] <= TERMINATED) || (phase & (phase - 1)) || !(head[2] >= 0 && head[2] <= 3)) return false;
-    state->phase = phase;
-    state->start_time = head[1];
-    state->stale = (int)head[2] & 1;
-    state->clock = (int)head[2] & 2;
     memcpy(state->memory, bytes + STATE_HEADER + sizeof head, sizeof state->memory);
+    state->phase = 0;
+    for (int phase = 1; phase <= TERMINATED; phase *= 2) if (head[0] == phase) state->phase = phase;
+    bool fits = state->phase && isfinite(head[1]) && isfinite(state->memory[TIME_SLOT]) && (head[2] == 0 || head[2] == 1 || head[2] == 2 || head[2] == 3);
+    for (unsigned i = 0; i < VARIABLE_COUNT; i++) fits = fits && (VARIABLES[i].calculated || in_range(&VARIABLES[i], state->memory[i]));
+    if (!fits) return false;
+    state->start_time = head[1];
+    state->stale = head[2] == 1 || head[2] == 3;
+    state->clock = head[2] >= 2;
     return true;
 }

@@ -58,7 +58,7 @@ Status refresh(Instance *);
 
 void number(char *text, double value);
 
-#define STATE_BYTES (STATE_HEADER + sizeof(double) * (MEMORY_SIZE + 3))
+#define STATE_BYTES (STATE_HEADER + sizeof(double) * (MEMORY_SIZE + 3) + 8)  /* header, head, memory, checksum */
 #define STATE_HEADER 64
 void state_to_bytes(const State *, char *bytes);
 bool state_from_bytes(State *, const char *bytes, size_t size);

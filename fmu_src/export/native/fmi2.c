@@ -175,6 +175,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     if (!state_from_bytes(&read, bytes, size)) return refuse2(c, "fmi2DeSerializeFMUstate", "allowed are states saved by this FMU (" STATE_MAGIC ")");
     if (!*to) *to = malloc(sizeof(State));
     if (!*to) return refuse2(c, "fmi2DeSerializeFMUstate", "out of memory");
+    if (read.phase == EVENT) read.phase = STEPPING;  /* saved by an FMI 3.0 FMU: there is no event mode here */
     memcpy(*to, &read, sizeof read);
     return fmi2OK;
 }
@@ -205,6 +206,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
             if (write) instance->state.memory[refs[i] + (unsigned)orders[i]] = values[i];
             else if (may_set(instance, call, derivative, values[i]) != OK) return fmi2Error;
         }
+    instance->state.stale = true;
     return fmi2OK;
 }
 

@@ -31,12 +31,6 @@ fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count, con
     return c ? fmi3OK : fmi3Error;
 }
 
-fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
-                                          fmi3InstanceEnvironment environment, fmi3LogMessageCallback log) {
-    (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)environment, (void)log;
-    return NULL;
-}
-
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
                                          fmi3Boolean event_mode, fmi3Boolean early_return, const fmi3ValueReference intermediate[],
                                          size_t intermediate_count, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
@@ -47,13 +41,6 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
     instance->event_mode = event_mode;
     instance->early_return = event_mode && early_return && EVENT_CLOCK;
     return instance;
-}
-
-fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
-                                               fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, fmi3ClockUpdateCallback update,
-                                               fmi3LockPreemptionCallback lock, fmi3UnlockPreemptionCallback unlock) {
-    (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)environment, (void)log, (void)update, (void)lock, (void)unlock;
-    return NULL;
 }
 
 void fmi3FreeInstance(fmi3Instance c) { instance_free(c); }
@@ -109,7 +96,10 @@ static size_t stretch(Instance *instance, const char *call, fmi3ValueReference r
         *first = ARRAYS[reference - ARRAY_BASE].first;
         return ARRAYS[reference - ARRAY_BASE].size;
     }
-    return find(instance, call, reference, REAL) ? 1 : 0;
+    if (!find(instance, call, reference, REAL)) return 0;
+    if (!VARIABLES[reference].element) return 1;
+    refuse(instance, call, "valueReference: allowed is that of the array, not of an element");
+    return 0;
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_t count, fmi3Float64 values[], size_t value_count) {
@@ -172,37 +162,6 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
 GET_SET(Boolean, fmi3Boolean, BOOLEAN, value != 0, (values[i] ? 1.0 : 0.0))
 GET_SET(Int32, fmi3Int32, INTEGER, (fmi3Int32)value, (double)values[i])
 
-/* Types no variable has. */
-#define NONE(NAME, TYPE)                                                                                                                        \
-    fmi3Status fmi3Get##NAME(fmi3Instance c, const fmi3ValueReference refs[], size_t count, TYPE values[], size_t value_count) {                 \
-        (void)refs, (void)values, (void)value_count;                                                                                             \
-        return c && count == 0 ? fmi3OK : refuse3(c, "fmi3Get" #NAME, "there are no variables of this type");                                    \
-    }                                                                                                                                            \
-    fmi3Status fmi3Set##NAME(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const TYPE values[], size_t value_count) {           \
-        (void)refs, (void)values, (void)value_count;                                                                                             \
-        return c && count == 0 ? fmi3OK : refuse3(c, "fmi3Set" #NAME, "there are no variables of this type");                                    \
-    }
-
-NONE(Float32, fmi3Float32)
-NONE(Int8, fmi3Int8)
-NONE(UInt8, fmi3UInt8)
-NONE(Int16, fmi3Int16)
-NONE(UInt16, fmi3UInt16)
-NONE(UInt32, fmi3UInt32)
-NONE(Int64, fmi3Int64)
-NONE(UInt64, fmi3UInt64)
-NONE(String, fmi3String)
-
-fmi3Status fmi3GetBinary(fmi3Instance c, const fmi3ValueReference refs[], size_t count, size_t sizes[], fmi3Binary values[], size_t value_count) {
-    (void)refs, (void)sizes, (void)values, (void)value_count;
-    return c && count == 0 ? fmi3OK : refuse3(c, "fmi3GetBinary", "there are no variables of this type");
-}
-
-fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const size_t sizes[], const fmi3Binary values[], size_t value_count) {
-    (void)refs, (void)sizes, (void)values, (void)value_count;
-    return c && count == 0 ? fmi3OK : refuse3(c, "fmi3SetBinary", "there are no variables of this type");
-}
-
 fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference refs[], size_t count, fmi3Clock values[]) {
     static const char *const call = "fmi3GetClock";
     Instance *instance = c;
@@ -212,11 +171,6 @@ fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference refs[], size_t 
         values[i] = instance->state.clock ? fmi3ClockActive : fmi3ClockInactive;
     }
     return fmi3OK;
-}
-
-fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const fmi3Clock values[]) {
-    (void)refs, (void)values;
-    return c && count == 0 ? fmi3OK : refuse3(c, "fmi3SetClock", "there are no input clocks");
 }
 
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Boolean *terminate, fmi3Boolean *nominals, fmi3Boolean *values,
@@ -308,46 +262,10 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Float64 size, fmi
     if (!instance || !event_needed || !terminate || !early || !last) return refuse3(instance, "fmi3DoStep", "a null pointer");
     double before = impacts(instance);
     Status status = step(instance, "fmi3DoStep", current, size);
-    *terminate = fmi3False;
+    *event_needed = *terminate = *early = fmi3False;
     *last = instance->state.memory[TIME_SLOT];
-    *early = status == OK && *last < current + size;
-    instance->state.clock = EVENT_CLOCK && instance->event_mode && status == OK && impacts(instance) > before;
-    *event_needed = instance->state.clock;
-    return (fmi3Status)status;
+    if (status != OK) return (fmi3Status)status;
+    *early = *last < current + size;
+    *event_needed = instance->state.clock = EVENT_CLOCK && instance->event_mode && impacts(instance) > before;
+    return fmi3OK;
 }
-
-/* What modelDescription.xml says is not provided. */
-#define ABSENT(NAME, ...)                                                                    \
-    fmi3Status NAME(fmi3Instance c, __VA_ARGS__) { return refuse3(c, #NAME, "not provided, as modelDescription.xml says"); }
-
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-ABSENT(fmi3GetNumberOfVariableDependencies, fmi3ValueReference reference, size_t *count)
-ABSENT(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t elements[], fmi3ValueReference independents[], size_t others[],
-       fmi3DependencyKind kinds[], size_t count)
-ABSENT(fmi3GetDirectionalDerivative, const fmi3ValueReference unknowns[], size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count,
-       const fmi3Float64 seed[], size_t seed_count, fmi3Float64 sensitivity[], size_t sensitivity_count)
-ABSENT(fmi3GetAdjointDerivative, const fmi3ValueReference unknowns[], size_t unknown_count, const fmi3ValueReference knowns[], size_t known_count,
-       const fmi3Float64 seed[], size_t seed_count, fmi3Float64 sensitivity[], size_t sensitivity_count)
-ABSENT(fmi3GetIntervalDecimal, const fmi3ValueReference refs[], size_t count, fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[])
-ABSENT(fmi3GetIntervalFraction, const fmi3ValueReference refs[], size_t count, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
-       fmi3IntervalQualifier qualifiers[])
-ABSENT(fmi3GetShiftDecimal, const fmi3ValueReference refs[], size_t count, fmi3Float64 shifts[])
-ABSENT(fmi3GetShiftFraction, const fmi3ValueReference refs[], size_t count, fmi3UInt64 counters[], fmi3UInt64 resolutions[])
-ABSENT(fmi3SetIntervalDecimal, const fmi3ValueReference refs[], size_t count, const fmi3Float64 intervals[])
-ABSENT(fmi3SetIntervalFraction, const fmi3ValueReference refs[], size_t count, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
-ABSENT(fmi3SetShiftDecimal, const fmi3ValueReference refs[], size_t count, const fmi3Float64 shifts[])
-ABSENT(fmi3SetShiftFraction, const fmi3ValueReference refs[], size_t count, const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
-ABSENT(fmi3CompletedIntegratorStep, fmi3Boolean no_set_state_prior, fmi3Boolean *enter_event_mode, fmi3Boolean *terminate)
-ABSENT(fmi3SetTime, fmi3Float64 time)
-ABSENT(fmi3SetContinuousStates, const fmi3Float64 states[], size_t count)
-ABSENT(fmi3GetContinuousStateDerivatives, fmi3Float64 derivatives[], size_t count)
-ABSENT(fmi3GetEventIndicators, fmi3Float64 indicators[], size_t count)
-ABSENT(fmi3GetContinuousStates, fmi3Float64 states[], size_t count)
-ABSENT(fmi3GetNominalsOfContinuousStates, fmi3Float64 nominals[], size_t count)
-ABSENT(fmi3GetNumberOfEventIndicators, size_t *count)
-ABSENT(fmi3GetNumberOfContinuousStates, size_t *count)
-ABSENT(fmi3ActivateModelPartition, fmi3ValueReference clock, fmi3Float64 time)
-
-fmi3Status fmi3EnterConfigurationMode(fmi3Instance c) { return refuse3(c, "fmi3EnterConfigurationMode", "there are no structural parameters"); }
-fmi3Status fmi3ExitConfigurationMode(fmi3Instance c) { return refuse3(c, "fmi3ExitConfigurationMode", "there are no structural parameters"); }
-fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) { return refuse3(c, "fmi3EnterContinuousTimeMode", "this is co-simulation"); }

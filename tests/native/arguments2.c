@@ -1,0 +1,97 @@
+/* FMI 2.0: null pointers, wrong references, wrong tokens, no instance at all. */
+#include "hostile2.h"
+
+void no_instance(void) {
+    unsigned r = 0;
+    double x = 0.0;
+    int n = 1;
+    char byte = 0;
+    size_t size;
+    fmi2FMUstate state = NULL;
+    fmi2String text = "";
+    fmi2Status status;
+    fmi2Status all[] = {
+        fmi.SetDebugLogging(NULL, 1, 0, NULL), fmi.SetupExperiment(NULL, 0, 0.0, 0.0, 0, 0.0), fmi.EnterInitializationMode(NULL),
+        fmi.ExitInitializationMode(NULL), fmi.Terminate(NULL), fmi.Reset(NULL), fmi.GetReal(NULL, &r, 1, &x), fmi.GetInteger(NULL, &r, 1, &n),
+        fmi.GetBoolean(NULL, &r, 1, &n), fmi.GetString(NULL, &r, 1, &text), fmi.SetReal(NULL, &r, 1, &x), fmi.SetInteger(NULL, &r, 1, &n),
+        fmi.SetBoolean(NULL, &r, 1, &n), fmi.SetString(NULL, &r, 1, &text), fmi.GetFMUstate(NULL, &state), fmi.SetFMUstate(NULL, state),
+        fmi.FreeFMUstate(NULL, &state), fmi.SerializedFMUstateSize(NULL, state, &size), fmi.SerializeFMUstate(NULL, state, &byte, 1),
+        fmi.DeSerializeFMUstate(NULL, &byte, 1, &state), fmi.GetDirectionalDerivative(NULL, &r, 1, &r, 1, &x, &x),
+        fmi.SetRealInputDerivatives(NULL, &r, 1, &n, &x), fmi.GetRealOutputDerivatives(NULL, &r, 1, &n, &x), fmi.DoStep(NULL, 0.0, 1.0, 1),
+        fmi.CancelStep(NULL), fmi.GetStatus(NULL, fmi2DoStepStatus, &status), fmi.GetRealStatus(NULL, fmi2LastSuccessfulTime, &x),
+        fmi.GetIntegerStatus(NULL, fmi2DoStepStatus, &n), fmi.GetBooleanStatus(NULL, fmi2Terminated, &n), fmi.GetStringStatus(NULL, fmi2PendingStatus, &text),
+    };
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) CHECK(all[i] == fmi2Error);
+    fmi.FreeInstance(NULL);
+    CHECK(strcmp(fmi.GetVersion(), "2.0") == 0 && strcmp(fmi.GetTypesPlatform(), "default") == 0);
+}
+
+void instantiation(void) {
+    const char *wrong[] = {NULL, "", "{95159a6c}", "%s%n"};
+    for (size_t i = 0; i < 4; i++) {
+        messages = 0;
+        CHECK(fmi.Instantiate("a", fmi2CoSimulation, wrong[i], NULL, &callbacks, fmi2False, fmi2False) == NULL && messages == 1);
+        SAYS("GUID");
+        CHECK(fmi.Instantiate("a", fmi2CoSimulation, wrong[i], NULL, NULL, fmi2False, fmi2False) == NULL);
+    }
+    messages = 0;
+    CHECK(fmi.Instantiate("a", fmi2ModelExchange, TOKEN, NULL, &callbacks, fmi2False, fmi2False) == NULL && messages == 1);
+    fmi2CallbackFunctions bare = {0}; /* no logger, no memory functions: the FMU needs none */
+    const fmi2CallbackFunctions *given[] = {NULL, &bare, &callbacks};
+    for (int i = 0; i < 3; i++) {
+        fmi2Component c = fmi.Instantiate(i ? "" : NULL, fmi2CoSimulation, TOKEN, NULL, given[i], fmi2True, fmi2False);
+        CHECK(c != NULL);
+        messages = 0;
+        CHECK(fmi.DoStep(c, 0.0, 1.0, fmi2True) == fmi2Error && messages == (i == 2)); /* errors are told with logging off too */
+        fmu_initialize(c, 0.0);
+        fmu_step(c, 0.0, 1.0);
+        fmi.FreeInstance(c);
+    }
+}
+
+void null_pointers(fmi2Component c) {
+    unsigned r = named("x1")->reference, in = named("box_acceleration")->reference, b = named("x_rel_max_on")->reference, n = named("sample_count")->reference;
+    double x = 0.0;
+    int one = 1;
+    fmi2String text = "";
+    REFUSED(c, fmi.GetReal(c, NULL, 1, &x)); REFUSED(c, fmi.GetReal(c, &r, 1, NULL));
+    REFUSED(c, fmi.GetInteger(c, NULL, 1, &one)); REFUSED(c, fmi.GetInteger(c, &n, 1, NULL));
+    REFUSED(c, fmi.GetBoolean(c, NULL, 1, &one)); REFUSED(c, fmi.GetBoolean(c, &b, 1, NULL));
+    REFUSED(c, fmi.SetReal(c, NULL, 1, &x)); REFUSED(c, fmi.SetReal(c, &in, 1, NULL));
+    REFUSED(c, fmi.SetInteger(c, NULL, 1, &one)); REFUSED(c, fmi.SetInteger(c, &n, 1, NULL));
+    REFUSED(c, fmi.SetBoolean(c, NULL, 1, &one)); REFUSED(c, fmi.SetBoolean(c, &b, 1, NULL));
+    REFUSED(c, fmi.GetString(c, &r, 1, &text)); REFUSED(c, fmi.SetString(c, &r, 1, &text));
+    REFUSED(c, fmi.GetString(c, NULL, 1, NULL)); REFUSED(c, fmi.SetString(c, NULL, 1, NULL));
+    REFUSED(c, fmi.SetRealInputDerivatives(c, NULL, 1, &one, &x)); REFUSED(c, fmi.SetRealInputDerivatives(c, &in, 1, NULL, &x));
+    REFUSED(c, fmi.SetRealInputDerivatives(c, &in, 1, &one, NULL));
+    REFUSED(c, fmi.GetRealOutputDerivatives(c, NULL, 1, &one, &x)); REFUSED(c, fmi.GetRealOutputDerivatives(c, &r, 1, NULL, &x));
+    REFUSED(c, fmi.GetRealOutputDerivatives(c, &r, 1, &one, NULL));
+    REFUSED(c, fmi.GetFMUstate(c, NULL)); REFUSED(c, fmi.SetFMUstate(c, NULL));
+    REFUSED(c, fmi.GetRealStatus(c, fmi2LastSuccessfulTime, NULL)); REFUSED(c, fmi.GetBooleanStatus(c, fmi2Terminated, NULL));
+    REFUSED(c, fmi.GetStatus(c, fmi2DoStepStatus, NULL)); REFUSED(c, fmi.GetIntegerStatus(c, fmi2DoStepStatus, NULL));
+    REFUSED(c, fmi.GetStringStatus(c, fmi2PendingStatus, NULL)); REFUSED(c, fmi.CancelStep(c));
+    REFUSED(c, fmi.GetDirectionalDerivative(c, NULL, 1, NULL, 1, NULL, NULL));
+    IS_OK(fmi.SetDebugLogging(c, fmi2True, 0, NULL));
+    IS_OK(fmi.GetReal(c, NULL, 0, NULL)); IS_OK(fmi.SetReal(c, NULL, 0, NULL)); IS_OK(fmi.GetString(c, NULL, 0, NULL)); IS_OK(fmi.SetString(c, NULL, 0, NULL));
+    IS_OK(fmi.GetInteger(c, NULL, 0, NULL)); IS_OK(fmi.SetInteger(c, NULL, 0, NULL)); IS_OK(fmi.GetBoolean(c, NULL, 0, NULL)); IS_OK(fmi.SetBoolean(c, NULL, 0, NULL));
+    IS_OK(fmi.SetRealInputDerivatives(c, NULL, 0, NULL, NULL)); IS_OK(fmi.GetRealOutputDerivatives(c, NULL, 0, NULL, NULL));
+    IS_OK(fmi.FreeFMUstate(c, NULL)); /* as the standard has it */
+}
+
+/* Every reference with every type: only those of modelDescription.xml. */
+void references(fmi2Component c) {
+    for (unsigned i = 0; i < 2200; i++) {
+        unsigned r = i < 2100 ? i : i < 2150 ? 0x7fffffc0u + i - 2100 : 0xffffffffu - (i - 2150);
+        const Name *name = NULL;
+        for (size_t k = 0; k < NAME_COUNT; k++) if (NAMES[k].reference == r) name = &NAMES[k];
+        char type = name ? name->type : 0;
+        double x = 0.0;
+        int n = 0;
+        if (type != 'R') { REFUSED(c, fmi.GetReal(c, &r, 1, &x)); REFUSED(c, fmi.SetReal(c, &r, 1, &x)); }
+        if (type != 'I') { REFUSED(c, fmi.GetInteger(c, &r, 1, &n)); REFUSED(c, fmi.SetInteger(c, &r, 1, &n)); }
+        if (type != 'B') { REFUSED(c, fmi.GetBoolean(c, &r, 1, &n)); REFUSED(c, fmi.SetBoolean(c, &r, 1, &n)); }
+        if (type == 'R') { IS_OK(fmi.GetReal(c, &r, 1, &x)); if (!name->settable) REFUSED(c, fmi.SetReal(c, &r, 1, &x)); }
+        if (type == 'I') { IS_OK(fmi.GetInteger(c, &r, 1, &n)); if (!name->settable) REFUSED(c, fmi.SetInteger(c, &r, 1, &n)); }
+        if (type == 'B') { IS_OK(fmi.GetBoolean(c, &r, 1, &n)); if (!name->settable) REFUSED(c, fmi.SetBoolean(c, &r, 1, &n)); }
+    }
+}
