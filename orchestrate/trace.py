@@ -71,7 +71,7 @@ class EventInstance(Instance):
 
     def impacts(self, time, target):
         """All impacts of (time, target], as :class:`Impacts`; the inner loop of all that follows, so it calls the binary itself."""
-        read, stuck = self.reader(*EVENT_OUTPUTS), self.flag("in_contact")
+        stuck = self.flag("in_contact")
         component, library = ctypes.c_void_p(self._fmu.component), self._fmu.dll
         step, enter = library["fmi3DoStep"], library["fmi3EnterEventMode"]
         update, leave = library["fmi3UpdateDiscreteStates"], library["fmi3EnterStepMode"]
@@ -84,7 +84,7 @@ class EventInstance(Instance):
                 raise FmuError("; ".join(self._messages) or "fmi3DoStep failed")
             time = last.value
             if event:
-                rows.append(tuple(read()))
+                rows.append(self.read(*EVENT_OUTPUTS).tolist())
                 times.append(time)
                 contacts.append(stuck())
                 enter(component), update(component, *news), leave(component)
@@ -115,12 +115,11 @@ def begin(instance, case, eta, start=REST, **values):
 
 def sampled(instance, time, target, count):
     """States at ``count`` equal parts of a span, the last at its end, shape (count, 4); taken inside few steps."""
-    read = instance.reader(*SERIES)
-    room = len(read()) // len(SERIES)
+    room = len(instance.read(*SERIES)) // len(SERIES)
     states, width = np.empty((count, len(SERIES))), (target - time) / count
     for done in range(0, count, room):
         size = min(room, count - done)
         instance.set(sample_count=size)
         instance.step(time + done * width, time + (done + size) * width)
-        states[done : done + size] = np.array(read()).reshape(len(SERIES), room)[:, :size].T
+        states[done : done + size] = instance.read(*SERIES).reshape(len(SERIES), room)[:, :size].T
     return states
