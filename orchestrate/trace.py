@@ -84,7 +84,7 @@ class EventInstance(Instance):
                 raise FmuError("; ".join(self._messages) or "fmi3DoStep failed")
             time = last.value
             if event:
-                rows.append(self.read(*EVENT_OUTPUTS).copy())
+                rows.append(self.read(*EVENT_OUTPUTS).tolist())
                 times.append(time)
                 contacts.append(stuck())
                 enter(component), update(component, *news), leave(component)

@@ -63,10 +63,9 @@ def coexisting(data):
     kinds = []
     for k in range(min(4, data.sizes["attractor"])):
         n = int(data.multiplicity[k])
-        impacts = float(data.impacts_per_period[k])
-        kinds.append(
-            f"{f'{n if n > 1 else str()}T-periodic' if n else 'not periodic'} with {impacts:.2f} impacts per T from {100 * float(data.share[k]):.1f} %"
-        )
+        kind = f"{n if n > 1 else ''}T-periodic" if n else "not periodic"
+        impacts, share = float(data.impacts_per_period[k]), 100 * float(data.share[k])
+        kinds.append(f"{kind} with {impacts:.2f} impacts per T from {share:.1f} %")
     return f"At eta = {data.attrs['eta']:.3f} a plane of {data.attractor_of.size} starts leads to: {'; '.join(kinds)}."
 
 
