@@ -7,6 +7,7 @@ importer a status that is not OK.
 """
 
 import ctypes
+import hashlib
 import os
 import struct
 import sys
@@ -17,6 +18,7 @@ from .table import BOOLEAN, INTEGER, REAL, explain
 
 INSTANTIATED, INITIALIZING, STEPPING, TERMINATED = 0.0, 1.0, 2.0, 3.0
 STATE_MAGIC = b"vibroimpact state "
+STATE_HEAD, CHECKSUM = 64, 8  # bytes
 
 
 class FmuError(Exception):
@@ -229,22 +231,20 @@ class Slave:
     # -- state --------------------------------------------------------------------------------------------------------
 
     def _get_fmu_state(self):
-        header = (STATE_MAGIC + self.fingerprint.encode()).ljust(64, b"\0")
-        numbers = (self._phase, self._start_time, float(self._stale)) + tuple(self._memory)
-        return header + struct.pack(f"<{len(numbers)}d", *numbers)
+        return self._sealed(struct.pack(f"<{3 + len(self._memory)}d", self._phase, self._start_time, self._stale, *self._memory))
+
+    def _sealed(self, body):
+        """A saved state: what it is of, a checksum, and its numbers."""
+        head = (STATE_MAGIC + self.fingerprint.encode()).ljust(STATE_HEAD - CHECKSUM, b"\0")
+        return head + hashlib.sha256(head + body).digest()[:CHECKSUM] + body
 
     def _set_fmu_state(self, state):
-        reference = self._get_fmu_state()
-        if not isinstance(state, bytes) or len(state) != len(reference) or state[:64] != reference[:64]:
-            self.refuse(f"FMU state: allowed are states saved by this FMU ({self.model.name}, {self.fingerprint})")
-        numbers = struct.unpack(f"<{(len(state) - 64) // 8}d", state[64:])
+        length = STATE_HEAD + 8 * (3 + len(self._memory))
+        if not isinstance(state, bytes) or len(state) != length or state != self._sealed(state[STATE_HEAD:]):
+            self.refuse(f"FMU state: allowed are states saved by this FMU ({self.model.name}, {self.fingerprint}), and undamaged")
+        numbers = struct.unpack(f"<{(length - STATE_HEAD) // 8}d", state[STATE_HEAD:])
         self._phase, self._start_time, self._stale = numbers[0], numbers[1], numbers[2] != 0.0
         self._memory = self._array(*numbers[3:])
 
-    @staticmethod
-    def _fmu_state_to_bytes(state):
-        return state
-
-    @staticmethod
-    def _fmu_state_from_bytes(state):
-        return state  # looked at when it is set: an exception here would corrupt the instance
+    # the bytes are looked at when they are set: an exception here would corrupt the instance
+    _fmu_state_to_bytes = _fmu_state_from_bytes = staticmethod(lambda state: state)

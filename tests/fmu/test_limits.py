@@ -94,7 +94,6 @@ def test_end_of_the_process(tmp_path):
     assert "finalizePythonInterpreter" not in done.stderr
 
 
-@limit("a state is known by its length and header alone: a number that was spoilt on the way goes into the motion")
 def test_serialised_state_with_a_spoilt_number(fmu, tmp_path):
     """NaN in the place of every number in turn: refused, at the latest by the step; never an output that is not finite with status OK."""
     script = r"""

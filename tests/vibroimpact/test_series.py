@@ -30,17 +30,20 @@ def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
     m, first, gap = leaving(values, x, v, slope)
     if m[at.SERIES] == 0.0:
         return
+
+    def rounding(tau):  # of the gap's own terms, which may cancel; those of the displacements are larger by far
+        return 1e-14 * (slope * tau + (abs(m[at.FORCE_V] * v) + abs(m[at.FORCE_X] * x)) * tau * tau)
+
     with mp.workdps(40):
         end = m[at.END]
-        fall = -gap.derivative()(mp.mpf(end))
-        assert m[at.END_KIND] == at.END_EVENT and fall > 0
-        assert abs(gap(mp.mpf(end))) / fall <= 1e-13 * end
+        assert m[at.END_KIND] == at.END_EVENT and gap.derivative()(mp.mpf(end)) < 0
+        assert abs(gap(mp.mpf(end))) <= rounding(end)
         assert all(gap(mp.mpf(end) * i / 64) > 0 for i in range(1, 64))
         for part in (0.1, 0.5, 0.9):
             tau = part * end
             x1, v1, x2, v2 = state_at(m, tau)
             assert abs(x1 - first(mp.mpf(tau))) <= 1e-15 and abs(v1 - first.derivative()(mp.mpf(tau))) <= 1e-14
-            assert abs(evaluate(m, tau)[0] - gap(mp.mpf(tau))) <= 1e-13 * gap(mp.mpf(tau))
+            assert abs(evaluate(m, tau)[0] - gap(mp.mpf(tau))) <= rounding(tau)
             assert x2 >= x1
 
 
