@@ -79,7 +79,7 @@ class Cluster:
         except ImportError:
             raise UserError('--cluster: needs Dask; `pip install -e ".[cluster]"` in the clone brings it') from None
         try:
-            self._client = Client(address, timeout="10s", set_as_default=False)
+            self._client = Client(address, timeout="5s", set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             raise UserError(f"--cluster {address}: no scheduler answers there ({error}); start one with `dask scheduler`") from None
         if not self._client.ncores():

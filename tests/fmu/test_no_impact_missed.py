@@ -109,9 +109,9 @@ class Oscillator:
         return mpmath.diff(self.position, t)
 
 
+@mpmath.workdps(30)
 def event_driven(p, end):
     """Impacts up to ``end`` as (time, closing speed) with 30 digits: dense scanning, then a bracketed root."""
-    mpmath.mp.dps = 30
     q = {name: mpmath.mpf(value) for name, value in p.items()}
     one = Oscillator(q["m1"], q["k1"], q["d1"], q["box_amplitude"], q["box_frequency"])
     two = Oscillator(q["m2"], q["k2"], q["d2"], q["box_amplitude"], q["box_frequency"])

@@ -52,7 +52,7 @@ def test_kill_9(sweeps, uninterrupted):
 
 def test_rows_are_on_disk_one_by_one(sweeps):
     # a row is a transaction: what a second reader sees never shrinks, and never comes in one lump at the end
-    process = sweeps.start(*RUN)
+    process = sweeps.start(*RUN, "--transient", "5000")  # the later option counts: slow enough to be watched
     seen = set()
     sweeps.wait_for(lambda: seen.add(sweeps.rows()) or len(seen) >= 20, process, "the twentieth intermediate state was seen")
     sweeps.kill(process)

@@ -18,7 +18,6 @@ FOUND = [
 ]
 
 
-@pytest.mark.slow
 def test_the_whole_paper(tmp_path):
     import xarray
 

@@ -24,7 +24,7 @@ def leaving(values, x, v, slope):
     return m, first, second - first
 
 
-@examples(150)
+@examples(80)
 @given(structures(), *PLACES, sizes(1e-9, 0.1))
 def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
     m, first, gap = leaving(values, x, v, slope)
@@ -34,7 +34,7 @@ def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
     def rounding(tau):  # of the gap's own terms, which may cancel; those of the displacements are larger by far
         return 1e-14 * (slope * tau + (abs(m[at.FORCE_V] * v) + abs(m[at.FORCE_X] * x)) * tau * tau)
 
-    with mp.workdps(40):
+    with mp.workdps(50):
         end = m[at.END]
         assert m[at.END_KIND] == at.END_EVENT and gap.derivative()(mp.mpf(end)) < 0
         assert abs(gap(mp.mpf(end))) <= rounding(end)
@@ -47,14 +47,14 @@ def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
             assert x2 >= x1
 
 
-@examples(150)
+@examples(80)
 @given(structures(), *PLACES, sizes(1e-9, 0.1), st.floats(0.0, 1.0))
 def test_value_and_derivatives(values, x, v, slope, part):
     m, _, gap = leaving(values, x, v, slope)
     if m[at.SERIES] == 0.0:
         return
     tau = part * m[at.END]
-    with mp.workdps(40):
+    with mp.workdps(50):
         scale = abs(gap.derivative()(mp.mpf(0))) + abs(gap.derivative().derivative()(mp.mpf(0)))
         for order, value in enumerate(evaluate(m, tau)[:3]):
             assert abs(value - gap(mp.mpf(tau))) <= 1e-12 * float(scale), order
