@@ -24,11 +24,11 @@ def goes_on(sweeps, least, uninterrupted):
     assert least <= kept < ROWS
     process = sweeps.start(*RUN)
     seen = []
+    unfinished = sweeps.result().with_name(sweeps.result().name + ".tmp")
     while process.poll() is None:
-        rows = sweeps.rows()
-        if sweeps.result().exists():  # from now on the journal may go
+        if unfinished.exists() or sweeps.result().exists():  # the journal is about to go: one who reads it now leaves a file of SQLite's behind
             break
-        seen.append(rows)
+        seen.append(sweeps.rows())
         time.sleep(0.005)
     done = sweeps.end(process).success()
     assert min(seen) >= kept and kept <= done.counts[0] < ROWS, "it began anew"
