@@ -18,6 +18,7 @@ from tqdm import tqdm
 from .errors import UserError
 from .store import Journal, Lock
 from .sweep import run
+from .workers import stop
 
 POLL = 0.2  # s between looks at the journals
 
@@ -88,10 +89,10 @@ def run_all(plans, fmu, results, jobs=None):
         signal.signal(signal.SIGINT, attentive)
         watch(futures, results, sum(len(plan.etas) for plan in plans))
     except BrokenProcessPool:
+        stop(pool)
         raise UserError("a worker process ended without a word (killed, or out of memory); the same command goes on from where it was") from None
     except BaseException:
-        for process in list((getattr(pool, "_processes", None) or {}).values()):
-            process.terminate()
+        stop(pool)
         raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)

@@ -17,6 +17,7 @@ from tqdm import tqdm
 from .errors import UserError
 from .jobs import Progress, identities
 from .store import Lock
+from .workers import stop
 
 
 def compute_chunk(job, fmu, items, carry):
@@ -65,8 +66,7 @@ class Local:
     def close(self, in_haste):
         """End the workers, in the middle of their chunks where ``in_haste``."""
         if in_haste:
-            for process in list((getattr(self._pool, "_processes", None) or {}).values()):
-                process.terminate()
+            stop(self._pool)
         self._pool.shutdown(wait=True, cancel_futures=True)
 
 
