@@ -1,5 +1,6 @@
 """``python -m orchestrate couple`` as its users run it: results, going on after a kill, and mistakes that are named."""
 
+import functools
 import os
 import signal
 import subprocess
@@ -48,7 +49,8 @@ def test_a_motor_that_does_not_turn(tmp_path):
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
 def test_goes_on_after_an_end_by_force(uninterrupted, tmp_path, kind):
     line = [sys.executable, "-m", "orchestrate", "couple", *RUN, "--output", str(tmp_path)]
-    process = subprocess.Popen(line, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    attentive = functools.partial(signal.signal, signal.SIGINT, signal.default_int_handler)  # where the tests run in the background it is ignored
+    process = subprocess.Popen(line, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, preexec_fn=attentive)
     journal = tmp_path / f"{NAME}.nc.journal-wal"
     deadline = time.monotonic() + 60.0
     while not (journal.exists() and journal.stat().st_size > 30_000):
