@@ -78,7 +78,7 @@ def compiler(name):
     raise NoCompiler(f"no C compiler for {name}: allowed is the PyPI package ziglang, or cc, gcc or clang for the machine's own platform")
 
 
-def link(name, files, options=()):
+def link(name, files):
     """A shared library, as bytes.
 
     Parameters
@@ -87,8 +87,6 @@ def link(name, files, options=()):
         Platform.
     files : dict of str to bytes
         Sources, headers and object files by file name.
-    options : sequence of str
-        Further options of the compiler.
 
     Returns
     -------
@@ -99,7 +97,7 @@ def link(name, files, options=()):
             (Path(folder) / file).write_bytes(content)
         units = [file for file in files if file.endswith((".c", ".o"))]
         target = f"library{PLATFORMS[name].suffix}"
-        command = [*compiler(name), *FLAGS, *options, "-o", target, *units]
+        command = [*compiler(name), *FLAGS, "-o", target, *units]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         if done.returncode != 0:
             lines = [line for line in done.stderr.splitlines() if "error" in line] or done.stderr.splitlines() or ["no reason given"]

@@ -1,12 +1,13 @@
 """What the figures share: matplotlib without a screen, one look, and pictures written whole or not at all."""
 
-from pathlib import Path
 from typing import Any
 
 import matplotlib
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402 - after the backend was chosen
+
+from .files import write  # noqa: E402
 
 LOOK: Any = {
     "axes.grid": True,
@@ -41,14 +42,8 @@ def save(figure, path, formats=("png", "pdf")):
     """
     try:
         for ending in formats:
-            target = Path(f"{path}.{ending}")
-            temporary = target.with_name(target.name + ".tmp")
-            try:
-                metadata = {"CreationDate": None} if ending == "pdf" else {"Software": None}
-                figure.savefig(temporary, format=ending, metadata=metadata)
-                temporary.replace(target)
-            finally:
-                temporary.unlink(missing_ok=True)
+            metadata = {"CreationDate": None} if ending == "pdf" else {"Software": None}
+            write(figure, f"{path}.{ending}", format=ending, metadata=metadata)
     finally:
         plt.close(figure)
 

@@ -1,14 +1,7 @@
 """Figure 10: bifurcation diagram for e = 0.7, D = 0.05; its data is the up-sweep of section 3.1, which ``orchestrate.paper.sweeps`` computes."""
 
+from .orbit_diagram import METHOD
+from .orbit_diagram import picture as draw
+
+__all__ = ("CAPTION", "METHOD", "draw")
 CAPTION = "Bifurcation diagram for e = 0.7, D = 0.05: stroboscopic samples of the gap, and below them the impacts per excitation period."
-METHOD = (
-    "One sequential sweep upwards, 0.1 <= eta <= 8.0 by 0.001, each frequency started from the end of the last, stroboscopic samples taken inside "
-    "the FMU's steps after the periods dropped."
-)
-
-
-def draw(data):
-    """Draw it; returns the figure."""
-    from .orbit_diagram import picture
-
-    return picture(data)

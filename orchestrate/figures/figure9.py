@@ -2,12 +2,13 @@
 
 from ..curves import curve, panel_at
 from ..paper.resolution import ELASTIC
+from .figure8 import METHOD, draw
 
+__all__ = ("CAPTION", "METHOD", "compute", "draw", "panels")
 ETAS = (2.60, 2.65, 2.69, 2.737, 2.83, 2.92, 3.05, 3.17, 3.30, 3.49, 3.56, 3.70)
 PANELS = len(ETAS)
 POINTS = 60  # a period, beside both sides of each impact
 CAPTION = "Typical phase curves in the second irregular region 2.61 < eta < 3.77; T, nT: periodic."
-METHOD = "Each started from the up-sweep's response; states sampled inside the FMU and both sides of each impact, after the periods dropped."
 
 
 def panels(sweeps):
@@ -18,10 +19,3 @@ def panels(sweeps):
 def compute(fmu, panel, skip, keep):
     """One phase curve, and its panel."""
     return curve(fmu, panel, skip, keep, POINTS), panel
-
-
-def draw(data):
-    """Draw the phase planes; returns the figure."""
-    from .phase_grid import draw_grid
-
-    return draw_grid(data)

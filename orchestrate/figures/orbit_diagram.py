@@ -1,12 +1,17 @@
 """Figures 6, 10, 11: stroboscopic samples of the gap over the frequency ratio, semi-logarithmic."""
 
-from pathlib import Path
-
 import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402 - after the backend was chosen
+
+from .files import write  # noqa: E402
+
+METHOD = (
+    "One sequential sweep upwards, 0.1 <= eta <= 8.0 by 0.001, each frequency started from the end of the last, stroboscopic samples taken inside "
+    "the FMU's steps after the periods dropped."
+)
 
 
 def draw(dataset, path):
@@ -20,12 +25,9 @@ def draw(dataset, path):
         PNG file; written whole or not at all.
     """
     figure = picture(dataset)
-    temporary = Path(path).with_name(Path(path).name + ".tmp")
     try:
-        figure.savefig(temporary, dpi=150, format="png")
-        temporary.replace(path)
+        write(figure, path, dpi=150, format="png")
     finally:
-        temporary.unlink(missing_ok=True)
         plt.close(figure)
 
 

@@ -1,12 +1,12 @@
 """Figure 2 and the Sommerfeld effect: speed against voltage, amplitude and impacts against speed, and where the motor's power goes."""
 
-from pathlib import Path
-
 import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402 - after the backend was chosen
+
+from .files import write  # noqa: E402
 
 COLOURS = {"bonded": "C0", "delaminated": "C3"}
 SINKS = (("dampers", "dampers of the masses"), ("box_damper", "damper of the box"), ("impact_loss", "impacts"))
@@ -125,10 +125,7 @@ def limits(axes, datasets):
 
 def save(figure, path):
     """A picture, whole or not at all."""
-    temporary = Path(path).with_name(Path(path).name + ".tmp")
     try:
-        figure.savefig(temporary, dpi=130, format="png")
-        temporary.replace(path)
+        write(figure, path, dpi=130, format="png")
     finally:
-        temporary.unlink(missing_ok=True)
         plt.close(figure)
