@@ -3,18 +3,18 @@
 import functools
 from pathlib import Path
 
-from fmu_src.drive.model import MODEL as SHAKER
 from fmu_src.export import native_form, pythonfmu_form
 from fmu_src.export.linking import NoCompiler, say_pure_python
-from fmu_src.oscillator.model import MODEL as OSCILLATOR
+from fmu_src.models.motor_shaker.model import MODEL as SHAKER
+from fmu_src.models.oscillator.model import MODEL as OSCILLATOR
 
-from .errors import UserError
+from .errors import InputError
 from .fmu import describe
 
 FORMS: dict = {"fmi2-python": pythonfmu_form.export, "fmi2": native_form.export_fmi2, "fmi3": native_form.export_fmi3}
 MODELS: dict = {
-    "TwoMassImpactOscillator": (OSCILLATOR, "vibroimpact", "oscillator"),
-    "MotorShaker": (SHAKER, "shaker", "drive"),
+    "TwoMassImpactOscillator": (OSCILLATOR, "oscillator", "oscillator"),
+    "MotorShaker": (SHAKER, "shaker", "motor_shaker"),
 }
 GUIDS: dict = {
     "fmi2-python": pythonfmu_form.guid,
@@ -45,7 +45,7 @@ def build(folder, forms=tuple(FORMS), names=tuple(MODELS)):
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UserError(f"{folder}: {error.strerror or error}; allowed is a folder that can be written") from None
+        raise InputError(f"{folder}: {error.strerror or error}; allowed is a folder that can be written") from None
     for form in forms:
         for name in names:
             try:
@@ -53,7 +53,7 @@ def build(folder, forms=tuple(FORMS), names=tuple(MODELS)):
             except NoCompiler as reason:
                 say_pure_python(reason)
             except OSError as error:
-                raise UserError(f"{folder}: cannot be written ({error.strerror or error}); allowed is a writable folder") from None
+                raise InputError(f"{folder}: cannot be written ({error.strerror or error}); allowed is a writable folder") from None
     return written
 
 
@@ -62,7 +62,7 @@ def up_to_date(form, name, folder):
     path = Path(folder) / form / f"{name}.fmu"
     try:
         return path.is_file() and describe(path).guid == GUIDS[form](*MODELS[name][1:])
-    except UserError:  # damaged: to be made anew
+    except InputError:  # damaged: to be made anew
         return False
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .errors import FmuError, UserError
+from .errors import FmuError, InputError
 
 
 @dataclass(frozen=True)
@@ -51,21 +51,21 @@ def describe(path, model=None):
 
     Raises
     ------
-    UserError
+    InputError
         Where there is no such file, or it is no FMU of that model for co-simulation.
     """
     import fmpy
 
     path = Path(path)
     if not path.is_file():
-        raise UserError(f"FMU {path}: no such file; `python -m orchestrate build` writes it")
+        raise InputError(f"FMU {path}: no such file; `python -m orchestrate build` writes it")
     try:
         found = fmpy.read_model_description(str(path))
     except Exception as error:
         reason = (str(error).splitlines() or [type(error).__name__])[0]
-        raise UserError(f"FMU {path}: not readable as an FMU ({reason}); `python -m orchestrate build` writes one") from None
+        raise InputError(f"FMU {path}: not readable as an FMU ({reason}); `python -m orchestrate build` writes one") from None
     if found.coSimulation is None or (model and found.modelName != model):
-        raise UserError(f"FMU {path}: model {found.modelName}; allowed is {model or 'a model'} for co-simulation")
+        raise InputError(f"FMU {path}: model {found.modelName}; allowed is {model or 'a model'} for co-simulation")
     variables = {variable.name: variable for variable in found.modelVariables}
     return Description(path, found.modelName, str(found.guid), found.fmiVersion, variables, bool(found.coSimulation.needsExecutionTool))
 
@@ -105,7 +105,7 @@ class Instance:
             shutil.rmtree(self._folder, ignore_errors=True)
             if isinstance(error, FmuError) or not isinstance(error, Exception):
                 raise
-            raise UserError(f"FMU {path}: cannot be loaded ({error}); allowed is an FMU with a binary for this machine") from None
+            raise InputError(f"FMU {path}: cannot be loaded ({error}); allowed is an FMU with a binary for this machine") from None
 
     def _make2(self, identity):
         import fmpy
@@ -150,7 +150,7 @@ class Instance:
         try:
             return self.description.variables[name]
         except KeyError:
-            raise UserError(f"variable {name}: the FMU {self.description.name} has none of that name") from None
+            raise InputError(f"variable {name}: the FMU {self.description.name} has none of that name") from None
 
     def set(self, **values):
         """Set variables by name."""
