@@ -17,7 +17,7 @@ import numpy as np
 from .build import default_fmu
 from .fmu import Instance, describe
 
-SOURCES = Path(__file__).resolve().parents[1] / "fmu_src"
+SOURCES = Path(__file__).resolve().parents[1] / "fmu_src" / "models"
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Reference:
     Attributes
     ----------
     model, folder : str
-        Model name, and its folder below ``fmu_src``.
+        Model name, and its folder below ``fmu_src/models``.
     inputs, outputs : tuple of str
     input_at : callable
         Inputs from a time on.
@@ -71,7 +71,7 @@ OSCILLATOR = Reference(
 )
 SHAKER = Reference(
     "MotorShaker",
-    "drive",
+    "motor_shaker",
     ("voltage", "box_force"),
     ("box_position", "box_velocity", "angle", "speed", "motor_torque", "motor_energy", "box_damper_energy", "stored_energy"),
     shaker_inputs,
@@ -84,7 +84,7 @@ REFERENCES = (OSCILLATOR, SHAKER)
 
 def marks(reference):
     """The lines of the README between which a model's variable table stands."""
-    begin = f"<!-- variables: generated from fmu_src/{reference.folder}/variables.py, kept so by a test -->"
+    begin = f"<!-- variables: generated from fmu_src/models/{reference.folder}/variables.py, kept so by a test -->"
     return begin, "<!-- end of variables -->"
 
 

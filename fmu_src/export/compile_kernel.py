@@ -29,7 +29,7 @@ def compile_objects(model_module):
     Parameters
     ----------
     model_module : str
-        Module with a ``MODEL`` (:class:`.table.Model`), e.g. ``"fmu_src.oscillator.model"``.
+        Module with a ``MODEL`` (:class:`..runtime.table.Model`), e.g. ``"fmu_src.models.oscillator.model"``.
 
     Returns
     -------
@@ -50,11 +50,9 @@ def compile_objects(model_module):
         return {name: (Path(folder) / f"{name}.o").read_bytes() for name in PLATFORMS}
 
 
-def kernel_modules(model_module):
-    """Names of the modules imported so far that the model's kernel is made of: all but the model's own and the exporters'."""
-    root = __package__.rsplit(".", 1)[0]
-    others = (__package__, model_module.rsplit(".", 1)[0])
-    return [name for name in sorted(sys.modules) if name.startswith(root + ".") and not name.startswith(others)]
+def kernel_modules():
+    """Names of the kernels' modules imported so far: those the model is made of."""
+    return [name for name in sorted(sys.modules) if name.startswith("fmu_src.kernels.")]
 
 
 def jit_kernel(names):
@@ -133,7 +131,7 @@ def emit_object(text, platform):
 def main(model_module, folder):
     """Write one object file a platform; see :func:`compile_objects`."""
     model = importlib.import_module(model_module).MODEL
-    dispatchers = jit_kernel(kernel_modules(model_module))
+    dispatchers = jit_kernel(kernel_modules())
     entries = {f"kernel_{name}": entry_ir(dispatchers[function], model.memory_size) for name, function in model.entries.items()}
     text = str(link_ir(entries))
     for name, platform in PLATFORMS.items():

@@ -2,7 +2,7 @@
 
 from xml.etree import ElementTree as ET
 
-from .table import BOOLEAN, INTEGER, REAL
+from ..runtime.table import BOOLEAN, INTEGER, REAL
 
 UNITS = {  # SI exponents
     "kg": {"kg": 1},

@@ -3,7 +3,7 @@
 from xml.etree import ElementTree as ET
 
 from .model_description import LOG_CATEGORIES, add_units, number, start_text
-from .table import BOOLEAN, INTEGER, REAL
+from ..runtime.table import BOOLEAN, INTEGER, REAL
 
 TYPES = {REAL: "Float64", INTEGER: "Int32", BOOLEAN: "Boolean"}
 ARRAY_BASE = 1000  # value references of arrays begin here

@@ -101,7 +101,7 @@ def model_header(model, token, digest):
 
 def shim_sources(version):
     """C sources of the shim for an FMI version."""
-    folder = ROOT / "export" / "native"
+    folder = ROOT / "runtime" / "native"
     return {name: (folder / name).read_bytes() for name in SHIM[version]}
 
 
@@ -113,7 +113,7 @@ def fmi_headers(version):
 
 def source_digest(kernel, folder):
     """Fingerprint of kernel and model: states saved by one native form can be read by the other."""
-    return fingerprint({k: v for k, v in embedded_sources(kernel, folder).items() if not k.startswith("export/slave")})
+    return fingerprint({k: v for k, v in embedded_sources(kernel, folder).items() if not k.startswith("runtime/slave")})
 
 
 def guid(kernel, folder, version):
@@ -144,13 +144,13 @@ def export(model, kernel, folder, target, version):
         Where no binary can be made.
     """
     token, digest = guid(kernel, folder, version), source_digest(kernel, folder)
-    objects = compile_objects(f"fmu_src.{folder}.model")
+    objects = compile_objects(f"fmu_src.models.{folder}.model")
     sources = {**shim_sources(version), **fmi_headers(version), "model.h": model_header(model, token, digest)}
     files = {"modelDescription.xml": XML[version](model, token)}
     for name, binary in link_all(objects, sources).items():
         platform = PLATFORMS[name]
         files[f"binaries/{getattr(platform, version)}/{model.name}{platform.suffix}"] = binary
-    files.update(documentation_files(model, ROOT / folder, digest))
+    files.update(documentation_files(model, ROOT / "models" / folder, digest))
     files.update({f"documentation/{name}": content for name, content in kernel_sources(kernel).items()})
     path = Path(target) / f"{model.name}.fmu"
     write_archive(path, files)

@@ -15,20 +15,20 @@ import pythonfmu
 
 from .archive import fingerprint, guid_of, read_folder, write_archive
 from .compile_kernel import compile_objects
-from .compiled import LIBRARIES
+from ..runtime.compiled import LIBRARIES
 from .documentation import documentation_files
 from .linking import NoCompiler, link_all, say_pure_python
 from .model_description import fmi2_xml
 
 ROOT = Path(__file__).resolve().parents[1]
-RUNTIME = ("__init__.py", "export/__init__.py", "export/table.py", "export/slave.py", "export/compiled.py")
+RUNTIME = ("__init__.py", "kernels/__init__.py", "models/__init__.py", *(f"runtime/{name}.py" for name in ("__init__", "table", "slave", "compiled")))
 MODEL_FILES = ("__init__.py", "variables.py", "model.py")
 SCRIPT = '''"""The slave of {name}; the class has to be defined here, all else is in the package."""
 
 from pythonfmu.fmi2slave import Fmi2Slave
 
-from {package}.export.slave import Slave, keep
-from {package}.{folder}.model import MODEL
+from {package}.runtime.slave import Slave, keep
+from {package}.models.{folder}.model import MODEL
 
 keep(globals())  # pythonfmu runs this script, then releases its namespace, which it only borrowed
 
@@ -49,17 +49,17 @@ FmuBuilder.build_FMU(script, dest=target, project_files=[package])
 
 def kernel_sources(kernel):
     """Files of a kernel, and those of other kernels that it takes (``from ..OTHER.MODULE import ...``), by their path below ``fmu_src``."""
-    files = read_folder(ROOT / kernel, f"{kernel}/")
+    files = read_folder(ROOT / "kernels" / kernel, f"kernels/{kernel}/")
     text = b"\n".join(files.values()).decode()
     for other, module in sorted(set(re.findall(r"^from \.\.(\w+)\.(\w+) import ", text, flags=re.M))):
-        files.update({f"{other}/{name}": (ROOT / other / name).read_bytes() for name in ("__init__.py", f"{module}.py")})
+        files.update({f"kernels/{other}/{name}": (ROOT / "kernels" / other / name).read_bytes() for name in ("__init__.py", f"{module}.py")})
     return files
 
 
 def embedded_sources(kernel, folder):
     """Files of the embedded package, by their path in it."""
     files = {name: (ROOT / name).read_bytes() for name in RUNTIME}
-    files.update({f"{folder}/{name}": (ROOT / folder / name).read_bytes() for name in MODEL_FILES})
+    files.update({f"models/{folder}/{name}": (ROOT / "models" / folder / name).read_bytes() for name in MODEL_FILES})
     files.update(kernel_sources(kernel))
     return files
 
@@ -72,7 +72,7 @@ def source_digest(kernel, folder):
 
 def exporters():
     """Files of the exporters: a change of theirs makes another FMU too."""
-    return read_folder(ROOT / "export", "export/")
+    return {**read_folder(ROOT / "export", "export/"), **read_folder(ROOT / "runtime", "runtime/")}
 
 
 def guid(kernel, folder):
@@ -100,7 +100,7 @@ def export(model, kernel, folder, target):
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
         files = run_pythonfmu(model, folder, sources, digest, Path(scratch))
     files["modelDescription.xml"] = fmi2_xml(model, guid(kernel, folder))
-    files.update(documentation_files(model, ROOT / folder, digest))
+    files.update(documentation_files(model, ROOT / "models" / folder, digest))
     path = Path(target) / f"{model.name}.fmu"
     write_archive(path, files)
     return path
@@ -113,8 +113,8 @@ def run_pythonfmu(model, folder, sources, digest, scratch):
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_bytes(content)
     try:
-        entry = (b"#define REFRESH\n" if model.refresh else b"") + (ROOT / "export" / "native" / "library.c").read_bytes()
-        objects = compile_objects(f"fmu_src.{folder}.model")
+        entry = (b"#define REFRESH\n" if model.refresh else b"") + (ROOT / "runtime" / "native" / "library.c").read_bytes()
+        objects = compile_objects(f"fmu_src.models.{folder}.model")
         libraries = link_all(objects, {"library.c": entry})
         for platform, library in LIBRARIES.values():
             if platform in libraries:

@@ -12,7 +12,7 @@ EXPORT = """
 from pathlib import Path
 from fmu_src.export import pythonfmu_form
 from fmu_src.export.linking import NoCompiler
-from fmu_src.FOLDER.model import MODEL
+from fmu_src.models.FOLDER.model import MODEL
 
 def no_compiler(*_):
     raise NoCompiler("not wanted here")
@@ -22,7 +22,7 @@ pythonfmu_form.export(MODEL, "KERNEL", "FOLDER", Path("out"))
 """
 
 
-def export_copy(folder, changes=(), packages=("vibroimpact", "oscillator"), **environment):
+def export_copy(folder, changes=(), packages=("oscillator", "oscillator"), **environment):
     """Path of the pythonfmu FMU of a copy of the sources.
 
     Parameters

@@ -45,9 +45,9 @@ def test_guid_belongs_to_the_sources(copies, tmp_path):
     names = set(contents(PYTHON))
     for number, change in enumerate(
         [
-            ("oscillator/variables.py", '"e", at.E, "1", 0.7', '"e", at.E, "1", 0.71'),
-            ("vibroimpact/impact.py", '"""Impact:', '"""An impact:'),
-            ("export/slave.py", '"""One line to the error output:', '"""A line to the error output:'),
+            ("models/oscillator/variables.py", '"e", at.E, "1", 0.7', '"e", at.E, "1", 0.71'),
+            ("kernels/oscillator/impact.py", '"""Impact:', '"""An impact:'),
+            ("runtime/slave.py", '"""One line to the error output:', '"""A line to the error output:'),
         ]
     ):
         changed = export_copy(tmp_path / str(number), [change])

@@ -8,7 +8,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 from ..fresh import ROOT, run_fresh
-from ..shaker.truth import solve
+from ..kernels.shaker.truth import solve
 from .driver import BUILD, FORMS, run
 from .exporting import export_copy
 from .test_importers import COSIM
@@ -57,13 +57,13 @@ def test_valid_and_as_the_contract_says(fmu):
 
 def test_exports_are_the_same_bytes_and_named_by_their_sources(tmp_path):
     """The elementary functions, which lie with the other kernel, are among the sources."""
-    packages = ("shaker", "drive")
+    packages = ("shaker", "motor_shaker")
     first = export_copy(tmp_path / "first", packages=packages, PYTHONHASHSEED="1", TZ="UTC")
     second = export_copy(tmp_path / "a second one", packages=packages, PYTHONHASHSEED="2", TZ="Asia/Tokyo")
     assert first.read_bytes() == second.read_bytes()
     guid = fmpy.read_model_description(str(first)).guid
     assert guid == fmpy.read_model_description(str(FMUS["fmi2-python"])).guid
-    changed = export_copy(tmp_path / "changed", [("vibroimpact/elementary.py", "EXP_ZERO = 700.0", "EXP_ZERO = 701.0")], packages)
+    changed = export_copy(tmp_path / "changed", [("kernels/numerics/elementary.py", "EXP_ZERO = 700.0", "EXP_ZERO = 701.0")], packages)
     assert fmpy.read_model_description(str(changed)).guid != guid
 
 
@@ -238,7 +238,7 @@ def test_libcosim(form, tmp_path):
 
 def test_reference_result(fmu, tmp_path):
     """The cross-check files inside are what FMPy computes from them."""
-    folder = ROOT / "fmu_src" / "drive" / "reference"
+    folder = ROOT / "fmu_src" / "models" / "motor_shaker" / "reference"
     with (folder / "MotorShaker_ref.csv").open() as stream:
         rows = list(csv.DictReader(stream))
     script = r"""

@@ -14,7 +14,7 @@ PYTHON = FMUS["fmi2-python"]
 @pytest.fixture(scope="module")
 def other(tmp_path_factory):
     """An FMU of the same model name whose coefficient of restitution is another one."""
-    return export_copy(tmp_path_factory.mktemp("other"), [("oscillator/variables.py", '"e", at.E, "1", 0.7', '"e", at.E, "1", 0.25')])
+    return export_copy(tmp_path_factory.mktemp("other"), [("models/oscillator/variables.py", '"e", at.E, "1", 0.7', '"e", at.E, "1", 0.25')])
 
 
 def test_two_versions_in_one_process_do_not_share_code(other, tmp_path):
@@ -52,7 +52,7 @@ def test_host_with_modules_of_the_same_names(tmp_path):
     """An importer that is itself written in Python, and has modules named as ours are, keeps them; the FMU does not get them."""
     script = r"""
     import types
-    names = ("fmu_src", "fmu_src.export", "export", "export.slave", "vibroimpact", "vibroimpact.memory", "oscillator", "oscillator.model",
+    names = ("fmu_src", "fmu_src.runtime", "runtime", "kernels", "models", "runtime.slave", "kernels.oscillator", "kernels.oscillator.memory", "oscillator", "models.oscillator.model",
              "slave", "table", "memory", "model", "variables", "TwoMassImpactOscillator", "stepper", "compiled")
     hosts = {name: types.ModuleType(name) for name in names}
     sys.modules.update(hosts)
@@ -149,7 +149,7 @@ def test_percent_signs_in_a_message_reach_the_importer(tmp_path):
     """The only text of a user's that a message repeats is a number, so a variable of a copied FMU gets a name with format directives."""
     script = r"""
     import ctypes
-    module = [m for n, m in sys.modules.items() if n.endswith("export.slave")] if open_fmu(PATH) else []
+    module = [m for n, m in sys.modules.items() if n.endswith("runtime.slave")] if open_fmu(PATH) else []
     table = sys.modules[module[0].__name__.replace("slave", "table")]
     real = table.Variable.problem
     table.Variable.problem = lambda self, value: "%s%n %d 100 %: allowed is everything" if value == 7.5 else real(self, value)

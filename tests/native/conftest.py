@@ -48,7 +48,7 @@ def compiled_once_more(folder):
         return pickle.loads(made.read_bytes())
     compile_kernel.compile_objects.cache_clear()
     try:
-        found = compile_kernel.compile_objects("fmu_src.oscillator.model")
+        found = compile_kernel.compile_objects("fmu_src.models.oscillator.model")
     except linking.NoCompiler as reason:
         found = reason
     (folder / "unfinished").write_bytes(pickle.dumps(found))

@@ -12,7 +12,7 @@ from pathlib import Path
 import fmpy
 
 from fmu_src.export import native_form
-from fmu_src.oscillator.model import MODEL
+from fmu_src.models.oscillator.model import MODEL
 
 HERE = Path(__file__).parent
 TYPES = {"Real": "R", "Float64": "R", "Integer": "I", "Int32": "I", "Boolean": "B"}
@@ -97,7 +97,7 @@ def units(version):
 def rebuild_shim(version, folder, objects, options=SANITIZE):
     """The FMU's binary again, from its own C sources and kernel, with other options; returns its path."""
     folder.mkdir(parents=True, exist_ok=True)
-    token = native_form.guid("vibroimpact", "oscillator", version)
+    token = native_form.guid("oscillator", "oscillator", version)
     digest = native_form.source_digest("vibroimpact", "oscillator")
     header = native_form.model_header(MODEL, token, digest)
     files = {**native_form.shim_sources(version), **native_form.fmi_headers(version), "model.h": header, "kernel.o": objects["x86_64-linux"]}

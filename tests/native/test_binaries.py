@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from fmu_src.export import native_form
-from fmu_src.oscillator.model import MODEL
+from fmu_src.models.oscillator.model import MODEL
 
 from . import importers
 from .object_files import Elf, Pe
@@ -73,7 +73,7 @@ def test_there_is_no_global_state_to_share(version, kernel_objects, tmp_path):
 def test_two_builds_have_the_same_bytes(fmus, version, hide, tmp_path):
     """The other build is made now: its own compilation, its own scratch folders."""
     hide()
-    made = native_form.export(MODEL, "vibroimpact", "oscillator", tmp_path / version, version)
+    made = native_form.export(MODEL, "oscillator", "oscillator", tmp_path / version, version)
     assert made.read_bytes() == fmus[version].read_bytes()
 
 

@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 
-from fmu_src.vibroimpact import memory as at
+from fmu_src.kernels.oscillator import memory as at
 
 from .importers import Importer, binary, compile_importer, ziglang
 from .slave import COMMON, harmonic, slave

@@ -59,5 +59,5 @@ def test_a_numba_that_cannot_do_it_is_named_in_one_line(monkeypatch, tmp_path, s
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     compile_kernel.compile_objects.cache_clear()
     with pytest.raises(NoCompiler, match=told) as caught:
-        compile_kernel.compile_objects("fmu_src.oscillator.model")
+        compile_kernel.compile_objects("fmu_src.models.oscillator.model")
     assert "\n" not in str(caught.value)

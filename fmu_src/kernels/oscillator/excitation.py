@@ -1,0 +1,99 @@
+"""The box's motion over one segment: right-hand side of (6), a harmonic plus a cubic in time.
+
+A segment lasts as long as the inputs stay as they are. With a jerk, snap or crackle set, that is one communication step.
+Relative to the box a mass is driven by minus the box's acceleration: ``a Omega^2 sin(phase)`` minus the cubic.
+"""
+
+import math
+
+from . import memory as at
+from ..numerics.elementary import TWO_PI
+
+NEAR_RESONANCE = 1e-12  # (|i eta - lambda| / omega_i)^2 below which an undamped response has no usable closed form
+
+
+def inputs_changed(m):
+    """Whether the present inputs call for a new segment."""
+    if m[at.CUBIC_ON] != 0.0:
+        return True
+    for i in range(6):
+        if m[at.SEGMENT_INPUTS + i] != m[at.BOX_AMPLITUDE + i]:
+            return True
+    return False
+
+
+def begin_segment(m):
+    """Take the present inputs over into the excitation constants.
+
+    Returns
+    -------
+    int
+        OK, or RESONANCE_i where branch i is undamped and driven within 1e-6 of its natural frequency.
+    """
+    for i in range(6):
+        m[at.SEGMENT_INPUTS + i] = m[at.BOX_AMPLITUDE + i]
+    scale = 1.0 / m[at.OMEGA]
+    eta = m[at.BOX_FREQUENCY] * scale
+    m[at.ETA] = eta
+    m[at.ETA_TURNS] = eta / TWO_PI
+    m[at.FORCING] = m[at.BOX_AMPLITUDE] * eta * eta
+    unit = scale * scale
+    m[at.CUBIC_ON] = 0.0
+    m[at.CUBIC_PRESENT] = 0.0
+    for i in range(4):
+        derivative = m[at.BOX_ACCELERATION + i]
+        m[at.CUBIC + i] = -derivative * unit
+        unit *= scale
+        if derivative != 0.0:
+            m[at.CUBIC_PRESENT] = 1.0
+            if i > 0:
+                m[at.CUBIC_ON] = 1.0
+    m[at.SEGMENT_AGE] = 0.0
+    bonded = m[at.BONDED] != 0.0
+    if not bonded and set_harmonic(m, at.BRANCH_1, at.HARMONIC_1):
+        return at.RESONANCE_1
+    if not bonded and set_harmonic(m, at.BRANCH_2, at.HARMONIC_2):
+        return at.RESONANCE_2
+    if set_harmonic(m, at.BRANCH_3, at.HARMONIC_3):
+        return at.RESONANCE_3
+    return at.OK
+
+
+def set_harmonic(m, b, harmonic):
+    """Forced amplitudes a_i, b_i of (11), times ``a eta^2``; True at an undamped resonance."""
+    forcing, eta = m[at.FORCING], m[at.ETA]
+    m[harmonic] = 0.0
+    m[harmonic + 1] = 0.0
+    if forcing == 0.0:
+        return False
+    detuning = m[b + at.OMEGA_SQUARED] - eta * eta
+    twice = 2.0 * m[b + at.DAMPING] * eta
+    square = detuning * detuning + twice * twice
+    if square <= 4.0 * NEAR_RESONANCE * m[b + at.OMEGA_SQUARED] * m[b + at.OMEGA_SQUARED]:
+        m[at.REPORT] = m[at.OMEGA] * math.sqrt(m[b + at.OMEGA_SQUARED])
+        return True
+    m[harmonic] = -forcing * twice / square
+    m[harmonic + 1] = forcing * detuning / square
+    return False
+
+
+def cubic_at(m, age):
+    """Value and three derivatives of the forcing's cubic, ``age`` after the segment's start."""
+    p0, p1, p2, p3 = m[at.CUBIC], m[at.CUBIC + 1], m[at.CUBIC + 2], m[at.CUBIC + 3]
+    q2 = p2 + p3 * age
+    q1 = p1 + age * (p2 + 0.5 * age * p3)
+    q0 = p0 + age * (p1 + 0.5 * age * (p2 + age * p3 / 3.0))
+    return q0, q1, q2, p3
+
+
+def set_cubic_response(m, b, response, cubic):
+    """The cubic that solves (6) for a cubic forcing: value and three derivatives, by comparing coefficients."""
+    w, twice = m[b + at.OMEGA_SQUARED], 2.0 * m[b + at.DAMPING]
+    q3 = cubic[3] / w
+    q2 = (cubic[2] - twice * q3) / w
+    q1 = (cubic[1] - twice * q2 - q3) / w
+    q0 = (cubic[0] - twice * q1 - q2) / w
+    m[response] = q0
+    m[response + 1] = q1
+    m[response + 2] = q2
+    m[response + 3] = q3

@@ -1,0 +1,250 @@
+"""The states and their sequence (1): flight, permanent contact, glued.
+
+A state begins with its initial conditions (9), from which its closed form and its barrier follow; it ends at the barrier's first
+root, found once and kept. Communication points only look at it. Which state follows is decided on the boundary by the gap, then its
+velocity, then the first derivative that does not vanish.
+"""
+
+from . import memory as at
+from .barrier import bounds, evaluate, set_contact_force, set_gap
+from .contact import contact_force, first_derivative
+from ..numerics.elementary import fraction, sincos_turns
+from .excitation import cubic_at, set_cubic_response
+from .impact import common_velocity, count_impact, restitution, sticks
+from .response import bases, basis, displacement, set_free
+from .roots import INFINITE, longest_step, step_from
+from .series import polynomial, series_order, set_series, short_flight
+
+
+def state_at(m, tau):
+    """Displacements and velocities ``tau`` after the state's start, (10).
+
+    Returns
+    -------
+    x1, v1, x2, v2 : float
+        m, and m per unit of tau; ``x2 >= x1``.
+    """
+    if tau == 0.0:  # exactly what the state began with: a start from rest is at rest
+        return m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
+    if m[at.SERIES] != 0.0:
+        x1, v1 = polynomial(m, at.SERIES_X, tau)
+        gap, slope = polynomial(m, at.SERIES_GAP, tau)
+        return x1, v1, x1 + gap if gap > 0.0 else x1, v1 + slope
+    sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
+    if m[at.MODE] == at.FLIGHT:
+        C_1, S_1, _, C_2, S_2, _ = bases(m, tau)
+        x1, v1 = displacement(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, tau, C_1, S_1, sine, cosine)
+        x2, v2 = displacement(m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, tau, C_2, S_2, sine, cosine)
+        if x2 < x1:  # by rounding, at the very end of a flight
+            x1 = x2 = common_position(m, x1, x2)
+        return x1, v1, x2, v2
+    C, S, _ = basis(m, at.BRANCH_3, tau)
+    x3, v3 = displacement(m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, tau, C, S, sine, cosine)
+    return x3, v3, x3, v3
+
+
+def common_position(m, x1, x2):
+    """The centre of mass, where both masses are put at an impact: they differ by rounding alone."""
+    return (x1 + m[at.MU] * x2) / (1.0 + m[at.MU])
+
+
+def move_origin(m, tau):
+    """Let a new state begin ``tau`` after the start of the present one, (5), without losing digits over millions of states."""
+    total = m[at.ORIGIN] + tau
+    part = total - m[at.ORIGIN]
+    error = (m[at.ORIGIN] - (total - part)) + (tau - part)
+    low = m[at.ORIGIN_LOW] + error
+    m[at.ORIGIN] = total + low
+    m[at.ORIGIN_LOW] = low - (m[at.ORIGIN] - total)
+    set_turn(m, m[at.TURN] + m[at.ETA_TURNS] * tau)
+    m[at.SEGMENT_AGE] += tau
+
+
+def set_turn(m, turns):
+    """Phase at the state's start."""
+    m[at.TURN] = fraction(turns)
+    sine, cosine = sincos_turns(m[at.TURN])
+    m[at.SINE] = sine
+    m[at.COSINE] = cosine
+
+
+def begin(m, x1, v1, x2, v2, lowest):
+    """Begin the state that follows from displacements and velocities.
+
+    Parameters
+    ----------
+    m : flat memory
+        Origin and phase already moved to the new state's start.
+    x1, v1, x2, v2 : float
+        m, and m per unit of tau.
+    lowest : int
+        First derivative of f that may decide on the boundary: 1 where f is known to vanish, at a release, else 0.
+    """
+    if m[at.MODE] == at.GLUED:
+        begin_common(m, at.GLUED, x1, v1)
+        m[at.CLEAR] = INFINITE
+        return
+    if x2 > x1:
+        begin_flight(m, x1, v1, x2, v2)
+        return
+    x = common_position(m, x1, x2) if x2 < x1 else x1
+    if v1 > v2:
+        v1, v2 = collide(m, x, v1, v2)
+    if v2 > v1:
+        begin_flight(m, x, v1, x, v2)
+        leave_impact(m, x, v1, v2 - v1)
+        return
+    order, value = first_derivative(m, x, v1, lowest)
+    if value > 0.0:
+        begin_flight(m, x, v1, x, v1)
+        _, _, _, h3, h4, _ = evaluate(m, 0.0)
+        leave(m, order + 2, value, h3, h4)
+        return
+    if m[at.MODE] == at.FLIGHT:
+        m[at.CONTACT_COUNT] += 1.0
+    begin_common(m, at.CONTACT, x, v1)
+    h2, h3, h4 = 0.0, 0.0, 0.0
+    if order > 0:
+        _, _, h2, h3, h4, _ = evaluate(m, 0.0)
+    if order == 1:
+        leave_rising(m, -value, h2, h3, h4)
+    else:
+        leave(m, order, -value, h3, h4)
+
+
+def collide(m, x, v1, v2):
+    """Velocities after an impact; both the same where chattering ends in permanent contact."""
+    closing = v1 - v2
+    common = common_velocity(m, v1, v2)
+    time = m[at.START_TIME] + (m[at.ORIGIN] + m[at.ORIGIN_LOW]) / m[at.OMEGA]
+    if sticks(m, m[at.E] * closing, contact_force(m, x, common)):
+        count_impact(m, time, closing, 1.0)
+        return common, common
+    count_impact(m, time, closing, (1.0 - m[at.E]) * (1.0 + m[at.E]))
+    return restitution(m, v1, v2)
+
+
+def begin_flight(m, x1, v1, x2, v2):
+    """A flight from initial conditions; its barrier is the gap."""
+    m[at.MODE] = at.FLIGHT
+    sine, cosine = m[at.SINE], m[at.COSINE]
+    if m[at.CUBIC_PRESENT] != 0.0:
+        cubic = cubic_at(m, m[at.SEGMENT_AGE])
+        set_cubic_response(m, at.BRANCH_1, at.CUBIC_A, cubic)
+        set_cubic_response(m, at.BRANCH_2, at.CUBIC_B, cubic)
+    set_free(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
+    set_free(m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
+    set_gap(m)
+    open_end(m, x1, v1, x2, v2)
+
+
+def begin_common(m, mode, x, v):
+    """Both masses as one, in permanent contact or glued; its barrier is the contact force."""
+    m[at.MODE] = mode
+    sine, cosine = m[at.SINE], m[at.COSINE]
+    if m[at.CUBIC_PRESENT] != 0.0:
+        set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.SEGMENT_AGE]))
+    set_free(m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
+    set_contact_force(m)
+    open_end(m, x, v, x, v)
+
+
+def open_end(m, x1, v1, x2, v2):
+    """The state begins here; its end is not known yet."""
+    m[at.SERIES] = 0.0
+    m[at.BEGIN] = x1
+    m[at.BEGIN + 1] = v1
+    m[at.BEGIN + 2] = x2
+    m[at.BEGIN + 3] = v2
+    m[at.CLEAR] = 0.0
+    m[at.END] = INFINITE
+    m[at.END_KIND] = at.END_OPEN
+
+
+def leave_impact(m, x, v1, slope):
+    """Leave an impact; a short flight's end is found at once.
+
+    Parameters
+    ----------
+    m : flat memory
+        With the new flight's barrier.
+    x, v1, slope : float
+        Common displacement, velocity of mass 1, and gap velocity > 0.
+    """
+    order = series_order(m, slope, contact_force(m, x, v1) - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope)
+    set_series(m, x, v1, slope, order)
+    if order > 4:
+        duration = short_flight(m, order, bound_at_start(m))
+        if duration > 0.0:
+            m[at.SERIES] = order
+            find_end(m, duration)
+            return
+    leave_rising(m, slope, 2.0 * m[at.SERIES_GAP + 2], 6.0 * m[at.SERIES_GAP + 3], 24.0 * m[at.SERIES_GAP + 4])
+
+
+def bound_at_start(m):
+    """Bound of the barrier's fifth derivative over the whole state."""
+    return m[at.BOUND] + m[at.BOUND + 1] + m[at.BOUND + 2]
+
+
+def find_end(m, tau):
+    """The state ends on the barrier's first root, at ``tau``."""
+    m[at.CLEAR] = tau
+    m[at.END] = tau
+    m[at.END_KIND] = at.END_EVENT
+
+
+def leave_rising(m, h1, h2, h3, h4):
+    """Leave a start on the boundary with the barrier's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``: no root lies before CLEAR."""
+    step, found = step_from(0.0, h1, h2, h3, h4, bound_at_start(m), 0.0, longest_step(m))
+    m[at.CLEAR] = step
+    if found:
+        find_end(m, step)
+
+
+def leave(m, order, value, h3, h4):
+    """Leave a start on the boundary where the barrier's first derivative vanishes too.
+
+    Parameters
+    ----------
+    m : flat memory
+        With the new state's barrier.
+    order : int
+        Of the barrier's first derivative that does not vanish, 0 where the barrier itself does not, -1 if all vanish.
+    value : float
+        That derivative, > 0.
+    h3, h4 : float
+        The third and fourth derivative; looked at where ``order`` is 2.
+    """
+    if order == 0:
+        return
+    if order < 0:
+        m[at.CLEAR] = INFINITE
+        return
+    if order == 2:
+        leave_rising(m, 0.0, value, h3, h4)
+        return
+    branch = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
+    bound = derivative_bound(m, branch, order + 1)
+    # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of zero
+    m[at.CLEAR] = 0.5 * (order + 1) * value / bound if bound > 0.0 else INFINITE
+
+
+def derivative_bound(m, branch, order):
+    """Bound of the barrier's derivative of an order over the whole state."""
+    steady, a, b = bounds(m, branch, order)
+    return steady + a + b
+
+
+def end_state(m):
+    """Carry out the end of the present state and begin the next one."""
+    m[at.WORK] += 1.0
+    tau = m[at.END]
+    x1, v1, x2, v2 = state_at(m, tau)
+    move_origin(m, tau)
+    event = m[at.END_KIND] == at.END_EVENT
+    if event and m[at.MODE] == at.FLIGHT:
+        x = common_position(m, x1, x2)
+        begin(m, x, v1, x, v2, 0)
+    else:
+        begin(m, x1, v1, x2, v2, 1 if event else 0)

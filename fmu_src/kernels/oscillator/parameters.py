@@ -1,0 +1,56 @@
+"""Masses, stiffnesses and dampers to the paper's numbers: omega, mu (2), omega_i (7), D_i (8)."""
+
+import math
+
+from . import memory as at
+from ..numerics.elementary import TWO_PI
+
+SAME = 1e-15  # relative difference below which two quotients of parameters are equal but for rounding
+
+
+def derive(m):
+    """Fill the derived constants of ``m`` from its parameters."""
+    omega = math.sqrt(m[at.K1] / m[at.M1])  # (2)
+    mu = m[at.M2] / m[at.M1]
+    kappa = m[at.K2] / m[at.K1]
+    damping_1 = m[at.D1] / (2.0 * omega * m[at.M1])  # (8)
+    damping_2 = m[at.D2] / (2.0 * omega * m[at.M2])
+    damping_3 = (m[at.D1] + m[at.D2]) / (2.0 * omega * (m[at.M1] + m[at.M2]))
+    omega_2_squared = kappa / mu  # (7); omega_1 = 1
+    if abs(omega_2_squared - 1.0) <= SAME:  # two oscillators that are alike must not part or touch by rounding
+        omega_2_squared = 1.0
+    if abs(damping_2 - damping_1) <= SAME * damping_1:
+        damping_2 = damping_1
+    m[at.OMEGA] = omega
+    m[at.MU] = mu
+    m[at.FORCE_V] = 2.0 * (damping_1 - damping_2)  # (18)
+    m[at.FORCE_X] = 1.0 - omega_2_squared
+    set_branch(m, at.BRANCH_1, damping_1, 1.0)
+    set_branch(m, at.BRANCH_2, damping_2, omega_2_squared)
+    set_branch(m, at.BRANCH_3, damping_3, (1.0 + kappa) / (1.0 + mu))
+    m[at.FASTEST] = max(1.0, math.sqrt(omega_2_squared))  # omega_3 lies between
+
+
+def set_branch(m, b, damping, omega_squared):
+    """Constants of one linear oscillator: under-, critically and overdamped alike.
+
+    The envelope (rate r, factor s) bounds both basis functions for all ``t >= 0``:
+    ``|e^{-D t} cos nu t| <= e^{-r t}`` and ``|e^{-D t} sin(nu t)/nu| <= s e^{-r t}``, with cosh and sinh beyond critical damping.
+    Near the critical damping ``1/nu`` says nothing; there ``t e^{-D t/4} <= 4/(e D)`` does.
+    """
+    omega_i = math.sqrt(omega_squared)
+    nu_squared = (omega_i - damping) * (omega_i + damping)  # (11)
+    nu = math.sqrt(abs(nu_squared))
+    if nu_squared > 0.0 and 4.0 * nu > damping:
+        rate, sine = damping, 1.0 / nu
+    elif 4.0 * nu > damping:
+        rate, sine = omega_squared / (damping + nu), 0.5 / nu  # the slower exponent, D - sqrt(D^2 - omega_i^2)
+    else:
+        rate, sine = 0.5 * damping, 1.4715177646857693 / damping  # 4/e
+    m[b + at.DAMPING] = damping
+    m[b + at.OMEGA_SQUARED] = omega_squared
+    m[b + at.NU_SQUARED] = nu_squared
+    m[b + at.NU] = nu
+    m[b + at.NU_TURNS] = nu / TWO_PI
+    m[b + at.ENVELOPE_RATE] = rate
+    m[b + at.ENVELOPE_SINE] = sine

@@ -1,0 +1,115 @@
+"""The closed-form linear oscillator, (9)-(11).
+
+The free part is ``c C(tau) + (v + D c) S(tau)`` with ``C = e^{-D tau} cos nu tau`` and ``S = e^{-D tau} sin(nu tau)/nu``; c and v
+are the initial conditions (9) less the forced response. C and S go over continuously into critical damping
+(``e^{-D tau}``, ``tau e^{-D tau}``) and overdamping (cosh, sinh).
+"""
+
+from . import memory as at
+from ..numerics.elementary import exp_decay, sincos_turns
+
+
+def basis(m, b, tau):
+    """C and S of branch ``b``, and the decay ``e^{-r tau}`` of its envelope.
+
+    Parameters
+    ----------
+    m : flat memory
+    b : int
+        First slot of the branch.
+    tau : float
+        Time since the state's start, >= 0.
+
+    Returns
+    -------
+    C, S, decay : float
+    """
+    damping, nu_squared, nu = m[b + at.DAMPING], m[b + at.NU_SQUARED], m[b + at.NU]
+    rate = m[b + at.ENVELOPE_RATE]
+    if nu_squared > 0.0:
+        decay = exp_decay(damping * tau)
+        C, S = rotation(m, b, tau, decay)
+        return C, S, decay if rate == damping else exp_decay(rate * tau)
+    x = nu * tau
+    if x < 0.5:  # sinh(x)/x by its series: the difference of exponentials would cancel
+        y = x * x
+        sinhc = 1.0 + y / 6.0 * (1.0 + y / 20.0 * (1.0 + y / 42.0 * (1.0 + y / 72.0 * (1.0 + y / 110.0 * (1.0 + y / 156.0)))))
+        half = 0.5 * x
+        z = half * half
+        root = half * (1.0 + z / 6.0 * (1.0 + z / 20.0 * (1.0 + z / 42.0 * (1.0 + z / 72.0 * (1.0 + z / 110.0)))))
+        decay = exp_decay(damping * tau)
+        return decay * (1.0 + 2.0 * root * root), decay * tau * sinhc, exp_decay(rate * tau)
+    slow = exp_decay(m[b + at.OMEGA_SQUARED] / (damping + nu) * tau)
+    fast = exp_decay(2.0 * x)
+    return 0.5 * slow * (1.0 + fast), 0.5 * slow * (1.0 - fast) / nu, exp_decay(rate * tau)
+
+
+def rotation(m, b, tau, decay):
+    """C and S of an underdamped branch whose ``e^{-D tau}`` is known."""
+    s, c = sincos_turns(m[b + at.NU_TURNS] * tau)
+    return decay * c, decay * s / m[b + at.NU]
+
+
+def shares_decay(m):
+    """Whether branches 1 and 2 are underdamped alike: one exponential serves both."""
+    same = m[at.BRANCH_1 + at.DAMPING] == m[at.BRANCH_2 + at.DAMPING]
+    return same and m[at.BRANCH_2 + at.NU_SQUARED] > 0.0 and m[at.BRANCH_1 + at.NU_SQUARED] > 0.0
+
+
+def bases(m, tau):
+    """:func:`basis` of branch 1 and of branch 2."""
+    C_1, S_1, decay_1 = basis(m, at.BRANCH_1, tau)
+    if shares_decay(m):
+        C_2, S_2 = rotation(m, at.BRANCH_2, tau, decay_1)
+        return C_1, S_1, decay_1, C_2, S_2, decay_1
+    C_2, S_2, decay_2 = basis(m, at.BRANCH_2, tau)
+    return C_1, S_1, decay_1, C_2, S_2, decay_2
+
+
+def cubic_value(m, response, tau):
+    """Value and first derivative of a cubic kept as value and derivatives at its start."""
+    q1, q2, q3 = m[response + 1], m[response + 2], m[response + 3]
+    value = m[response] + tau * (q1 + 0.5 * tau * (q2 + tau * q3 / 3.0))
+    return value, q1 + tau * (q2 + 0.5 * tau * q3)
+
+
+def displacement(m, b, harmonic, free, cubic, tau, C, S, sine, cosine):
+    """Displacement and velocity of one oscillator (10).
+
+    Parameters
+    ----------
+    m : flat memory
+    b, harmonic, free, cubic : int
+        First slots of the branch, its forced amplitudes, free amplitudes and response to the cubic.
+    tau : float
+        Time since the state's start.
+    C, S : float
+        The branch's :func:`basis` there.
+    sine, cosine : float
+        Of the excitation's phase there.
+
+    Returns
+    -------
+    xi, xi' : float
+        m, and m per unit of tau.
+    """
+    c, w = m[free], m[free + 1]
+    h_cos, h_sin = m[harmonic], m[harmonic + 1]
+    q, q_dot = 0.0, 0.0
+    if m[at.CUBIC_PRESENT] != 0.0:
+        q, q_dot = cubic_value(m, cubic, tau)
+    damping = m[b + at.DAMPING]
+    x = h_cos * cosine + h_sin * sine + q + (c * C + w * S)
+    v = m[at.ETA] * (h_sin * cosine - h_cos * sine) + q_dot
+    return x, v + ((w - damping * c) * C - (m[b + at.NU_SQUARED] * c + damping * w) * S)
+
+
+def set_free(m, b, harmonic, free, cubic, x, v, sine, cosine):
+    """Free amplitudes c and v + D c from the initial conditions (9): alpha_i and nu_i beta_i of (11)."""
+    h_cos, h_sin = m[harmonic], m[harmonic + 1]
+    q, q_dot = 0.0, 0.0
+    if m[at.CUBIC_PRESENT] != 0.0:
+        q, q_dot = m[cubic], m[cubic + 1]
+    c = x - (h_cos * cosine + h_sin * sine) - q
+    m[free] = c
+    m[free + 1] = v - m[at.ETA] * (h_sin * cosine - h_cos * sine) - q_dot + m[b + at.DAMPING] * c

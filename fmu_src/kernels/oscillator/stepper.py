@@ -1,0 +1,167 @@
+"""The two entry points: an instance is one flat memory, initialised once and then advanced from one communication point to the next."""
+
+from . import memory as at
+from .barrier import evaluate
+from ..numerics.elementary import TWO_PI, fraction
+from .excitation import begin_segment, inputs_changed
+from .maximum import largest_gap
+from .motion import begin, begin_common, begin_flight, end_state, move_origin, set_turn, state_at
+from .outputs import momentum, write, write_impulse
+from .parameters import derive
+from .roots import lifted, walk
+
+WORK_BASE = 100000.0  # evaluations of the barrier a step may take whatever its length,
+WORK_RATE = 64.0  # and in a time gamma, the shortest flight that is told from sticking,
+WORK_MOST = 1e8  # and at the very most: some ten seconds, compiled
+
+
+def initialize(m, time):
+    """Begin at ``time`` (s) from the parameters, start values and inputs in ``m``.
+
+    Returns
+    -------
+    int
+        OK, or one of the codes of :mod:`.memory`.
+    """
+    derive(m)
+    m[at.START_TIME] = time
+    m[at.TIME] = time
+    for i in range(at.ORIGIN, at.START_TIME):
+        m[i] = 0.0
+    for i in range(at.IMPACT_COUNT, at.SAMPLE_COUNT):
+        m[i] = 0.0
+    for i in range(at.X1_SAMPLE, at.TIME):
+        m[i] = 0.0
+    m[at.BOX_IMPULSE] = 0.0
+    m[at.BOX_IMPULSE_MOMENT] = 0.0
+    if m[at.X2_START] < m[at.X1_START]:
+        return at.START_OVERLAP
+    if m[at.BONDED] != 0.0 and (m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]):
+        return at.START_BONDED
+    set_turn(m, m[at.PHASE_START] / TWO_PI)
+    code = begin_segment(m)
+    if code != at.OK:
+        return code
+    m[at.WORK_LIMIT] = WORK_BASE
+    m[at.MODE] = at.GLUED if m[at.BONDED] != 0.0 else at.CONTACT
+    begin(m, m[at.X1_START], m[at.V1_START] / m[at.OMEGA], m[at.X2_START], m[at.V2_START] / m[at.OMEGA], 0)
+    write(m, 0.0)
+    m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
+    return finite(m)
+
+
+def local_time(m, time):
+    """Time since the present state's start, in units of tau (4)."""
+    tau = (m[at.OMEGA] * (time - m[at.START_TIME]) - m[at.ORIGIN]) - m[at.ORIGIN_LOW]
+    return tau if tau > 0.0 else 0.0
+
+
+def advance(m, time):
+    """Advance to the communication point ``time`` (s) with the inputs in ``m``, or to the first impact where STOP_AT_IMPACT is set.
+
+    Returns
+    -------
+    int
+        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be thrown away.
+    """
+    before = m[at.TIME]
+    h = time - before
+    fastest = max(m[at.FASTEST], m[at.BOX_FREQUENCY] / m[at.OMEGA])
+    m[at.TARGET] = time
+    m[at.WORK] = 0.0
+    m[at.STOPPED] = 0.0
+    m[at.WORK_LIMIT] = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA])
+    momentum_before, moment_before = momentum(m)
+    now = local_time(m, m[at.TIME])
+    turn = fraction(m[at.TURN] + m[at.ETA_TURNS] * now)
+    if inputs_changed(m):
+        code = renew_segment(m, now)
+        if code != at.OK:
+            return code
+        now = 0.0
+    m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
+    tau = run_samples(m, before, time, now)
+    if m[at.WORK] >= m[at.WORK_LIMIT]:
+        m[at.REPORT] = m[at.START_TIME] + m[at.ORIGIN] / m[at.OMEGA]
+        return at.UNFINISHED
+    if m[at.STOPPED] != 0.0:
+        time = min(time, m[at.IMPACT_TIME])
+        h = time - before
+    m[at.TIME] = time
+    write(m, tau)
+    if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
+        m[at.X_REL_MAX] = m[at.X_REL]
+    write_impulse(m, h, momentum_before, moment_before, turn)
+    return finite(m)
+
+
+def finite(m):
+    """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
+    total = 0.0
+    for i in range(at.X1, at.CONTACT_COUNT):
+        total += m[i]
+    return at.OK if total - total == 0.0 else at.NOT_FINITE
+
+
+def renew_segment(m, now):
+    """Begin a segment with the present inputs, ``now`` after the present state's start; positions and phase are continuous."""
+    x1, v1, x2, v2 = state_at(m, now)
+    goes_on = now > 0.0 and m[at.MODE] != at.GLUED and inside(m, now)
+    move_origin(m, now)
+    code = begin_segment(m)
+    if code != at.OK:
+        return code
+    if not goes_on:
+        begin(m, x1, v1, x2, v2, 0)
+    elif m[at.MODE] == at.FLIGHT:
+        begin_flight(m, x1, v1, x2, v2)
+    else:
+        begin_common(m, at.CONTACT, x1, v1)
+    return code
+
+
+def inside(m, tau):
+    """Whether the barrier has not been crossed, positive or zero but for rounding: gap and contact force do not jump with the inputs."""
+    h0, h1, _, _, _, _ = evaluate(m, tau)
+    return h0 > 0.0 or lifted(m, tau, h0, h1) > 0.0
+
+
+def run_samples(m, start, time, now):
+    """Run to ``time``, keeping the states at equal parts of the step on the way; returns the present state's age there.
+
+    Where the step stops at an impact, the samples that are left show the state there.
+    """
+    count = int(m[at.SAMPLE_COUNT])
+    for i in range(count):
+        if m[at.STOPPED] == 0.0:
+            now = run_states(m, start + (time - start) * ((i + 1.0) / count) if i + 1 < count else time, now)
+        keep_sample(m, i, now)
+    return now if count > 0 else run_states(m, time, now)
+
+
+def keep_sample(m, i, tau):
+    """Keep the state at the present state's age ``tau`` as sample ``i``."""
+    x1, v1, x2, v2 = state_at(m, tau)
+    m[at.X1_SAMPLE + i] = x1
+    m[at.X2_SAMPLE + i] = x2
+    m[at.V1_SAMPLE + i] = m[at.OMEGA] * v1
+    m[at.V2_SAMPLE + i] = m[at.OMEGA] * v2
+
+
+def run_states(m, time, now):
+    """Run through all states that end by ``time``; returns the present state's age there."""
+    watch = m[at.X_REL_MAX_ON] != 0.0
+    while True:
+        tau = local_time(m, time)
+        walk(m, tau)
+        stop = tau if m[at.END] > tau else m[at.END]
+        if watch and m[at.MODE] == at.FLIGHT:
+            m[at.X_REL_MAX] = largest_gap(m, now, stop, m[at.X_REL_MAX])
+        if m[at.END_KIND] == at.END_OPEN or m[at.END] > tau or m[at.WORK] >= m[at.WORK_LIMIT]:
+            return tau
+        impacts = m[at.IMPACT_COUNT]
+        end_state(m)
+        now = 0.0
+        if m[at.STOP_AT_IMPACT] != 0.0 and m[at.IMPACT_COUNT] > impacts:
+            m[at.STOPPED] = 1.0
+            return 0.0

@@ -1,0 +1,71 @@
+"""Box and rotor as one right-hand side: a mass matrix of two rows, the motor's circuit, and the energies they exchange.
+
+With S = unbalance_mass unbalance_radius, position y, angle phi, speed w, current i:
+
+    M y'' + S cos(phi) w' = S w^2 sin(phi) - c y' - k y + F(t)
+    S cos(phi) y'' + J w' = K i
+    L i' = U - R i - K w,   or i = (U - K w) / R where L = 0
+"""
+
+from ..numerics.elementary import TWO_PI, sincos_turns
+from . import memory as at
+
+MOST_TURNS = 1e9  # of a stage: beyond, it is a failed try,
+NO_NUMBER = 1e400 - 1e400  # and the sub-step is tried again
+
+
+def force(m, t):
+    """Force on the box, N, ``t`` after the communication step's beginning."""
+    return m[at.BOX_FORCE] + t * (m[at.BOX_FORCE_1] + 0.5 * t * (m[at.BOX_FORCE_2] + t * m[at.BOX_FORCE_3] / 3.0))
+
+
+def static_current(m, speed):
+    """Current without inductance, A."""
+    return (m[at.VOLTAGE] - m[at.MOTOR_CONSTANT] * speed) / m[at.ARMATURE_RESISTANCE]
+
+
+def accelerations(m, sine, cosine, p, q):
+    """Solve the mass matrix: ``M a + S cos(phi) b = p``, ``S cos(phi) a + J b = q``."""
+    mass, inertia, coupling = m[at.BOX_MASS], m[at.ROTOR_INERTIA], m[at.UNBALANCE] * cosine
+    unbalance = m[at.UNBALANCE]
+    free = mass * inertia - unbalance * unbalance  # M J - S^2 cos^2 = (M J - S^2) + S^2 sin^2, without cancelling
+    determinant = free + unbalance * sine * (unbalance * sine)
+    return (inertia * p - coupling * q) / determinant, (mass * q - coupling * p) / determinant
+
+
+def rates(m, stage, t):
+    """Right-hand side at the states in STAGE, into row ``stage`` of RATES.
+
+    Parameters
+    ----------
+    m : flat memory
+    stage : int
+    t : float
+        Time since the communication step's beginning, s.
+    """
+    turn = m[at.TURN] + m[at.STAGE + at.PHI] / TWO_PI
+    position, velocity, speed = m[at.STAGE + at.Y], m[at.STAGE + at.V], m[at.STAGE + at.W]
+    sine, cosine = NO_NUMBER, NO_NUMBER
+    if abs(turn) < MOST_TURNS:
+        sine, cosine = sincos_turns(turn)
+    current = m[at.STAGE + at.CURRENT]
+    current_rate = 0.0
+    if m[at.ARMATURE_INDUCTANCE] > 0.0:
+        drop = m[at.VOLTAGE] - m[at.ARMATURE_RESISTANCE] * current - m[at.MOTOR_CONSTANT] * speed
+        current_rate = drop / m[at.ARMATURE_INDUCTANCE]
+    else:
+        current = static_current(m, speed)
+    torque = m[at.MOTOR_CONSTANT] * current
+    pushed = force(m, t)
+    damped = m[at.BOX_DAMPING] * velocity
+    p = m[at.UNBALANCE] * speed * speed * sine - damped - m[at.BOX_STIFFNESS] * position + pushed
+    box, rotor = accelerations(m, sine, cosine, p, torque)
+    row = at.RATES + stage * at.STATES
+    m[row + at.Y] = velocity
+    m[row + at.V] = box
+    m[row + at.PHI] = speed
+    m[row + at.W] = rotor
+    m[row + at.CURRENT] = current_rate
+    m[row + at.E_MOTOR] = torque * speed
+    m[row + at.E_DAMPER] = damped * velocity
+    m[row + at.E_FORCE] = pushed * velocity

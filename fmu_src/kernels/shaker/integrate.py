@@ -1,0 +1,161 @@
+"""A communication step in sub-steps of the formula, as long as its error estimate allows.
+
+Sub-steps begin anew at each communication point, because the force on the box is a new cubic there; only the length that the tolerance
+allowed is remembered. Everything remembered is part of the state, so a run that is resumed gives the same bits.
+"""
+
+import math
+
+from ..numerics.elementary import TWO_PI, fraction
+from . import memory as at
+from . import tableau as formula
+from .equations import rates
+from .tableau import (
+    deviation_3,
+    deviation_5,
+    slope,
+    slope_1,
+    slope_2,
+    slope_3,
+    slope_4,
+    slope_5,
+    slope_6,
+    slope_7,
+    slope_8,
+    slope_9,
+    slope_10,
+    slope_11,
+)
+
+TOLERANCE = 1e-12  # of each sub-step, relative to the states' scales
+RADIANS = 1.0  # the longest sub-step, whatever the estimate: it could be blind to what goes round in between
+SAFETY, SMALLEST, LARGEST = 0.9, 0.2, 5.0  # change of length from one sub-step to the next
+TINY, MANY = 1e-300, 1e6
+
+
+def stages(m, t, h):
+    """All stages of a sub-step of length ``h`` that begins ``t`` after the communication step did; its end is in NEXT."""
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s]
+    rates(m, 0, t)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_1(m, s)
+    rates(m, 1, t + formula.NODE_1 * h)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_2(m, s)
+    rates(m, 2, t + formula.NODE_2 * h)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_3(m, s)
+    rates(m, 3, t + formula.NODE_3 * h)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_4(m, s)
+    rates(m, 4, t + formula.NODE_4 * h)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_5(m, s)
+    rates(m, 5, t + formula.NODE_5 * h)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_6(m, s)
+    rates(m, 6, t + formula.NODE_6 * h)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_7(m, s)
+    rates(m, 7, t + formula.NODE_7 * h)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_8(m, s)
+    rates(m, 8, t + formula.NODE_8 * h)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_9(m, s)
+    rates(m, 9, t + formula.NODE_9 * h)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_10(m, s)
+    rates(m, 10, t + formula.NODE_10 * h)
+    for s in range(at.STATES):
+        m[at.STAGE + s] = m[at.STATE + s] + h * slope_11(m, s)
+    rates(m, 11, t + formula.NODE_11 * h)
+    for s in range(at.STATES):
+        m[at.NEXT + s] = m[at.STATE + s] + h * slope(m, s)
+    m[at.WORK] += at.STAGES
+
+
+def scale(m, state, h):
+    """What an error of a state is measured by: its own size, and what the other states make of it within the sub-step."""
+    size = max(abs(m[at.STATE + state]), abs(m[at.NEXT + state]))
+    speed = max(abs(m[at.STATE + at.W]), abs(m[at.NEXT + at.W]))
+    arm = m[at.UNBALANCE] / m[at.BOX_MASS]
+    if state == at.Y:
+        return size + arm + h * max(abs(m[at.STATE + at.V]), abs(m[at.NEXT + at.V]))
+    if state == at.V:
+        frequency = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS])
+        return size + arm * speed + frequency * max(abs(m[at.STATE + at.Y]), abs(m[at.NEXT + at.Y]))
+    if state == at.PHI:
+        return 1.0
+    if state == at.CURRENT:
+        return size + abs(m[at.VOLTAGE]) / m[at.ARMATURE_RESISTANCE]
+    return size
+
+
+def error(m, h):
+    """Estimated error of the sub-step over what is allowed; Hairer's combination of the estimates of order 5 and 3."""
+    sum_5, sum_3 = 0.0, 0.0
+    for state in range(at.CONTROLLED):
+        allowed = TOLERANCE * scale(m, state, h) + TINY
+        e5 = deviation_5(m, state) * h / allowed
+        e3 = deviation_3(m, state) * h / allowed
+        sum_5 += e5 * e5
+        sum_3 += e3 * e3
+    if sum_5 == 0.0:
+        return 0.0
+    return sum_5 / math.sqrt((sum_5 + 0.01 * sum_3) * at.CONTROLLED)
+
+
+def accept(m):
+    """Make the sub-step's end the present state."""
+    turned = m[at.NEXT + at.PHI]
+    for state in range(at.STATES):
+        m[at.STATE + state] = m[at.NEXT + state]
+    m[at.STATE + at.PHI] = 0.0
+    m[at.TURN] = fraction(m[at.TURN] + turned / TWO_PI)
+    part = turned + m[at.ANGLE_LOW]
+    total = m[at.ANGLE] + part
+    m[at.ANGLE_LOW] = part - (total - m[at.ANGLE])
+    m[at.ANGLE] = total
+
+
+def factor(ratio):
+    """How much longer the next sub-step may be, for an error ``ratio`` of this one: its eighth root, by square roots."""
+    if ratio < 1e-8:
+        return LARGEST
+    change = SAFETY / math.sqrt(math.sqrt(math.sqrt(ratio)))
+    return min(LARGEST, max(SMALLEST, change))
+
+
+def through(m, length):
+    """Integrate over a communication step of ``length`` s.
+
+    Returns
+    -------
+    int
+        OK, or why it cannot be done; REPORT then is how far it came, s.
+    """
+    t = 0.0
+    while t < length:
+        left = length - t
+        fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(m[at.STATE + at.W])
+        h = min(left, m[at.HINT]) if m[at.HINT] > 0.0 else left
+        h = RADIANS / fastest if h * fastest > RADIANS else h
+        if h < left < MANY * h:  # equal parts, so that no short one is left over at the end
+            h = left / -math.floor(-left / h)
+        h = left if h == left else (t + h) - t  # what the time really grows by: a million roundings add up
+        m[at.REPORT] = t
+        if m[at.WORK] >= m[at.WORK_LIMIT]:
+            return at.UNFINISHED
+        stages(m, t, h)
+        ratio = error(m, h)
+        if ratio <= 1.0:
+            accept(m)
+            t = length if h == left else t + h
+            m[at.HINT] = h * factor(ratio)
+        elif h <= 1e-14 * length:
+            return at.NOT_FINITE
+        else:
+            m[at.HINT] = h * min(1.0, factor(ratio)) if ratio - ratio == 0.0 else h * SMALLEST
+    return at.OK

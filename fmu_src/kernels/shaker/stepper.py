@@ -1,0 +1,85 @@
+"""The entry points: an instance is one flat memory, initialised once and then advanced from one communication point to the next."""
+
+import math
+
+from ..numerics.elementary import TWO_PI, fraction
+from . import memory as at
+from .integrate import through
+from .outputs import write
+
+WORK_BASE = 100000.0  # evaluations of the right-hand side a step may take whatever its length,
+WORK_RATE = 200.0  # and for each radian of box, rotor or no-load speed,
+WORK_MOST = 1e8  # and at the very most: some ten seconds, compiled
+REGULAR = 1.000001  # M J over S^2, at least: the rotor is not all unbalance, nor the box all rotor
+
+
+def initialize(m, time):
+    """Begin at ``time`` (s) from the parameters, start values and inputs in ``m``.
+
+    Returns
+    -------
+    int
+        OK, or one of the codes of :mod:`.memory`.
+    """
+    for i in range(at.BOX_POSITION, at.SIZE):
+        m[i] = 0.0
+    m[at.TIME] = time
+    m[at.TARGET] = time
+    unbalance = m[at.UNBALANCE_MASS] * m[at.UNBALANCE_RADIUS]
+    m[at.UNBALANCE] = unbalance
+    if not m[at.BOX_MASS] * m[at.ROTOR_INERTIA] >= REGULAR * unbalance * unbalance:
+        m[at.REPORT] = REGULAR * unbalance * unbalance / m[at.BOX_MASS]
+        return at.INERTIA
+    m[at.STATE + at.Y] = m[at.POSITION_START]
+    m[at.STATE + at.V] = m[at.VELOCITY_START]
+    m[at.STATE + at.W] = m[at.SPEED_START]
+    m[at.STATE + at.CURRENT] = m[at.CURRENT_START]
+    m[at.ANGLE] = m[at.ANGLE_START]
+    m[at.TURN] = fraction(m[at.ANGLE_START] / TWO_PI)
+    write(m)
+    return finite(m)
+
+
+def advance(m, time):
+    """Advance to the communication point ``time`` (s) with the inputs in ``m``.
+
+    Returns
+    -------
+    int
+        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be thrown away.
+    """
+    before = m[at.TIME]
+    length = time - before
+    fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(m[at.STATE + at.W])
+    if m[at.MOTOR_CONSTANT] > 0.0:
+        fastest += abs(m[at.VOLTAGE]) / m[at.MOTOR_CONSTANT]
+    m[at.TARGET] = time
+    m[at.WORK] = 0.0
+    m[at.WORK_LIMIT] = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * max(length, 0.0))
+    code = through(m, length)
+    m[at.REPORT] += before
+    if code != at.OK:
+        return code
+    m[at.TIME] = time
+    write(m)
+    return finite(m)
+
+
+def refresh(m, time):
+    """Outputs for the inputs as set now; ``time`` is not used.
+
+    Returns
+    -------
+    int
+        OK, or NOT_FINITE.
+    """
+    write(m)
+    return finite(m)
+
+
+def finite(m):
+    """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
+    total = 0.0
+    for i in range(at.BOX_POSITION, at.TIME):
+        total += m[i]
+    return at.OK if total - total == 0.0 else at.NOT_FINITE

@@ -1,0 +1,118 @@
+"""A kernel's flat memory from keyword arguments, steps that must succeed, and the states a step passes through."""
+
+import math
+from unittest.mock import patch
+
+from hypothesis import HealthCheck, settings
+from hypothesis import strategies as st
+
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator import motion, stepper
+from fmu_src.kernels.oscillator.excitation import inputs_changed
+
+DEFAULTS = {
+    "m1": 1.0,
+    "m2": 1.0,
+    "k1": 1.0,
+    "k2": 1.2,
+    "d1": 0.01,
+    "d2": 0.01,
+    "e": 0.7,
+    "gamma": 1e-4,
+    "box_amplitude": 1.0,
+    "box_frequency": 0.4,
+    "x_rel_max_on": 1.0,
+}
+OUTPUTS = tuple(range(at.X1, at.BOX_IMPULSE)) + tuple(range(at.CONTACT_FORCE, at.X_REL_MAX)) + (at.CONTACT_COUNT, at.TIME)  # of a point of time
+least_work = patch.multiple(stepper, WORK_BASE=5000.0, WORK_RATE=0.0)  # steps that give up early
+CHAOTIC = {"box_frequency": 0.7}  # default structure: tens of impacts a period, no period
+
+
+def unstarted(**values):
+    """A memory with parameters and inputs set."""
+    m = [0.0] * at.SIZE
+    for name, value in {**DEFAULTS, **values}.items():
+        m[getattr(at, name.upper())] = float(value)
+    return m
+
+
+def started(time=0.0, **values):
+    """A memory after a successful ``initialize``."""
+    m = unstarted(**values)
+    assert stepper.initialize(m, time) == at.OK
+    return m
+
+
+def advanced(m, *times):
+    """The memory, advanced through communication points."""
+    for time in times:
+        assert stepper.advance(m, time) == at.OK
+    return m
+
+
+def set_inputs(m, **values):
+    """Set inputs by name."""
+    for name, value in values.items():
+        m[getattr(at, name.upper())] = value
+
+
+def outputs(m):
+    """Everything an importer sees of a point of time (not what belongs to a whole step)."""
+    return [m[i] for i in OUTPUTS]
+
+
+def pieces(m, time):
+    """Advance to ``time``; the parts of states passed through, as (state's memory, age at entry, age at exit)."""
+    passed = []
+    entry = [0.0 if inputs_changed(m) else stepper.local_time(m, m[at.TIME])]
+    end_state = motion.end_state
+
+    def note(now):
+        passed.append((list(now), entry[0], now[at.END]))
+        entry[0] = 0.0
+        end_state(now)
+
+    with patch.object(stepper, "end_state", note):
+        advanced(m, time)
+    passed.append((list(m), entry[0], stepper.local_time(m, time)))
+    return passed
+
+
+def flight(x1, v1, x2, v2, **values):
+    """A flight from initial conditions at the start time, in a structure with omega = 1."""
+    m = started(x1_start=x1, v1_start=v1, x2_start=x2, v2_start=v2, **values)
+    assert m[at.MODE] == at.FLIGHT
+    return m
+
+
+def examples(count):
+    """Settings of a property-based test: the same examples on every machine, however slow."""
+    return settings(max_examples=count, deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
+
+
+def sizes(low, high):
+    """Floats over several decades."""
+    return st.floats(math.log(low), math.log(high)).map(math.exp)
+
+
+def rounded(low, high):
+    """Floats of three decimals: zero among them, but nothing that is almost zero."""
+    return st.floats(low, high).map(lambda x: round(x, 3))
+
+
+@st.composite
+def structures(draw, damping=2.0):
+    """Structures with omega = 1, their excitation and phase: light and heavy masses, undamped to overdamped, with a cubic.
+
+    Not near critical damping, where the sums of exponentials that the kernel is compared with cancel in double precision.
+    """
+    values = {"m2": draw(sizes(0.2, 5.0)), "k2": draw(sizes(0.2, 5.0)), "box_frequency": draw(sizes(0.15, 4.0))}
+    for name, critical in (("d1", 2.0), ("d2", 2.0 * math.sqrt(values["k2"] * values["m2"]))):
+        value = draw(st.just(0.0) | sizes(1e-3, damping))
+        values[name] = 0.9 * value if abs(value - critical) < 0.05 * critical else value
+    values["phase_start"] = draw(rounded(0.0, 6.28))
+    for name in ("acceleration", "jerk", "snap", "crackle"):
+        values[f"box_{name}"] = draw(st.just(0.0) | rounded(-0.1, 0.1))
+    if stepper.initialize(unstarted(**values), 0.0) != at.OK:  # undamped resonance
+        values["d1"] = values["d2"] = 0.01
+    return values

@@ -1,0 +1,82 @@
+"""The barrier is the gap or minus the contact force; its derivatives are theirs, its bounds hold for all later times."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from fmu_src.kernels.oscillator import barrier
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator.motion import begin_common
+
+from . import truth
+from .kernel import DEFAULTS, examples, started, structures
+
+AGES = st.floats(0.0, 40.0)
+STATES = st.tuples(st.floats(-1.0, 0.0), st.floats(-1.0, 1.0), st.floats(0.01, 1.0), st.floats(-1.0, 1.0))
+
+
+def flight_and_gap(values, state):
+    """A flight's memory and its gap by Newton's law, omega = 1."""
+    x1, v1, x2, v2 = state
+    m = started(x1_start=x1, v1_start=v1, x2_start=x2, v2_start=v2, **values)
+    first, second = truth.apart({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
+    return m, second - first
+
+
+def contact_and_pull(values, state):
+    """A contact's memory and minus the force f (18) by Newton's law; pressed together or not."""
+    x, v = state[0], state[1]
+    m = started(**values)
+    m[at.TURN], m[at.SEGMENT_AGE] = values["phase_start"] / 6.283185307179586 % 1.0, 0.0
+    begin_common(m, at.CONTACT, x, v)
+    full = {**DEFAULTS, **values}
+    _, push = truth.together(full, x, v, mp.mpf(values["phase_start"]))
+    return m, (1 / mp.mpf(full["m1"]) + 1 / mp.mpf(full["m2"])) * push
+
+
+MAKERS = pytest.mark.parametrize("make", [flight_and_gap, contact_and_pull])
+
+
+def size(signal):
+    """Sum of all amplitudes: what rounding is relative to."""
+    return sum(abs(complex(c)) for c, _ in signal.terms) + float(sum(map(abs, signal.polynomial)))
+
+
+@MAKERS
+@examples(60)
+@given(structures(), STATES, AGES)
+@example({"d1": 2.0, "d2": 2.0 + 1e-9, "k2": 1.0, "box_frequency": 0.4, "phase_start": 1.0}, (-0.3, 0.2, 0.5, -0.4), 1.5)  # critical damping
+def test_value_and_derivatives(make, values, state, age):
+    m, signal = make(values, state)
+    found = barrier.evaluate(m, age)[:5]
+    fastest = max(1.0, signal.fastest())
+    growth = (1.0 + age) ** 3  # of the cubic
+    for order, value in enumerate(found):
+        scale = (size(signal) + 1.0) * fastest**order * growth
+        assert abs(value - float(signal(age))) <= 2e-13 * scale
+        signal = signal.derivative()
+
+
+@MAKERS
+@examples(60)
+@given(structures(), STATES, AGES)
+def test_bounds_hold_for_all_later_times(make, values, state, age):
+    m, signal = make(values, state)
+    found = barrier.evaluate(m, age)
+    later = age + np.concatenate([np.linspace(0.0, 3.0, 300), np.geomspace(3.0, 300.0, 300)])
+    rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest()) ** 5
+    fifth = signal.derivative().derivative().derivative().derivative().derivative()
+    assert np.abs(fifth.sample(later)).max() <= found[5] * (1 + 1e-9) + rounding
+
+
+@examples(60)
+@given(structures(), STATES, st.integers(5, 8))
+def test_bounds_of_higher_derivatives(values, state, order):
+    m, signal = flight_and_gap(values, state)
+    rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest()) ** order
+    for _ in range(order):
+        signal = signal.derivative()
+    highest = np.abs(signal.sample(np.linspace(0.0, 60.0, 3000))).max()
+    assert highest <= sum(barrier.bounds(m, at.BRANCH_1, order)) * (1 + 1e-9) + rounding

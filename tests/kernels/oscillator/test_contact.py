@@ -1,0 +1,141 @@
+"""Which side of the boundary a state begins on, pressed together all through contact, released where the force vanishes."""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import assume, example, given
+from hypothesis import strategies as st
+
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator.contact import contact_force
+from fmu_src.kernels.oscillator.motion import state_at
+
+from . import truth
+from .kernel import DEFAULTS, advanced, examples, pieces, rounded, started, structures
+from .reference import opening
+
+HALF_TURN = math.pi  # its sine is 1.2e-16 as a float, and nothing as an angle
+
+
+def separate_gap(values, x, v, phase, t):
+    """Gap after a time ``t`` if both masses moved on their own from a common start, by Newton's law."""
+    first, second = truth.apart({**DEFAULTS, **values}, (x, v, x, v), phase)
+    return (second - first)(t)
+
+
+@pytest.mark.parametrize("kappa", [0.5, 2.0])
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("drive", [{"phase_start": 0.0}, {"phase_start": 1.0}, {"phase_start": HALF_TURN}, {"phase_start": -1.0}])
+def test_from_rest_the_first_motion_decides(kappa, sign, drive):
+    values = {"k2": kappa, "box_amplitude": float(sign), **drive}
+    forward = sign * (1 if drive["phase_start"] in (0.0, 1.0) else -1)  # into which both masses go: at once, or by jerk at phase 0 and pi
+    pressed = (kappa > 1.0) == (forward > 0)  # in front, the stiffer mass 2 presses back
+    m = started(**values)
+    assert m[at.IN_CONTACT] == float(pressed)
+    advanced(m, 0.5)
+    assert (m[at.X_REL] == 0.0) == pressed
+    assert m[at.IMPACT_COUNT] == 0.0
+
+
+@pytest.mark.parametrize("name", ["acceleration", "jerk", "snap", "crackle"])
+@pytest.mark.parametrize("value", [0.3, -0.3])
+@pytest.mark.parametrize("structure", [{"k2": 2.0}, {"k2": 0.5}, {"k2": 1.0, "d1": 0.2}, {"k2": 1.0, "d2": 0.2}])
+def test_from_rest_each_derivative_of_the_box_may_decide(structure, name, value):
+    values = {**structure, "box_amplitude": 0.0, f"box_{name}": value}
+    pressed = separate_gap(values, 0, 0, mp.mpf(0), mp.mpf("1e-3")) < 0
+    assert started(**values)[at.IN_CONTACT] == float(pressed)
+
+
+@examples(150)
+@given(structures(), st.sampled_from([0.0, HALF_TURN]) | rounded(0.0, 6.28))
+@example({"k2": 1.0, "m2": 1.0, "d1": 0.01, "d2": 0.02, "box_frequency": 0.4}, HALF_TURN)
+def test_from_rest_newton_decides(values, phase):
+    values = {**values, "phase_start": phase}
+    unlike = abs(values["k2"] / values["m2"] - 1.0), abs(values["d2"] / values["m2"] - values["d1"])
+    assume(all(difference == 0.0 or difference > 1e-6 for difference in unlike))
+    with mp.workdps(250):
+        gap = separate_gap(values, 0, 0, mp.pi if phase == HALF_TURN else mp.mpf(phase), mp.mpf("1e-15"))
+        pressed = gap < mp.mpf("1e-150")  # alike, they stay together
+    assert started(**values)[at.IN_CONTACT] == float(pressed)
+
+
+@examples(150)
+@given(structures(), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+def test_on_the_boundary_the_force_decides(values, x, v):
+    force = opening({**DEFAULTS, **values}, mp.mpf(x), mp.mpf(v))
+    assume(abs(force) > 1e-12)  # not where it vanishes
+    m = started(x1_start=x, x2_start=x, v1_start=v, v2_start=v, **values)
+    assert m[at.IN_CONTACT] == float(force < 0)
+
+
+@examples(100)
+@given(structures(), st.floats(0.1, 1.0), st.sampled_from([-1.0, 1.0]))
+def test_where_the_force_vanishes_its_slope_decides(values, v, sign):
+    values = {**values, "d1": 0.3, "d2": 0.05}
+    m2, k2 = values["m2"], values["k2"]
+    assume(abs(1.0 - k2 / m2) > 1e-2)
+    v *= sign
+    x = -(values["d1"] - values["d2"] / m2) * v / (1.0 - k2 / m2)
+    gap = separate_gap(values, x, v, mp.mpf(values["phase_start"]), mp.mpf("1e-4"))
+    assume(abs(gap) > 1e-15)  # the slope does not vanish too
+    m = started(x1_start=x, x2_start=x, v1_start=v, v2_start=v, **values)
+    assert m[at.IN_CONTACT] == float(gap < 0)
+    assert m[at.IMPACT_COUNT] == 0.0
+
+
+CONTACTS = pytest.mark.parametrize("values", [{"e": 0.3}, {"e": 0.0, "d1": 0.3, "d2": 0.02, "box_frequency": 0.7}, {"m2": 2.0, "k2": 1.0, "e": 0.1}])
+
+
+@CONTACTS
+def test_pressed_together_all_through_contact(values):
+    m = started(**values)
+    contacts = [piece for piece in pieces(m, 120.0) if piece[0][at.MODE] == at.CONTACT]
+    assert len(contacts) >= 5
+    for state, entry, end in contacts:
+        ages = np.linspace(entry, end, 200)
+        force = np.array([contact_force(state, *state_at(state, float(age))[:2]) for age in ages])
+        size = np.abs(force).max()
+        assert force[1:-1].max() < 0.0
+        if state[at.END_KIND] == at.END_EVENT:
+            assert abs(force[-1]) <= 1e-12 * (1.0 + size)
+
+
+@CONTACTS
+def test_released_masses_part(values):
+    m = started(**values)
+    passed = pieces(m, 120.0)
+    released = [after for before, after in zip(passed, passed[1:], strict=False) if before[0][at.MODE] == at.CONTACT]
+    assert len(released) >= 4
+    for state, _, end in released:
+        assert state[at.MODE] == at.FLIGHT
+        x1, v1, x2, v2 = state_at(state, min(end, 0.05) / 2)
+        assert x2 > x1
+        assert v2 > v1
+
+
+@CONTACTS
+def test_contact_force_is_newtons(values):
+    m = started(**values)
+    seen = 0
+    for i in range(1, 400):
+        before = list(m)
+        advanced(m, 0.3 * i)
+        assert m[at.CONTACT_FORCE] >= 0.0
+        if m[at.IN_CONTACT] and before[at.IN_CONTACT]:
+            seen += 1
+            phase = mp.mpf(m[at.PHASE])
+            _, push = truth.together({**DEFAULTS, **values}, m[at.X1], m[at.V1], phase)
+            assert m[at.CONTACT_FORCE] == pytest.approx(float(push(0)), abs=1e-12)
+    assert seen > 20
+
+
+@pytest.mark.parametrize("pressing", [True, False])
+def test_a_plastic_impact_sticks_at_once_where_it_is_pressed(pressing):
+    x = 1.0 if pressing else -1.0
+    m = started(x1_start=x, x2_start=x, v1_start=0.5, v2_start=-0.5, e=0.0, box_amplitude=0.0)
+    assert m[at.IN_CONTACT] == float(pressing)
+    assert (m[at.IMPACT_COUNT], m[at.V1], m[at.V2]) == (1.0, 0.0, 0.0)
+    assert m[at.IMPACT_ENERGY] == 0.25
+    assert (advanced(m, 0.1)[at.X_REL] == 0.0) == pressing

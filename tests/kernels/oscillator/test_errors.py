@@ -1,0 +1,85 @@
+"""What cannot be computed is said with a code, within bounded work: never a hang, an exception or a number that is not one."""
+
+import math
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator import stepper
+
+from .kernel import advanced, examples, least_work, sizes, started, unstarted
+
+UNDAMPED = {"d1": 0.0, "d2": 0.0}
+
+
+@pytest.mark.parametrize(
+    "values, code",
+    [
+        ({**UNDAMPED, "box_frequency": 1.0}, at.RESONANCE_1),
+        ({"d1": 0.0, "box_frequency": 1.0}, at.RESONANCE_1),
+        ({"d2": 0.0, "box_frequency": math.sqrt(1.2)}, at.RESONANCE_2),
+        ({**UNDAMPED, "box_frequency": math.sqrt(1.1)}, at.RESONANCE_3),
+        ({**UNDAMPED, "bonded": 1.0, "box_frequency": math.sqrt(1.1)}, at.RESONANCE_3),
+        ({**UNDAMPED, "bonded": 1.0, "box_frequency": 1.0}, at.OK),
+        ({**UNDAMPED, "box_frequency": 1.0, "box_amplitude": 0.0}, at.OK),
+        ({**UNDAMPED, "box_frequency": 1.0 + 3e-6}, at.OK),
+        ({"x1_start": 1e-300}, at.START_OVERLAP),
+        ({"x1_start": 0.1, "x2_start": 0.09999999999999999}, at.START_OVERLAP),
+        ({"bonded": 1.0, "x2_start": 0.1}, at.START_BONDED),
+        ({"bonded": 1.0, "v2_start": 0.1}, at.START_BONDED),
+        ({"bonded": 1.0, "v2_start": 0.1, "v1_start": 0.1}, at.OK),
+    ],
+)
+def test_codes_of_initialisation(values, code):
+    m = unstarted(**values)
+    assert stepper.initialize(m, 0.0) == code
+
+
+@least_work
+def test_a_step_with_too_many_impacts_gives_up():
+    m = started(e=1.0, gamma=1e-9, box_frequency=0.4)
+    assert stepper.advance(m, 1e6) == at.UNFINISHED
+    assert m[at.WORK] <= m[at.WORK_LIMIT] + 1.0
+    assert stepper.advance(started(e=1.0, gamma=1e-9, box_frequency=0.4), 1.0) == at.OK
+
+
+def test_the_work_allowed_grows_with_the_step():
+    m = started()
+    limits = [advanced(m, time)[at.WORK_LIMIT] for time in (1e-3, 10.0, 1000.0)]
+    assert limits[0] < limits[1] < limits[2]
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"box_amplitude": 1e308, "box_frequency": 1.3},
+        {"x2_start": 1e300, "v1_start": -1e300, "k2": 1e20},
+        {"box_acceleration": 1e308, "k1": 1e-5, "k2": 1e-5},
+    ],
+)
+def test_what_overflows_is_not_finite(values):
+    m = unstarted(**values)
+    code = stepper.initialize(m, 0.0)
+    assert at.NOT_FINITE in (code, code or stepper.advance(m, 1.0))
+
+
+@least_work
+@examples(60)
+@given(st.data())
+def test_extreme_parameters_end_with_a_code(data):
+    draw = data.draw
+    values = {name: draw(sizes(1e-6, 1e6)) for name in ("m1", "m2", "k1", "k2", "box_frequency")}
+    values |= {name: draw(st.just(0.0) | sizes(1e-6, 1e6)) for name in ("d1", "d2")}
+    values |= {name: draw(st.just(0.0) | sizes(1e-9, 1e9)) for name in ("box_amplitude", "box_jerk", "x2_start")}
+    values |= {"e": draw(st.floats(0.0, 1.0)), "gamma": draw(sizes(1e-9, 1.0)), "v1_start": draw(st.floats(-1e6, 1e6))}
+    m = unstarted(**values)
+    assume(stepper.initialize(m, 0.0) == at.OK)
+    for step in (1e-6, 1.0, 1e4):
+        code = stepper.advance(m, m[at.TIME] + step)
+        assert code in (at.OK, at.UNFINISHED, at.NOT_FINITE)
+        if code != at.OK:
+            return
+        assert all(math.isfinite(value) for value in m[at.X1 : at.TIME + 1])
+        assert m[at.X_REL] >= 0.0

@@ -1,0 +1,106 @@
+"""An impact keeps momentum, reverses the gap's velocity times e, and loses what the ledger says; sticking has no scale of its own."""
+
+import math
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator.impact import common_velocity, count_impact, restitution, sticks
+from fmu_src.kernels.oscillator.motion import end_state, state_at
+
+from .kernel import advanced, examples, pieces, rounded, sizes, started, unstarted
+
+SPEEDS = rounded(-10.0, 10.0)
+
+
+def structure(mu, e, m1=1.3):
+    """A memory that knows masses and restitution."""
+    m = unstarted(m1=m1, m2=mu * m1, e=e)
+    m[at.MU], m[at.OMEGA] = m[at.M2] / m[at.M1], 1.7
+    return m
+
+
+def kinetic(m, v1, v2):
+    return 0.5 * m[at.OMEGA] ** 2 * (m[at.M1] * v1 * v1 + m[at.M2] * v2 * v2)
+
+
+@examples(200)
+@given(sizes(1e-3, 1e3), st.floats(0.0, 1.0), SPEEDS, SPEEDS)
+def test_momentum_restitution_and_energy(mu, e, v1, v2):
+    assume(v1 > v2)
+    m = structure(mu, e)
+    w1, w2 = restitution(m, v1, v2)
+    speed = abs(v1) + abs(v2)
+    assert w1 + mu * w2 == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
+    assert w2 - w1 == pytest.approx(e * (v1 - v2), abs=4e-15 * speed)
+    count_impact(m, 0.0, v1 - v2, (1.0 - e) * (1.0 + e))
+    lost = kinetic(m, v1, v2) - kinetic(m, w1, w2)
+    assert m[at.IMPACT_ENERGY] == pytest.approx(lost, abs=1e-13 * kinetic(m, speed, speed))
+
+
+@examples(200)
+@given(sizes(1e-3, 1e3), SPEEDS, SPEEDS)
+def test_sticking_keeps_momentum_and_loses_the_closing_energy(mu, v1, v2):
+    m = structure(mu, 0.7)
+    common = common_velocity(m, v1, v2)
+    count_impact(m, 0.0, v1 - v2, 1.0)
+    speed = abs(v1) + abs(v2)
+    assert (1.0 + mu) * common == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
+    lost = kinetic(m, v1, v2) - kinetic(m, common, common)
+    assert m[at.IMPACT_ENERGY] == pytest.approx(lost, abs=1e-13 * kinetic(m, speed, speed))
+
+
+@examples(200)
+@given(st.floats(0.0, 1.0), st.floats(-1.0, 1.0), sizes(1e-9, 1.0), st.integers(-300, 300))
+def test_sticking_is_scale_free(separation, force, gamma, n):
+    m = unstarted(gamma=gamma)
+    assume(force == 0.0 or abs(force) > 1e-100)
+    assume(separation == 0.0 or separation > 1e-100)
+    assert sticks(m, separation, force) == sticks(m, math.ldexp(separation, n), math.ldexp(force, n))
+
+
+def test_masses_that_are_pulled_apart_do_not_stick():
+    m = unstarted(gamma=1.0)
+    assert not sticks(m, 0.0, 0.0)
+    assert not sticks(m, 1e-12, 1.0)
+    assert not sticks(m, 0.0, 1.0)
+    assert sticks(m, 0.0, -1e-12)
+    assert not sticks(m, 0.51, -1.0)  # the next flight lasts 1.02
+    assert sticks(m, 0.49, -1.0)
+
+
+@pytest.mark.parametrize("values", [{}, {"m2": 3.0, "k2": 1.0}, {"m1": 0.2, "k1": 0.7, "e": 0.0}, {"m2": 0.3, "e": 1.0}])
+def test_impacts_of_a_run(values):
+    m = started(x1_start=-0.5, x2_start=0.2, v1_start=1.0, v2_start=-0.7, **values)
+    energy = 0.0
+    for state, _, end in pieces(m, 8.0)[:-1]:
+        before = momentum_and_gap_velocity(state, end)
+        after = list(state)
+        end_state(after)
+        now = momentum_and_gap_velocity(after, 0.0)
+        assert now[0] == pytest.approx(before[0], abs=1e-14 * before[2])
+        if after[at.IMPACT_COUNT] > state[at.IMPACT_COUNT]:
+            e = 0.0 if after[at.MODE] == at.CONTACT else m[at.E]
+            assert now[1] == pytest.approx(-e * before[1], abs=1e-14 * before[2])
+            assert after[at.IMPACT_VELOCITY] == pytest.approx(-before[1], abs=1e-14 * before[2])
+            assert after[at.IMPACT_TIME] == pytest.approx((state[at.ORIGIN] + end) / m[at.OMEGA], rel=1e-14)
+            energy += before[3] - now[3]
+    assert m[at.IMPACT_COUNT] >= 1.0
+    assert m[at.IMPACT_ENERGY] == pytest.approx(energy, rel=1e-12)
+
+
+def momentum_and_gap_velocity(m, age):
+    """Momentum, gap velocity, speed scale and kinetic energy at an age."""
+    _, v1, _, v2 = (m[at.OMEGA] * value for value in state_at(m, age))
+    m1, m2 = m[at.M1], m[at.M2]
+    return m1 * v1 + m2 * v2, v2 - v1, (m1 + m2) * (1.0 + abs(v1) + abs(v2)), 0.5 * (m1 * v1 * v1 + m2 * v2 * v2)
+
+
+def test_an_impact_at_the_start_counts():
+    m = started(v1_start=1.0, v2_start=-1.0, e=0.5, box_amplitude=0.0)
+    assert (m[at.IMPACT_COUNT], m[at.IMPACT_VELOCITY], m[at.IMPACT_TIME]) == (1.0, 2.0, 0.0)
+    assert (m[at.V1], m[at.V2]) == (-0.5, 0.5)
+    assert m[at.IMPACT_ENERGY] == pytest.approx(0.75)
+    assert advanced(m, 0.1)[at.X_REL] > 0.0

@@ -1,0 +1,77 @@
+"""Short flights by their series: as exact relative to the gap itself, however low it is, as the closed form is relative to the displacements."""
+
+import mpmath as mp
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator import series
+from fmu_src.kernels.oscillator.barrier import evaluate
+from fmu_src.kernels.oscillator.motion import state_at
+
+from . import truth
+from .kernel import DEFAULTS, examples, flight, sizes, structures
+
+PLACES = st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)
+
+
+def leaving(values, x, v, slope):
+    """A flight that has just left an impact, its gap in high precision, and a scale of the motion's size."""
+    v2 = v + slope
+    m = flight(x, v, x, v2, **values)
+    first, second = truth.apart({**DEFAULTS, **values}, (x, v, x, v2), mp.mpf(values["phase_start"]))
+    return m, first, second - first
+
+
+@examples(80)
+@given(structures(), *PLACES, sizes(1e-9, 0.1))
+def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
+    m, first, gap = leaving(values, x, v, slope)
+    if m[at.SERIES] == 0.0:
+        return
+
+    def rounding(tau):  # of the gap's own terms, which may cancel; those of the displacements are larger by far
+        return 1e-14 * (slope * tau + (abs(m[at.FORCE_V] * v) + abs(m[at.FORCE_X] * x)) * tau * tau)
+
+    with mp.workdps(50):
+        end = m[at.END]
+        assert m[at.END_KIND] == at.END_EVENT and gap.derivative()(mp.mpf(end)) < 0
+        assert abs(gap(mp.mpf(end))) <= rounding(end)
+        assert all(gap(mp.mpf(end) * i / 64) > 0 for i in range(1, 64))
+        for part in (0.1, 0.5, 0.9):
+            tau = part * end
+            x1, v1, x2, v2 = state_at(m, tau)
+            assert abs(x1 - first(mp.mpf(tau))) <= 1e-15 and abs(v1 - first.derivative()(mp.mpf(tau))) <= 1e-14
+            assert abs(evaluate(m, tau)[0] - gap(mp.mpf(tau))) <= rounding(tau)
+            assert x2 >= x1
+
+
+@examples(80)
+@given(structures(), *PLACES, sizes(1e-9, 0.1), st.floats(0.0, 1.0))
+def test_value_and_derivatives(values, x, v, slope, part):
+    m, _, gap = leaving(values, x, v, slope)
+    if m[at.SERIES] == 0.0:
+        return
+    tau = part * m[at.END]
+    with mp.workdps(50):
+        scale = abs(gap.derivative()(mp.mpf(0))) + abs(gap.derivative().derivative()(mp.mpf(0)))
+        for order, value in enumerate(evaluate(m, tau)[:3]):
+            assert abs(value - gap(mp.mpf(tau))) <= 1e-12 * float(scale), order
+            gap = gap.derivative()
+
+
+@pytest.mark.parametrize(("slope", "order"), [(1e-3, 8), (1.5e-2, 12), (0.2, 4)])
+def test_the_number_of_terms_grows_with_the_flight(slope, order):
+    m = flight(1.0, 0.0, 1.0, slope, box_amplitude=0.0)  # f = -0.2
+    assert series.series_order(m, slope, -0.2) == order
+    assert m[at.SERIES] == (order if order > 4 else 0.0)
+    assert series.series_order(m, slope, 0.2) == 4
+
+
+def test_a_gap_that_is_not_concave_is_walked():
+    m = flight(1.0, 0.0, 1.0, 1e-3, box_amplitude=0.0)
+    assert series.short_flight(m, 8, 0.0) == m[at.END] > 0.0
+    assert series.short_flight(m, 8, 1e9) == 0.0
+    m[at.SERIES_GAP + 3] = 1e3
+    assert series.short_flight(m, 8, 0.0) == 0.0

@@ -1,0 +1,127 @@
+"""The two entry points: the communication grid, the scale and the instance leave no trace in any bit."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator import stepper
+
+from .kernel import CHAOTIC, advanced, examples, outputs, set_inputs, started
+
+STOP = 120.0
+GRIDS = st.lists(st.floats(0.0, STOP), max_size=60).map(lambda points: [*sorted(points), STOP])
+RUNS = {
+    "chaotic": CHAOTIC,
+    "chattering": {"e": 0.3},
+    "offset": {"box_frequency": 0.9, "box_acceleration": -0.4, "m2": 1.7, "d2": 0.3},
+    "overdamped": {"d1": 3.0, "d2": 0.0, "box_frequency": 1.3},
+}
+
+
+@pytest.mark.parametrize("name", RUNS)
+@examples(40)
+@given(grid=GRIDS, time=st.sampled_from([0.0, -3.7, 1e3]))
+def test_the_communication_grid_leaves_no_trace(name, grid, time):
+    once = advanced(started(time, **RUNS[name]), time + STOP)
+    often = advanced(started(time, **RUNS[name]), *[time + point for point in grid])
+    assert outputs(often) == outputs(once)
+    assert often[at.ETA : at.END_KIND + 1] == once[at.ETA : at.END_KIND + 1]
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_nor_do_thousands_of_steps(name):
+    once, often = started(**RUNS[name]), started(**RUNS[name])
+    advanced(once, 3000.0)
+    advanced(often, *[0.37 * i for i in range(1, 8100)], 3000.0)
+    assert outputs(often) == outputs(once)
+
+
+@pytest.mark.parametrize("name", RUNS)
+@examples(25)
+@given(n=st.integers(-200, 200))
+def test_a_power_of_two_scales_to_the_last_bit(name, n):
+    unit = math.ldexp(1.0, n)
+    starts = {"x1_start": -0.1, "x2_start": 0.3, "v1_start": 0.2, "v2_start": -0.5}
+    run = {"box_amplitude": 1.0, "box_acceleration": 0.0, **RUNS[name], **starts}
+    scaled = {key: value * unit for key, value in run.items() if key in starts or key in ("box_amplitude", "box_acceleration")}
+    m, big = started(**run), started(**{**run, **scaled})
+    for time in (3.0, 11.0, 60.5):
+        advanced(m, time)
+        advanced(big, time)
+        for slot in (at.X1, at.X2, at.V1, at.V2, at.X_REL, at.V_REL, at.X_REL_MAX, at.BOX_FORCE, at.CONTACT_FORCE, at.IMPACT_VELOCITY):
+            assert big[slot] == unit * m[slot]
+        for slot in (at.BOX_IMPULSE, at.BOX_IMPULSE_MOMENT):
+            assert big[slot] == unit * m[slot]
+        for slot in (at.XI1, at.XI2, at.XI_REL, at.PHASE, at.IMPACT_TIME, at.IMPACT_COUNT, at.IN_CONTACT, at.CONTACT_COUNT):
+            assert big[slot] == m[slot]
+        assert big[at.IMPACT_ENERGY] == unit * unit * m[at.IMPACT_ENERGY]
+
+
+@examples(20)
+@given(st.floats(0.1, STOP))
+def test_a_copied_memory_resumes_with_the_same_bits(pause):
+    m = advanced(started(**CHAOTIC), pause)
+    copy = list(m)
+    assert advanced(copy, STOP + 50.0) == advanced(m, STOP + 50.0)
+
+
+def test_initialised_again_nothing_remains():
+    m = advanced(started(**CHAOTIC), 30.0)
+    assert stepper.initialize(m, 0.0) == at.OK
+    assert advanced(m, 30.0) == advanced(started(**CHAOTIC), 30.0)
+
+
+def test_inputs_set_to_what_they_are_change_nothing():
+    m, same = started(**CHAOTIC), started(**CHAOTIC)
+    for i in range(1, 100):
+        set_inputs(same, box_frequency=0.7, box_amplitude=1.0)
+        assert advanced(same, 0.3 * i) == advanced(m, 0.3 * i)
+
+
+def test_an_empty_step_changes_nothing():
+    m = advanced(started(**CHAOTIC), 12.3)
+    before = outputs(m)
+    advanced(m, 12.3)
+    assert outputs(m) == before
+    assert (m[at.BOX_IMPULSE], m[at.BOX_IMPULSE_MOMENT]) == (0.0, 0.0)
+
+
+def test_bonded_masses_are_one_oscillator():
+    m = started(bonded=1.0, x1_start=0.3, x2_start=0.3, v1_start=-0.2, v2_start=-0.2)
+    one = started(m1=2.0, k1=2.2, d1=0.02, m2=2.0, k2=2.2, d2=0.02, x1_start=0.3, x2_start=0.3, v1_start=-0.2, v2_start=-0.2)
+    advanced(m, 77.0)
+    advanced(one, 77.0)
+    assert m[at.X1] == pytest.approx(one[at.X1], rel=1e-12)
+    assert (m[at.X_REL], m[at.IMPACT_COUNT], m[at.IN_CONTACT]) == (0.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_samples_inside_a_step_are_its_states(name):
+    whole, parts = started(**RUNS[name], sample_count=40), started(**RUNS[name])
+    for step in (1, 2):
+        advanced(whole, 30.0 * step)
+        for i in range(40):
+            advanced(parts, whole[at.TIME] if i == 39 else 30.0 * (step - 1) + 30.0 * ((i + 1.0) / 40.0))
+            found = [whole[slot + i] for slot in (at.X1_SAMPLE, at.X2_SAMPLE, at.V1_SAMPLE, at.V2_SAMPLE)]
+            assert found == [parts[slot] for slot in (at.X1, at.X2, at.V1, at.V2)]
+    assert outputs(whole) == outputs(parts)
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_stopping_at_impacts_leaves_no_trace(name):
+    free, stopped = advanced(started(**RUNS[name]), STOP), started(**RUNS[name])
+    stopped[at.STOP_AT_IMPACT] = 1.0
+    stops = 0
+    while stopped[at.TIME] < STOP:
+        impacts = stopped[at.IMPACT_COUNT]
+        advanced(stopped, STOP)
+        if stopped[at.TIME] < STOP:
+            stops += 1
+            assert stopped[at.IMPACT_COUNT] == impacts + 1
+            assert stopped[at.TIME] == stopped[at.IMPACT_TIME]
+            assert stopped[at.X_REL] <= 1e-14
+    assert stops == free[at.IMPACT_COUNT] > 5
+    assert outputs(stopped) == outputs(free)

@@ -1,0 +1,143 @@
+"""The shaker's kernel against scipy: motion, energies, sub-steps, and steps that cannot be done."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fmu_src.kernels.shaker import integrate, stepper
+from fmu_src.kernels.shaker import memory as at
+
+from .truth import DEFAULTS, STATES, right_hand_side, solve
+
+MOVING = {"angle_start": 0.3, "speed_start": 40.0, "position_start": 1e-3, "velocity_start": -0.05}
+FORCED = {"voltage": 5.0, "box_force": 3.0, "box_force_1": -40.0, "box_force_2": 900.0, "box_force_3": -3e4}
+
+
+def started(**values):
+    """A memory after a successful ``initialize``."""
+    m = [0.0] * at.SIZE
+    for name, value in {**DEFAULTS, **values}.items():
+        m[getattr(at, name.upper())] = float(value)
+    assert stepper.initialize(m, 0.0) == at.OK
+    return m
+
+
+def state(m):
+    """Position, velocity, angle, speed, current."""
+    return [m[getattr(at, name.upper())] for name in STATES]
+
+
+@pytest.mark.parametrize("inductance", [0.0, 0.05])
+@pytest.mark.parametrize("stop", [0.01, 0.3])
+def test_motion_is_that_of_the_equations(inductance, stop):
+    values = {**FORCED, "armature_inductance": inductance}
+    m = started(**values, **MOVING)
+    first = state(m)
+    assert stepper.advance(m, stop) == at.OK
+    expected = solve(values, first, stop)
+    if not inductance:
+        expected[4] = (values["voltage"] - 0.06 * expected[3]) / 12.0
+    assert state(m) == pytest.approx(list(expected[:5]), rel=2e-11, abs=1e-13)
+    assert m[at.MOTOR_ENERGY] == pytest.approx(expected[5], rel=1e-11)
+
+
+def test_tolerance_bounds_the_error():
+    """The formula's own error falls with its tolerance, and stays near it where sub-steps are many."""
+    values, errors = {"voltage": 9.0, **MOVING}, []
+    expected = solve({"voltage": 9.0}, (1e-3, -0.05, 0.3, 40.0, 0.0), 1.0)
+    for tolerance in (1e-6, 1e-9, 1e-12):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(integrate, "TOLERANCE", tolerance)
+            patch.setattr(integrate, "RADIANS", 1e9)
+            m = started(**values)
+            assert stepper.advance(m, 1.0) == at.OK
+        errors.append(abs(m[at.ANGLE] - expected[2]))
+    assert errors[0] > 10 * errors[1] > 100 * errors[2]
+    assert errors[2] < 1e-10
+
+
+def test_energy_is_kept():
+    m = started(**FORCED, **MOVING)
+    before = m[at.STORED_ENERGY]
+    for k in range(1, 200):
+        assert stepper.advance(m, k * 0.013) == at.OK
+        balance = m[at.MOTOR_ENERGY] + m[at.BOX_FORCE_WORK] - m[at.BOX_DAMPER_ENERGY] - (m[at.STORED_ENERGY] - before)
+        assert abs(balance) < 1e-12 * (1.0 + abs(m[at.BOX_FORCE_WORK]))
+
+
+@pytest.mark.parametrize("inductance", [0.0, 0.05])
+def test_acceleration_and_jerk_are_derivatives(inductance):
+    values = {**FORCED, "armature_inductance": inductance}
+    m = started(**values, **MOVING, current_start=0.2)
+    f = right_hand_side(values)
+    now = [*state(m), 0.0]
+    assert m[at.BOX_ACCELERATION] == pytest.approx(f(0.0, now)[1], rel=1e-13)
+    h = 1e-5
+    around = [f(s, [*solve(values, now[:5], s)])[1] if s > 0 else None for s in (h, 2 * h)]
+    slope = (-3 * m[at.BOX_ACCELERATION] + 4 * around[0] - around[1]) / (2 * h)
+    assert m[at.BOX_JERK] == pytest.approx(slope, rel=1e-4)
+
+
+def test_outputs_follow_the_inputs_as_set_now():
+    m = started(**MOVING, voltage=5.0)
+    stepper.advance(m, 0.1)
+    before = list(m)
+    m[at.BOX_FORCE] = 7.0
+    m[at.VOLTAGE] = 1.0
+    assert stepper.refresh(m, 0.0) == at.OK
+    assert m[at.BOX_ACCELERATION] > before[at.BOX_ACCELERATION]
+    assert m[at.MOTOR_TORQUE] == pytest.approx(0.06 * (1.0 - 0.06 * m[at.SPEED]) / 12.0)
+    assert m[at.STATE : at.SIZE] == before[at.STATE : at.SIZE]
+
+
+def test_heavy_rotor_shakes_the_box_harmonically():
+    """At a speed that nothing changes the box answers as a linear oscillator does."""
+    speed, inertia = 9.0, 1e20
+    m = started(rotor_inertia=inertia, speed_start=speed, motor_constant=0.0)
+    for k in range(1, 4001):  # 40 time constants
+        stepper.advance(m, k * 0.025)
+    time, unbalance = m[at.TIME], 0.025 * 0.02
+    answer = unbalance * speed**2 / (309.375 - 5.5 * speed**2 + 1j * 4.125 * speed)
+    assert m[at.SPEED] == speed
+    assert m[at.BOX_POSITION] == pytest.approx((answer * np.exp(1j * speed * time)).imag, rel=1e-9)
+
+
+def test_inductance_goes_to_zero():
+    expected = started(voltage=5.0, **MOVING)
+    stepper.advance(expected, 0.02)
+    errors = []
+    for inductance in (4e-3, 2e-3, 1e-3):
+        m = started(voltage=5.0, armature_inductance=inductance, current_start=(5.0 - 0.06 * 40.0) / 12.0, **MOVING)
+        assert stepper.advance(m, 0.02) == at.OK
+        errors.append(abs(m[at.SPEED] - expected[at.SPEED]))
+    assert 1.8 < errors[0] / errors[1] < 2.3
+    assert 1.8 < errors[1] / errors[2] < 2.3
+
+
+def test_many_turns_keep_their_digits():
+    """The angle of a free rotor, after a thousand turns in uneven steps."""
+    m = started(unbalance_mass=0.0, motor_constant=0.0, speed_start=2.0 * math.pi * 1000.0)
+    for time in (0.1, 0.1 + 1e-9, 0.7, 1.0):
+        assert stepper.advance(m, time) == at.OK
+    assert m[at.ANGLE] == pytest.approx(2.0 * math.pi * 1e3, rel=1e-14)
+    assert min(m[at.TURN], 1.0 - m[at.TURN]) < 1e-10
+
+
+def test_a_step_that_would_take_too_long_ends():
+    m = started(armature_inductance=1e-9, voltage=5.0)
+    assert stepper.advance(m, 1.0) == at.UNFINISHED
+    assert m[at.WORK] <= m[at.WORK_LIMIT] + at.STAGES
+    assert 0.0 < m[at.REPORT] < 1.0
+
+
+@pytest.mark.parametrize("values", [{"box_force": 1e30, "box_force_3": 1e30}, {"voltage": 1e30, "motor_constant": 1e30}])
+def test_what_leaves_the_numbers_ends(values):
+    m = started(**values)
+    assert stepper.advance(m, 1e90) in (at.NOT_FINITE, at.UNFINISHED)
+
+
+def test_inertia_must_exceed_the_unbalance():
+    m = started()
+    m[at.ROTOR_INERTIA] = (0.025 * 0.02) ** 2 / 5.5
+    assert stepper.initialize(m, 0.0) == at.INERTIA

@@ -1,0 +1,76 @@
+"""What lets the kernel compile as it stands and give the same bits everywhere: rules on its source."""
+
+import ast
+import builtins
+from pathlib import Path
+
+import pytest
+
+from fmu_src import kernels
+
+SOURCES = sorted(Path(kernels.__file__).parent.rglob("*.py"))
+PARSED = [ast.parse(path.read_text("utf-8"), feature_version=(3, 9)) for path in SOURCES]
+TREES = pytest.mark.parametrize("tree", PARSED, ids=[f"{path.parent.name}-{path.stem}" for path in SOURCES])
+EXACT = {"sqrt", "floor"}  # what IEEE 754 fixes to the last bit
+CALLABLE = {"abs", "min", "max", "range", "float", "int"}
+FORBIDDEN = (
+    *(ast.Try, ast.Raise, ast.Assert, ast.With, ast.Global, ast.Nonlocal, ast.Lambda, ast.ClassDef, ast.AsyncFunctionDef, ast.Await),
+    *(ast.List, ast.Dict, ast.Set, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.Yield, ast.YieldFrom),
+    *(ast.Starred, ast.JoinedStr, ast.NamedExpr, ast.Pow, ast.FloorDiv, ast.MatMult, ast.Delete),
+)
+
+
+def functions(tree):
+    return [node for node in tree.body if isinstance(node, ast.FunctionDef)]
+
+
+def test_there_is_a_kernel():
+    assert len(SOURCES) >= 10
+
+
+@TREES
+def test_only_math_and_its_own_modules_are_imported(tree):
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            assert [(alias.name, alias.asname) for alias in node.names] == [("math", None)]
+        if isinstance(node, ast.ImportFrom):
+            assert node.level == 1 or (node.level == 2 and node.module == "numerics.elementary")
+            assert all(alias.name != "*" for alias in node.names)
+
+
+@TREES
+def test_functions_are_plain_arithmetic(tree):
+    for node in ast.walk(tree):
+        assert not isinstance(node, (ast.ClassDef, ast.Try, ast.Raise, ast.Pow)), ast.unparse(node)
+    for function in functions(tree):
+        for node in ast.walk(function):
+            assert not isinstance(node, FORBIDDEN), ast.unparse(node)
+            assert node is function or not isinstance(node, ast.FunctionDef), f"nested {ast.unparse(node)}"
+        assert not function.decorator_list
+        assert not function.args.defaults
+        assert not function.args.vararg
+        assert not function.args.kwonlyargs
+
+
+@TREES
+def test_only_exact_functions_are_called(tree):
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "math":
+            assert node.attr in EXACT, node.attr
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and hasattr(builtins, node.func.id):
+            assert node.func.id in CALLABLE, node.func.id
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            assert ast.unparse(node.func.value) == "math"
+
+
+@TREES
+def test_nothing_outside_the_memory_is_kept(tree):
+    for node in tree.body:
+        documented = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+        assert documented or isinstance(node, (ast.Import, ast.ImportFrom, ast.Assign, ast.FunctionDef))
+    for function in functions(tree):
+        for node in ast.walk(function):
+            if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
+                assert ast.unparse(node.value) in ("m",), ast.unparse(node)
+            if isinstance(node, ast.Attribute):
+                assert isinstance(node.ctx, ast.Load), ast.unparse(node)
