@@ -1,4 +1,4 @@
-"""What can go wrong, in one small hierarchy: each exception's text is one line that names the thing, its value and what is expected."""
+"""What can go wrong: each exception says, in one line, the thing, its value and what is expected."""
 
 from __future__ import annotations
 

@@ -1,0 +1,188 @@
+"""A motor with an unbalance on a box on springs: what shakes a structure where its power is limited."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from os import PathLike
+
+from .ranges import DRIVE, NUMBERS, made_of, recover
+from .structure import Structure
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drive:
+    """A direct-current motor with an unbalance, and the box that it shakes.
+
+    Parameters
+    ----------
+    box_mass : float
+        Box with motor and unbalance, M_t, kg.
+    box_stiffness, box_damping : float
+        Its suspension, k_b in N/m and c_b in N s/m.
+    unbalance_mass, unbalance_radius : float
+        kg and m; their product is S.
+    rotor_inertia : float
+        J with the unbalance, kg m^2.
+    motor_constant : float
+        K: torque over current, and voltage over speed, N m/A.
+    armature_resistance, armature_inductance : float
+        R_a in Ohm and L in H; with L = 0 the torque follows the static line K (U - K phi')/R_a.
+
+    Raises
+    ------
+    InputError
+        Where a value is no number in its range.
+
+    Examples
+    --------
+    >>> drive, structure = Drive.from_file("beam"), Structure.from_file("beam")
+    >>> drive.volts(structure), round(drive.beta(structure), 4), round(drive.epsilon, 6)
+    (4.5, 0.2727, 0.000909)
+    """
+
+    box_mass: float
+    box_stiffness: float
+    box_damping: float
+    unbalance_mass: float
+    unbalance_radius: float
+    rotor_inertia: float
+    motor_constant: float
+    armature_resistance: float
+    armature_inductance: float = DRIVE["armature_inductance"].default
+
+    def __post_init__(self) -> None:
+        for name, quantity in DRIVE.items():
+            object.__setattr__(self, name, quantity.check(getattr(self, name)))
+
+    @classmethod
+    def nondimensional(
+        cls,
+        *,
+        beta: float,
+        epsilon: float,
+        b: float,
+        Omega_b: float,
+        D_b: float,
+        structure: Structure,
+        length: float = 1.0,
+        motor_constant: float = 1.0,
+    ) -> Drive:
+        """A drive by its non-dimensional numbers, for a structure.
+
+        Parameters
+        ----------
+        beta : float
+            m1/M_t.
+        epsilon : float
+            S^2/(J M_t), the unbalance's share in the inertia.
+        b : float
+            K^2/(R_a J omega), slope of the torque line.
+        Omega_b, D_b : float
+            The box's own frequency sqrt(k_b/M_t)/omega, and its damping ratio c_b/(2 omega M_t).
+        structure : Structure
+            Gives m1 and omega.
+        length, motor_constant : float
+            The scale: S/M_t in m, and K in N m/A.
+
+        Examples
+        --------
+        >>> structure = Structure.nondimensional(D=0.02)
+        >>> numbers = dict(beta=0.25, epsilon=0.001, b=0.02, Omega_b=0.1, D_b=0.005)
+        >>> drive = Drive.nondimensional(**numbers, structure=structure)
+        >>> drive.box_mass, drive.b(structure), drive.Omega_b(structure)
+        (4.0, 0.02, 0.1)
+        """
+        given = {"beta": beta, "epsilon": epsilon, "b": b, "Omega_b": Omega_b, "D_b": D_b}
+        given = {name: NUMBERS[name].check(value) for name, value in given.items()}
+        length, omega = DRIVE["unbalance_radius"].check(length), structure.omega
+        mass = structure.m1 / given["beta"]
+        inertia = length**2 * mass / given["epsilon"]
+        constant = DRIVE["motor_constant"].check(motor_constant)
+        return made_of(
+            given,
+            lambda: cls(
+                box_mass=mass,
+                box_stiffness=stiffness(given["Omega_b"], omega, mass),
+                box_damping=damping(given["D_b"], omega, mass),
+                unbalance_mass=0.01 * mass,
+                unbalance_radius=100.0 * length,
+                rotor_inertia=inertia,
+                motor_constant=constant,
+                armature_resistance=constant**2 / (given["b"] * inertia * omega),
+            ),
+        )
+
+    @classmethod
+    def from_file(cls, path: str | PathLike[str], structure: Structure | None = None) -> Drive:
+        """The ``[motor]`` and ``[box]`` of a TOML file or of a set that comes with the package.
+
+        Parameters
+        ----------
+        path : path-like
+        structure : Structure, optional
+            What non-dimensional numbers refer to where the file has no ``[structure]``.
+        """
+        from .files import read_section
+
+        found = read_section(path, "drive", structure)
+        assert isinstance(found, cls)
+        return found
+
+    @property
+    def length(self) -> float:
+        """The unit of length S/M_t, m."""
+        return self.unbalance_mass * self.unbalance_radius / self.box_mass
+
+    @property
+    def epsilon(self) -> float:
+        """The unbalance's share in the inertia, S^2/(J M_t)."""
+        return self.length**2 * self.box_mass / self.rotor_inertia
+
+    def beta(self, structure: Structure) -> float:
+        """The mass ratio m1/M_t."""
+        return structure.m1 / self.box_mass
+
+    def b(self, structure: Structure) -> float:
+        """The slope of the torque line, K^2/(R_a J omega)."""
+        slope = self.motor_constant**2 / self.armature_resistance
+        return slope / (self.rotor_inertia * structure.omega)
+
+    def Omega_b(self, structure: Structure) -> float:
+        """The box's own frequency over omega, without the structure."""
+        omega, mass = structure.omega, self.box_mass
+        guess = math.sqrt(self.box_stiffness / mass) / omega
+        return recover(guess, lambda ratio: stiffness(ratio, omega, mass), self.box_stiffness)
+
+    def D_b(self, structure: Structure) -> float:
+        """The box's damping ratio, c_b/(2 omega M_t)."""
+        omega, mass = structure.omega, self.box_mass
+        guess = self.box_damping / (2.0 * omega * mass)
+        return recover(guess, lambda ratio: damping(ratio, omega, mass), self.box_damping)
+
+    def volts(self, structure: Structure) -> float:
+        """The voltage whose no-load speed is omega, V."""
+        return self.motor_constant * structure.omega
+
+    def energy(self, structure: Structure) -> float:
+        """The unit of energy M_t (omega S/M_t)^2, J."""
+        return self.box_mass * (structure.omega * self.length) ** 2
+
+    def replace(self, **changes: float) -> Drive:
+        """A drive that differs in some of its SI values."""
+        return dataclasses.replace(self, **changes)
+
+    def parameters(self) -> dict[str, float]:
+        """The start values of ``MotorShaker``."""
+        return dataclasses.asdict(self)
+
+
+def stiffness(ratio: float, omega: float, mass: float) -> float:
+    """The suspension of the box's own frequency over omega, k_b = M_t (Omega_b omega)^2."""
+    return mass * (ratio * omega) ** 2
+
+
+def damping(ratio: float, omega: float, mass: float) -> float:
+    """The damper of a damping ratio, c_b = 2 D_b omega M_t."""
+    return 2.0 * ratio * omega * mass

@@ -1,0 +1,186 @@
+"""Names, units, defaults and ranges of all that a user describes, from the FMUs' own variable tables."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import numbers
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from fmu_src.models.motor_shaker import variables as motor_shaker
+from fmu_src.models.oscillator import variables as oscillator
+
+from ..errors import InputError
+
+Described = TypeVar("Described")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number that a user gives.
+
+    Attributes
+    ----------
+    name, unit, description : str
+        Unit ``"1"`` is dimensionless.
+    minimum, maximum : float
+        Its range, both ends included.
+    default : float
+        What the FMU takes where nothing is given.
+    """
+
+    name: str
+    unit: str
+    description: str
+    minimum: float
+    maximum: float
+    default: float = 0.0
+
+    @property
+    def expected(self) -> str:
+        """The range in words."""
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{self.minimum:g} <= {self.name} <= {self.maximum:g}{unit}"
+
+    def check(self, value: Any) -> float:
+        """Give ``value`` as a float.
+
+        Raises
+        ------
+        InputError
+            Where it is no number in the range.
+        """
+        number = plain(value)
+        if isinstance(number, bool) or not isinstance(number, numbers.Real):
+            raise InputError(f"{self.name} = {value!r}: expected a number, {self.expected}")
+        try:
+            number = float(number)
+        except OverflowError:
+            number = math.inf
+        if not self.minimum <= number <= self.maximum:
+            unit = "" if self.unit == "1" else f" {self.unit}"
+            raise InputError(f"{self.name} = {number!r}{unit}: expected {self.expected}")
+        return number + 0.0  # no negative zero
+
+
+def plain(value: Any) -> Any:
+    """What stands in an array or labelled array of no dimensions; anything else as it is."""
+    return value.item() if getattr(value, "shape", None) == () else value
+
+
+def check_flag(name: str, value: Any) -> bool:
+    """Give ``value`` as a bool.
+
+    Raises
+    ------
+    InputError
+        Where it is neither true nor false.
+    """
+    flag = plain(value)
+    if not isinstance(flag, bool):
+        raise InputError(f"{name} = {value!r}: expected true or false")
+    return flag
+
+
+def table(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Quantity]:
+    """Quantities of an FMU's variable table, by name."""
+    known = {variable.name: variable for variable in variables}
+    return {
+        v.name: Quantity(v.name, v.unit, v.description, v.minimum, v.maximum, v.start)
+        for v in map(known.__getitem__, names)
+    }
+
+
+STRUCTURE = table(oscillator.VARIABLES, ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma"))
+DRIVE = table(
+    motor_shaker.VARIABLES,
+    (
+        *("box_mass", "box_stiffness", "box_damping"),
+        *("unbalance_mass", "unbalance_radius", "rotor_inertia"),
+        *("motor_constant", "armature_resistance", "armature_inductance"),
+    ),
+)
+
+SMALLEST, LARGEST = STRUCTURE["m1"].minimum, STRUCTURE["m1"].maximum
+INPUTS = table(oscillator.VARIABLES, ("box_amplitude", "box_frequency", "phase_start"))
+EXCITATION = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("frequency", "rad/s", "Angular frequency Omega of the box", SMALLEST, LARGEST),
+        Quantity("amplitude", "m", "Amplitude a of the box", 0.0, INPUTS["box_amplitude"].maximum),
+        Quantity(
+            "phase",
+            "rad",
+            INPUTS["phase_start"].description,
+            INPUTS["phase_start"].minimum,
+            INPUTS["phase_start"].maximum,
+        ),
+    )
+}
+
+
+def positive(name: str, description: str) -> Quantity:
+    """A dimensionless number above zero."""
+    return Quantity(name, "1", description, SMALLEST, LARGEST)
+
+
+def not_negative(name: str, description: str) -> Quantity:
+    """A dimensionless number that may be zero."""
+    return Quantity(name, "1", description, 0.0, LARGEST / 2.0)
+
+
+NUMBERS = {
+    quantity.name: quantity
+    for quantity in (
+        Quantity("omega", "rad/s", "Frequency unit sqrt(k1/m1), (2)", SMALLEST, LARGEST),
+        positive("mu", "Mass ratio m2/m1, (2)"),
+        positive("kappa", "Stiffness ratio k2/k1, (2)"),
+        not_negative("D", "Damping ratio of both masses, (8)"),
+        not_negative("D1", "Damping ratio of mass 1, (8)"),
+        not_negative("D2", "Damping ratio of mass 2, (8)"),
+        Quantity("eta", "1", "Frequency ratio Omega/omega, (6)", 1e-6, 1e6),
+        positive("beta", "Mass ratio m1/M_t"),
+        positive("epsilon", "The unbalance's share in the inertia, S^2/(J M_t)"),
+        positive("b", "Slope of the torque line, K^2/(R_a J omega)"),
+        not_negative("Omega_b", "The box's own frequency over omega"),
+        not_negative("D_b", "Damping ratio of the box, c_b/(2 omega M_t)"),
+    )
+}
+
+
+def one_of(name: str, known: Iterable[str]) -> str:
+    """What is expected instead of an unknown name, the nearest one first where there is one."""
+    names = list(known)
+    near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    return f"expected one of {', '.join(names)}" + (f" (did you mean {near[0]}?)" if near else "")
+
+
+def made_of(given: Mapping[str, float], make: Callable[[], Described]) -> Described:
+    """What ``make`` makes; where that is out of range, the error names the numbers given."""
+    try:
+        return make()
+    except InputError as error:
+        numbers_given = ", ".join(f"{name} = {value!r}" for name, value in given.items())
+        raise InputError(f"{numbers_given}: it makes {error}") from None
+
+
+def recover(guess: float, forward: Callable[[float], float], target: float) -> float:
+    """The number that ``forward`` turns into ``target`` to the last bit.
+
+    Division does not undo a multiplication exactly. Of the few numbers about ``guess`` that give the
+    target, the one with the fewest digits is taken: it is the one that somebody wrote down.
+
+    Examples
+    --------
+    >>> 0.015 * 1.1 / 1.1
+    0.015000000000000001
+    >>> recover(0.015 * 1.1 / 1.1, lambda number: number * 1.1, 0.015 * 1.1)
+    0.015
+    """
+    near = [guess]
+    for _ in range(3):
+        near = [math.nextafter(near[0], -math.inf), *near, math.nextafter(near[-1], math.inf)]
+    fitting = [number for number in near if number >= 0.0 and forward(number) == target]
+    return min(fitting, key=lambda number: (len(repr(number)), abs(number - guess)), default=guess)
