@@ -1,0 +1,221 @@
+"""Who computes: this process, processes of this machine, or the workers of a Dask scheduler.
+
+Processes are loky's: they start without running the caller's script again, so a script needs no
+``__main__`` guard and a notebook works. A chunk is the same call for all three.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import signal
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Protocol
+
+from ..errors import InputError, WorkerError
+from .job import Job, Table
+
+IDLE = 30  # s that processes wait for another question
+CONNECT = "5s"
+RETRIES = 3  # a chunk whose worker is lost is computed by others
+
+
+def compute(
+    job: Job, fmus: Mapping[str, Path | bytes], items: Sequence[Any], carry: Table | None
+) -> Table:
+    """One chunk, wherever it is computed; FMUs travel to other machines as bytes."""
+    paths = {
+        model: unpacked(model, fmu) if isinstance(fmu, bytes) else fmu
+        for model, fmu in fmus.items()
+    }
+    return job.work(paths, items, carry)
+
+
+def unpacked(model: str, content: bytes) -> Path:
+    """An FMU that came as bytes, as a file."""
+    return kept(model, hashlib.sha256(content).hexdigest(), content)
+
+
+@functools.lru_cache(maxsize=16)
+def kept(model: str, digest: str, content: bytes) -> Path:
+    """Write an FMU into a folder of this process, once."""
+    folder = Path(tempfile.mkdtemp(prefix=f"vibroimpact-{os.getpid()}-"))
+    path = folder / f"{model}.fmu"
+    path.write_bytes(content)
+    return path
+
+
+class Workers(Protocol):
+    """Those who compute chunks."""
+
+    @property
+    def executor(self) -> Executor:
+        """Takes the calls."""
+
+    @property
+    def remote(self) -> bool:
+        """Whether they share no disk with this process."""
+
+    def room(self) -> int:
+        """Chunks worth having under way."""
+
+    def close(self, in_haste: bool) -> None:
+        """Let them go, in the middle of their chunks where ``in_haste``."""
+
+
+class Here(Executor):
+    """A call is carried out by this process, when it is submitted."""
+
+    remote = False
+
+    @property
+    def executor(self) -> Executor:
+        """Itself."""
+        return self
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Carry a call out; what it raises is raised here."""
+        future: Future[Any] = Future()
+        future.set_result(fn(*args, **kwargs))
+        return future
+
+    def room(self) -> int:
+        """One chunk at a time."""
+        return 1
+
+    def close(self, in_haste: bool) -> None:
+        """Nobody to let go."""
+
+
+class Processes:
+    """Processes of this machine."""
+
+    remote = False
+
+    def __init__(self, count: int) -> None:
+        import loky
+
+        self.count = count
+        self.executor: Executor = Deaf(
+            loky.get_reusable_executor(
+                count, timeout=IDLE, initializer=attend, initargs=(os.getpid(),)
+            )
+        )
+
+    def room(self) -> int:
+        """One chunk more than are computed."""
+        return self.count + 1
+
+    def close(self, in_haste: bool) -> None:
+        """Keep the processes for the next question, or end them."""
+        if in_haste:
+            self.executor.shutdown(wait=True, cancel_futures=True)
+
+
+class Deaf(Executor):
+    """An executor whose processes do not hear Ctrl-C, from their first instruction on."""
+
+    def __init__(self, pool: Any) -> None:
+        self._pool = pool
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Hand out a call; processes that are started for it inherit that they ignore Ctrl-C."""
+        with ignoring_interrupts():
+            future: Future[Any] = self._pool.submit(fn, *args, **kwargs)
+            return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the processes, in the middle of what they do."""
+        self._pool.shutdown(wait=wait, kill_workers=cancel_futures)
+
+
+@contextmanager
+def ignoring_interrupts() -> Iterator[None]:
+    """Ignore Ctrl-C for a moment, where this thread may say so."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def attend(parent: int) -> None:
+    """End this process when its parent has ended: nobody waits for its results."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if sys.platform == "win32":  # there a process does not learn of it
+        return
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+class Cluster:
+    """Workers of a Dask scheduler."""
+
+    remote = True
+
+    def __init__(self, address: str) -> None:
+        try:
+            from distributed import Client
+        except ImportError:
+            raise InputError(
+                'cluster: needs Dask; pip install "vibroimpact[cluster]" brings it'
+            ) from None
+        connect: Any = Client
+        try:
+            self._client = connect(address, timeout=CONNECT, set_as_default=False)
+        except (OSError, ValueError, TypeError) as error:
+            raise InputError(
+                f"cluster {address}: no scheduler answers there ({error}); "
+                "`dask scheduler` starts one"
+            ) from None
+        if not self._client.ncores():
+            self._client.close()
+            raise InputError(
+                f"cluster {address}: the scheduler has no workers; "
+                f"`dask worker {address} --nthreads 1` starts one"
+            )
+        self.executor: Executor = self._client.get_executor(pure=False, retries=RETRIES)
+
+    def room(self) -> int:
+        """Two chunks for each core; workers may come and go."""
+        return 2 * max(1, int(sum(self._client.ncores().values())))
+
+    def close(self, in_haste: bool) -> None:
+        """Leave the scheduler; what it still computes for us is cancelled."""
+        self.executor.shutdown(wait=not in_haste)
+        self._client.close()
+
+
+@contextmanager
+def at_work(workers: Workers) -> Iterator[Workers]:
+    """Workers for a while; they are ended at once where something is raised."""
+    try:
+        yield workers
+    except BrokenProcessPool:
+        workers.close(True)
+        raise WorkerError(
+            "a worker process ended without a word (killed, or out of memory); "
+            "what was stored is kept, the same call goes on from there"
+        ) from None
+    except BaseException:
+        workers.close(True)
+        raise
+    else:
+        workers.close(False)

@@ -1,0 +1,97 @@
+"""Files that appear whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from ..errors import StoreError
+
+
+def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -> Path:
+    """Write a file beside its place, then put it there.
+
+    Parameters
+    ----------
+    path : path-like
+    write : callable
+        Writes the file it is given the path of.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    StoreError
+        Where it cannot be written; what stood there before still does.
+    """
+    path = Path(path)
+    sweep_up(path)
+    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    try:
+        write(temporary)
+        temporary.replace(path)
+    except (OSError, RuntimeError) as error:  # the NetCDF library says RuntimeError at a full disk
+        raise StoreError(f"{path}: cannot be written ({reason(error, path.parent)})") from error
+    finally:
+        temporary.unlink(missing_ok=True)
+    return path
+
+
+def reason(error: BaseException, folder: Path) -> str:
+    """Why a file could not be written, with the room that is left."""
+    text = getattr(error, "strerror", None) or (str(error).splitlines() or [""])[0]
+    try:
+        return f"{text}, {shutil.disk_usage(folder).free} bytes free on the disk"
+    except OSError:
+        return str(text)
+
+
+def sweep_up(path: Path) -> None:
+    """Remove what killed processes left of earlier attempts."""
+    for left in path.parent.glob(f"{glob_name(path.name)}.*.tmp"):
+        number = left.name.removesuffix(".tmp").rpartition(".")[2]
+        if number.isdigit() and not alive(int(number)):
+            left.unlink(missing_ok=True)
+
+
+def glob_name(name: str) -> str:
+    """A name for ``glob``, its own brackets and stars taken as they stand."""
+    return "".join(f"[{letter}]" if letter in "[]*?" else letter for letter in name)
+
+
+def alive(pid: int) -> bool:
+    """Whether a process of this machine runs; where that cannot be asked, it is taken to."""
+    if sys.platform == "win32":  # there the question would end it
+        return True
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # somebody else's
+        return True
+    return True
+
+
+def open_folder(folder: str | os.PathLike[str]) -> Path:
+    """Make a folder where there is none, and see that it can be written.
+
+    Raises
+    ------
+    StoreError
+    """
+    folder = Path(folder)
+    probe = folder / f".writable.{os.getpid()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe.write_bytes(b"")
+        probe.unlink()
+    except OSError as error:
+        raise StoreError(
+            f"{folder}: {error.strerror or error}; expected a folder that can be written"
+        ) from None
+    return folder

@@ -1,0 +1,177 @@
+"""Chunks on disk while a job is under way.
+
+An SQLite database, one chunk a row, one transaction a row: a process killed at any moment loses the
+chunks that were being computed, a full disk the one that was being written. Each row has a checksum
+that is verified on reading; a damaged one is computed anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import logging
+import sqlite3
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError, StoreError
+from .identity import Identity
+from .job import Table
+
+log = logging.getLogger(__name__)
+ENDINGS = ("", "-wal", "-shm")  # files of a database
+
+
+def journal_path(result: Path) -> Path:
+    """Where the journal of a result lies."""
+    return result.with_name(f"{result.name}.journal")
+
+
+def discard(path: Path) -> None:
+    """Delete a journal's files."""
+    for ending in ENDINGS:
+        Path(f"{path}{ending}").unlink(missing_ok=True)
+
+
+def pack(table: Table) -> bytes:
+    """Arrays as bytes."""
+    stream = io.BytesIO()
+    np.savez(stream, **table)  # type: ignore[arg-type]
+    return stream.getvalue()
+
+
+def unpack(data: bytes) -> Table:
+    """The inverse of :func:`pack`."""
+    with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
+        return dict(arrays)
+
+
+class Journal:
+    """Chunks of one job.
+
+    Parameters
+    ----------
+    path : Path
+    identity : dict
+        What the chunks answer; entered where the journal is new.
+    begun : str
+        When the job was begun; entered where the journal is new.
+
+    Attributes
+    ----------
+    identity : dict
+        What the chunks on disk answer.
+    begun : str
+    """
+
+    def __init__(self, path: Path, identity: Identity, begun: str) -> None:
+        self.path = path
+        try:
+            self._db = sqlite3.connect(path, timeout=30.0, isolation_level=None)
+            self._db.execute("PRAGMA journal_mode=WAL")
+            self._db.execute("PRAGMA synchronous=NORMAL")  # a power cut may cost the last chunks
+            self._db.execute("CREATE TABLE IF NOT EXISTS about (name TEXT PRIMARY KEY, text TEXT)")
+            self._db.execute(
+                "CREATE TABLE IF NOT EXISTS chunks (i INTEGER PRIMARY KEY, sha256 TEXT, data BLOB)"
+            )
+            self._db.execute("BEGIN IMMEDIATE")
+            for name, text in (("identity", json.dumps(identity)), ("begun", begun)):
+                self._db.execute("INSERT OR IGNORE INTO about VALUES (?, ?)", (name, text))
+            self._db.execute("COMMIT")
+            about = dict(self._db.execute("SELECT name, text FROM about").fetchall())
+            self.identity: Identity = json.loads(about["identity"])
+            self.begun: str = about["begun"]
+        except (sqlite3.Error, OSError, ValueError, KeyError) as error:
+            self.close()
+            raise StoreError(
+                f"{path}: not usable as a journal ({error}); expected a writable place or a "
+                "journal of this job: remove it to begin anew"
+            ) from error
+
+    def indices(self) -> set[int]:
+        """Which chunks are there and undamaged; damaged ones are dropped."""
+        found = set()
+        for index, digest, data in self._query("SELECT i, sha256, data FROM chunks"):
+            if isinstance(data, bytes) and hashlib.sha256(data).hexdigest() == digest:
+                found.add(index)
+            else:
+                log.warning("%s: chunk %s is damaged, it is computed anew", self.path, index)
+                self._query("DELETE FROM chunks WHERE i = ?", index)
+        return found
+
+    def get(self, index: int) -> Table:
+        """One chunk."""
+        ((digest, data),) = self._query("SELECT sha256, data FROM chunks WHERE i = ?", index)
+        if hashlib.sha256(data).hexdigest() != digest:
+            raise StoreError(
+                f"{self.path}: chunk {index} is damaged; the same call goes on from it"
+            )
+        return unpack(data)
+
+    def put(self, index: int, table: Table) -> None:
+        """Enter a chunk."""
+        data = pack(table)
+        self._query(
+            "INSERT OR REPLACE INTO chunks VALUES (?, ?, ?)",
+            index,
+            hashlib.sha256(data).hexdigest(),
+            data,
+        )
+
+    def _query(self, statement: str, *values: object) -> list[tuple]:  # type: ignore[type-arg]
+        """All answers to a statement."""
+        try:
+            return self._db.execute(statement, values).fetchall()
+        except sqlite3.DatabaseError as error:
+            kept = "what was computed before is kept, the same call goes on from there"
+            if "malformed" in str(error) or "not a database" in str(error):
+                kept = "remove it to begin anew"
+            raise StoreError(f"{self.path}: {error}; {kept}") from error
+
+    def close(self) -> None:
+        """Close the database."""
+        if hasattr(self, "_db"):
+            self._db.close()
+
+    def remove(self) -> None:
+        """Delete the journal, once its contents are in a result."""
+        self.close()
+        discard(self.path)
+
+
+class Lock:
+    """Keeps a second process off a result that is being computed; it ends with the process.
+
+    Parameters
+    ----------
+    path : Path
+        Of what is locked.
+
+    Raises
+    ------
+    InputError
+        Where another process holds it.
+    StoreError
+        Where it cannot be made.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path.with_name(f"{path.name}.lock")
+        try:
+            self._db = sqlite3.connect(self.path, timeout=0.0, isolation_level=None)
+            self._db.execute("BEGIN EXCLUSIVE")
+        except sqlite3.Error as error:
+            if hasattr(self, "_db"):
+                self._db.close()
+            if "locked" in str(error):
+                raise InputError(
+                    f"{path}: another process is computing it; wait for it, or choose another place"
+                ) from None
+            raise StoreError(f"{self.path}: cannot be made ({error})") from error
+
+    def release(self) -> None:
+        """Let others at it."""
+        self.path.unlink(missing_ok=True)
+        self._db.close()

@@ -1,0 +1,107 @@
+"""How a question is computed, whatever it asks: the keywords that all public functions share."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TypedDict
+
+from ..errors import InputError
+
+MOST_JOBS = 1024  # processes of one machine
+FmuFiles = str | os.PathLike[str] | Mapping[str, str | os.PathLike[str]]
+
+
+class Running(TypedDict, total=False):
+    """Keywords of every public function that computes.
+
+    Attributes
+    ----------
+    jobs : int, optional
+        Processes at once; all cores by default. Small questions are computed in this process.
+    cluster : str, optional
+        Address of a Dask scheduler whose workers compute instead, such as ``"tcp://host:8786"``.
+    progress : bool
+        Whether what takes longer than a second shows a progress bar; true by default.
+    store : path, optional
+        NetCDF file of the result. What is computed goes there step by step: the same call goes on
+        where it was interrupted, and reads the file when it is finished. Without it all is kept in
+        memory.
+    force : bool
+        Compute anew what is stored already.
+    keep_stale : bool
+        Take a stored result even where the code or the FMU has changed since.
+    fmu : path or mapping, optional
+        Own FMU file, or one by model name; by default the one of the present sources.
+    build_folder : path, optional
+        Where FMUs are looked for and exported to.
+    """
+
+    jobs: int | None
+    cluster: str | None
+    progress: bool
+    store: str | os.PathLike[str] | None
+    force: bool
+    keep_stale: bool
+    fmu: FmuFiles | None
+    build_folder: str | os.PathLike[str] | None
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """The same keywords with their defaults, checked."""
+
+    jobs: int | None = None
+    cluster: str | None = None
+    progress: bool = True
+    store: str | os.PathLike[str] | None = None
+    force: bool = False
+    keep_stale: bool = False
+    fmu: FmuFiles | None = None
+    build_folder: str | os.PathLike[str] | None = None
+
+    def __post_init__(self) -> None:
+        whole = isinstance(self.jobs, int) and not isinstance(self.jobs, bool)
+        if self.jobs is not None and not (whole and 1 <= self.jobs <= MOST_JOBS):
+            raise InputError(f"jobs = {self.jobs!r}: expected a whole number from 1 to {MOST_JOBS}")
+        if self.cluster is not None and not isinstance(self.cluster, str):
+            raise InputError(f"cluster = {self.cluster!r}: expected the address of a scheduler")
+
+    @classmethod
+    def of(cls, running: Mapping[str, object]) -> RunOptions:
+        """The keywords that a public function was given.
+
+        Raises
+        ------
+        TypeError
+            Where one of them is unknown, as Python does.
+        """
+        known = [field.name for field in fields(cls)]
+        for name in running:
+            if name not in known:
+                raise TypeError(
+                    f"unexpected keyword argument {name!r}: expected the function's own or "
+                    f"one of {', '.join(known)}"
+                )
+        return cls(**running)  # type: ignore[arg-type]
+
+    @property
+    def processes(self) -> int:
+        """Processes at once."""
+        return self.jobs or cores()
+
+    def path(self, name: str) -> Path | None:
+        """The result's file: ``store`` itself, or a file of that name where it is a folder."""
+        if self.store is None:
+            return None
+        path = Path(self.store)
+        return path if path.suffix == ".nc" else path / f"{name}.nc"
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,295 @@
+"""Keeps the workers busy until every result is there.
+
+Any worker may take any chunk that is ready, the earliest job's first. Small questions are answered
+in this process; where much is left after the first chunks, processes are started. Who computes
+never changes a bit: a chunk's result depends on its items and on what it starts from alone.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .executors import Cluster, Here, Processes, Workers, at_work, compute
+from .files import open_folder
+from .identity import Fmu, Identity, identity_of
+from .job import Chunk, Job, Table
+from .options import RunOptions
+from .provenance import with_provenance
+from .store import Store, open_store
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+log = logging.getLogger(__name__)
+Find = Callable[[str], Fmu]  # from a model's name to its FMU
+WORTH = 2.0  # s of work left from which processes are worth their start
+POLL = 0.5  # s
+
+
+def answer(job: Job, running: Mapping[str, object], find: Find) -> xr.Dataset:
+    """The result of one job.
+
+    Parameters
+    ----------
+    job : Job
+    running : mapping
+        Keywords of :class:`.options.Running`.
+    find : callable
+        From a model's name to its FMU's description.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    return Runner([job], RunOptions.of(running), find).run()[job.name]
+
+
+def answer_all(
+    jobs: Sequence[Job], folder: Path, options: RunOptions, find: Find
+) -> dict[str, Path]:
+    """The results of many jobs, each a file in a folder.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+        Each after those it needs.
+    folder : Path
+    options : RunOptions
+    find : callable
+
+    Returns
+    -------
+    dict of str to Path
+        By the jobs' names.
+    """
+    open_folder(folder)
+    Runner(jobs, replace(options, store=folder), find).run()
+    return {job.name: folder / f"{job.name}.nc" for job in jobs}
+
+
+class Progress:
+    """How far a job is: which chunks are there, and which may be computed next.
+
+    Parameters
+    ----------
+    job : Job
+    store : Store
+    identity : dict
+    fmus : mapping of str to Fmu
+    """
+
+    def __init__(self, job: Job, store: Store, identity: Identity, fmus: Mapping[str, Fmu]) -> None:
+        self.job, self.store, self.identity, self.fmus = job, store, identity, fmus
+        self.chunks = job.chunks()
+        self.result = store.result()
+        self.there = set(range(len(self.chunks))) if self.complete else store.indices()
+        self.under_way: set[int] = set()
+        self.inputs: Mapping[str, xr.Dataset] = {}
+        self.items: Sequence[Any] | None = None
+
+    @property
+    def complete(self) -> bool:
+        """Whether the result is there."""
+        return self.result is not None
+
+    def done(self) -> int:
+        """Items computed."""
+        return sum(self.chunks[index].last - self.chunks[index].first for index in self.there)
+
+    def start(self, inputs: Mapping[str, xr.Dataset]) -> None:
+        """Make the items, once the needed results are there."""
+        self.inputs = inputs
+        self.items = self.job.items(inputs)
+        self.finish_if_done()
+
+    def next_chunk(self) -> Chunk | None:
+        """A chunk that is ready to be computed."""
+        for chunk in self.chunks:
+            if chunk.index in self.there or chunk.index in self.under_way:
+                continue
+            if chunk.after is None or chunk.after in self.there:
+                return chunk
+        return None
+
+    def task(self, chunk: Chunk) -> tuple[Sequence[Any], Table | None]:
+        """What a worker needs for a chunk: its items, and what it starts from."""
+        assert self.items is not None, "not started"
+        carry = None if chunk.after is None else self.store.get(chunk.after)
+        return self.items[chunk.first : chunk.last], carry
+
+    def enter(self, chunk: Chunk, table: Table) -> None:
+        """Keep a chunk; the last one makes the result."""
+        self.store.put(chunk.index, table)
+        self.under_way.discard(chunk.index)
+        self.there.add(chunk.index)
+        self.finish_if_done()
+
+    def finish_if_done(self) -> None:
+        """Make the result where all chunks are there."""
+        if self.complete or len(self.there) < len(self.chunks):
+            return
+        dataset = self.job.dataset(self.store.table(), self.inputs)
+        dataset = with_provenance(dataset, self.job, self.identity, self.fmus, self.store.begun)
+        self.result = self.store.finish(dataset)
+        self.inputs, self.items = {}, None
+
+
+class Runner:
+    """Jobs on their way to results.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+        Each after those it needs.
+    options : RunOptions
+    find : callable
+    """
+
+    def __init__(self, jobs: Sequence[Job], options: RunOptions, find: Find) -> None:
+        self.jobs, self.options = jobs, options
+        self.fmus: dict[str, Fmu] = {model: find(model) for job in jobs for model in job.models}
+        self.states: dict[str, Progress] = {}
+        self.futures: dict[Future[Table], tuple[Progress, Chunk]] = {}
+        self.clock = time.perf_counter()
+        self.fresh = 0  # items computed by this call
+
+    def run(self) -> dict[str, xr.Dataset]:
+        """Compute what is not there yet."""
+        try:
+            self.open()
+            if not self.finished():
+                self.compute_all()
+            found = ((name, state.result) for name, state in self.states.items())
+            return {name: result for name, result in found if result is not None}
+        finally:
+            for state in self.states.values():
+                state.store.close()
+
+    def open(self) -> None:
+        """See what is there already."""
+        known: dict[str, Identity] = {}
+        for job in self.jobs:
+            fmus = {model: self.fmus[model] for model in job.models}
+            known[job.name] = identity_of(job, fmus, known)
+            store = open_store(job.name, known[job.name], self.options)
+            try:
+                self.states[job.name] = Progress(job, store, known[job.name], fmus)
+            except BaseException:
+                store.close()
+                raise
+
+    def finished(self) -> bool:
+        """Whether every result is there."""
+        return all(state.complete for state in self.states.values())
+
+    def compute_all(self) -> None:
+        """In this process as long as little is left, then by others."""
+        with self.bar() as bar:
+            if not self.options.cluster:
+                with at_work(Here()) as workers:
+                    self.work(workers, bar, self.little_left)
+            if not self.finished():
+                with at_work(self.others()) as workers:
+                    self.work(workers, bar, lambda: True)
+
+    def others(self) -> Workers:
+        """Those who compute much."""
+        if self.options.cluster:
+            return Cluster(self.options.cluster)
+        return Processes(self.options.processes)
+
+    def little_left(self) -> bool:
+        """Whether what is left is not worth starting processes, or cannot be shared out."""
+        if self.options.processes == 1 or not self.fresh:
+            return True
+        left = sum(state.job.count() - state.done() for state in self.states.values())
+        seconds = (time.perf_counter() - self.clock) / self.fresh * left
+        return seconds < WORTH or self.ready_chunks(2) < 2
+
+    def ready_chunks(self, most: int) -> int:
+        """Chunks that could be computed at once, counted up to ``most``."""
+        count = 0
+        for state in self.states.values():
+            if self.ready(state):
+                free = (c for c in state.chunks if c.index not in state.there)
+                count += sum(1 for c in free if c.after is None or c.after in state.there)
+            if count >= most:
+                break
+        return count
+
+    def bar(self) -> Any:
+        """A progress bar over all items."""
+        from tqdm.auto import tqdm
+
+        total = sum(state.job.count() for state in self.states.values())
+        done = sum(state.done() for state in self.states.values())
+        single = self.jobs[0] if len(self.jobs) == 1 else None
+        return tqdm(
+            total=total,
+            initial=done,
+            desc=single.name if single else f"{len(self.jobs)} results",
+            unit=single.item if single else "item",
+            disable=not self.options.progress,
+            delay=1.0,
+            dynamic_ncols=True,
+            smoothing=0.1,
+            unit_scale=total > 100_000,
+        )
+
+    def work(self, workers: Workers, bar: Any, go_on: Callable[[], bool]) -> None:
+        """Hand out chunks and take results until all is done, or ``go_on`` says no."""
+        fmus = {model: self.delivery(fmu, workers.remote) for model, fmu in self.fmus.items()}
+        while not self.finished() and (go_on() or self.futures):
+            if go_on():
+                self.hand_out(workers, fmus)
+            if not self.futures:
+                assert self.finished() or not go_on(), "nothing is under way, nothing is ready"
+                continue
+            finished, _ = wait(self.futures, timeout=POLL, return_when=FIRST_COMPLETED)
+            for future in finished:
+                state, chunk = self.futures.pop(future)
+                state.enter(chunk, future.result())
+                self.fresh += chunk.last - chunk.first
+                bar.update(chunk.last - chunk.first)
+
+    @staticmethod
+    def delivery(fmu: Fmu, remote: bool) -> Path | bytes:
+        """An FMU as it travels."""
+        return fmu.path.read_bytes() if remote else fmu.path.resolve()
+
+    def hand_out(self, workers: Workers, fmus: Mapping[str, Path | bytes]) -> None:
+        """Submit chunks until the workers have enough."""
+        for state in self.states.values():
+            while len(self.futures) < workers.room() and self.ready(state):
+                chunk = state.next_chunk()
+                if chunk is None:
+                    break
+                chosen = {model: fmus[model] for model in state.job.models}
+                items, carry = state.task(chunk)
+                state.under_way.add(chunk.index)
+                future = workers.executor.submit(compute, state.job, chosen, items, carry)
+                self.futures[future] = state, chunk
+
+    def ready(self, state: Progress) -> bool:
+        """Whether a job's chunks can be computed; starts it where what it needs is there."""
+        if state.complete:
+            return False
+        if state.items is None:
+            needs = [self.states[name] for name in state.job.needs()]
+            if not all(need.complete for need in needs):
+                return False
+            state.start({need.job.name: need.result for need in needs if need.result is not None})
+        return not state.complete
+
+
+def gather(jobs: Iterable[Job], running: Mapping[str, object], find: Find) -> list[xr.Dataset]:
+    """Results of several jobs that are computed side by side, in their order."""
+    listed = list(jobs)
+    found = Runner(listed, RunOptions.of(running), find).run()
+    return [found[job.name] for job in listed]

@@ -1,0 +1,265 @@
+"""Where the chunks of a job and its result are kept: in memory, or on disk beside each other."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import time
+from abc import ABC, abstractmethod
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import InputError, StaleError, StoreError
+from .files import open_folder, write_whole
+from .identity import Identity, difference, same_question
+from .job import Table
+from .journal import Journal, Lock, discard, journal_path
+from .options import RunOptions
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+log = logging.getLogger(__name__)
+COMPRESSED = 10_000  # values from which a variable is worth compressing
+
+
+def now() -> str:
+    """The time as ISO 8601; SOURCE_DATE_EPOCH in the environment fixes it, for equal bytes."""
+    seconds = float(os.environ.get("SOURCE_DATE_EPOCH") or time.time())
+    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(seconds))
+
+
+class Store(ABC):
+    """One job's chunks and result."""
+
+    begun: str
+
+    @abstractmethod
+    def result(self) -> xr.Dataset | None:
+        """The finished result, where it is there."""
+
+    @abstractmethod
+    def indices(self) -> set[int]:
+        """Chunks that are there."""
+
+    @abstractmethod
+    def get(self, index: int) -> Table:
+        """One of them."""
+
+    @abstractmethod
+    def put(self, index: int, table: Table) -> None:
+        """Keep a chunk."""
+
+    @abstractmethod
+    def finish(self, dataset: xr.Dataset) -> xr.Dataset:
+        """Keep the result and drop the chunks."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Let go of everything."""
+
+    def table(self) -> Table:
+        """All chunks put together along their first axis."""
+        parts = [self.get(index) for index in sorted(self.indices())]
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+class Memory(Store):
+    """Nothing is left when the process ends."""
+
+    def __init__(self) -> None:
+        self.begun = now()
+        self._chunks: dict[int, Table] = {}
+        self._result: xr.Dataset | None = None
+
+    def result(self) -> xr.Dataset | None:
+        """The finished result, where it is there."""
+        return self._result
+
+    def indices(self) -> set[int]:
+        """Chunks that are there."""
+        return set(self._chunks)
+
+    def get(self, index: int) -> Table:
+        """One of them."""
+        return self._chunks[index]
+
+    def put(self, index: int, table: Table) -> None:
+        """Keep a chunk."""
+        self._chunks[index] = table
+
+    def finish(self, dataset: xr.Dataset) -> xr.Dataset:
+        """Keep the result and drop the chunks."""
+        self._chunks.clear()
+        self._result = dataset
+        return dataset
+
+    def close(self) -> None:
+        """Nothing to let go of."""
+
+
+class Disk(Store):
+    """A NetCDF file, and a journal beside it until that is finished.
+
+    Parameters
+    ----------
+    path : Path
+        The NetCDF file.
+    identity : dict
+        What it answers.
+    options : RunOptions
+
+    Raises
+    ------
+    InputError
+        Where another question's result or journal is there.
+    StaleError
+        Where it answers this question, but was made by other code or another FMU.
+    """
+
+    def __init__(self, path: Path, identity: Identity, options: RunOptions) -> None:
+        self.path, self.identity, self.options = path, identity, options
+        open_folder(path.parent)
+        self._lock = Lock(path)
+        self._journal: Journal | None = None
+        self.begun = ""
+        try:
+            if path.exists() and options.force:
+                path.unlink()
+                discard(journal_path(path))
+            if path.exists():
+                self.check(read_identity(path), path)
+            else:
+                self._journal = self.open_journal()
+                self.begun = self._journal.begun
+        except BaseException:
+            self.close()
+            raise
+
+    def open_journal(self) -> Journal:
+        """The journal of this job, begun where there is none."""
+        path = journal_path(self.path)
+        journal = Journal(path, self.identity, now())
+        try:
+            self.check(journal.identity, path)
+        except InputError:
+            journal.close()
+            if not self.options.force:
+                raise
+            discard(path)
+            return Journal(path, self.identity, now())
+        return journal
+
+    def check(self, found: Identity, path: Path) -> None:
+        """Whether what is on disk answers this question."""
+        line = difference(found, self.identity)
+        if not line:
+            return
+        if not same_question(found, self.identity):
+            raise InputError(
+                f"{path}: holds another question's answer ({line}); choose "
+                "another place, or force to replace it"
+            )
+        if not self.options.keep_stale:
+            raise StaleError(
+                f"{path}: stale ({line}); force to compute it anew, or "
+                "keep stale results as they are"
+            )
+        log.warning("%s: stale (%s), taken as it is", path, line)
+
+    def result(self) -> xr.Dataset | None:
+        """The finished result, where it is there."""
+        return load(self.path) if self._journal is None and self.path.exists() else None
+
+    @property
+    def journal(self) -> Journal:
+        """The journal, of a job that is not finished."""
+        assert self._journal is not None, "finished"
+        return self._journal
+
+    def indices(self) -> set[int]:
+        """Chunks that are there."""
+        return self.journal.indices()
+
+    def get(self, index: int) -> Table:
+        """One of them."""
+        return self.journal.get(index)
+
+    def put(self, index: int, table: Table) -> None:
+        """Keep a chunk."""
+        self.journal.put(index, table)
+
+    def finish(self, dataset: xr.Dataset) -> xr.Dataset:
+        """Keep the result and drop the chunks."""
+        write_netcdf(dataset, self.path)
+        self.journal.remove()
+        self._journal = None
+        return load(self.path)
+
+    def close(self) -> None:
+        """Close the journal and let others at it."""
+        if self._journal is not None:
+            self._journal.close()
+        self._lock.release()
+
+
+def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
+    """Where a job is kept."""
+    path = options.path(name)
+    return Memory() if path is None else Disk(path, identity, options)
+
+
+def load(path: Path) -> xr.Dataset:
+    """A result from disk, in memory.
+
+    Raises
+    ------
+    StoreError
+        Where it cannot be read.
+    """
+    import xarray as xr
+
+    try:
+        return xr.load_dataset(path, engine="netcdf4")
+    except Exception as error:
+        raise StoreError(
+            f"{path}: damaged ({first_line(error)}); remove it to begin anew"
+        ) from error
+
+
+def first_line(error: BaseException) -> str:
+    """An exception in a line."""
+    return (str(error).splitlines() or [type(error).__name__])[0]
+
+
+def read_identity(path: Path) -> Identity:
+    """What a finished result answers.
+
+    Raises
+    ------
+    StoreError
+        Where the file is not a result of this project.
+    """
+    import netCDF4
+
+    try:
+        with netCDF4.Dataset(path) as found:
+            identity: Identity = json.loads(found.getncattr("identity"))
+            return identity
+    except Exception as error:
+        raise StoreError(
+            f"{path}: not a result of this project ({first_line(error)}); expected a "
+            "place that is free or holds one"
+        ) from error
+
+
+def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
+    """Write a dataset, whole or not at all."""
+    large = [name for name, variable in dataset.data_vars.items() if variable.size > COMPRESSED]
+    encoding = {name: {"zlib": True, "complevel": 4} for name in large}
+    return write_whole(
+        path, lambda place: dataset.to_netcdf(place, engine="netcdf4", encoding=encoding)
+    )

@@ -1,0 +1,86 @@
+"""A job of this test suite: squares of whole numbers, and their running sum."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from orchestrate.running.job import Inputs, Job, Table
+
+
+@dataclass(frozen=True)
+class Squares(Job):
+    """Squares of 0 ... size - 1; each chunk may take a while."""
+
+    size: int = 10
+    pause: float = 0.0
+    fail_at: int = -1
+    chunk: ClassVar[int] = 3
+
+    def count(self) -> int:
+        return self.size
+
+    def items(self, inputs: Inputs) -> range:
+        return range(self.size)
+
+    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+        time.sleep(self.pause)
+        assert self.fail_at not in items, "as it was told to"
+        return {"square": np.array([float(item * item) for item in items])}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        return xr.Dataset({"square": ("number", table["square"])}, attrs={"title": "Squares"})
+
+
+@dataclass(frozen=True)
+class Sums(Squares):
+    """Running sums of squares in two lanes: each chunk starts from the end of the one before."""
+
+    sequential: ClassVar[bool] = True
+
+    def lanes(self) -> int:
+        return 2
+
+    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+        squares = super().work(fmus, items, None)["square"]
+        return {"sum": np.cumsum(squares) + (carry["sum"][-1] if carry else 0.0)}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        return xr.Dataset({"sum": ("number", table["sum"])})
+
+
+@dataclass(frozen=True)
+class Roots(Job):
+    """Roots of the squares of another job."""
+
+    source: str = "squares"
+
+    def needs(self) -> tuple[str, ...]:
+        return (self.source,)
+
+    def count(self) -> int:
+        return 10
+
+    def items(self, inputs: Inputs) -> list[float]:
+        return [float(value) for value in inputs[self.source].square.values]
+
+    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+        return {"root": np.sqrt(np.array(items))}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        return xr.Dataset({"root": ("number", table["root"])})
+
+
+@dataclass(frozen=True)
+class Model:
+    """An FMU's description as the runner needs it."""
+
+    path: Path
+    name: str = "TwoMassImpactOscillator"
+    guid: str = "{1}"
+    fmi_version: str = "3.0"
