@@ -1,1 +1,6 @@
-"""The paper's figures, one module each: data in, picture out. Only this folder sees matplotlib."""
+"""Pictures: a dataset in, a figure out. Nothing here runs an FMU.
+
+Each module has a function ``draw`` that takes one or several datasets and returns a
+:class:`matplotlib.figure.Figure`; :func:`.files.save` writes it. Only this folder sees matplotlib,
+whose settings and backend are the same after a drawing as before.
+"""

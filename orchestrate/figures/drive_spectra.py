@@ -21,11 +21,26 @@ def draw(spectra, path):
     path : Path
         PNG file; written whole or not at all.
     """
-    figure, axes = plt.subplots(len(spectra), 1, figsize=(10, 3.5 * len(spectra)), sharex=True, sharey=True, layout="constrained", squeeze=False)
+    figure, axes = plt.subplots(
+        len(spectra),
+        1,
+        figsize=(10, 3.5 * len(spectra)),
+        sharex=True,
+        sharey=True,
+        layout="constrained",
+        squeeze=False,
+    )
     top = max(amplitude.max() for _, amplitude, _ in spectra.values())
-    for panel, (name, (frequency, amplitude, speed)) in zip(axes[:, 0], spectra.items(), strict=True):
+    for panel, (name, (frequency, amplitude, speed)) in zip(
+        axes[:, 0], spectra.items(), strict=True
+    ):
         shown = frequency < HARMONICS * speed
-        panel.semilogy(frequency[shown] / speed, np.maximum(amplitude[shown], 1e-9 * top), color=COLOURS[name], lw=0.7)
+        panel.semilogy(
+            frequency[shown] / speed,
+            np.maximum(amplitude[shown], 1e-9 * top),
+            color=COLOURS[name],
+            lw=0.7,
+        )
         panel.set_title(f"{name}, $\\Omega$ = {speed:.4f}", loc="left", fontsize=10)
         panel.set_ylabel(r"acceleration in $\omega^2 S/M_t$")
         panel.set_ylim(1e-6 * top, 2.0 * top)

@@ -1,21 +1,56 @@
-"""Pictures on disk, whole or not at all."""
+"""Figures on disk, each whole or not at all."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from ..running.files import write_whole
+from .style import look
+
+UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, today and tomorrow
+    "pdf": {"CreationDate": None},
+    "png": {"Software": None},
+    "svg": {"Date": None, "Creator": "matplotlib"},
+}
 
 
-def write(figure, path, **options):
-    """Write a figure.
+def save(
+    figure: Figure, path: str | Path, formats: Iterable[str] = ("png",), **options: Any
+) -> list[Path]:
+    """Write a figure, once in each format.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-    path : Path
+    path : path-like
+        Without an ending: the format is the ending.
+    formats : iterable of str
+        Of those matplotlib writes: png, pdf, svg, ...
     **options
-        Of matplotlib's ``savefig``.
+        Of :meth:`matplotlib.figure.Figure.savefig`.
+
+    Returns
+    -------
+    list of Path
+        The files written.
+
+    Raises
+    ------
+    orchestrate.errors.StoreError
+        Where a file cannot be written.
     """
-    temporary = Path(path).with_name(Path(path).name + ".tmp")
-    try:
-        figure.savefig(temporary, **options)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    written = []
+    for ending in formats:
+        target = Path(f"{path}.{ending}")
+
+        def write(temporary: Path, ending: str = ending) -> None:
+            with look():
+                figure.savefig(temporary, format=ending, metadata=UNDATED.get(ending), **options)
+
+        write_whole(target, write)
+        written.append(target)
+    return written

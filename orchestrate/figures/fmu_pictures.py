@@ -1,34 +1,53 @@
-"""The pictures inside the FMU: the mechanical system (Figure 4) and an example run."""
+"""The pictures inside the oscillator's FMU: the system (the paper's Figure 4), an example run."""
 
-from pathlib import Path
+from __future__ import annotations
 
-import matplotlib
+from collections.abc import Mapping
 
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402 - after the backend was chosen
-from matplotlib.patches import Rectangle  # noqa: E402
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from .style import in_our_look, panels
 
 
-def spring(axes, x, y, length):
+def sketch(width: float) -> tuple[Figure, Axes]:
+    """A figure for a drawing by hand, half as high as it is wide."""
+    figure = Figure(figsize=(width, width * 0.5))
+    return figure, figure.add_subplot()
+
+
+def bare(axes: Axes, xlim: tuple[float, float], ylim: tuple[float, float]) -> None:
+    """Equal scales, and no frame."""
+    axes.set(xlim=xlim, ylim=ylim)
+    axes.set_aspect("equal")
+    axes.axis("off")
+
+
+def spring(axes: Axes, x: float, y: float, length: float) -> None:
     """A zigzag from (x, y) to the right."""
     n = 9
-    xs = [x, x + 0.15 * length] + [x + length * (0.15 + 0.7 * (i + 0.5) / n) for i in range(n)] + [x + 0.85 * length, x + length]
-    ys = [y, y] + [y + (0.16 if i % 2 else -0.16) for i in range(n)] + [y, y]
+    zigzag = [x + length * (0.15 + 0.7 * (i + 0.5) / n) for i in range(n)]
+    xs = [x, x + 0.15 * length, *zigzag, x + 0.85 * length, x + length]
+    ys = [y, y, *(y + (0.16 if i % 2 else -0.16) for i in range(n)), y, y]
     axes.plot(xs, ys, "k", lw=1.4)
 
 
-def damper(axes, x, y, length):
+def damper(axes: Axes, x: float, y: float, length: float) -> None:
     """A dashpot from (x, y) to the right."""
     middle = x + 0.5 * length
-    axes.plot([x, middle - 0.18], [y, y], "k", lw=1.4)
-    axes.plot([middle + 0.18, middle - 0.18, middle - 0.18, middle + 0.18], [y + 0.16, y + 0.16, y - 0.16, y - 0.16], "k", lw=1.4)
+    left, right = middle - 0.18, middle + 0.18
+    axes.plot([x, left], [y, y], "k", lw=1.4)
+    axes.plot([right, left, left, right], [y + 0.16, y + 0.16, y - 0.16, y - 0.16], "k", lw=1.4)
     axes.plot([middle + 0.05, middle + 0.05], [y - 0.11, y + 0.11], "k", lw=1.4)
     axes.plot([middle + 0.05, x + length], [y, y], "k", lw=1.4)
 
 
-def draw_scheme(path, width=4.8):
+@in_our_look
+def draw_scheme(width: float = 4.8) -> Figure:
     """Two masses in a shaken box (Figure 4)."""
-    figure, axes = plt.subplots(figsize=(width, width * 0.5))
+    figure, axes = sketch(width)
     axes.add_patch(Rectangle((0, 0), 10, 4, fill=False, lw=2.5))
     for x, name in ((3.4, "$m_1$"), (5.0, "$m_2$")):
         axes.add_patch(Rectangle((x, 1.1), 1.6, 1.8, facecolor="0.85", edgecolor="k", lw=1.6))
@@ -38,40 +57,34 @@ def draw_scheme(path, width=4.8):
         damper(axes, x, 1.5, 3.4)
         axes.text(x + 1.7, 2.95, stiffness, ha="center", fontsize=12)
         axes.text(x + 1.7, 0.75, dashpot, ha="center", fontsize=12)
-    axes.annotate("", (4.9, 3.35), (3.5, 3.35), arrowprops={"arrowstyle": "->"})
-    axes.annotate("", (6.5, 3.35), (5.1, 3.35), arrowprops={"arrowstyle": "->"})
-    axes.text(4.2, 3.45, "$x_1$", ha="center", fontsize=11)
-    axes.text(5.8, 3.45, "$x_2$", ha="center", fontsize=11)
+    for x, name in ((3.5, "$x_1$"), (5.1, "$x_2$")):
+        axes.annotate("", (x + 1.4, 3.35), (x, 3.35), arrowprops={"arrowstyle": "->"})
+        axes.text(x + 0.7, 3.45, name, ha="center", fontsize=11)
     axes.annotate("", (6.2, -0.55), (3.8, -0.55), arrowprops={"arrowstyle": "<->", "lw": 1.6})
     axes.text(5.0, -1.15, r"$a\,\sin\,\Omega t$", ha="center", fontsize=12)
-    axes.set(xlim=(-0.2, 10.2), ylim=(-1.3, 4.2))
-    axes.set_aspect("equal")
-    axes.axis("off")
-    figure.savefig(path, dpi=100, bbox_inches="tight", metadata={"Software": None})
-    plt.close(figure)
+    bare(axes, (-0.2, 10.2), (-1.3, 4.2))
+    return figure
 
 
-def draw_example(times, values, path):
+@in_our_look
+def draw_example(times: np.ndarray, values: Mapping[str, np.ndarray]) -> Figure:
     """Displacements, gap and permanent contact over time.
 
     Parameters
     ----------
     times : ndarray, shape (n,)
-    values : dict of ndarray
-        x1, x2, x_rel, in_contact.
-    path : Path
-        SVG file.
+    values : mapping of ndarray
+        ``x1``, ``x2``, ``x_rel``, ``in_contact``.
     """
-    with plt.rc_context({"svg.hashsalt": "vibroimpact", "svg.fonttype": "none"}):
-        figure, (top, bottom) = plt.subplots(2, 1, figsize=(9, 5), sharex=True, layout="constrained")
-        top.plot(times, values["x1"], label=r"$\xi_1$")
-        top.plot(times, values["x2"], label=r"$\xi_2$", ls="--")
-        bottom.plot(times, values["x_rel"], "k", label=r"$\xi_{Rel}$")
-        for axes in (top, bottom):
-            low, high = axes.get_ylim()
-            axes.fill_between(times, low, high, where=values["in_contact"] > 0, color="0.88", lw=0)
-            axes.set_ylim(low, high)
-            axes.legend(loc="upper right")
-        bottom.set_xlabel(r"$\tau$")
-        figure.savefig(Path(path), format="svg", metadata={"Date": None, "Creator": "matplotlib"})
-        plt.close(figure)
+    figure, (top, bottom) = panels(2, 1, (9, 5), sharex=True)
+    top.plot(times, values["x1"], label=r"$\xi_1$")
+    top.plot(times, values["x2"], label=r"$\xi_2$", ls="--")
+    bottom.plot(times, values["x_rel"], "k", label=r"$\xi_{Rel}$")
+    for axes in (top, bottom):
+        low, high = axes.get_ylim()
+        touching = values["in_contact"] > 0
+        axes.fill_between(times, low, high, where=touching, color="0.88", lw=0)
+        axes.set_ylim(low, high)
+        axes.legend(loc="upper right")
+    bottom.set_xlabel(r"$\tau$")
+    return figure

@@ -1,56 +1,61 @@
-"""Figures 6, 10, 11: stroboscopic samples of the gap over the frequency ratio, semi-logarithmic."""
+"""Orbit diagrams (Figures 6, 10, 11): samples of the gap over a parameter, impacts below."""
 
-import matplotlib
+from __future__ import annotations
+
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402 - after the backend was chosen
+from .labels import symbol
+from .style import BLACK, RED, XI_REL, in_our_look, panels
 
-from .files import write  # noqa: E402
-
-METHOD = (
-    "One sequential sweep upwards, 0.1 <= eta <= 8.0 by 0.001, each frequency started from the end of the last, stroboscopic samples taken inside "
-    "the FMU's steps after the periods dropped."
-)
+LOWEST = 1e-5  # of the logarithmic axis: what is smaller is not shown
+COLOURS = {"up": BLACK, "down": RED}
 
 
-def draw(dataset, path):
-    """Draw an orbit diagram into a file.
+@in_our_look
+def draw(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw an orbit diagram in the paper's manner.
 
     Parameters
     ----------
-    dataset : xarray.Dataset
-        Of :func:`orchestrate.orbit.dataset`.
-    path : Path
-        PNG file; written whole or not at all.
+    data : xarray.Dataset
+        Of :func:`orchestrate.sweep`, in one direction or in both.
+    title : str
+        What is the same in the whole diagram.
     """
-    figure = picture(dataset)
-    try:
-        write(figure, path, dpi=150, format="png")
-    finally:
-        plt.close(figure)
-
-
-def picture(dataset):
-    """An orbit diagram in the paper's manner, with the impacts per period below it; returns the figure."""
-    order = np.argsort(dataset.eta.values, kind="stable")
-    eta = dataset.eta.values[order]
-    samples = dataset.xi_rel.values[order]
-    figure, (top, bottom) = plt.subplots(2, 1, figsize=(12, 8), sharex=True, height_ratios=(3, 1), layout="constrained")
-    shown = np.where(samples > 0.0, samples, np.nan)
-    top.plot(np.repeat(eta, samples.shape[1]), shown.ravel(), ",k", alpha=0.6, rasterized=True)
-    top.set_yscale("log")
-    if np.isfinite(shown).any():
-        top.set_ylim(max(np.nanmin(shown), 1e-5) / 1.5, np.nanmax(shown) * 1.5)
-    top.set_ylabel(r"$\xi_{\mathrm{Rel}}(nT)$")
-    first, last = int(dataset.sample.values[0]), int(dataset.sample.values[-1])
-    attributes = dataset.attrs
-    top.set_title(f"$e = {attributes['e']:g}$, $D = {attributes['D']:g}$, $n = {first}(1){last}$", loc="left")
-    bottom.plot(eta, dataset.impacts_per_period.values[order], ",k", rasterized=True)
-    bottom.set_yscale("log")
-    bottom.set_ylabel("impacts per $T$")
-    bottom.set_xlabel(r"$\eta$")
-    bottom.set_xlim(eta.min(), eta.max() if eta.max() > eta.min() else eta.min() + 1e-3)
-    for axes in (top, bottom):
-        axes.grid(True, which="major", alpha=0.3)
+    figure, (top, bottom) = panels(2, 1, (12, 8), sharex=True, height_ratios=(3, 1))
+    (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
+    both = "direction" in data.dims
+    for direction in map(str, data.direction.values) if both else ("up",):
+        part = data.sel(direction=direction) if both else data
+        draw_sweep(top, bottom, part.sortby(parameter), COLOURS[direction], direction)
+    scale(top, data.xi_rel.values)
+    first, last = int(data.sample.values[0]), int(data.sample.values[-1])
+    shown = ", ".join(filter(None, [title, f"$n = {first}(1){last}$"]))
+    top.set(ylabel=rf"{XI_REL}$(nT)$", title=shown)
+    bottom.set(ylabel="impacts per $T$", xlabel=symbol(parameter), yscale="log")
+    low, high = float(data[parameter].min()), float(data[parameter].max())
+    bottom.set_xlim(low, high if high > low else low + 1e-3)
+    if both:
+        top.legend(markerscale=20)
     return figure
+
+
+def draw_sweep(top: Axes, bottom: Axes, data: xr.Dataset, colour: str, label: str) -> None:
+    """One direction's samples and impacts, a pixel each."""
+    (parameter,) = map(str, data.impacts_per_period.dims)
+    samples = data.xi_rel.transpose(parameter, "sample").values
+    along = np.repeat(data[parameter].values, samples.shape[1])
+    gaps = np.where(samples > 0.0, samples, np.nan).ravel()
+    top.plot(along, gaps, ",", color=colour, alpha=0.6, rasterized=True, label=label)
+    bottom.plot(data[parameter], data.impacts_per_period, ",", color=colour, rasterized=True)
+
+
+def scale(axes: Axes, samples: np.ndarray) -> None:
+    """A logarithmic axis for the gaps that are not zero."""
+    axes.set_yscale("log")
+    shown = samples[samples > 0.0]
+    if shown.size:
+        axes.set_ylim(max(shown.min(), LOWEST) / 1.5, shown.max() * 1.5)

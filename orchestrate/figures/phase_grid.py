@@ -1,23 +1,38 @@
-"""Figures 8 and 9 alike: relative phase curves at typical frequencies of one region, each on its own scales."""
+"""Relative phase curves at many frequencies (Figures 8 and 9), each on its own scales."""
 
-from .canvas import XI_REL, XI_REL_RATE, kind_of, relative
-from .canvas import panels as make
+from __future__ import annotations
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from .curve_data import relative
+from .labels import kind_of
+from .style import XI_REL, XI_REL_RATE, in_our_look, panels
 
 
-def draw_grid(data):
-    """One phase plane a frequency; returns the figure."""
+@in_our_look
+def draw(data: xr.Dataset, columns: int = 4) -> Figure:
+    """One phase plane a response.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Curves, see :mod:`.curve_data`.
+    columns : int
+    """
     count = data.sizes["panel"]
-    columns = 4
-    figure, axes = make(-(-count // columns), columns, (13, 3.1 * -(-count // columns)))
+    rows = -(-count // columns)
+    figure, axes = panels(rows, columns, (3.25 * columns, 3.1 * rows))
     for index, plane in enumerate(axes[:count]):
         _, gap, rate = relative(data, index)
         plane.plot(gap, rate, "-k", linewidth=0.25, rasterized=True)
-        plane.set_title(rf"$\eta = {float(data.eta[index]):.3f}$, {kind_of(data.multiplicity[index])}")
+        kind = kind_of(int(data.multiplicity[index]))
+        plane.set_title(rf"$\eta = {float(data.eta[index]):.3f}$, {kind}")
         plane.ticklabel_format(scilimits=(-2, 3))
     for plane in axes[count:]:
         plane.set_visible(False)
-    for row in range(0, len(axes), columns):
-        axes[row].set_ylabel(XI_REL_RATE)
+    for plane in axes[::columns]:
+        plane.set_ylabel(XI_REL_RATE)
     for plane in axes[-columns:]:
         plane.set_xlabel(XI_REL)
     return figure

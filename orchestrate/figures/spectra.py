@@ -1,31 +1,40 @@
-"""Spectra of the absolute acceleration of mass 1, bonded against delaminated, as in the paper's Figure 3."""
+"""Amplitude spectra under harmonic excitation, bonded against delaminated."""
 
-TITLE = "Spectra (the paper's Figure 3)"
-CAPTION = (
-    "Amplitude spectra of the absolute acceleration of mass 1, bonded (blue) and delaminated (black), at the resonance peak and at two other "
-    "frequencies; e = 0.7, D = 0.005. Red: what sampled accelerations show, without the impacts' impulses."
-)
-METHOD = (
-    "64 settled periods, 1024 states each sampled inside the FMU; the acceleration's spectrum is omega^2 times that of the absolute displacement, "
-    "which holds the impulses as kinks. A Hann window."
-)
-FLOOR = 1e-4  # of the largest amplitude
+from __future__ import annotations
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from .style import BLACK, BLUE, RED, in_our_look, panels
+
+FLOOR = 1e-4  # of the largest amplitude: the lower end of the axis
+LINES = {  # by kind, in the order of drawing: colour, width, label
+    "delaminated": (BLACK, 0.9, "delaminated"),
+    "sampled": (RED, 0.6, "delaminated, sampled acceleration"),
+    "bonded": (BLUE, 1.6, "bonded"),
+}
 
 
-def draw(data):
-    """One panel a frequency; returns the figure."""
-    from .canvas import BLACK, BLUE, RED
-    from .canvas import panels as make
+@in_our_look
+def draw(data: xr.Dataset) -> Figure:
+    """One panel a frequency.
 
-    figure, axes = make(data.sizes["eta"], 1, (11, 3.0 * data.sizes["eta"]), sharex=True)
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.spectra`.
+    """
+    count = data.sizes["eta"]
+    figure, axes = panels(count, 1, (11, 3.0 * count), sharex=True)
     for index, plane in enumerate(axes):
         part = data.isel(eta=index)
         top = float(part.amplitude.max())
-        for kind, colour, width in (("delaminated", BLACK, 0.9), ("sampled", RED, 0.6), ("bonded", BLUE, 1.6)):
-            label = {"sampled": "delaminated, sampled acceleration"}.get(kind, kind)
-            plane.semilogy(data.order, part.amplitude.sel(kind=kind), color=colour, linewidth=width, label=label)
-        plane.set(title=rf"$\eta = {float(part.eta):.3f}$", ylabel="amplitude", ylim=(FLOOR * top, 2.0 * top))
-    axes[0].legend(fontsize=8)
+        for kind, (colour, width, label) in LINES.items():
+            amplitude = part.amplitude.sel(kind=kind)
+            plane.semilogy(data.order, amplitude, color=colour, linewidth=width, label=label)
+        title = rf"$\eta = {float(part.eta):.3f}$"
+        plane.set(title=title, ylabel="amplitude", ylim=(FLOOR * top, 2.0 * top))
+    axes[0].legend()
     axes[-1].set_xlabel(r"multiples of $\eta$")
     axes[-1].set_xlim(0, float(data.order.max()))
     return figure

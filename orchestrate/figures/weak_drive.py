@@ -9,7 +9,11 @@ from matplotlib import pyplot as plt  # noqa: E402 - after the backend was chose
 from .files import write  # noqa: E402
 
 COLOURS = {"bonded": "C0", "delaminated": "C3"}
-SINKS = (("dampers", "dampers of the masses"), ("box_damper", "damper of the box"), ("impact_loss", "impacts"))
+SINKS = (
+    ("dampers", "dampers of the masses"),
+    ("box_damper", "damper of the box"),
+    ("impact_loss", "impacts"),
+)
 WINDOW = 10  # revolutions a power is averaged over
 
 
@@ -31,15 +35,23 @@ def draw(datasets, theory, path):
         there = data.time.values <= data.turn_time
         for part, style in ((there, "-"), (~there, "--")):
             name = f"{label}, {'there' if style == '-' else 'back'}"
-            axes[0, 0].plot(data.eta0[part], data.Omega[part], style, color=colour, lw=1.2, label=name)
-            axes[0, 1].plot(data.Omega[part], data.amplitude[part], style, color=colour, lw=1.2, label=name)
+            axes[0, 0].plot(
+                data.eta0[part], data.Omega[part], style, color=colour, lw=1.2, label=name
+            )
+            axes[0, 1].plot(
+                data.Omega[part], data.amplitude[part], style, color=colour, lw=1.2, label=name
+            )
             if label == "delaminated":
                 impacts(axes[1, 0], data, part, style, name)
         mark_jumps(axes[0, 0], data, colour)
         histories(axes[2], data, colour)
     if theory:
-        axes[0, 0].plot(theory["eta0"], theory["Omega"], "k:", lw=1.0, label="averaged theory, bonded")
-        axes[0, 1].plot(theory["Omega"], theory["amplitude"], "k:", lw=1.0, label="averaged theory, bonded")
+        axes[0, 0].plot(
+            theory["eta0"], theory["Omega"], "k:", lw=1.0, label="averaged theory, bonded"
+        )
+        axes[0, 1].plot(
+            theory["Omega"], theory["amplitude"], "k:", lw=1.0, label="averaged theory, bonded"
+        )
     powers(axes[1, 1], datasets[-1])
     label_axes(axes)
     limits(axes[0], datasets)
@@ -53,7 +65,14 @@ def impacts(axes, data, part, style, name):
     axes.plot(speed, count, ".", ms=2.0, color=colour, alpha=0.3)
     if len(count) > WINDOW:
         mean = np.convolve(count, np.full(WINDOW, 1.0 / WINDOW), "valid")
-        axes.plot(np.convolve(speed, np.full(WINDOW, 1.0 / WINDOW), "valid"), mean, style, color=colour, lw=1.2, label=f"{name}, mean of {WINDOW}")
+        axes.plot(
+            np.convolve(speed, np.full(WINDOW, 1.0 / WINDOW), "valid"),
+            mean,
+            style,
+            color=colour,
+            lw=1.2,
+            label=f"{name}, mean of {WINDOW}",
+        )
     axes.set_yscale("log")
 
 
@@ -63,7 +82,15 @@ def mark_jumps(axes, data, colour):
         value = data.attrs[name]
         if np.isfinite(value):
             axes.axvline(value, color=colour, lw=0.6, alpha=0.6)
-            axes.text(value, place, f" {value:.4f}", color=colour, transform=axes.get_xaxis_transform(), fontsize=8, rotation=90)
+            axes.text(
+                value,
+                place,
+                f" {value:.4f}",
+                color=colour,
+                transform=axes.get_xaxis_transform(),
+                fontsize=8,
+                rotation=90,
+            )
 
 
 def histories(axes, data, colour):
@@ -77,8 +104,20 @@ def histories(axes, data, colour):
             continue
         at = time[there][np.argmin(np.abs(eta0[there] - value))]
         near = np.abs(time - at) < 500.0
-        panel.plot(time[near] - at, data.Omega.values[near], color=colour, label=f"{data.structure}: $\\Omega$")
-        panel.plot(time[near] - at, data.amplitude.values[near] / 10.0, color=colour, lw=0.8, ls="--", label=f"{data.structure}: amplitude/10")
+        panel.plot(
+            time[near] - at,
+            data.Omega.values[near],
+            color=colour,
+            label=f"{data.structure}: $\\Omega$",
+        )
+        panel.plot(
+            time[near] - at,
+            data.amplitude.values[near] / 10.0,
+            color=colour,
+            lw=0.8,
+            ls="--",
+            label=f"{data.structure}: amplitude/10",
+        )
 
 
 def powers(axes, data):

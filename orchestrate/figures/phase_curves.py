@@ -1,0 +1,82 @@
+"""Phase curves of both masses: one response in its three states (Figure 5), several (Figure 12)."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .curve_data import panel_of, relative
+from .labels import meanings
+from .style import BLACK, BLUE, GREY, RED, XI_REL, XI_REL_RATE, in_our_look, panels
+
+KIND_COLOURS = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent contact
+CONTACT = 2
+
+
+@in_our_look
+def draw_states(data: xr.Dataset) -> Figure:
+    """Both phase planes of one response: of the masses, and of their relative motion.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Curves with one panel, see :mod:`.curve_data`.
+    """
+    figure, (left, right) = panels(1, 2, (10, 4.6))
+    state, kind = data.state.values, data.kind.values
+    _, gap, rate = relative(data, 0)
+    names = meanings(data.kind)
+    draw_kinds(left, (state[:, 0], state[:, 2]), kind, "-", names)
+    draw_kinds(left, (state[:, 1], state[:, 3]), kind, "--", names)
+    draw_kinds(right, (gap, rate), kind, "-", names, dotted=True)
+    title = r"(a) both masses: solid $\xi_1$, dashed $\xi_2$"
+    left.set(title=title, xlabel=r"$\xi_i$", ylabel=r"$\xi'_i$")
+    right.set(title="(b) relative motion", xlabel=XI_REL, ylabel=XI_REL_RATE)
+    right.legend()
+    return figure
+
+
+def draw_kinds(
+    axes: Axes,
+    curve: tuple[np.ndarray, np.ndarray],
+    kind: np.ndarray,
+    style: str,
+    names: dict[int, str],
+    dotted: bool = False,
+) -> None:
+    """A curve in the colours of its states; contact is thick, or a dot where it is a point."""
+    for index, colour in enumerate(KIND_COLOURS):
+        here = np.where(kind == index, 1.0, np.nan)
+        contact = index == CONTACT
+        width = 2.5 if contact and not dotted else 1.0
+        marker = "o" if contact and dotted else ""
+        label = names[index] if style == "-" else None
+        line = {"color": colour, "linewidth": width, "label": label, "marker": marker}
+        axes.plot(curve[0] * here, curve[1] * here, style, **line)
+
+
+@in_our_look
+def draw_masses(data: xr.Dataset) -> Figure:
+    """The phase planes of both masses, a panel a response, on one scale.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Curves, see :mod:`.curve_data`.
+    """
+    count = data.sizes["panel"]
+    figure, axes = panels(1, count, (4.0 * count, 4.6))
+    reach = 1.08 * float(np.abs(data.state).max())
+    for index, plane in enumerate(axes):
+        state = panel_of(data, index).state.values
+        plane.plot(state[:, 0], state[:, 2], "-", color=BLACK, linewidth=1.0, label=r"$m_1$")
+        plane.plot(state[:, 1], state[:, 3], ":", color=RED, linewidth=1.4, label=r"$m_2$")
+        e, D, eta = (float(data[name][index]) for name in ("e", "D", "eta"))
+        plane.set_title(rf"({'abcdefgh'[index]}) $e = {e:g}$, $D = {D:g}$, $\eta = {eta:.3f}$")
+        plane.set_xlabel(r"$\xi_i$")
+        plane.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    axes[0].set_ylabel(r"$\xi'_i$")
+    axes[0].legend()
+    return figure

@@ -1,0 +1,35 @@
+"""The gap over time, a panel a response, with the excitation below (Figure 7)."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from .curve_data import relative
+from .labels import kind_of
+from .style import BLACK, BLUE, XI_REL, in_our_look, panels
+
+
+@in_our_look
+def draw(data: xr.Dataset) -> Figure:
+    """Gap over time in periods of the excitation, and sin(eta tau).
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Curves over whole periods, see :mod:`.curve_data`; panel k has the multiplicity k + 1.
+    """
+    count, turns = data.sizes["panel"], np.zeros(1)
+    figure, axes = panels(count + 1, 1, (10, 1.8 * (count + 1)), sharex=True)
+    for index, plane in enumerate(axes[:count]):
+        eta = float(data.eta[index])
+        tau, gap, _ = relative(data, index)
+        turns = tau * eta / (2.0 * np.pi)
+        plane.plot(turns, gap, "-", color=BLACK, linewidth=0.9)
+        kind = f"{kind_of(index + 1)}-periodic, one impact in a response period"
+        plane.set(ylabel=XI_REL, title=rf"$\eta = {eta:.3f}$: {kind}")
+        plane.ticklabel_format(axis="y", scilimits=(-2, 3))
+    axes[-1].plot(turns, np.sin(2.0 * np.pi * turns), "-", color=BLUE, linewidth=0.9)
+    axes[-1].set(ylabel=r"$\sin\eta\tau$", xlabel=r"$\tau/T$", xlim=(0, round(turns[-1])))
+    return figure
