@@ -4,7 +4,7 @@ Standard library only: this file travels inside the FMU.
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 
 REAL, INTEGER, BOOLEAN = "Real", "Integer", "Boolean"
@@ -20,8 +20,6 @@ class Variable:
     ----------
     name, description, unit : str
         As in ``modelDescription.xml``; unit ``"1"`` is dimensionless, ``""`` for what has none.
-    slot : int
-        Place in the kernel's memory, and the FMI value reference.
     causality, variability, initial : str
         FMI 2.0 attributes.
     type : str
@@ -42,10 +40,11 @@ class Variable:
         The output that is its time derivative, where there is one.
     series : str
         Name of the array it is an element of, where FMI 3.0 has the array alone.
+    slot : int
+        Place in the table, in the kernel's memory, and the FMI value reference; see :func:`numbered`.
     """
 
     name: str
-    slot: int
     description: str
     causality: str
     unit: str = ""
@@ -61,6 +60,7 @@ class Variable:
     input_derivatives: int = 0
     derivative: str = ""
     series: str = ""
+    slot: int = -1
 
     @property
     def calculated(self):
@@ -94,20 +94,41 @@ class Variable:
         return f"{lower}{self.name}{upper}"
 
 
-def parameter(name, slot, unit, start, description, **more):
+def parameter(name, unit, start, description, **more):
     """A parameter, fixed unless said otherwise."""
     more = {"variability": "fixed", **more}
-    return Variable(name, slot, description, "parameter", unit, initial="exact", start=start, **more)
+    return Variable(name, description, "parameter", unit, initial="exact", start=start, **more)
 
 
-def drive(name, slot, unit, start, description, **more):
+def drive(name, unit, start, description, **more):
     """An input."""
-    return Variable(name, slot, description, "input", unit, start=start, **{"minimum": -HUGE, "maximum": HUGE, **more})
+    return Variable(name, description, "input", unit, start=start, **{"minimum": -HUGE, "maximum": HUGE, **more})
 
 
-def output(name, slot, unit, description, known=(), **more):
+def output(name, unit, description, known=(), **more):
     """An output, calculated from the start values ``known``."""
-    return Variable(name, slot, description, "output", unit, initial="calculated", initial_dependencies=tuple(known), **more)
+    return Variable(name, description, "output", unit, initial="calculated", initial_dependencies=tuple(known), **more)
+
+
+def numbered(variables, memory):
+    """The variables in their order, each with its place as its slot.
+
+    Parameters
+    ----------
+    variables : sequence of Variable
+    memory : module
+        Of the kernel: has the same slots under the variables' names in capitals.
+
+    Returns
+    -------
+    tuple of Variable
+    """
+    for place, variable in enumerate(variables):
+        name, _, element = variable.name.partition("[")
+        slot = getattr(memory, name.upper()) + (int(element[:-1]) - 1 if element else 0)
+        if slot != place:
+            raise ValueError(f"{variable.name} is variable {place} of the table, but slot {slot} of the memory")
+    return tuple(replace(variable, slot=place) for place, variable in enumerate(variables))
 
 
 @dataclass(frozen=True)
@@ -152,7 +173,7 @@ class Model:
     ----------
     name, description, version, author, license : str
     variables : tuple of Variable
-        In the order of the slots, from 0 without gaps.
+        In the order of their slots, from 0 without gaps, see :func:`numbered`.
     memory_size : int
         Number of floats of an instance's memory.
     written_only : tuple of int

@@ -45,7 +45,7 @@ def test_guid_belongs_to_the_sources(copies, tmp_path):
     names = set(contents(PYTHON))
     for number, change in enumerate(
         [
-            ("models/oscillator/variables.py", '"e", at.E, "1", 0.7', '"e", at.E, "1", 0.71'),
+            ("models/oscillator/variables.py", '"e", "1", 0.7', '"e", "1", 0.71'),
             ("kernels/oscillator/impact.py", '"""Impact:', '"""An impact:'),
             ("runtime/slave.py", '"""One line to the error output:', '"""A line to the error output:'),
         ]

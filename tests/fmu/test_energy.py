@@ -1,4 +1,4 @@
-"""The energy ledger, from outputs alone: kinetic and elastic energy, work of the box, losses in dampers and impacts."""
+"""The energy balance, from outputs alone: kinetic and elastic energy, work of the box, losses in dampers and impacts."""
 
 import json
 
@@ -44,7 +44,7 @@ def test_energy_of_free_motion_is_lost_in_impacts_alone(fmu, tmp_path, values):
     assert total == pytest.approx(total[0], rel=1e-12)
 
 
-def test_energy_ledger_of_driven_motion_closes(fmu, tmp_path):
+def test_energy_balance_of_driven_motion_closes(fmu, tmp_path):
     """Work and damping losses by Gauss quadrature between impacts, through chaotic motion; its error is below 1e-12."""
     values = {"m1": 1.0, "m2": 1.5, "k1": 1.0, "k2": 1.4, "d1": 0.02, "d2": 0.03, "e": 0.7, "box_amplitude": 0.8, "box_frequency": 1.13}
     script = r"""

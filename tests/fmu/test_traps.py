@@ -14,7 +14,7 @@ PYTHON = FMUS["fmi2-python"]
 @pytest.fixture(scope="module")
 def other(tmp_path_factory):
     """An FMU of the same model name whose coefficient of restitution is another one."""
-    return export_copy(tmp_path_factory.mktemp("other"), [("models/oscillator/variables.py", '"e", at.E, "1", 0.7', '"e", at.E, "1", 0.25')])
+    return export_copy(tmp_path_factory.mktemp("other"), [("models/oscillator/variables.py", '"e", "1", 0.7', '"e", "1", 0.25')])
 
 
 def test_two_versions_in_one_process_do_not_share_code(other, tmp_path):

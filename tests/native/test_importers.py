@@ -146,5 +146,5 @@ def test_a_forged_phase_or_flag_is_refused(importer, number, value):
 
 @pytest.mark.parametrize("d1", [0.0, 0.005, 0.0099])
 def test_a_start_at_rest_with_less_damping_on_mass_1_gets_going(importer, d1):
-    """Contact from rest: the barrier and its first derivative vanish at the start."""
+    """Contact from rest: the event function and its first derivative vanish at the start."""
     assert importer.simulate(["x_rel"], [0.0, 0.05, 400.0], d1=d1)[-1][0] >= 0.0

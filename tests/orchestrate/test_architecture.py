@@ -78,8 +78,8 @@ def test_only_export_sees_pythonfmu():
 
 KERNELS = {
     "fmu_src/kernels/numerics/": (),
-    "fmu_src/kernels/oscillator/": ("fmu_src.kernels.oscillator.", "fmu_src.kernels.numerics.elementary."),
-    "fmu_src/kernels/shaker/": ("fmu_src.kernels.shaker.", "fmu_src.kernels.numerics.elementary."),
+    "fmu_src/kernels/oscillator/": ("fmu_src.kernels.oscillator.", "fmu_src.kernels.numerics."),
+    "fmu_src/kernels/shaker/": ("fmu_src.kernels.shaker.", "fmu_src.kernels.numerics."),
 }
 
 

@@ -16,7 +16,7 @@ module                    the paper's equations
 :mod:`.excitation`        the box's motion over one step, right-hand side of            (6)
 :mod:`.response`          closed-form oscillator                                   (9)-(11)
 :mod:`.series`            short flights, relative to the gap itself                    (6)
-:mod:`.barrier`           gap (13) and contact force (18) as one kind of signal, and its bounds
+:mod:`.event_function`    gap (13) and contact force (18) as one kind of signal, and its bounds
 :mod:`.roots`             certified first root                                      (13) (19)
 :mod:`.impact`            restitution, end of chattering                          (15)-(17)
 :mod:`.contact`           contact force, the side on which a state begins         (18)-(20)

@@ -33,7 +33,7 @@ def sticks(m, separation, force):
 
 
 def count_impact(m, time, closing, lost):
-    """Enter an impact into the ledger; ``closing`` is the velocity before it (m per unit of tau), ``lost`` the part of its square that is lost."""
+    """Enter an impact into the energy balance; ``closing`` is the velocity before it (m per unit of tau), ``lost`` the part of its square that is lost."""
     m[at.IMPACT_COUNT] += 1.0
     m[at.IMPACT_TIME] = time
     velocity = closing * m[at.OMEGA]

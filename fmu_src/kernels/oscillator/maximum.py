@@ -1,7 +1,7 @@
 """The largest gap over a piece of flight: from summit to summit, with the certified steps of the root finder."""
 
 from . import memory as at
-from .barrier import evaluate
+from .event_function import evaluate
 from .roots import clear_step, longest_step, next_step, parabola_root
 
 SMALLEST = 1e-9  # least progress, in tau: a summit is flat, nothing is lost

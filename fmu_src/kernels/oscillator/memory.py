@@ -1,63 +1,135 @@
 """The flat memory: one array of floats holds an instance whole, hidden state included.
 
-The first slots are the FMU's variables, each at its FMI value reference; the hidden state follows. Saving an instance is
-copying this array. Flags and counts are floats too (exact to 2**53).
+The first slots are the FMU's variables, each at its FMI value reference; the hidden state follows.
+Saving an instance is copying this array. Flags and counts are floats too (exact to 2**53). It is
+called memory, because a state is one of the paper's (1): flight or permanent contact.
 """
 
-# -- variables: the slot is the value reference -----------------------------------------------------------------------
-M1, M2, K1, K2, D1, D2, E, GAMMA, BONDED = 0, 1, 2, 3, 4, 5, 6, 7, 8
-X1_START, X2_START, V1_START, V2_START, PHASE_START, X_REL_MAX_ON = 9, 10, 11, 12, 13, 14
-BOX_AMPLITUDE, BOX_FREQUENCY, BOX_ACCELERATION, BOX_JERK, BOX_SNAP, BOX_CRACKLE = 15, 16, 17, 18, 19, 20
-X1, X2, V1, V2, X_REL, V_REL, XI1, XI2, XI_REL = 21, 22, 23, 24, 25, 26, 27, 28, 29
-BOX_FORCE, BOX_IMPULSE, BOX_IMPULSE_MOMENT, CONTACT_FORCE, IN_CONTACT, PHASE = 30, 31, 32, 33, 34, 35
-IMPACT_COUNT, IMPACT_TIME, IMPACT_VELOCITY, IMPACT_ENERGY, X_REL_MAX, CONTACT_COUNT = 36, 37, 38, 39, 40, 41
-SAMPLE_COUNT = 42  # tunable parameter: states to keep inside a step
-SAMPLES = 200  # and room for so many, equally spaced, the last one at its end
-X1_SAMPLE, X2_SAMPLE, V1_SAMPLE, V2_SAMPLE = 43, 243, 443, 643
-TIME = 843  # communication point reached, s (the independent variable)
+from ..numerics.slots import Slots
 
-# -- constants derived from the parameters ----------------------------------------------------------------------------
-OMEGA, MU = 844, 845  # (2)
-FORCE_V, FORCE_X = 846, 847  # 2 (D1 - D2), omega1^2 - omega2^2: the coefficients of (18)
-FASTEST = 848  # largest omega_i
-BRANCH_1, BRANCH_2, BRANCH_3, BRANCH_SIZE = 849, 856, 863, 7
-# inside a branch: damping D_i (8), omega_i^2 (7), nu_i^2 = omega_i^2 - D_i^2 (11), sqrt|nu_i^2|, the same in turns,
-# and the envelope |e^{-D t} cos| <= e^{-r t}, |e^{-D t} sin/nu| <= s e^{-r t}
-DAMPING, OMEGA_SQUARED, NU_SQUARED, NU, NU_TURNS, ENVELOPE_RATE, ENVELOPE_SINE = 0, 1, 2, 3, 4, 5, 6
+SAMPLES = 200  # states that a step can keep, equally spaced, the last one at its end
+SERIES_LONGEST = 12  # order of the longest Taylor series
+slot = Slots()
 
-# -- excitation of the present segment (until an input changes) -------------------------------------------------------
-ETA, ETA_TURNS, FORCING = 870, 871, 872  # eta (2), eta/2pi, a eta^2
-HARMONIC_1, HARMONIC_2, HARMONIC_3 = 873, 875, 877  # a eta^2 (a_i, b_i) of (11), cosine and sine
-SEGMENT_INPUTS = 879  # the six inputs the segment was made of
-CUBIC_ON = 885  # the cubic part has more than its constant term: it must be set anew at each communication point
-CUBIC = 886  # value and three derivatives of the cubic part of the forcing at the segment's start
-SEGMENT_AGE = 890  # tau since the segment's start, at the present state's start
+# -- variables, in the order of the variable table: the slot is the value reference ----------------
+M1 = slot()
+M2 = slot()
+K1 = slot()
+K2 = slot()
+D1 = slot()
+D2 = slot()
+E = slot()  # the paper's letter, and the variable's name
+GAMMA = slot()
+BONDED = slot()
+X1_START = slot()
+X2_START = slot()
+V1_START = slot()
+V2_START = slot()
+PHASE_START = slot()
+X_REL_MAX_ON = slot()
+BOX_AMPLITUDE = slot()  # the six inputs follow one another
+BOX_FREQUENCY = slot()
+BOX_ACCELERATION = slot()
+BOX_JERK = slot()
+BOX_SNAP = slot()
+BOX_CRACKLE = slot()
+X1 = slot()
+X2 = slot()
+V1 = slot()
+V2 = slot()
+X_REL = slot()
+V_REL = slot()
+XI1 = slot()
+XI2 = slot()
+XI_REL = slot()
+BOX_FORCE = slot()
+BOX_IMPULSE = slot()
+BOX_IMPULSE_MOMENT = slot()
+CONTACT_FORCE = slot()
+IN_CONTACT = slot()
+PHASE = slot()
+IMPACT_COUNT = slot()
+IMPACT_TIME = slot()
+IMPACT_VELOCITY = slot()
+IMPACT_ENERGY = slot()
+X_REL_MAX = slot()
+CONTACT_COUNT = slot()
+SAMPLE_COUNT = slot()
+X1_SAMPLE = slot(SAMPLES)
+X2_SAMPLE = slot(SAMPLES)
+V1_SAMPLE = slot(SAMPLES)
+V2_SAMPLE = slot(SAMPLES)
+TIME = slot()  # communication point reached, s (the independent variable)
 
-# -- the present state (1) --------------------------------------------------------------------------------------------
-MODE = 891
+# -- constants derived from the parameters ---------------------------------------------------------
+OMEGA = slot()  # (2)
+MU = slot()
+FORCE_V = slot()  # 2 (D1 - D2), and
+FORCE_X = slot()  # omega1^2 - omega2^2: the coefficients of (18)
+FASTEST = slot()  # largest omega_i
+
+inside = Slots()  # a branch, one linear oscillator
+DAMPING = inside()  # D_i (8)
+OMEGA_SQUARED = inside()  # omega_i^2 (7)
+NU_SQUARED = inside()  # nu_i^2 = omega_i^2 - D_i^2 (11)
+NU = inside()  # sqrt|nu_i^2|
+NU_TURNS = inside()  # the same in turns
+ENVELOPE_RATE = inside()  # r and s of |e^{-D t} cos| <= e^{-r t}, |e^{-D t} sin/nu| <= s e^{-r t}
+ENVELOPE_SINE = inside()
+BRANCH_1 = slot(inside.used)
+BRANCH_2 = slot(inside.used)
+BRANCH_3 = slot(inside.used)
+
+# -- excitation of the present segment (until an input changes) ------------------------------------
+ETA = slot()  # (2)
+ETA_TURNS = slot()  # eta/2pi
+FORCING = slot()  # a eta^2
+HARMONIC_1 = slot(2)  # a eta^2 (a_i, b_i) of (11), cosine and sine
+HARMONIC_2 = slot(2)
+HARMONIC_3 = slot(2)
+SEGMENT_INPUTS = slot(6)  # the inputs the segment was made of
+CUBIC_ON = slot()  # the cubic has more than its constant: to be set anew at each communication point
+CUBIC = slot(4)  # value and three derivatives of the forcing's cubic at the segment's start
+SEGMENT_AGE = slot()  # tau since the segment's start, at the present state's start
+
+# -- the present state (1) -------------------------------------------------------------------------
+MODE = slot()
 FLIGHT, CONTACT, GLUED = 0.0, 1.0, 2.0
-ORIGIN, ORIGIN_LOW, TURN = 892, 893, 894  # tau_s (5) as an unevaluated sum of two floats; phase there in turns, [0, 1)
-FREE_A, FREE_B = 895, 897  # c and v + D c of the free part, branch 1 or 3, and 2
-CUBIC_A, CUBIC_B = 899, 903  # response to the cubic: value and three derivatives at the state's start
-# the barrier: positive inside the state, its first root is the state's end
-BARRIER_HARMONIC, BARRIER_CUBIC, BARRIER_FREE_A, BARRIER_FREE_B = 907, 909, 913, 915
-BOUND = 917  # of its fifth derivative: steady part, free part A, free part B
-SINE, COSINE = 920, 921  # of the phase at the state's start
-CUBIC_PRESENT = 922  # the cubic part of the forcing is not zero
-CLEAR, END, END_KIND = 923, 924, 925  # no root before CLEAR; the state's end once found
+ORIGIN = slot()  # tau_s (5) as an unevaluated sum of two floats
+ORIGIN_LOW = slot()
+TURN = slot()  # phase there in turns, [0, 1)
+FREE_A = slot(2)  # c and v + D c of the free part, branch 1 or 3,
+FREE_B = slot(2)  # and 2
+CUBIC_A = slot(4)  # response to the cubic: value and three derivatives at the state's start
+CUBIC_B = slot(4)
+EVENT_HARMONIC = slot(2)  # the event function: positive inside the state, 0 at its end
+EVENT_CUBIC = slot(4)
+EVENT_FREE_A = slot(2)
+EVENT_FREE_B = slot(2)
+BOUND = slot(3)  # of its fifth derivative: steady part, free part A, free part B
+SINE = slot()  # of the phase at the state's start
+COSINE = slot()
+CUBIC_PRESENT = slot()  # the cubic part of the forcing is not zero
+CLEAR = slot()  # no root before this age of the state
+END = slot()  # the state's end once found
+END_KIND = slot()
 END_OPEN, END_EVENT, END_RENEWAL = 0.0, 1.0, 2.0
 
-# -- book-keeping -----------------------------------------------------------------------------------------------------
-START_TIME = 926
-WORK, WORK_LIMIT = 927, 928  # evaluations spent and allowed in this step
-TARGET, REPORT = 929, 930  # for messages: the time a step was to reach, and what a return code is about
-STOP_AT_IMPACT = 931  # set from outside: a step ends at its first impact
-BEGIN = 932  # displacements and velocities at the state's start: x1, v1, x2, v2
-STOPPED = 936  # the step has ended so
-SERIES = 937  # order of the Taylor series that describe a short flight; 0: the closed form does
-SERIES_LONGEST = 12
-SERIES_DRIVE, SERIES_X, SERIES_GAP = 938, 951, 964  # coefficients of the harmonic forcing, of xi_1, and of the gap
-SIZE = 977
+# -- of the run, and of the step -------------------------------------------------------------------
+START_TIME = slot()
+WORK = slot()  # evaluations spent
+WORK_LIMIT = slot()  # and allowed in this step
+TARGET = slot()  # for messages: the time a step was to reach,
+REPORT = slot()  # and what a return code is about
+STOP_AT_IMPACT = slot()  # set from outside: a step ends at its first impact
+BEGIN = slot(4)  # displacements and velocities at the state's start: x1, v1, x2, v2
+STOPPED = slot()  # the step has ended so
+SERIES = slot()  # order of the Taylor series that describe a short flight; 0: the closed form does
+SERIES_DRIVE = slot(SERIES_LONGEST + 1)  # coefficients of the harmonic forcing,
+SERIES_X = slot(SERIES_LONGEST + 1)  # of xi_1,
+SERIES_GAP = slot(SERIES_LONGEST + 1)  # and of the gap
+SIZE = slot.used
 
-# -- return codes of the entry points ---------------------------------------------------------------------------------
-OK, UNFINISHED, RESONANCE_1, RESONANCE_2, RESONANCE_3, NOT_FINITE, START_OVERLAP, START_BONDED = 0, 1, 2, 3, 4, 5, 6, 7
+# -- return codes of the entry points --------------------------------------------------------------
+OK, UNFINISHED, RESONANCE_1, RESONANCE_2, RESONANCE_3 = 0, 1, 2, 3, 4
+NOT_FINITE, START_OVERLAP, START_BONDED = 5, 6, 7

@@ -1,12 +1,12 @@
 """The states and their sequence (1): flight, permanent contact, glued.
 
-A state begins with its initial conditions (9), from which its closed form and its barrier follow; it ends at the barrier's first
+A state begins with its initial conditions (9), from which its closed form and its event function follow; it ends at the event function's first
 root, found once and kept. Communication points only look at it. Which state follows is decided on the boundary by the gap, then its
 velocity, then the first derivative that does not vanish.
 """
 
 from . import memory as at
-from .barrier import bounds, evaluate, set_contact_force, set_gap
+from .event_function import bounds, evaluate, set_contact_force, set_gap
 from .contact import contact_force, first_derivative
 from ..numerics.elementary import fraction, sincos_turns
 from .excitation import cubic_at, set_cubic_response
@@ -125,7 +125,7 @@ def collide(m, x, v1, v2):
 
 
 def begin_flight(m, x1, v1, x2, v2):
-    """A flight from initial conditions; its barrier is the gap."""
+    """A flight from initial conditions; its event function is the gap."""
     m[at.MODE] = at.FLIGHT
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:
@@ -139,7 +139,7 @@ def begin_flight(m, x1, v1, x2, v2):
 
 
 def begin_common(m, mode, x, v):
-    """Both masses as one, in permanent contact or glued; its barrier is the contact force."""
+    """Both masses as one, in permanent contact or glued; its event function is the contact force."""
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:
@@ -167,7 +167,7 @@ def leave_impact(m, x, v1, slope):
     Parameters
     ----------
     m : flat memory
-        With the new flight's barrier.
+        With the new flight's event function.
     x, v1, slope : float
         Common displacement, velocity of mass 1, and gap velocity > 0.
     """
@@ -183,19 +183,19 @@ def leave_impact(m, x, v1, slope):
 
 
 def bound_at_start(m):
-    """Bound of the barrier's fifth derivative over the whole state."""
+    """Bound of the event function's fifth derivative over the whole state."""
     return m[at.BOUND] + m[at.BOUND + 1] + m[at.BOUND + 2]
 
 
 def find_end(m, tau):
-    """The state ends on the barrier's first root, at ``tau``."""
+    """The state ends on the event function's first root, at ``tau``."""
     m[at.CLEAR] = tau
     m[at.END] = tau
     m[at.END_KIND] = at.END_EVENT
 
 
 def leave_rising(m, h1, h2, h3, h4):
-    """Leave a start on the boundary with the barrier's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``: no root lies before CLEAR."""
+    """Leave a start on the boundary with the event function's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``: no root lies before CLEAR."""
     step, found = step_from(0.0, h1, h2, h3, h4, bound_at_start(m), 0.0, longest_step(m))
     m[at.CLEAR] = step
     if found:
@@ -203,14 +203,14 @@ def leave_rising(m, h1, h2, h3, h4):
 
 
 def leave(m, order, value, h3, h4):
-    """Leave a start on the boundary where the barrier's first derivative vanishes too.
+    """Leave a start on the boundary where the event function's first derivative vanishes too.
 
     Parameters
     ----------
     m : flat memory
-        With the new state's barrier.
+        With the new state's event function.
     order : int
-        Of the barrier's first derivative that does not vanish, 0 where the barrier itself does not, -1 if all vanish.
+        Of the event function's first derivative that does not vanish, 0 where the event function itself does not, -1 if all vanish.
     value : float
         That derivative, > 0.
     h3, h4 : float
@@ -231,7 +231,7 @@ def leave(m, order, value, h3, h4):
 
 
 def derivative_bound(m, branch, order):
-    """Bound of the barrier's derivative of an order over the whole state."""
+    """Bound of the event function's derivative of an order over the whole state."""
     steady, a, b = bounds(m, branch, order)
     return steady + a + b
 

@@ -1,7 +1,7 @@
-"""Certified first root of a barrier, (13) and (19).
+"""Certified first root of an event function, (13) and (19).
 
 From a point where h and four derivatives are known and the fifth is bounded by B from there on, the quintic
-``h + h' s + h'' s^2/2 + h''' s^3/6 + h'''' s^4/24 - B s^5/120`` lies below the barrier: up to its first root the barrier has none. The walk steps
+``h + h' s + h'' s^2/2 + h''' s^3/6 + h'''' s^4/24 - B s^5/120`` lies below the event function: up to its first root the event function has none. The walk steps
 from one such quintic to the next; nothing is sampled, so no root can be skipped, and it converges with fifth order at a simple root. The walk
 depends on the state alone, not on where the importer's communication points lie: it goes on where it was left.
 """
@@ -9,7 +9,7 @@ depends on the state alone, not on where the importer's communication points lie
 import math
 
 from . import memory as at
-from .barrier import evaluate, rounding
+from .event_function import evaluate, rounding
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
@@ -100,10 +100,10 @@ def walk(m, target):
 
 
 def lifted(m, tau, h0, h1):
-    """A barrier value that is not positive, or a positive one where it is zero but for rounding and no crossing is in sight.
+    """A value of the event function that is not positive, or a positive one where it is zero but for rounding and no crossing is in sight.
 
-    Near a start on the boundary the barrier may be smaller than the rounding of its terms for a while; the side was decided when the state
-    began, and holds until the barrier is seen to cross.
+    Near a start on the boundary the event function may be smaller than the rounding of its terms for a while; the side was decided when the state
+    began, and holds until the event function is seen to cross.
     """
     floor = rounding(m, tau)
     if h0 < -floor or floor < -1e-6 * h1:

@@ -1,7 +1,7 @@
 """The two entry points: an instance is one flat memory, initialised once and then advanced from one communication point to the next."""
 
 from . import memory as at
-from .barrier import evaluate
+from .event_function import evaluate
 from ..numerics.elementary import TWO_PI, fraction
 from .excitation import begin_segment, inputs_changed
 from .maximum import largest_gap
@@ -10,7 +10,7 @@ from .outputs import momentum, write, write_impulse
 from .parameters import derive
 from .roots import lifted, walk
 
-WORK_BASE = 100000.0  # evaluations of the barrier a step may take whatever its length,
+WORK_BASE = 100000.0  # evaluations of the event function a step may take whatever its length,
 WORK_RATE = 64.0  # and in a time gamma, the shortest flight that is told from sticking,
 WORK_MOST = 1e8  # and at the very most: some ten seconds, compiled
 
@@ -121,7 +121,7 @@ def renew_segment(m, now):
 
 
 def inside(m, tau):
-    """Whether the barrier has not been crossed, positive or zero but for rounding: gap and contact force do not jump with the inputs."""
+    """Whether the event function has not been crossed, positive or zero but for rounding: gap and contact force do not jump with the inputs."""
     h0, h1, _, _, _, _ = evaluate(m, tau)
     return h0 > 0.0 or lifted(m, tau, h0, h1) > 0.0
 

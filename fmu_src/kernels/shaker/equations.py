@@ -43,8 +43,8 @@ def rates(m, stage, t):
     t : float
         Time since the communication step's beginning, s.
     """
-    turn = m[at.TURN] + m[at.STAGE + at.PHI] / TWO_PI
-    position, velocity, speed = m[at.STAGE + at.Y], m[at.STAGE + at.V], m[at.STAGE + at.W]
+    turn = m[at.TURN] + m[at.STAGE + at.ROTATION] / TWO_PI
+    position, velocity, speed = m[at.STAGE + at.POSITION], m[at.STAGE + at.VELOCITY], m[at.STAGE + at.ROTATION_SPEED]
     sine, cosine = NO_NUMBER, NO_NUMBER
     if abs(turn) < MOST_TURNS:
         sine, cosine = sincos_turns(turn)
@@ -61,11 +61,11 @@ def rates(m, stage, t):
     p = m[at.UNBALANCE] * speed * speed * sine - damped - m[at.BOX_STIFFNESS] * position + pushed
     box, rotor = accelerations(m, sine, cosine, p, torque)
     row = at.RATES + stage * at.STATES
-    m[row + at.Y] = velocity
-    m[row + at.V] = box
-    m[row + at.PHI] = speed
-    m[row + at.W] = rotor
+    m[row + at.POSITION] = velocity
+    m[row + at.VELOCITY] = box
+    m[row + at.ROTATION] = speed
+    m[row + at.ROTATION_SPEED] = rotor
     m[row + at.CURRENT] = current_rate
-    m[row + at.E_MOTOR] = torque * speed
-    m[row + at.E_DAMPER] = damped * velocity
-    m[row + at.E_FORCE] = pushed * velocity
+    m[row + at.MOTOR_WORK] = torque * speed
+    m[row + at.DAMPER_LOSS] = damped * velocity
+    m[row + at.FORCE_WORK] = pushed * velocity

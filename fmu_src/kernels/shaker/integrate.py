@@ -79,14 +79,14 @@ def stages(m, t, h):
 def scale(m, state, h):
     """What an error of a state is measured by: its own size, and what the other states make of it within the sub-step."""
     size = max(abs(m[at.STATE + state]), abs(m[at.NEXT + state]))
-    speed = max(abs(m[at.STATE + at.W]), abs(m[at.NEXT + at.W]))
+    speed = max(abs(m[at.STATE + at.ROTATION_SPEED]), abs(m[at.NEXT + at.ROTATION_SPEED]))
     arm = m[at.UNBALANCE] / m[at.BOX_MASS]
-    if state == at.Y:
-        return size + arm + h * max(abs(m[at.STATE + at.V]), abs(m[at.NEXT + at.V]))
-    if state == at.V:
+    if state == at.POSITION:
+        return size + arm + h * max(abs(m[at.STATE + at.VELOCITY]), abs(m[at.NEXT + at.VELOCITY]))
+    if state == at.VELOCITY:
         frequency = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS])
-        return size + arm * speed + frequency * max(abs(m[at.STATE + at.Y]), abs(m[at.NEXT + at.Y]))
-    if state == at.PHI:
+        return size + arm * speed + frequency * max(abs(m[at.STATE + at.POSITION]), abs(m[at.NEXT + at.POSITION]))
+    if state == at.ROTATION:
         return 1.0
     if state == at.CURRENT:
         return size + abs(m[at.VOLTAGE]) / m[at.ARMATURE_RESISTANCE]
@@ -109,10 +109,10 @@ def error(m, h):
 
 def accept(m):
     """Make the sub-step's end the present state."""
-    turned = m[at.NEXT + at.PHI]
+    turned = m[at.NEXT + at.ROTATION]
     for state in range(at.STATES):
         m[at.STATE + state] = m[at.NEXT + state]
-    m[at.STATE + at.PHI] = 0.0
+    m[at.STATE + at.ROTATION] = 0.0
     m[at.TURN] = fraction(m[at.TURN] + turned / TWO_PI)
     part = turned + m[at.ANGLE_LOW]
     total = m[at.ANGLE] + part
@@ -139,7 +139,7 @@ def through(m, length):
     t = 0.0
     while t < length:
         left = length - t
-        fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(m[at.STATE + at.W])
+        fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(m[at.STATE + at.ROTATION_SPEED])
         h = min(left, m[at.HINT]) if m[at.HINT] > 0.0 else left
         h = RADIANS / fastest if h * fastest > RADIANS else h
         if h < left < MANY * h:  # equal parts, so that no short one is left over at the end

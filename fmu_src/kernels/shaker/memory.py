@@ -1,37 +1,79 @@
 """The flat memory: one array of floats holds an instance whole, hidden state included.
 
-The first slots are the FMU's variables, each at its FMI value reference; the hidden state follows. Saving an instance is copying this array.
+The first slots are the FMU's variables, each at its FMI value reference; the hidden state follows.
+Saving an instance is copying this array.
 """
 
-# -- variables: the slot is the value reference -----------------------------------------------------------------------
-BOX_MASS, BOX_STIFFNESS, BOX_DAMPING, UNBALANCE_MASS, UNBALANCE_RADIUS, ROTOR_INERTIA = 0, 1, 2, 3, 4, 5
-MOTOR_CONSTANT, ARMATURE_RESISTANCE, ARMATURE_INDUCTANCE = 6, 7, 8
-ANGLE_START, SPEED_START, POSITION_START, VELOCITY_START, CURRENT_START = 9, 10, 11, 12, 13
-VOLTAGE, BOX_FORCE, BOX_FORCE_1, BOX_FORCE_2, BOX_FORCE_3 = 14, 15, 16, 17, 18
-BOX_POSITION, BOX_VELOCITY, BOX_ACCELERATION, BOX_JERK, ANGLE, SPEED = 19, 20, 21, 22, 23, 24
-MOTOR_CURRENT, MOTOR_TORQUE, MOTOR_POWER, MOTOR_ENERGY = 25, 26, 27, 28
-BOX_DAMPER_ENERGY, BOX_FORCE_WORK, STORED_ENERGY = 29, 30, 31
-TIME = 32  # communication point reached, s (the independent variable)
+from ..numerics.slots import Slots
 
-# -- what a step writes and never reads from an earlier one -----------------------------------------------------------
-STATES = 8  # position, velocity, angle since the sub-step began, speed, current, then the three energies
-Y, V, PHI, W, CURRENT, E_MOTOR, E_DAMPER, E_FORCE = 0, 1, 2, 3, 4, 5, 6, 7
-CONTROLLED = 5  # of them decide the length of the sub-steps
-STAGES = 12
-RATES = 33  # right-hand side at the stages, STATES each
-STAGE = RATES + STAGES * STATES  # the states at a stage
-NEXT = STAGE + STATES  # the states at the sub-step's end
+slot = Slots()
 
-# -- hidden state -----------------------------------------------------------------------------------------------------
-STATE = NEXT + STATES  # at the communication point (its angle is 0: it counts from the sub-step's beginning)
-TURN = STATE + STATES  # the angle in turns, [0, 1)
-ANGLE_LOW = TURN + 1  # what the sum ANGLE has lost to rounding
-HINT = ANGLE_LOW + 1  # length of sub-step that the tolerance allows, s; 0: not known yet
-UNBALANCE = HINT + 1  # S, product of mass and radius
-WORK, WORK_LIMIT = UNBALANCE + 1, UNBALANCE + 2  # evaluations spent and allowed in this step
-TARGET, REPORT = UNBALANCE + 3, UNBALANCE + 4  # for messages: the time a step was to reach, and the one it did
-STOP = UNBALANCE + 5  # the exporters' flag to end a step at an event; there are none
-SIZE = UNBALANCE + 6
+# -- variables, in the order of the variable table: the slot is the value reference ----------------
+BOX_MASS = slot()
+BOX_STIFFNESS = slot()
+BOX_DAMPING = slot()
+UNBALANCE_MASS = slot()
+UNBALANCE_RADIUS = slot()
+ROTOR_INERTIA = slot()
+MOTOR_CONSTANT = slot()
+ARMATURE_RESISTANCE = slot()
+ARMATURE_INDUCTANCE = slot()
+ANGLE_START = slot()
+SPEED_START = slot()
+POSITION_START = slot()
+VELOCITY_START = slot()
+CURRENT_START = slot()
+VOLTAGE = slot()
+BOX_FORCE = slot()
+BOX_FORCE_1 = slot()
+BOX_FORCE_2 = slot()
+BOX_FORCE_3 = slot()
+BOX_POSITION = slot()
+BOX_VELOCITY = slot()
+BOX_ACCELERATION = slot()
+BOX_JERK = slot()
+ANGLE = slot()
+SPEED = slot()
+MOTOR_CURRENT = slot()
+MOTOR_TORQUE = slot()
+MOTOR_POWER = slot()
+MOTOR_ENERGY = slot()
+BOX_DAMPER_ENERGY = slot()
+BOX_FORCE_WORK = slot()
+STORED_ENERGY = slot()
+TIME = slot()  # communication point reached, s (the independent variable)
 
-# -- return codes of the entry points ---------------------------------------------------------------------------------
+# -- what is integrated, in this order -------------------------------------------------------------
+inside = Slots()
+POSITION = inside()
+VELOCITY = inside()
+ROTATION = inside()  # angle since the sub-step began
+ROTATION_SPEED = inside()
+CURRENT = inside()
+CONTROLLED = inside.used  # so many decide the length of the sub-steps
+MOTOR_WORK = inside()
+DAMPER_LOSS = inside()
+FORCE_WORK = inside()
+STATES = inside.used
+STAGES = 12  # of the formula
+
+# -- what a step writes and never reads from an earlier one ----------------------------------------
+RATES = slot(STAGES * STATES)  # right-hand side at the stages
+STAGE = slot(STATES)  # the states at a stage
+NEXT = slot(STATES)  # the states at the sub-step's end
+
+# -- hidden state ----------------------------------------------------------------------------------
+STATE = slot(STATES)  # at the communication point (its ROTATION is 0)
+TURN = slot()  # the angle in turns, [0, 1)
+ANGLE_LOW = slot()  # what the sum ANGLE has lost to rounding
+HINT = slot()  # length of sub-step that the tolerance allows, s; 0: not known yet
+UNBALANCE = slot()  # S, product of mass and radius
+WORK = slot()  # evaluations spent
+WORK_LIMIT = slot()  # and allowed in this step
+TARGET = slot()  # for messages: the time a step was to reach,
+REPORT = slot()  # and the one it did
+STOP = slot()  # the exporters' flag to end a step at an event; there are none
+SIZE = slot.used
+
+# -- return codes of the entry points --------------------------------------------------------------
 OK, UNFINISHED, NOT_FINITE, INERTIA = 0, 1, 2, 3

@@ -30,9 +30,9 @@ def initialize(m, time):
     if not m[at.BOX_MASS] * m[at.ROTOR_INERTIA] >= REGULAR * unbalance * unbalance:
         m[at.REPORT] = REGULAR * unbalance * unbalance / m[at.BOX_MASS]
         return at.INERTIA
-    m[at.STATE + at.Y] = m[at.POSITION_START]
-    m[at.STATE + at.V] = m[at.VELOCITY_START]
-    m[at.STATE + at.W] = m[at.SPEED_START]
+    m[at.STATE + at.POSITION] = m[at.POSITION_START]
+    m[at.STATE + at.VELOCITY] = m[at.VELOCITY_START]
+    m[at.STATE + at.ROTATION_SPEED] = m[at.SPEED_START]
     m[at.STATE + at.CURRENT] = m[at.CURRENT_START]
     m[at.ANGLE] = m[at.ANGLE_START]
     m[at.TURN] = fraction(m[at.ANGLE_START] / TWO_PI)
@@ -50,7 +50,7 @@ def advance(m, time):
     """
     before = m[at.TIME]
     length = time - before
-    fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(m[at.STATE + at.W])
+    fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(m[at.STATE + at.ROTATION_SPEED])
     if m[at.MOTOR_CONSTANT] > 0.0:
         fastest += abs(m[at.VOLTAGE]) / m[at.MOTOR_CONSTANT]
     m[at.TARGET] = time

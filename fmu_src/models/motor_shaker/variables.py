@@ -1,7 +1,7 @@
 """The variable table of ``MotorShaker``. Standard library only: it travels inside the FMU."""
 
-from ...runtime.table import LARGE, TINY, drive, output, parameter
-from ...kernels.shaker import memory as at
+from ...runtime.table import LARGE, TINY, drive, numbered, output, parameter
+from ...kernels.shaker import memory
 
 LIMIT = 1e30  # of start values and inputs: squares, sums and energies of them stay finite
 
@@ -13,73 +13,72 @@ FORCE = ("box_force", "box_force_1")
 ALL = (*BOX, *ROTOR, *(name for name in CIRCUIT if name not in ROTOR), "voltage")
 
 
-def positive(name, slot, unit, start, description):
+def positive(name, unit, start, description):
     """A parameter that is not zero."""
-    return parameter(name, slot, unit, start, description, minimum=TINY, maximum=LARGE)
+    return parameter(name, unit, start, description, minimum=TINY, maximum=LARGE)
 
 
-def not_negative(name, slot, unit, start, description):
+def not_negative(name, unit, start, description):
     """A parameter that may be zero."""
-    return parameter(name, slot, unit, start, description, minimum=0.0, maximum=LARGE)
+    return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE)
 
 
-def start(name, slot, unit, description, limit=LIMIT):
+def start(name, unit, description, limit=LIMIT):
     """The start value of a state."""
-    return parameter(name, slot, unit, 0.0, description, minimum=-limit, maximum=limit)
+    return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit)
 
 
-def given(name, slot, unit, description, **more):
+def given(name, unit, description, **more):
     """An input, 0 until it is set."""
-    return drive(name, slot, unit, 0.0, description, minimum=-LIMIT, maximum=LIMIT, **more)
+    return drive(name, unit, 0.0, description, minimum=-LIMIT, maximum=LIMIT, **more)
 
 
 PARAMETERS = (
-    positive("box_mass", at.BOX_MASS, "kg", 5.5, "Box with motor and unbalance, M_t"),
-    not_negative("box_stiffness", at.BOX_STIFFNESS, "N/m", 309.375, "Stiffness of the box's suspension, k_b"),
-    not_negative("box_damping", at.BOX_DAMPING, "N.s/m", 4.125, "Damping of the box's suspension, c_b"),
-    not_negative("unbalance_mass", at.UNBALANCE_MASS, "kg", 0.025, "Mass of the unbalance, m_u"),
-    not_negative("unbalance_radius", at.UNBALANCE_RADIUS, "m", 0.02, "Its distance from the axis, r"),
-    positive("rotor_inertia", at.ROTOR_INERTIA, "kg.m2", 5e-5, "Moment of inertia of the rotor with the unbalance, J"),
-    not_negative("motor_constant", at.MOTOR_CONSTANT, "N.m/A", 0.06, "Torque over current, and voltage over speed, K"),
-    positive("armature_resistance", at.ARMATURE_RESISTANCE, "Ohm", 12.0, "Resistance of the armature, R_a"),
-    not_negative("armature_inductance", at.ARMATURE_INDUCTANCE, "H", 0.0, "Inductance of the armature, L; 0: static torque line"),
-    start("angle_start", at.ANGLE_START, "rad", "Angle of the unbalance at the start", 1e6),
-    start("speed_start", at.SPEED_START, "rad/s", "Speed of the rotor at the start", 1e9),
-    start("position_start", at.POSITION_START, "m", "Position of the box at the start"),
-    start("velocity_start", at.VELOCITY_START, "m/s", "Velocity of the box at the start"),
-    start("current_start", at.CURRENT_START, "A", "Current at the start, where armature_inductance > 0"),
+    positive("box_mass", "kg", 5.5, "Box with motor and unbalance, M_t"),
+    not_negative("box_stiffness", "N/m", 309.375, "Stiffness of the box's suspension, k_b"),
+    not_negative("box_damping", "N.s/m", 4.125, "Damping of the box's suspension, c_b"),
+    not_negative("unbalance_mass", "kg", 0.025, "Mass of the unbalance, m_u"),
+    not_negative("unbalance_radius", "m", 0.02, "Its distance from the axis, r"),
+    positive("rotor_inertia", "kg.m2", 5e-5, "Moment of inertia of the rotor with the unbalance, J"),
+    not_negative("motor_constant", "N.m/A", 0.06, "Torque over current, and voltage over speed, K"),
+    positive("armature_resistance", "Ohm", 12.0, "Resistance of the armature, R_a"),
+    not_negative("armature_inductance", "H", 0.0, "Inductance of the armature, L; 0: static torque line"),
+    start("angle_start", "rad", "Angle of the unbalance at the start", 1e6),
+    start("speed_start", "rad/s", "Speed of the rotor at the start", 1e9),
+    start("position_start", "m", "Position of the box at the start"),
+    start("velocity_start", "m/s", "Velocity of the box at the start"),
+    start("current_start", "A", "Current at the start, where armature_inductance > 0"),
 )
 INPUTS = (
-    given("voltage", at.VOLTAGE, "V", "Voltage of the motor, U, constant over the step"),
-    given("box_force", at.BOX_FORCE, "N", "Force on the box over the step: value at its beginning", input_derivatives=3),
-    given("box_force_1", at.BOX_FORCE_1, "N/s", "First time derivative of box_force at the beginning of the step"),
-    given("box_force_2", at.BOX_FORCE_2, "N/s2", "Second time derivative of box_force at the beginning of the step"),
-    given("box_force_3", at.BOX_FORCE_3, "N/s3", "Third time derivative of box_force at the beginning of the step"),
+    given("voltage", "V", "Voltage of the motor, U, constant over the step"),
+    given("box_force", "N", "Force on the box over the step: value at its beginning", input_derivatives=3),
+    given("box_force_1", "N/s", "First time derivative of box_force at the beginning of the step"),
+    given("box_force_2", "N/s2", "Second time derivative of box_force at the beginning of the step"),
+    given("box_force_3", "N/s3", "Third time derivative of box_force at the beginning of the step"),
 )
 NOW = {"dependencies": ("voltage", "box_force")}
 JERK = {"dependencies": ("voltage", *FORCE)}
 ELECTRIC = {"dependencies": ("voltage",)}
 OUTPUTS = (
-    output("box_position", at.BOX_POSITION, "m", "Position of the box, y", ("position_start",), derivative="box_velocity"),
-    output("box_velocity", at.BOX_VELOCITY, "m/s", "Velocity of the box", ("velocity_start",), derivative="box_acceleration"),
+    output("box_position", "m", "Position of the box, y", ("position_start",), derivative="box_velocity"),
+    output("box_velocity", "m/s", "Velocity of the box", ("velocity_start",), derivative="box_acceleration"),
     output(
         "box_acceleration",
-        at.BOX_ACCELERATION,
         "m/s2",
         "Acceleration of the box, with the inputs as set now",
         (*ALL, "box_force"),
         derivative="box_jerk",
         **NOW,
     ),
-    output("box_jerk", at.BOX_JERK, "m/s3", "Time derivative of box_acceleration, with the inputs as set now", (*ALL, *FORCE), **JERK),
-    output("angle", at.ANGLE, "rad", "Angle of the unbalance since angle_start = 0, phi, full turns included", ("angle_start",), derivative="speed"),
-    output("speed", at.SPEED, "rad/s", "Speed of the rotor", ("speed_start",)),
-    output("motor_current", at.MOTOR_CURRENT, "A", "Current of the motor", (*CIRCUIT, "voltage"), **ELECTRIC),
-    output("motor_torque", at.MOTOR_TORQUE, "N.m", "Torque of the motor on the rotor, K i", (*CIRCUIT, "voltage"), **ELECTRIC),
-    output("motor_power", at.MOTOR_POWER, "W", "Mechanical power of the motor, torque times speed", (*CIRCUIT, "voltage"), **ELECTRIC),
-    output("motor_energy", at.MOTOR_ENERGY, "J", "Mechanical work of the motor since the start, integral of motor_power"),
-    output("box_damper_energy", at.BOX_DAMPER_ENERGY, "J", "Energy lost in the damper of the box's suspension since the start"),
-    output("box_force_work", at.BOX_FORCE_WORK, "J", "Work of box_force on the box since the start"),
-    output("stored_energy", at.STORED_ENERGY, "J", "Kinetic energy of box and rotor, and energy of the box's spring", STORED),
+    output("box_jerk", "m/s3", "Time derivative of box_acceleration, with the inputs as set now", (*ALL, *FORCE), **JERK),
+    output("angle", "rad", "Angle of the unbalance since angle_start = 0, phi, full turns included", ("angle_start",), derivative="speed"),
+    output("speed", "rad/s", "Speed of the rotor", ("speed_start",)),
+    output("motor_current", "A", "Current of the motor", (*CIRCUIT, "voltage"), **ELECTRIC),
+    output("motor_torque", "N.m", "Torque of the motor on the rotor, K i", (*CIRCUIT, "voltage"), **ELECTRIC),
+    output("motor_power", "W", "Mechanical power of the motor, torque times speed", (*CIRCUIT, "voltage"), **ELECTRIC),
+    output("motor_energy", "J", "Mechanical work of the motor since the start, integral of motor_power"),
+    output("box_damper_energy", "J", "Energy lost in the damper of the box's suspension since the start"),
+    output("box_force_work", "J", "Work of box_force on the box since the start"),
+    output("stored_energy", "J", "Kinetic energy of box and rotor, and energy of the box's spring", STORED),
 )
-VARIABLES = PARAMETERS + INPUTS + OUTPUTS
+VARIABLES = numbered(PARAMETERS + INPUTS + OUTPUTS, memory)

@@ -41,11 +41,11 @@ def event_by_event(values, state, stop):
         phase = mp.mpf(values.get("phase_start", 0.0)) + values["box_frequency"] * time
         if mode == FLIGHT:
             first, second = truth.apart(values, state, phase)
-            barrier = second - first
+            event = second - first
         else:
-            first, barrier = truth.together(values, state[0], state[1], phase)
+            first, event = truth.together(values, state[0], state[1], phase)
             second = first
-        end = truth.first_root(barrier, float(stop - time), blind)
+        end = truth.first_root(event, float(stop - time), blind)
         age = stop - time if end is None else end
         state = first(age), first.derivative()(age), second(age), second.derivative()(age)
         if end is None:

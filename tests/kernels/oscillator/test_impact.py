@@ -1,4 +1,4 @@
-"""An impact keeps momentum, reverses the gap's velocity times e, and loses what the ledger says; sticking has no scale of its own."""
+"""An impact keeps momentum, reverses the gap's velocity times e, and loses what the energy balance says; sticking has no scale of its own."""
 
 import math
 

@@ -64,7 +64,7 @@ def energy(m):
 
 @pytest.mark.parametrize("values", RUNS)
 @pytest.mark.parametrize("more, stop", [({}, 80.0), (CUBIC, 8.0)])
-def test_the_energy_ledger_closes(values, more, stop):
+def test_the_energy_balance_closes(values, more, stop):
     m = started(**{**values, **more}, x1_start=-0.4, x2_start=0.3, v1_start=0.5)
     before = energy(m)
     passed = pieces(m, stop)

@@ -8,7 +8,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.barrier import evaluate
+from fmu_src.kernels.oscillator.event_function import evaluate
 from fmu_src.kernels.oscillator.roots import clear_step, parabola_root, taylor_root, walk
 
 from . import truth
@@ -23,7 +23,7 @@ REACH = 6.0
 
 
 def quintic(h, bound, s):
-    """The lower bound of a barrier, and the size of its terms."""
+    """The lower bound of an event function, and the size of its terms."""
     terms = [mp.mpf(value) * s**k / mp.factorial(k) for k, value in enumerate(h)] + [-mp.mpf(bound) * s**5 / 120]
     return sum(terms), sum(map(abs, terms))
 
@@ -89,7 +89,7 @@ def test_a_root_by_taylor_is_the_only_one_from_the_clear_step_on(h0, fall, h2, h
             assert -fall + s * (h2 + s * (h3 / 2 + s * (h4 / 6 + s * bound / 24))) < 0.0
 
 
-def test_a_barrier_that_never_falls_has_no_root():
+def test_an_event_function_that_never_falls_has_no_root():
     assert clear_step(1.0, 0.5, 0.2, 0.0, 0.0, 0.0, REACH) == REACH
     assert parabola_root(1.0, -0.1, 1.0) == math.inf
     assert parabola_root(0.0, 0.0, 1.0) == math.inf
@@ -104,7 +104,7 @@ def first_end(m, horizon):
 
 
 def agree(found, expected, signal, horizon):
-    """Whether both are the same root, as close as the rounding of the barrier's terms lets it be."""
+    """Whether both are the same root, as close as the rounding of the event function's terms lets it be."""
     if expected is None:
         return found is None or found > horizon * (1 - 1e-9)
     terms = sum(abs(complex(c)) for c, _ in signal.terms) + sum(abs(float(p)) * horizon**k for k, p in enumerate(signal.polynomial))

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import series
-from fmu_src.kernels.oscillator.barrier import evaluate
+from fmu_src.kernels.oscillator.event_function import evaluate
 from fmu_src.kernels.oscillator.motion import state_at
 
 from . import truth

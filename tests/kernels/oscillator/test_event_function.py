@@ -1,4 +1,4 @@
-"""The barrier is the gap or minus the contact force; its derivatives are theirs, its bounds hold for all later times."""
+"""The event function is the gap or minus the contact force; its derivatives are theirs, its bounds hold for all later times."""
 
 import mpmath as mp
 import numpy as np
@@ -6,7 +6,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from fmu_src.kernels.oscillator import barrier
+from fmu_src.kernels.oscillator import event_function
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.motion import begin_common
 
@@ -50,7 +50,7 @@ def size(signal):
 @example({"d1": 2.0, "d2": 2.0 + 1e-9, "k2": 1.0, "box_frequency": 0.4, "phase_start": 1.0}, (-0.3, 0.2, 0.5, -0.4), 1.5)  # critical damping
 def test_value_and_derivatives(make, values, state, age):
     m, signal = make(values, state)
-    found = barrier.evaluate(m, age)[:5]
+    found = event_function.evaluate(m, age)[:5]
     fastest = max(1.0, signal.fastest())
     growth = (1.0 + age) ** 3  # of the cubic
     for order, value in enumerate(found):
@@ -64,7 +64,7 @@ def test_value_and_derivatives(make, values, state, age):
 @given(structures(), STATES, AGES)
 def test_bounds_hold_for_all_later_times(make, values, state, age):
     m, signal = make(values, state)
-    found = barrier.evaluate(m, age)
+    found = event_function.evaluate(m, age)
     later = age + np.concatenate([np.linspace(0.0, 3.0, 300), np.geomspace(3.0, 300.0, 300)])
     rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest()) ** 5
     fifth = signal.derivative().derivative().derivative().derivative().derivative()
@@ -79,4 +79,4 @@ def test_bounds_of_higher_derivatives(values, state, order):
     for _ in range(order):
         signal = signal.derivative()
     highest = np.abs(signal.sample(np.linspace(0.0, 60.0, 3000))).max()
-    assert highest <= sum(barrier.bounds(m, at.BRANCH_1, order)) * (1 + 1e-9) + rounding
+    assert highest <= sum(event_function.bounds(m, at.BRANCH_1, order)) * (1 + 1e-9) + rounding

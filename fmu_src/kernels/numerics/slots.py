@@ -1,0 +1,26 @@
+"""Slots of a flat memory, numbered in the order in which they are declared.
+
+A kernel's ``memory.py`` is its one declaration: names, sizes, meanings. The numbers are plain module-level integers, which Numba
+freezes into the compiled code. This runs at import only; it is no part of the numeric path.
+"""
+
+
+class Slots:
+    """A counter of slots.
+
+    Examples
+    --------
+    >>> slot = Slots()
+    >>> ALONE, PAIR, LAST = slot(), slot(2), slot()
+    >>> (ALONE, PAIR, LAST), slot.used
+    ((0, 1, 3), 4)
+    """
+
+    def __init__(self) -> None:
+        self.used = 0
+
+    def __call__(self, size: int = 1) -> int:
+        """The first of the next ``size`` slots."""
+        first = self.used
+        self.used += size
+        return first
