@@ -1,8 +1,92 @@
-"""What is done with the FMUs: frequency sweeps and their pictures, all computed by FMPy through the exported FMU."""
+"""Ask a vibro-impacting structure: describe it, ask a question, get a dataset.
 
-from importlib.metadata import PackageNotFoundError, version
+>>> import orchestrate
+>>> beam = orchestrate.Structure.nondimensional(e=0.7, D=0.005)
+>>> response = orchestrate.sweep(beam, eta=[0.4, 1.047], transient=50, samples=20)
+>>> response.impacts_per_period.dims
+('eta',)
 
-try:
-    __version__ = version("vibroimpact")
-except PackageNotFoundError:  # a checkout that is not installed
-    __version__ = "0.0.0"
+What is described
+    :class:`Structure`, :class:`Excitation`, :class:`Drive`: two masses and their contact, the box's
+    harmonic motion, and a motor of limited power that shakes the box; in SI or by the paper's
+    numbers, in Python or in TOML files.
+What is asked
+    :func:`simulate`, :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`,
+    :func:`attractors`, :func:`basin`, :func:`impact_statistics`; :func:`couple` for the weak drive.
+What is answered
+    An :class:`xarray.Dataset` with units, long names, all parameters, and where it comes from.
+
+All is computed by FMPy through exported FMUs. Every function that computes takes the keywords of
+:class:`orchestrate.running.options.Running`: ``jobs``, ``cluster``, ``store`` and more.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from .version import __version__
+
+if TYPE_CHECKING:
+    from .dynamics.attractors import attractors
+    from .dynamics.basins import basin
+    from .dynamics.impact_statistics import impact_statistics
+    from .dynamics.lyapunov import lyapunov
+    from .dynamics.parameter_map import map
+    from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
+    from .response.simulate import simulate
+    from .response.spectra import spectra
+    from .response.sweep import sweep
+    from .structures import Drive, Excitation, Structure
+    from .weak_drive.couple import couple
+
+__all__ = [
+    "Drive",
+    "Excitation",
+    "FmuError",
+    "InputError",
+    "StaleError",
+    "StoreError",
+    "Structure",
+    "VibroimpactError",
+    "WorkerError",
+    "__version__",
+    "attractors",
+    "basin",
+    "couple",
+    "impact_statistics",
+    "lyapunov",
+    "map",
+    "simulate",
+    "spectra",
+    "sweep",
+]
+PLACES = {  # where each name lives: it is imported when it is used, so that `import` takes no time
+    "structures": ("Drive", "Excitation", "Structure"),
+    "errors": (
+        *("FmuError", "InputError", "StaleError", "StoreError"),
+        *("VibroimpactError", "WorkerError"),
+    ),
+    "response.simulate": ("simulate",),
+    "response.sweep": ("sweep",),
+    "response.spectra": ("spectra",),
+    "dynamics.parameter_map": ("map",),
+    "dynamics.lyapunov": ("lyapunov",),
+    "dynamics.attractors": ("attractors",),
+    "dynamics.basins": ("basin",),
+    "dynamics.impact_statistics": ("impact_statistics",),
+    "weak_drive.couple": ("couple",),
+}
+
+
+def __getattr__(name: str) -> Any:
+    for place, names in PLACES.items():
+        if name in names:
+            value = getattr(import_module(f"{__name__}.{place}"), name)
+            globals()[name] = value
+            return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -93,7 +93,7 @@ class Journal:
     def indices(self) -> set[int]:
         """Which chunks are there and undamaged; damaged ones are dropped."""
         found = set()
-        for index, digest, data in self._query("SELECT i, sha256, data FROM chunks"):
+        for index, digest, data in self._query("SELECT i, sha256, CAST(data AS BLOB) FROM chunks"):
             if isinstance(data, bytes) and hashlib.sha256(data).hexdigest() == digest:
                 found.add(index)
             else:
@@ -103,7 +103,9 @@ class Journal:
 
     def get(self, index: int) -> Table:
         """One chunk."""
-        ((digest, data),) = self._query("SELECT sha256, data FROM chunks WHERE i = ?", index)
+        ((digest, data),) = self._query(
+            "SELECT sha256, CAST(data AS BLOB) FROM chunks WHERE i = ?", index
+        )
         if hashlib.sha256(data).hexdigest() != digest:
             raise StoreError(
                 f"{self.path}: chunk {index} is damaged; the same call goes on from it"

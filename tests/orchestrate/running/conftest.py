@@ -1,0 +1,20 @@
+"""What the tests of the runner share: a file that stands for an FMU."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from .sums import Model
+
+Find = Callable[[str], Model]
+
+
+@pytest.fixture
+def find(tmp_path: Path) -> Find:
+    """Finds the same FMU for each model."""
+    path = tmp_path / "model.fmu"
+    path.write_bytes(b"an FMU")
+    return lambda model: Model(path, model)

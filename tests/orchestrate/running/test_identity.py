@@ -1,0 +1,95 @@
+"""What decides numbers is in an identity: parameters, FMU, and the code behind them."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from orchestrate.running import identity
+from orchestrate.running.identity import code_of, difference, imported_names
+from orchestrate.running.job import brief, plain
+
+from .sums import Squares
+
+
+def test_imports_of_all_kinds_are_seen():
+    tree = ast.parse(
+        "import a.b\nfrom c import d\nfrom ..e import f\ndef g():\n    from . import h\n"
+    )
+    names = set(imported_names(tree, "orchestrate.x"))
+    assert {"a", "a.b", "c", "c.d", "orchestrate.e.f", "orchestrate.x.h"} <= names
+
+
+def package(folder, **sources):
+    """A package in place of ours, one module a keyword."""
+    folder.mkdir(exist_ok=True)
+    for name, text in sources.items():
+        path = folder.joinpath(*name.split("__")).with_suffix(".py")
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    return folder
+
+
+@pytest.fixture
+def ours(tmp_path, monkeypatch):
+    """A small package in place of ours."""
+    monkeypatch.setattr(identity, "PACKAGE", tmp_path / "small")
+    monkeypatch.setattr(identity, "ROOT", "small")
+    identity.read_source.cache_clear()
+    yield package(
+        tmp_path / "small",
+        sweep="from . import tools\nfrom .running import pool\n",
+        tools="LIMIT = 1\ndef f():\n    from .deep import g\n",
+        deep="def g():\n    return 1\n",
+        other="",
+        running__pool="",
+    )
+    identity.read_source.cache_clear()
+
+
+def test_code_is_the_closure_of_imports(ours):
+    assert list(code_of("small.sweep")) == ["small.deep", "small.sweep", "small.tools"]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"), [("tools.py", "LIMIT = 1", "LIMIT = 2"), ("deep.py", "1", "2")]
+)
+def test_an_edit_of_a_constant_or_a_function_is_seen(ours, file, old, new):
+    before = code_of("small.sweep")
+    (ours / file).write_text((ours / file).read_text().replace(old, new))
+    identity.read_source.cache_clear()
+    line = difference({"code": before}, {"code": code_of("small.sweep")})
+    assert line == f"small/{file} changed since"
+
+
+def test_an_edit_elsewhere_is_not(ours):
+    before = code_of("small.sweep")
+    (ours / "other.py").write_text("x = 1")
+    (ours / "running" / "pool.py").write_text("x = 1")
+    identity.read_source.cache_clear()
+    assert code_of("small.sweep") == before
+
+
+def test_a_long_list_is_told_by_its_ends_and_a_digest():
+    etas = np.arange(100, 8001) / 1000.0
+    told = plain(tuple(etas))
+    assert (told["first"], told["last"], told["count"], told["step"]) == (0.1, 8.0, 7901, 0.001)
+    etas[17] += 1e-15
+    assert plain(etas)["sha256"] != told["sha256"]
+    assert brief(told) == "0.1 ... 8 by 0.001 (7901 values)"
+
+
+def test_structures_are_told_by_their_fields():
+    @dataclass
+    class Pair:
+        a: float
+        b: tuple
+
+    assert plain(Pair(1.0, (2.0, 3.0))) == {"a": 1.0, "b": [2.0, 3.0]}
+
+
+def test_the_name_of_a_result_decides_nothing():
+    assert Squares("a").parameters() == Squares("b").parameters()

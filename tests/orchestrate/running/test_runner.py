@@ -1,0 +1,204 @@
+"""Results do not depend on who computes them, nor on how often they were interrupted."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from orchestrate.errors import InputError, StaleError, StoreError, WorkerError
+from orchestrate.running import runner
+from orchestrate.running.journal import Journal, Lock, journal_path
+from orchestrate.running.options import RunOptions
+from orchestrate.running.runner import answer, answer_all, gather
+
+from .conftest import Find
+from .sums import Roots, Squares, Sums
+
+SQUARES = np.arange(10.0) ** 2
+
+
+def test_a_job_without_a_store_is_answered_in_memory(find, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    found = answer(Squares("squares"), {}, find)
+    assert np.array_equal(found.square, SQUARES)
+    assert [path.name for path in tmp_path.iterdir()] == ["model.fmu"]
+
+
+def test_where_it_comes_from_is_in_the_attributes(find, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    found = answer(Squares("squares", size=7), {}, find).attrs
+    assert found["size"] == 7
+    assert found["fmu_guid"] == "{1}"
+    assert found["call"] == "Squares(size=7, pause=0.0, fail_at=-1)"
+    assert found["history"] == f"1970-01-02T00:00:00Z: {found['call']}"
+
+
+def test_lanes_know_nothing_of_each_other(find):
+    found = answer(Sums("sums", size=12), {}, find)["sum"]
+    squares = np.arange(12.0) ** 2
+    assert np.array_equal(found, [*np.cumsum(squares[:6]), *np.cumsum(squares[6:])])
+
+
+@pytest.mark.parametrize("job", [Squares("job", size=40), Sums("job", size=40)])
+def test_processes_give_what_this_process_gives(find, monkeypatch, job):
+    alone = answer(job, {"jobs": 1}, find)
+    monkeypatch.setattr(runner, "WORTH", 0.0)
+    assert answer(job, {"jobs": 2}, find).identical(alone)
+
+
+def test_needed_results_come_first(find, tmp_path):
+    paths = answer_all([Squares("squares"), Roots("roots")], tmp_path, RunOptions(), find)
+    assert np.array_equal(xr.load_dataset(paths["roots"]).root, np.arange(10.0))
+
+
+def test_a_changed_source_makes_what_was_started_from_it_stale(find, tmp_path):
+    answer_all([Squares("squares"), Roots("roots")], tmp_path, RunOptions(), find)
+    (tmp_path / "squares.nc").unlink()
+    with pytest.raises(InputError, match=r"roots\.nc: .*squares"):
+        answer_all([Squares("squares", pause=1e-9), Roots("roots")], tmp_path, RunOptions(), find)
+
+
+def test_jobs_side_by_side_come_in_their_order(find):
+    first, second = gather([Squares("a"), Squares("b", size=3)], {}, find)
+    assert (first.sizes["number"], second.sizes["number"]) == (10, 3)
+
+
+def test_an_interrupted_job_goes_on(find, tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    whole, broken = tmp_path / "whole.nc", tmp_path / "broken.nc"
+    answer(Sums("sums", size=20), {"store": whole}, find)
+    work, calls = Squares.work, []
+
+    def interrupted(self, fmus, items, carry):
+        calls.append(items)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return work(self, fmus, items, carry)
+
+    monkeypatch.setattr(Squares, "work", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        answer(Sums("sums", size=20), {"store": broken}, find)
+    assert not broken.exists()
+    answer(Sums("sums", size=20), {"store": broken}, find)
+    assert len(calls) == 3 + len(Sums("sums", size=20).chunks()) - 2  # two were there
+    assert broken.read_bytes() == whole.read_bytes()
+    assert not journal_path(broken).exists()
+
+
+def test_a_finished_result_is_read_not_computed(find, tmp_path, monkeypatch):
+    path = tmp_path / "squares.nc"
+    first = answer(Squares("squares"), {"store": path}, find)
+    monkeypatch.setattr(Squares, "work", lambda *_: pytest.fail("computed again"))
+    assert answer(Squares("squares"), {"store": path}, find).identical(first)
+
+
+def test_another_question_is_refused_and_nothing_is_lost(find, tmp_path):
+    path = tmp_path / "squares.nc"
+    answer(Squares("squares"), {"store": path}, find)
+    before = path.read_bytes()
+    with pytest.raises(InputError, match=r"squares\.nc: .*size = 10 there, 11 here"):
+        answer(Squares("squares", size=11), {"store": path}, find)
+    assert path.read_bytes() == before
+    assert answer(Squares("squares", size=11), {"store": path, "force": True}, find).sizes == {
+        "number": 11
+    }
+
+
+def test_another_fmu_makes_a_result_stale(find: Find, tmp_path):
+    path = tmp_path / "squares.nc"
+    answer(Squares("squares"), {"store": path}, find)
+
+    def other(model):
+        return type(find(model))(find(model).path, model, "{2}")
+
+    with pytest.raises(StaleError, match="made by another FMU"):
+        answer(Squares("squares"), {"store": path}, other)
+    kept = answer(Squares("squares"), {"store": path, "keep_stale": True}, other)
+    assert kept.attrs["fmu_guid"] == "{1}"
+    anew = answer(Squares("squares"), {"store": path, "force": True}, other)
+    assert anew.attrs["fmu_guid"] == "{2}"
+
+
+def test_a_damaged_chunk_is_computed_anew(find, tmp_path, monkeypatch):
+    path = tmp_path / "squares.nc"
+    with pytest.raises(AssertionError, match="as it was told to"):
+        answer(Squares("squares", fail_at=7), {"store": path}, find)
+    journal = Journal(journal_path(path), {}, "")
+    assert journal.indices() == {0, 1}
+    journal._query("UPDATE chunks SET data = substr(data, 1, length(data) - 1) || 'x' WHERE i = 1")
+    assert journal.indices() == {0}
+    journal.close()
+
+
+def test_a_journal_that_is_none(find, tmp_path):
+    path = tmp_path / "squares.nc"
+    journal_path(path).write_bytes(b"not a database" * 1000)
+    with pytest.raises(StoreError, match="remove it to begin anew"):
+        answer(Squares("squares"), {"store": path}, find)
+
+
+def test_a_file_that_is_no_result(find, tmp_path):
+    path = tmp_path / "squares.nc"
+    path.write_text("notes")
+    with pytest.raises(StoreError, match="not a result of this project"):
+        answer(Squares("squares"), {"store": path}, find)
+    assert path.read_text() == "notes"
+
+
+def test_one_process_at_a_time(find, tmp_path):
+    path = tmp_path / "squares.nc"
+    lock = Lock(path)
+    with pytest.raises(InputError, match="another process is computing it"):
+        answer(Squares("squares"), {"store": path}, find)
+    lock.release()
+    answer(Squares("squares"), {"store": path}, find)
+    assert {path.name for path in tmp_path.iterdir()} == {"model.fmu", "squares.nc"}
+
+
+def test_a_folder_that_cannot_be_made(find, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(StoreError, match="expected a folder that can be written"):
+        answer(Squares("squares"), {"store": tmp_path / "file" / "squares.nc"}, find)
+
+
+def test_a_worker_that_dies_is_told(find, monkeypatch):
+    monkeypatch.setattr(runner, "WORTH", 0.0)
+    with pytest.raises(WorkerError, match="a worker process ended without a word"):
+        answer(Dying("dying", size=30), {"jobs": 2}, find)
+
+
+class Dying(Squares):
+    """Kills the process that computes its last chunks."""
+
+    def work(self, fmus, items, carry):
+        if items[0] > 6:
+            os.kill(os.getpid(), 9)
+        return super().work(fmus, items, carry)
+
+
+@pytest.mark.parametrize(
+    ("running", "text"),
+    [
+        ({"jobs": 0}, "jobs = 0: expected a whole number from 1"),
+        ({"jobs": 1000000}, "jobs = 1000000: expected"),
+        ({"jobs": 1.5}, r"jobs = 1\.5: expected"),
+        ({"cluster": "tcp://127.0.0.1:1"}, "no scheduler answers there"),
+    ],
+)
+def test_wrong_keywords(find, running, text):
+    with pytest.raises(InputError, match=text):
+        answer(Squares("squares"), running, find)
+
+
+def test_an_unknown_keyword_is_an_error_of_pythons_kind(find):
+    with pytest.raises(TypeError, match="'job'"):
+        answer(Squares("squares"), {"job": 2}, find)
+
+
+def test_a_store_without_an_ending_is_a_folder(find, tmp_path: Path):
+    answer(Squares("squares"), {"store": tmp_path / "results"}, find)
+    assert (tmp_path / "results" / "squares.nc").is_file()
