@@ -23,7 +23,8 @@ def answer(value):
 
 
 def run_fresh(script, *args, cwd, pure=False, env=None, timeout=300):
-    """Run a script that ends with ``answer(value)``; returns value, and the completed process for the rest.
+    """Run a script that ends with ``answer(value)``; returns value, and the completed process for
+    the rest.
 
     Parameters
     ----------
@@ -36,13 +37,19 @@ def run_fresh(script, *args, cwd, pure=False, env=None, timeout=300):
     env : dict, optional
         Further environment variables.
     """
-    environment = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "VIBROIMPACT_PURE_PYTHON")}
+    environment = {
+        k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "VIBROIMPACT_PURE_PYTHON")
+    }
     environment.update(env or {})
     if pure:
         environment["VIBROIMPACT_PURE_PYTHON"] = "1"
     command = [sys.executable, "-c", PRELUDE + script, *map(str, args)]
-    done = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, timeout=timeout)
-    assert done.returncode == 0, f"exit code {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
+    done = subprocess.run(
+        command, cwd=cwd, env=environment, capture_output=True, text=True, timeout=timeout
+    )
+    assert done.returncode == 0, (
+        f"exit code {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
+    )
     answers = [line[7:] for line in done.stdout.splitlines() if line.startswith("ANSWER ")]
     assert len(answers) == 1, done.stdout
     return json.loads(answers[0]), done

@@ -1,8 +1,10 @@
-"""The kernel compiled ahead of time: Numba to LLVM, LLVM to object files that need nothing but ``memset``.
+"""The kernel compiled ahead of time: Numba to LLVM, LLVM to object files that need nothing but
+``memset``.
 
-Runs in a process of its own (``python -m fmu_src.export.compile_kernel MODEL FOLDER``), because Numba reads its settings when it is
-imported. No fast-math, no fused multiply-add, a baseline processor: with the kernel's own elementary functions every number has the
-bits that pure Python gives. Only Numba's public ``inspect_llvm`` and llvmlite's binding layer are used.
+Runs in a process of its own (``python -m fmu_src.export.compile_kernel MODEL FOLDER``), because
+Numba reads its settings when it is imported. No fast-math, no fused multiply-add, a baseline
+processor: with the kernel's own elementary functions every number has the bits that pure Python
+gives. Only Numba's public ``inspect_llvm`` and llvmlite's binding layer are used.
 """
 
 import functools
@@ -19,7 +21,12 @@ from typing import Any
 from .linking import PLATFORMS, NoCompiler
 
 CPU = "x86-64-v2"
-SETTINGS = {"NUMBA_CPU_NAME": CPU, "NUMBA_CPU_FEATURES": "", "NUMBA_OPT": "3", "NUMBA_CACHE_DIR": os.devnull}
+SETTINGS = {
+    "NUMBA_CPU_NAME": CPU,
+    "NUMBA_CPU_FEATURES": "",
+    "NUMBA_OPT": "3",
+    "NUMBA_CACHE_DIR": os.devnull,
+}
 
 
 @functools.cache
@@ -29,7 +36,8 @@ def compile_objects(model_module):
     Parameters
     ----------
     model_module : str
-        Module with a ``MODEL`` (:class:`..runtime.table.Model`), e.g. ``"fmu_src.models.oscillator.model"``.
+        Module with a ``MODEL`` (:class:`..runtime.table.Model`), e.g.
+        ``"fmu_src.models.oscillator.model"``.
 
     Returns
     -------
@@ -44,9 +52,13 @@ def compile_objects(model_module):
     root = Path(__file__).resolve().parents[2]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as folder:
         command = [sys.executable, "-m", __name__, model_module, folder]
-        done = subprocess.run(command, cwd=root, env={**os.environ, **SETTINGS}, capture_output=True, text=True)
+        done = subprocess.run(
+            command, cwd=root, env={**os.environ, **SETTINGS}, capture_output=True, text=True
+        )
         if done.returncode != 0:
-            raise NoCompiler((done.stderr.strip().splitlines() or ["the compiler gave no reason"])[-1])
+            raise NoCompiler(
+                (done.stderr.strip().splitlines() or ["the compiler gave no reason"])[-1]
+            )
         return {name: (Path(folder) / f"{name}.o").read_bytes() for name in PLATFORMS}
 
 
@@ -88,7 +100,12 @@ def link_ir(entries):
     module: Any = None
     names = {}
     for name, (ir, native_name) in entries.items():
-        ir = re.sub(r"^declare double @sqrt\(double\).*$", "declare double @llvm.sqrt.f64(double)", ir, flags=re.M)
+        ir = re.sub(
+            r"^declare double @sqrt\(double\).*$",
+            "declare double @llvm.sqrt.f64(double)",
+            ir,
+            flags=re.M,
+        )
         if ir.count("declare double @llvm.sqrt.f64(double)") > 1:
             ir = re.sub(r"^declare double @llvm\.sqrt\.f64\(double\) #.*\n", "", ir, flags=re.M)
         part = llvm.parse_assembly(ir.replace("@sqrt(", "@llvm.sqrt.f64("))
@@ -100,7 +117,8 @@ def link_ir(entries):
     for function in module.functions:
         if function.name in names:
             function.name = names[function.name]
-            function.visibility = "hidden"  # or two FMUs in one process could call each other's kernel
+            # or two FMUs in one process could call each other's kernel
+            function.visibility = "hidden"
         elif not function.is_declaration:
             function.linkage = "internal"
     for variable in module.global_variables:
@@ -118,13 +136,19 @@ def emit_object(text, platform):
     text = re.sub(r"^target triple = .*$", f'target triple = "{platform.triple}"', text, flags=re.M)
     text = re.sub(r'^(target datalayout = "e-m:)e', rf"\g<1>{platform.mangling}", text, flags=re.M)
     module = llvm.parse_assembly(text)
-    machine = llvm.Target.from_triple(platform.triple).create_target_machine(cpu=CPU, opt=3, reloc="pic", codemodel="default")
+    machine = llvm.Target.from_triple(platform.triple).create_target_machine(
+        cpu=CPU, opt=3, reloc="pic", codemodel="default"
+    )
     builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
     for _ in range(2):  # the second round sees that no error path is left
         builder.getModulePassManager().run(module, builder)
-    needed = [f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")]
+    needed = [
+        f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")
+    ]
     if needed:
-        raise NoCompiler(f"the kernel compiled by this version of Numba needs {', '.join(needed)}: allowed is nothing outside itself")
+        raise NoCompiler(
+            f"the kernel compiled by this version of Numba needs {', '.join(needed)}: allowed is nothing outside itself"
+        )
     return machine.emit_object(module)
 
 
@@ -132,7 +156,10 @@ def main(model_module, folder):
     """Write one object file a platform; see :func:`compile_objects`."""
     model = importlib.import_module(model_module).MODEL
     dispatchers = jit_kernel(kernel_modules())
-    entries = {f"kernel_{name}": entry_ir(dispatchers[function], model.memory_size) for name, function in model.entries.items()}
+    entries = {
+        f"kernel_{name}": entry_ir(dispatchers[function], model.memory_size)
+        for name, function in model.entries.items()
+    }
     text = str(link_ir(entries))
     for name, platform in PLATFORMS.items():
         (Path(folder) / f"{name}.o").write_bytes(emit_object(text, platform))

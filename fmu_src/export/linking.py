@@ -1,7 +1,8 @@
 """From object files and C sources to shared libraries, for each platform an FMU has a binary for.
 
-The compiler is the one of the PyPI package ziglang, which compiles for every platform on every machine and gives the same bytes everywhere;
-where that is missing, the machine's own compiler serves its own platform.
+The compiler is the one of the PyPI package ziglang, which compiles for every platform on every
+machine and gives the same bytes everywhere; where that is missing, the machine's own compiler
+serves its own platform.
 """
 
 import functools
@@ -29,7 +30,9 @@ def say_once(line):
 
 def say_pure_python(reason):
     """Say, once, what is left where no binary can be made."""
-    say_once(f"no binary can be made here, so there will be no native FMU, and the pythonfmu FMU runs in pure Python: {reason}")
+    say_once(
+        f"no binary can be made here, so there will be no native FMU, and the pythonfmu FMU runs in pure Python: {reason}"
+    )
 
 
 @dataclass(frozen=True)
@@ -57,10 +60,23 @@ class Platform:
 
 
 PLATFORMS = {
-    "x86_64-linux": Platform("x86_64-unknown-linux-gnu", "e", "x86_64-linux-gnu.2.17", ".so", "linux64", "x86_64-linux"),
-    "x86_64-windows": Platform("x86_64-pc-windows-gnu", "w", "x86_64-windows-gnu", ".dll", "win64", "x86_64-windows"),
+    "x86_64-linux": Platform(
+        "x86_64-unknown-linux-gnu", "e", "x86_64-linux-gnu.2.17", ".so", "linux64", "x86_64-linux"
+    ),
+    "x86_64-windows": Platform(
+        "x86_64-pc-windows-gnu", "w", "x86_64-windows-gnu", ".dll", "win64", "x86_64-windows"
+    ),
 }
-FLAGS = ("-shared", "-s", "-O2", "-fvisibility=hidden", "-ffp-contract=off", "-g0", "-Wall", "-Wextra")
+FLAGS = (
+    "-shared",
+    "-s",
+    "-O2",
+    "-fvisibility=hidden",
+    "-ffp-contract=off",
+    "-g0",
+    "-Wall",
+    "-Wextra",
+)
 
 
 def compiler(name):
@@ -75,7 +91,9 @@ def compiler(name):
     own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     if own and name == "x86_64-linux" and sys.platform == "linux":
         return [own]
-    raise NoCompiler(f"no C compiler for {name}: allowed is the PyPI package ziglang, or cc, gcc or clang for the machine's own platform")
+    raise NoCompiler(
+        f"no C compiler for {name}: allowed is the PyPI package ziglang, or cc, gcc or clang for the machine's own platform"
+    )
 
 
 def link(name, files):
@@ -100,13 +118,18 @@ def link(name, files):
         command = [*compiler(name), *FLAGS, "-o", target, *units]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         if done.returncode != 0:
-            lines = [line for line in done.stderr.splitlines() if "error" in line] or done.stderr.splitlines() or ["no reason given"]
+            lines = (
+                [line for line in done.stderr.splitlines() if "error" in line]
+                or done.stderr.splitlines()
+                or ["no reason given"]
+            )
             raise NoCompiler(f"the C compiler failed for {name}: {lines[0]}")
         return (Path(folder) / target).read_bytes()
 
 
 def link_all(objects, files):
-    """The same library for every platform this machine can link for; the others are left out, and said to be.
+    """The same library for every platform this machine can link for; the others are left out, and
+    said to be.
 
     Parameters
     ----------

@@ -49,7 +49,10 @@ NATIVE_COSIMULATION = {
     "canGetAndSetFMUstate": "true",
     "canSerializeFMUstate": "true",
 }
-LOG_CATEGORIES = {"logStatusError": "Errors: what was wrong, its value and what is allowed", "logAll": "All messages"}
+LOG_CATEGORIES = {
+    "logStatusError": "Errors: what was wrong, its value and what is allowed",
+    "logAll": "All messages",
+}
 
 
 def number(value):
@@ -89,7 +92,13 @@ def fmi2_xml(model, guid, cosimulation=COSIMULATION):
     categories = ET.SubElement(root, "LogCategories")
     for name, description in LOG_CATEGORIES.items():
         ET.SubElement(categories, "Category", name=name, description=description)
-    ET.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=number(model.stop_time), stepSize=number(model.step_size))
+    ET.SubElement(
+        root,
+        "DefaultExperiment",
+        startTime="0.0",
+        stopTime=number(model.stop_time),
+        stepSize=number(model.step_size),
+    )
     variables = ET.SubElement(root, "ModelVariables")
     for variable in model.variables:
         add_variable(variables, variable)
@@ -147,13 +156,23 @@ def start_text(variable):
 
 
 def add_structure(root, model):
-    """Dependencies: outputs belong to the last communication point, so few depend on an input as it is set now."""
+    """Dependencies: outputs belong to the last communication point, so few depend on an input as it
+    is set now.
+    """
     structure = ET.SubElement(root, "ModelStructure")
     index = {variable.name: str(i + 1) for i, variable in enumerate(model.variables)}
     outputs = ET.SubElement(structure, "Outputs")
     unknowns = ET.SubElement(structure, "InitialUnknowns")
     for variable in model.variables:
         if variable.causality == "output":
-            for parent, names in ((outputs, variable.dependencies), (unknowns, variable.initial_dependencies)):
+            for parent, names in (
+                (outputs, variable.dependencies),
+                (unknowns, variable.initial_dependencies),
+            ):
                 known = sorted(int(index[name]) for name in names)
-                ET.SubElement(parent, "Unknown", index=index[variable.name], dependencies=" ".join(map(str, known)))
+                ET.SubElement(
+                    parent,
+                    "Unknown",
+                    index=index[variable.name],
+                    dependencies=" ".join(map(str, known)),
+                )

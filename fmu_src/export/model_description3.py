@@ -2,8 +2,8 @@
 
 from xml.etree import ElementTree as ET
 
-from .model_description import LOG_CATEGORIES, add_units, number, start_text
 from ..runtime.table import BOOLEAN, INTEGER, REAL
+from .model_description import LOG_CATEGORIES, add_units, number, start_text
 
 TYPES = {REAL: "Float64", INTEGER: "Int32", BOOLEAN: "Boolean"}
 ARRAY_BASE = 1000  # value references of arrays begin here
@@ -42,14 +42,29 @@ def fmi3_xml(model, token):
         generationTool=f"vibroimpact {model.version}",
         variableNamingConvention="flat",
     )
-    ET.SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **COSIMULATION, **(EVENT_MODE if model.clock else {})})
+    ET.SubElement(
+        root,
+        "CoSimulation",
+        {"modelIdentifier": model.name, **COSIMULATION, **(EVENT_MODE if model.clock else {})},
+    )
     add_units(root, model)
     categories = ET.SubElement(root, "LogCategories")
     for name, description in LOG_CATEGORIES.items():
         ET.SubElement(categories, "Category", name=name, description=description)
-    ET.SubElement(root, "DefaultExperiment", startTime="0.0", stopTime=number(model.stop_time), stepSize=number(model.step_size))
+    ET.SubElement(
+        root,
+        "DefaultExperiment",
+        startTime="0.0",
+        stopTime=number(model.stop_time),
+        stepSize=number(model.step_size),
+    )
     variables = ET.SubElement(root, "ModelVariables")
-    time = {"name": "time", "valueReference": str(model.time_slot), "description": "Time", "causality": "independent"}
+    time = {
+        "name": "time",
+        "valueReference": str(model.time_slot),
+        "description": "Time",
+        "causality": "independent",
+    }
     ET.SubElement(variables, "Float64", {**time, "variability": "continuous", "unit": "s"})
     for variable in model.variables:
         if not variable.series:
@@ -57,7 +72,12 @@ def fmi3_xml(model, token):
     for i, array in enumerate(model.arrays):
         add_array(variables, model, array, ARRAY_BASE + i)
     if model.clock:
-        clock = {"name": model.clock.name, "valueReference": str(CLOCK_REFERENCE), "description": model.clock.description, "causality": "output"}
+        clock = {
+            "name": model.clock.name,
+            "valueReference": str(CLOCK_REFERENCE),
+            "description": model.clock.description,
+            "causality": "output",
+        }
         ET.SubElement(variables, "Clock", clock, intervalVariability="triggered")
     add_structure(root, model)
     ET.indent(root)
@@ -103,21 +123,35 @@ def elements(model, array):
 def add_array(parent, model, array, reference):
     """One array output."""
     scalar = elements(model, array)[0]
-    attributes = {**attributes_of(scalar, reference), "name": array.name, "description": array.description, "unit": scalar.unit}
+    attributes = {
+        **attributes_of(scalar, reference),
+        "name": array.name,
+        "description": array.description,
+        "unit": scalar.unit,
+    }
     typed = ET.SubElement(parent, "Float64", attributes)
     ET.SubElement(typed, "Dimension", start=str(array.size))
 
 
 def add_structure(root, model):
-    """Dependencies: outputs belong to the last communication point, so few depend on an input as it is set now."""
+    """Dependencies: outputs belong to the last communication point, so few depend on an input as it
+    is set now.
+    """
     structure = ET.SubElement(root, "ModelStructure")
     calculated = [(v.slot, [v]) for v in model.variables if v.causality == "output"]
     arrays = [(ARRAY_BASE + i, elements(model, array)) for i, array in enumerate(model.arrays)]
-    calculated += [(reference, members) for reference, members in arrays if members[0].causality == "output"]
+    calculated += [
+        (reference, members) for reference, members in arrays if members[0].causality == "output"
+    ]
     if model.clock:
         calculated.append((CLOCK_REFERENCE, []))
     for kind, attribute in (("Output", "dependencies"), ("InitialUnknown", "initial_dependencies")):
         for reference, members in calculated:
             names = {name for variable in members for name in getattr(variable, attribute)}
             known = sorted(v.slot for v in model.variables if v.name in names)
-            ET.SubElement(structure, kind, valueReference=str(reference), dependencies=" ".join(map(str, known)))
+            ET.SubElement(
+                structure,
+                kind,
+                valueReference=str(reference),
+                dependencies=" ".join(map(str, known)),
+            )

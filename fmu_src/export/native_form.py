@@ -1,4 +1,6 @@
-"""The native form of a model: kernel compiled ahead of time, a generic C shim over the variable table, nothing else in the binary."""
+"""The native form of a model: kernel compiled ahead of time, a generic C shim over the variable
+table, nothing else in the binary.
+"""
 
 import functools
 import math
@@ -17,7 +19,10 @@ HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
     "fmi3": ("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h"),
 }
-SHIM = {"fmi2": ("core.h", "core.c", "fmi2.c"), "fmi3": ("core.h", "core.c", "fmi3.c", "fmi3_absent.c")}
+SHIM = {
+    "fmi2": ("core.h", "core.c", "fmi2.c"),
+    "fmi3": ("core.h", "core.c", "fmi3.c", "fmi3_absent.c"),
+}
 XML = {"fmi2": fmi2_native_xml, "fmi3": fmi3_xml}
 
 
@@ -58,7 +63,11 @@ def c_variable(model, variable):
 def model_header(model, token, digest):
     """``model.h``: the variable table, sizes and messages for the shim."""
     highest = max(model.messages)
-    inputs = [f"orders 1 to {v.input_derivatives} of {v.name}" for v in model.variables if v.input_derivatives]
+    inputs = [
+        f"orders 1 to {v.input_derivatives} of {v.name}"
+        for v in model.variables
+        if v.input_derivatives
+    ]
     outputs = [v.name for v in model.variables if v.derivative]
     slots = {v.name: v.slot for v in model.variables}
     arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]
@@ -113,12 +122,28 @@ def fmi_headers(version):
 
 def source_digest(kernel, folder):
     """Fingerprint of kernel and model: states saved by one native form can be read by the other."""
-    return fingerprint({k: v for k, v in embedded_sources(kernel, folder).items() if not k.startswith("runtime/slave")})
+    return fingerprint(
+        {
+            k: v
+            for k, v in embedded_sources(kernel, folder).items()
+            if not k.startswith("runtime/slave")
+        }
+    )
 
 
 def guid(kernel, folder, version):
-    """The GUID (instantiation token) of the native form: of the sources, and of the exporters that make the FMU from them."""
-    return guid_of(fingerprint({**exporters(), "version": version.encode(), "sources": source_digest(kernel, folder).encode()}))
+    """The GUID (instantiation token) of the native form: of the sources, and of the exporters that
+    make the FMU from them.
+    """
+    return guid_of(
+        fingerprint(
+            {
+                **exporters(),
+                "version": version.encode(),
+                "sources": source_digest(kernel, folder).encode(),
+            }
+        )
+    )
 
 
 def export(model, kernel, folder, target, version):
@@ -145,13 +170,19 @@ def export(model, kernel, folder, target, version):
     """
     token, digest = guid(kernel, folder, version), source_digest(kernel, folder)
     objects = compile_objects(f"fmu_src.models.{folder}.model")
-    sources = {**shim_sources(version), **fmi_headers(version), "model.h": model_header(model, token, digest)}
+    sources = {
+        **shim_sources(version),
+        **fmi_headers(version),
+        "model.h": model_header(model, token, digest),
+    }
     files = {"modelDescription.xml": XML[version](model, token)}
     for name, binary in link_all(objects, sources).items():
         platform = PLATFORMS[name]
         files[f"binaries/{getattr(platform, version)}/{model.name}{platform.suffix}"] = binary
     files.update(documentation_files(model, ROOT / "models" / folder, digest))
-    files.update({f"documentation/{name}": content for name, content in kernel_sources(kernel).items()})
+    files.update(
+        {f"documentation/{name}": content for name, content in kernel_sources(kernel).items()}
+    )
     path = Path(target) / f"{model.name}.fmu"
     write_archive(path, files)
     return path

@@ -1,4 +1,5 @@
-"""The compiled form of the kernel, where one was put beside the source and fits the machine; else the source itself runs.
+"""The compiled form of the kernel, where one was put beside the source and fits the machine; else
+the source itself runs.
 
 Both give the same bits. ``VIBROIMPACT_PURE_PYTHON=1`` in the environment asks for the source.
 """
@@ -45,7 +46,8 @@ def load_compiled(folder, key, names=("initialize", "advance")):
     try:
         library = ctypes.CDLL(path)
         entries = [getattr(library, name) for name in names]
-    except (OSError, AttributeError):  # another C library, a damaged file: the source runs everywhere
+    # another C library, a damaged file: the source runs everywhere
+    except (OSError, AttributeError):
         return None
     for entry in entries:
         entry.argtypes = [ctypes.c_void_p, ctypes.c_double]

@@ -1,8 +1,10 @@
-"""The slave inside a pythonfmu FMU: FMI 2.0 calls onto a kernel's flat memory. Standard library only.
+"""The slave inside a pythonfmu FMU: FMI 2.0 calls onto a kernel's flat memory. Standard library
+only.
 
-pythonfmu 0.7.0 releases the references to class, instance and log queue whenever an exception leaves a slave, and once more when the
-instance is freed; a second call then crashes the process. :meth:`Slave.refuse` therefore takes one more reference to each
-before it raises. ``doStep`` never raises: it logs, and returns False. Every other call has no way but an exception to give the
+pythonfmu 0.7.0 releases the references to class, instance and log queue whenever an exception
+leaves a slave, and once more when the instance is freed; a second call then crashes the process.
+:meth:`Slave.refuse` therefore takes one more reference to each before it raises. ``doStep`` never
+raises: it logs, and returns False. Every other call has no way but an exception to give the
 importer a status that is not OK.
 """
 
@@ -31,7 +33,9 @@ def keep(thing):
 
 
 class Slave:
-    """Mixed into pythonfmu's ``Fmi2Slave``; the subclass sets ``model`` (a :class:`.table.Model`) and ``fingerprint`` (str)."""
+    """Mixed into pythonfmu's ``Fmi2Slave``; the subclass sets ``model`` (a :class:`.table.Model`)
+    and ``fingerprint`` (str).
+    """
 
     model: Any = None
     fingerprint = ""
@@ -42,9 +46,13 @@ class Slave:
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
         size = self.model.memory_size
-        package = __name__.split(".")[0]  # under its content-hashed name; its files lie with this instance, not with the first of the process
+        # under its content-hashed name; its files lie with this instance, not with the first of the
+        # process
+        package = __name__.split(".")[0]
         entries = self.model.entries
-        kernel = load_compiled(os.path.join(kwargs.get("resources") or "", package), package, tuple(entries))
+        kernel = load_compiled(
+            os.path.join(kwargs.get("resources") or "", package), package, tuple(entries)
+        )
         self._entries = dict(zip(entries, kernel)) if kernel else entries
         self._array = ctypes.c_double * size if kernel else lambda *values: list(values)
         self._memory = self._array(*([0.0] * size))
@@ -55,10 +63,13 @@ class Slave:
         self._stale = True  # outputs do not belong to the values set yet (initialisation mode)
         self._checked: dict = {REAL: None, INTEGER: None, BOOLEAN: None}
 
-    # -- failing without a crash --------------------------------------------------------------------------------------
+    # -- failing without a crash
+    # --------------------------------------------------------------------------------------
 
     def report(self, text):
-        """One line to the error output: importers drop log messages unless asked for, and may take a discarded step for success."""
+        """One line to the error output: importers drop log messages unless asked for, and may take
+        a discarded step for success.
+        """
         if os.environ.get("VIBROIMPACT_MESSAGES") == "log":  # an importer that reads the log
             return
         try:
@@ -81,7 +92,8 @@ class Slave:
         self.report(text)
         self.log(text.replace("%", "%%"), Fmi2Status.error, "logStatusError")
 
-    # -- life cycle ---------------------------------------------------------------------------------------------------
+    # -- life cycle --------------------------------------------------------------------------------
+    # -------------------
 
     def setup_experiment(self, start_time, stop_time=None, tolerance=None):
         """Start time of the experiment."""
@@ -94,7 +106,9 @@ class Slave:
     def enter_initialization_mode(self):
         """Begin initialisation."""
         if self._phase != INSTANTIATED:
-            self.refuse("fmi2EnterInitializationMode: allowed is one call after instantiation or fmi2Reset")
+            self.refuse(
+                "fmi2EnterInitializationMode: allowed is one call after instantiation or fmi2Reset"
+            )
         self._phase = INITIALIZING
 
     def exit_initialization_mode(self):
@@ -128,9 +142,13 @@ class Slave:
         self._phase = TERMINATED
 
     def do_step(self, current_time, step_size):
-        """One communication step; False, with a logged message, where it cannot be done: the instance stays where it was."""
+        """One communication step; False, with a logged message, where it cannot be done: the
+        instance stays where it was.
+        """
         try:
-            problem = self.step_problem(current_time, step_size) or self.step(current_time + step_size)
+            problem = self.step_problem(current_time, step_size) or self.step(
+                current_time + step_size
+            )
         except Exception as error:
             problem = f"doStep failed inside: {error!r}"
         if problem:
@@ -160,14 +178,17 @@ class Slave:
         self._memory[first + count :] = tail
         return problem
 
-    # -- values -------------------------------------------------------------------------------------------------------
+    # -- values ------------------------------------------------------------------------------------
+    # -------------------
 
     def find(self, vrs, kind):
         """The variables at value references, all of one type."""
         found = []
         for vr in vrs:
             if not 0 <= vr < len(self.model.variables) or self.model.variables[vr].type != kind:
-                self.refuse(f"valueReference = {vr}: allowed are those of the {kind} variables in modelDescription.xml")
+                self.refuse(
+                    f"valueReference = {vr}: allowed are those of the {kind} variables in modelDescription.xml"
+                )
             found.append(self.model.variables[vr])
         return found
 
@@ -202,9 +223,13 @@ class Slave:
         found = self.find(vrs, kind)
         for variable, value in zip(found, values):
             if variable.calculated:
-                self.refuse(f"{variable.name} = {value!r}: an output cannot be set, allowed are parameters and inputs")
+                self.refuse(
+                    f"{variable.name} = {value!r}: an output cannot be set, allowed are parameters and inputs"
+                )
             if variable.fixed and self._phase > INITIALIZING:
-                self.refuse(f"{variable.name} = {value!r}: a fixed parameter, to be set before the end of initialisation")
+                self.refuse(
+                    f"{variable.name} = {value!r}: a fixed parameter, to be set before the end of initialisation"
+                )
             problem = variable.problem(value)
             if problem:
                 self.refuse(problem)
@@ -228,10 +253,19 @@ class Slave:
         """There are no String variables."""
         self.find(vrs, "String")
 
-    # -- state --------------------------------------------------------------------------------------------------------
+    # -- state -------------------------------------------------------------------------------------
+    # -------------------
 
     def _get_fmu_state(self):
-        return self._sealed(struct.pack(f"<{3 + len(self._memory)}d", self._phase, self._start_time, self._stale, *self._memory))
+        return self._sealed(
+            struct.pack(
+                f"<{3 + len(self._memory)}d",
+                self._phase,
+                self._start_time,
+                self._stale,
+                *self._memory,
+            )
+        )
 
     def _sealed(self, body):
         """A saved state: what it is of, a checksum, and its numbers."""
@@ -240,8 +274,14 @@ class Slave:
 
     def _set_fmu_state(self, state):
         length = STATE_HEAD + 8 * (3 + len(self._memory))
-        if not isinstance(state, bytes) or len(state) != length or state != self._sealed(state[STATE_HEAD:]):
-            self.refuse(f"FMU state: allowed are states saved by this FMU ({self.model.name}, {self.fingerprint}), and undamaged")
+        if (
+            not isinstance(state, bytes)
+            or len(state) != length
+            or state != self._sealed(state[STATE_HEAD:])
+        ):
+            self.refuse(
+                f"FMU state: allowed are states saved by this FMU ({self.model.name}, {self.fingerprint}), and undamaged"
+            )
         numbers = struct.unpack(f"<{(length - STATE_HEAD) // 8}d", state[STATE_HEAD:])
         self._phase, self._start_time, self._stale = numbers[0], numbers[1], numbers[2] != 0.0
         self._memory = self._array(*numbers[3:])

@@ -1,4 +1,5 @@
-"""What a model tells the world: its variables, once, for the slave, the XML, the documentation and the tests.
+"""What a model tells the world: its variables, once, for the slave, the XML, the documentation and
+the tests.
 
 Standard library only: this file travels inside the FMU.
 """
@@ -41,7 +42,8 @@ class Variable:
     series : str
         Name of the array it is an element of, where FMI 3.0 has the array alone.
     slot : int
-        Place in the table, in the kernel's memory, and the FMI value reference; see :func:`numbered`.
+        Place in the table, in the kernel's memory, and the FMI value reference; see
+        :func:`numbered`.
     """
 
     name: str
@@ -102,12 +104,22 @@ def parameter(name, unit, start, description, **more):
 
 def drive(name, unit, start, description, **more):
     """An input."""
-    return Variable(name, description, "input", unit, start=start, **{"minimum": -HUGE, "maximum": HUGE, **more})
+    return Variable(
+        name, description, "input", unit, start=start, **{"minimum": -HUGE, "maximum": HUGE, **more}
+    )
 
 
 def output(name, unit, description, known=(), **more):
     """An output, calculated from the start values ``known``."""
-    return Variable(name, description, "output", unit, initial="calculated", initial_dependencies=tuple(known), **more)
+    return Variable(
+        name,
+        description,
+        "output",
+        unit,
+        initial="calculated",
+        initial_dependencies=tuple(known),
+        **more,
+    )
 
 
 def numbered(variables, memory):
@@ -127,7 +139,9 @@ def numbered(variables, memory):
         name, _, element = variable.name.partition("[")
         slot = getattr(memory, name.upper()) + (int(element[:-1]) - 1 if element else 0)
         if slot != place:
-            raise ValueError(f"{variable.name} is variable {place} of the table, but slot {slot} of the memory")
+            raise ValueError(
+                f"{variable.name} is variable {place} of the table, but slot {slot} of the memory"
+            )
     return tuple(replace(variable, slot=place) for place, variable in enumerate(variables))
 
 
@@ -177,13 +191,16 @@ class Model:
     memory_size : int
         Number of floats of an instance's memory.
     written_only : tuple of int
-        First slot and number of slots that a step writes and never reads: a step that fails need not put them back.
+        First slot and number of slots that a step writes and never reads: a step that fails need
+        not put them back.
     time_slot, stop_slot : int
-        Slots of the communication point reached, and of the flag that ends a step at its first event.
+        Slots of the communication point reached, and of the flag that ends a step at its first
+        event.
     initialize, advance : callable
         The kernel's entry points, ``(memory, time) -> code``; 0 is success.
     refresh : callable or None
-        A third one, of a model with outputs that follow an input at once: the outputs for the inputs as set now.
+        A third one, of a model with outputs that follow an input at once: the outputs for the
+        inputs as set now.
     messages : dict of int to str
         What a code of the entry points says, as one line, see :func:`explain`.
     stop_time, step_size : float
@@ -221,8 +238,8 @@ class Model:
 def explain(model, memory, code):
     """What a return code of the kernel says, as one line.
 
-    In a message ``{12}`` stands for the number in slot 12, ``{12:flight|contact}`` for one of the words, chosen by it. The native FMU
-    fills in the same texts.
+    In a message ``{12}`` stands for the number in slot 12, ``{12:flight|contact}`` for one of the
+    words, chosen by it. The native FMU fills in the same texts.
     """
 
     def fill(match):

@@ -1,7 +1,10 @@
-"""The mistakes of test_bad_input: how to get there, the call that must fail, and what its message must name."""
+"""The mistakes of test_bad_input: how to get there, the call that must fail, and what its message
+must name.
+"""
 
 # A text that begins with "python: " is looked for in the messages of the pythonfmu form alone.
-# The two pieces of code run in the fresh process with an instance ``f``; ``data`` there is a good serialised state of another run.
+# The two pieces of code run in the fresh process with an instance ``f``; ``data`` there is a good
+# serialised state of another run.
 NAN_STEP = "f.call('doStep', currentCommunicationPoint=f.time, communicationStepSize={})"
 AT = "f.call('doStep', currentCommunicationPoint={}, communicationStepSize=0.5)"
 REFERENCE = "f.variables['{}'].valueReference"
@@ -17,26 +20,62 @@ CASES = {
     "negative mass": ("", "f.set(m2=-1.0)", ["m2 = -1.0 kg", "1e-30 <= m2 <= 1e+30"]),
     "negative damping": ("", "f.set(d1=-0.01)", ["d1 = -0.01 N.s/m", "0.0 <= d1 <= 1e+30"]),
     "restitution above 1": ("", "f.set(e=1.5)", ["e = 1.5", "0.0 <= e <= 1.0"]),
-    "infinite start": ("", "f.set(x2_start=-math.inf)", ["x2_start = -inf m", "-1e+100 <= x2_start <= 1e+100"]),
-    "nan in initialisation mode": (IN_MODE.format(""), "f.set(gamma=math.nan)", ["gamma = nan", "1e-09 <= gamma <= 1.0"]),
-    "nan input": (RUNNING.format(""), "f.set(box_amplitude=math.nan)", ["box_amplitude = nan m", "-1e+100 <= box_amplitude <= 1e+100"]),
-    "infinite input": (RUNNING.format(""), "f.set(box_jerk=math.inf)", ["box_jerk = inf m/s3", "-1e+100 <= box_jerk <= 1e+100"]),
-    "negative frequency": (RUNNING.format(""), "f.set(box_frequency=-1.0)", ["box_frequency = -1.0 rad/s", "0.0 <= box_frequency <= 1e+30"]),
+    "infinite start": (
+        "",
+        "f.set(x2_start=-math.inf)",
+        ["x2_start = -inf m", "-1e+100 <= x2_start <= 1e+100"],
+    ),
+    "nan in initialisation mode": (
+        IN_MODE.format(""),
+        "f.set(gamma=math.nan)",
+        ["gamma = nan", "1e-09 <= gamma <= 1.0"],
+    ),
+    "nan input": (
+        RUNNING.format(""),
+        "f.set(box_amplitude=math.nan)",
+        ["box_amplitude = nan m", "-1e+100 <= box_amplitude <= 1e+100"],
+    ),
+    "infinite input": (
+        RUNNING.format(""),
+        "f.set(box_jerk=math.inf)",
+        ["box_jerk = inf m/s3", "-1e+100 <= box_jerk <= 1e+100"],
+    ),
+    "negative frequency": (
+        RUNNING.format(""),
+        "f.set(box_frequency=-1.0)",
+        ["box_frequency = -1.0 rad/s", "0.0 <= box_frequency <= 1e+30"],
+    ),
     "one bad value among good ones": (
         "",
         f"f.call('setReal', [{REFERENCE.format('m1')}, {REFERENCE.format('k2')}, {REFERENCE.format('m2')}], [2.0, math.nan, 3.0])",
         ["k2 = nan N/m", "1e-30 <= k2 <= 1e+30"],
     ),
     # combinations
-    "masses overlap at the start": (IN_MODE.format("x1_start=1.0"), EXIT, ["x2_start = 0.0 m", "x2_start >= x1_start = 1.0 m"]),
-    "overlap seen when an output is read": (IN_MODE.format("x1_start=1.0"), "f.get('v1')", ["x2_start = 0.0 m", "x2_start >= x1_start = 1.0 m"]),
-    "bonded apart": (IN_MODE.format("bonded=True, x2_start=0.5"), EXIT, ["bonded = true", "x2_start = 0.5 m", "x2_start = x1_start = 0.0 m"]),
+    "masses overlap at the start": (
+        IN_MODE.format("x1_start=1.0"),
+        EXIT,
+        ["x2_start = 0.0 m", "x2_start >= x1_start = 1.0 m"],
+    ),
+    "overlap seen when an output is read": (
+        IN_MODE.format("x1_start=1.0"),
+        "f.get('v1')",
+        ["x2_start = 0.0 m", "x2_start >= x1_start = 1.0 m"],
+    ),
+    "bonded apart": (
+        IN_MODE.format("bonded=True, x2_start=0.5"),
+        EXIT,
+        ["bonded = true", "x2_start = 0.5 m", "x2_start = x1_start = 0.0 m"],
+    ),
     "bonded at two speeds": (
         IN_MODE.format("bonded=True, v2_start=0.5"),
         EXIT,
         ["bonded = true", "v2_start = 0.5 m/s", "v2_start = v1_start = 0.0 m/s"],
     ),
-    "resonance of undamped mass 1": (IN_MODE.format("d1=0.0, box_frequency=1.0"), EXIT, ["box_frequency = 1.0 rad/s", "mass 1", "d1 > 0"]),
+    "resonance of undamped mass 1": (
+        IN_MODE.format("d1=0.0, box_frequency=1.0"),
+        EXIT,
+        ["box_frequency = 1.0 rad/s", "mass 1", "d1 > 0"],
+    ),
     "resonance of undamped mass 2": (
         IN_MODE.format(f"d2=0.0, box_frequency={ROOT_1_2!r}"),
         EXIT,
@@ -68,15 +107,47 @@ CASES = {
         "f.set(m1=2.0)",
         ["m1 = 2.0", "fixed parameter", "before the end of initialisation"],
     ),
-    "fixed Boolean after initialisation": (RUNNING.format(""), "f.set(bonded=True)", ["bonded = 1.0", "fixed parameter"]),
-    "fixed parameter after the end": (RUNNING.format("") + "; f.call('terminate')", "f.set(e=0.5)", ["python: e = 0.5", "python: fixed parameter"]),
-    "output set": ("", "f.set(x1=1.0)", ["x1 = 1.0", "output", "allowed are parameters and inputs"]),
-    "Integer output set": (RUNNING.format(""), "f.set(impact_count=3)", ["impact_count = 3", "output", "allowed"]),
-    "Boolean output set": (RUNNING.format(""), "f.set(in_contact=True)", ["in_contact", "output", "allowed"]),
+    "fixed Boolean after initialisation": (
+        RUNNING.format(""),
+        "f.set(bonded=True)",
+        ["bonded = 1.0", "fixed parameter"],
+    ),
+    "fixed parameter after the end": (
+        RUNNING.format("") + "; f.call('terminate')",
+        "f.set(e=0.5)",
+        ["python: e = 0.5", "python: fixed parameter"],
+    ),
+    "output set": (
+        "",
+        "f.set(x1=1.0)",
+        ["x1 = 1.0", "output", "allowed are parameters and inputs"],
+    ),
+    "Integer output set": (
+        RUNNING.format(""),
+        "f.set(impact_count=3)",
+        ["impact_count = 3", "output", "allowed"],
+    ),
+    "Boolean output set": (
+        RUNNING.format(""),
+        "f.set(in_contact=True)",
+        ["in_contact", "output", "allowed"],
+    ),
     # value references and types
-    "unknown reference read": (RUNNING.format(""), "f.call('getReal', [999])", ["valueReference = 999", "python: Real", "allowed"]),
-    "hidden state read": (RUNNING.format(""), "f.call('getReal', [len(f.variables)])", ["valueReference = ", "python: Real", "allowed"]),
-    "unknown reference set": ("", "f.call('setReal', [999], [1.0])", ["valueReference = 999", "python: Real", "allowed"]),
+    "unknown reference read": (
+        RUNNING.format(""),
+        "f.call('getReal', [999])",
+        ["valueReference = 999", "python: Real", "allowed"],
+    ),
+    "hidden state read": (
+        RUNNING.format(""),
+        "f.call('getReal', [len(f.variables)])",
+        ["valueReference = ", "python: Real", "allowed"],
+    ),
+    "unknown reference set": (
+        "",
+        "f.call('setReal', [999], [1.0])",
+        ["valueReference = 999", "python: Real", "allowed"],
+    ),
     "Real read as Integer": (
         RUNNING.format(""),
         f"f.call('getInteger', [{REFERENCE.format('m1')}])",
@@ -87,50 +158,154 @@ CASES = {
         f"f.call('getBoolean', [{REFERENCE.format('m1')}])",
         ["valueReference = 0", "python: Boolean", "allowed"],
     ),
-    "Real read as String": (RUNNING.format(""), f"f.call('getString', [{REFERENCE.format('m1')}])", ["python: valueReference = 0", "String"]),
+    "Real read as String": (
+        RUNNING.format(""),
+        f"f.call('getString', [{REFERENCE.format('m1')}])",
+        ["python: valueReference = 0", "String"],
+    ),
     "Integer read as Real": (
         RUNNING.format(""),
         f"f.call('getReal', [{REFERENCE.format('impact_count')}])",
         ["valueReference = ", "python: Real", "allowed"],
     ),
-    "Real set as Integer": ("", f"f.call('setInteger', [{REFERENCE.format('m1')}], [2])", ["valueReference = 0", "python: Integer", "allowed"]),
-    "Real set as Boolean": ("", f"f.call('setBoolean', [{REFERENCE.format('m1')}], [True])", ["valueReference = 0", "python: Boolean", "allowed"]),
-    "Real set as String": ("", f"f.call('setString', [{REFERENCE.format('m1')}], ['%s%n'])", ["python: valueReference = 0", "String"]),
-    "Boolean set as Real": ("", f"f.call('setReal', [{REFERENCE.format('bonded')}], [1.0])", ["valueReference = ", "python: Real", "allowed"]),
+    "Real set as Integer": (
+        "",
+        f"f.call('setInteger', [{REFERENCE.format('m1')}], [2])",
+        ["valueReference = 0", "python: Integer", "allowed"],
+    ),
+    "Real set as Boolean": (
+        "",
+        f"f.call('setBoolean', [{REFERENCE.format('m1')}], [True])",
+        ["valueReference = 0", "python: Boolean", "allowed"],
+    ),
+    "Real set as String": (
+        "",
+        f"f.call('setString', [{REFERENCE.format('m1')}], ['%s%n'])",
+        ["python: valueReference = 0", "String"],
+    ),
+    "Boolean set as Real": (
+        "",
+        f"f.call('setReal', [{REFERENCE.format('bonded')}], [1.0])",
+        ["valueReference = ", "python: Real", "allowed"],
+    ),
     # steps
-    "negative step": (RUNNING.format(""), NAN_STEP.format("-0.5"), ["communicationStepSize = -0.5 s", "allowed is every finite number >= 0"]),
-    "nan step": (RUNNING.format(""), NAN_STEP.format("math.nan"), ["communicationStepSize = nan s", "allowed is every finite number >= 0"]),
-    "infinite step": (RUNNING.format(""), NAN_STEP.format("math.inf"), ["communicationStepSize = inf s", "allowed is every finite number >= 0"]),
-    "point of time ahead": (RUNNING.format(""), AT.format("2.5"), ["currentCommunicationPoint = 2.5 s", "allowed is 2.0 s"]),
-    "point of time gone by": (RUNNING.format(""), AT.format("1.5"), ["currentCommunicationPoint = 1.5 s", "allowed is 2.0 s"]),
-    "point of time nan": (RUNNING.format(""), AT.format("math.nan"), ["currentCommunicationPoint = nan s", "allowed is 2.0 s"]),
-    "point of time infinite": (RUNNING.format(""), AT.format("math.inf"), ["currentCommunicationPoint = inf s", "allowed is 2.0 s"]),
+    "negative step": (
+        RUNNING.format(""),
+        NAN_STEP.format("-0.5"),
+        ["communicationStepSize = -0.5 s", "allowed is every finite number >= 0"],
+    ),
+    "nan step": (
+        RUNNING.format(""),
+        NAN_STEP.format("math.nan"),
+        ["communicationStepSize = nan s", "allowed is every finite number >= 0"],
+    ),
+    "infinite step": (
+        RUNNING.format(""),
+        NAN_STEP.format("math.inf"),
+        ["communicationStepSize = inf s", "allowed is every finite number >= 0"],
+    ),
+    "point of time ahead": (
+        RUNNING.format(""),
+        AT.format("2.5"),
+        ["currentCommunicationPoint = 2.5 s", "allowed is 2.0 s"],
+    ),
+    "point of time gone by": (
+        RUNNING.format(""),
+        AT.format("1.5"),
+        ["currentCommunicationPoint = 1.5 s", "allowed is 2.0 s"],
+    ),
+    "point of time nan": (
+        RUNNING.format(""),
+        AT.format("math.nan"),
+        ["currentCommunicationPoint = nan s", "allowed is 2.0 s"],
+    ),
+    "point of time infinite": (
+        RUNNING.format(""),
+        AT.format("math.inf"),
+        ["currentCommunicationPoint = inf s", "allowed is 2.0 s"],
+    ),
     # order of calls
-    "step before initialisation": ("", "f.step(1.0)", ["fmi2DoStep", "python: allowed is after initialisation"]),
-    "step in initialisation mode": (IN_MODE.format(""), "f.step(1.0)", ["fmi2DoStep", "python: allowed is after initialisation"]),
-    "step after the end": (RUNNING.format("") + "; f.call('terminate')", "f.step(3.0)", ["fmi2DoStep", "python: before fmi2Terminate"]),
-    "mode left before it is entered": ("", EXIT, ["fmi2ExitInitializationMode", "python: allowed is one call in initialisation mode"]),
-    "mode left twice": (RUNNING.format(""), EXIT, ["fmi2ExitInitializationMode", "python: allowed is one call in initialisation mode"]),
-    "mode entered twice": (IN_MODE.format(""), ENTER, ["fmi2EnterInitializationMode", "python: allowed is one call"]),
-    "mode entered while running": (RUNNING.format(""), ENTER, ["fmi2EnterInitializationMode", "python: allowed is one call"]),
+    "step before initialisation": (
+        "",
+        "f.step(1.0)",
+        ["fmi2DoStep", "python: allowed is after initialisation"],
+    ),
+    "step in initialisation mode": (
+        IN_MODE.format(""),
+        "f.step(1.0)",
+        ["fmi2DoStep", "python: allowed is after initialisation"],
+    ),
+    "step after the end": (
+        RUNNING.format("") + "; f.call('terminate')",
+        "f.step(3.0)",
+        ["fmi2DoStep", "python: before fmi2Terminate"],
+    ),
+    "mode left before it is entered": (
+        "",
+        EXIT,
+        ["fmi2ExitInitializationMode", "python: allowed is one call in initialisation mode"],
+    ),
+    "mode left twice": (
+        RUNNING.format(""),
+        EXIT,
+        ["fmi2ExitInitializationMode", "python: allowed is one call in initialisation mode"],
+    ),
+    "mode entered twice": (
+        IN_MODE.format(""),
+        ENTER,
+        ["fmi2EnterInitializationMode", "python: allowed is one call"],
+    ),
+    "mode entered while running": (
+        RUNNING.format(""),
+        ENTER,
+        ["fmi2EnterInitializationMode", "python: allowed is one call"],
+    ),
     "mode entered after the end": (
         RUNNING.format("") + "; f.call('terminate')",
         ENTER,
         ["fmi2EnterInitializationMode", "python: allowed is one call"],
     ),
-    "experiment set up while running": (RUNNING.format(""), "f.call('setupExperiment')", ["fmi2SetupExperiment", "python: allowed is one call"]),
-    "start time nan": ("", "f.call('setupExperiment', startTime=math.nan)", ["startTime = nan s", "every finite number"]),
-    "start time infinite": ("", "f.call('setupExperiment', startTime=-math.inf)", ["startTime = -inf s", "every finite number"]),
+    "experiment set up while running": (
+        RUNNING.format(""),
+        "f.call('setupExperiment')",
+        ["fmi2SetupExperiment", "python: allowed is one call"],
+    ),
+    "start time nan": (
+        "",
+        "f.call('setupExperiment', startTime=math.nan)",
+        ["startTime = nan s", "every finite number"],
+    ),
+    "start time infinite": (
+        "",
+        "f.call('setupExperiment', startTime=-math.inf)",
+        ["startTime = -inf s", "every finite number"],
+    ),
     # saved states
     "state of something else": (
         RUNNING.format(""),
         "f.restore(b'no state of this FMU' * 90, 2.0)",
         ["python: FMU state", "allowed are states saved by this FMU"],
     ),
-    "empty state": ("", "f.restore(b'', 2.0)", ["python: FMU state", "allowed are states saved by this FMU"]),
-    "state cut short": (RUNNING.format(""), "f.restore(data[:-1], 2.0)", ["python: FMU state", "allowed are states saved by this FMU"]),
-    "state cut to its header": (RUNNING.format(""), "f.restore(data[:64], 2.0)", ["python: FMU state", "allowed are states saved by this FMU"]),
-    "state too long": (RUNNING.format(""), "f.restore(data + bytes(8), 2.0)", ["python: FMU state", "allowed are states saved by this FMU"]),
+    "empty state": (
+        "",
+        "f.restore(b'', 2.0)",
+        ["python: FMU state", "allowed are states saved by this FMU"],
+    ),
+    "state cut short": (
+        RUNNING.format(""),
+        "f.restore(data[:-1], 2.0)",
+        ["python: FMU state", "allowed are states saved by this FMU"],
+    ),
+    "state cut to its header": (
+        RUNNING.format(""),
+        "f.restore(data[:64], 2.0)",
+        ["python: FMU state", "allowed are states saved by this FMU"],
+    ),
+    "state too long": (
+        RUNNING.format(""),
+        "f.restore(data + bytes(8), 2.0)",
+        ["python: FMU state", "allowed are states saved by this FMU"],
+    ),
     "state of another version": (
         RUNNING.format(""),
         "f.restore(data[:30] + b'0000' + data[34:], 2.0)",

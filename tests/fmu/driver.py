@@ -1,4 +1,6 @@
-"""A driver for FMUs in a fresh process: each FMI call by its name, and a status that is not OK as an exception with the FMU's message."""
+"""A driver for FMUs in a fresh process: each FMI call by its name, and a status that is not OK as
+an exception with the FMU's message.
+"""
 
 from pathlib import Path
 from textwrap import dedent
@@ -179,5 +181,6 @@ def run(script, fmu, *arguments, **options):
 
 def run_with_output(script, fmu, *arguments, **options):
     """As :func:`run`; returns the completed process too."""
-    options["env"] = {"VIBROIMPACT_MESSAGES": "", **options.get("env", {})}  # whatever an importer in this process has set
+    # whatever an importer in this process has set
+    options["env"] = {"VIBROIMPACT_MESSAGES": "", **options.get("env", {})}
     return run_fresh(DRIVER + dedent(script), fmu, *arguments, **options)

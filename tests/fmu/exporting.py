@@ -7,7 +7,8 @@ import sys
 
 from ..fresh import ROOT
 
-# Without the compiled kernel, which takes a while: what is told from an export here does not depend on it.
+# Without the compiled kernel, which takes a while: what is told from an export here does not depend
+# on it.
 EXPORT = """
 from pathlib import Path
 from fmu_src.export import pythonfmu_form
@@ -34,7 +35,9 @@ def export_copy(folder, changes=(), packages=("oscillator", "oscillator"), **env
     packages : (str, str)
         Kernel and model.
     """
-    shutil.copytree(ROOT / "fmu_src", folder / "fmu_src", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        ROOT / "fmu_src", folder / "fmu_src", ignore=shutil.ignore_patterns("__pycache__")
+    )
     for name, old, new in changes:
         path = folder / "fmu_src" / name
         text = path.read_text()
@@ -42,7 +45,11 @@ def export_copy(folder, changes=(), packages=("oscillator", "oscillator"), **env
         path.write_text(text.replace(old, new))
     environment = {**os.environ, "PYTHONPATH": str(folder), **environment}
     done = subprocess.run(
-        [sys.executable, "-c", EXPORT.replace("KERNEL", packages[0]).replace("FOLDER", packages[1])],
+        [
+            sys.executable,
+            "-c",
+            EXPORT.replace("KERNEL", packages[0]).replace("FOLDER", packages[1]),
+        ],
         cwd=folder,
         capture_output=True,
         text=True,

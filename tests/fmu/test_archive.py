@@ -1,4 +1,6 @@
-"""The FMU as a file: reproducible, named by its contents, valid, complete, and without a trace of the machine that made it."""
+"""The FMU as a file: reproducible, named by its contents, valid, complete, and without a trace of
+the machine that made it.
+"""
 
 import json
 import re
@@ -29,7 +31,12 @@ def contents(fmu):
 def copies(tmp_path_factory):
     """Two exports of the same sources, from different places and surroundings."""
     first = export_copy(tmp_path_factory.mktemp("first"), PYTHONHASHSEED="1", TZ="UTC", LC_ALL="C")
-    second = export_copy(tmp_path_factory.mktemp("a second one"), PYTHONHASHSEED="2", TZ="Asia/Tokyo", LC_ALL="C.UTF-8")
+    second = export_copy(
+        tmp_path_factory.mktemp("a second one"),
+        PYTHONHASHSEED="2",
+        TZ="Asia/Tokyo",
+        LC_ALL="C.UTF-8",
+    )
     return first, second
 
 
@@ -39,7 +46,9 @@ def test_two_exports_are_the_same_bytes(copies):
 
 
 def test_guid_belongs_to_the_sources(copies, tmp_path):
-    """Another place, no other GUID; another number in the kernel or the table, another GUID and other module names."""
+    """Another place, no other GUID; another number in the kernel or the table, another GUID and
+    other module names.
+    """
     guid = fmpy.read_model_description(str(PYTHON)).guid
     assert fmpy.read_model_description(str(copies[0])).guid == guid
     names = set(contents(PYTHON))
@@ -47,7 +56,11 @@ def test_guid_belongs_to_the_sources(copies, tmp_path):
         [
             ("models/oscillator/variables.py", '"e", "1", 0.7', '"e", "1", 0.71'),
             ("kernels/oscillator/impact.py", '"""Impact:', '"""An impact:'),
-            ("runtime/slave.py", '"""One line to the error output:', '"""A line to the error output:'),
+            (
+                "runtime/slave.py",
+                '"""One line to the error output:',
+                '"""A line to the error output:',
+            ),
         ]
     ):
         changed = export_copy(tmp_path / str(number), [change])
@@ -63,14 +76,21 @@ def test_two_complete_builds_are_the_same_bytes(tmp_path):
     for name in ("a", "b"):
         command = [sys.executable, "-m", "orchestrate", "build", "--folder", str(tmp_path / name)]
         subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
-        built.append({path.relative_to(tmp_path / name): path.read_bytes() for path in sorted((tmp_path / name).rglob("*.fmu"))})
+        built.append(
+            {
+                path.relative_to(tmp_path / name): path.read_bytes()
+                for path in sorted((tmp_path / name).rglob("*.fmu"))
+            }
+        )
     assert set(FMUS) <= {path.parts[0] for path in built[0]}
     assert built[0] == built[1]
 
 
 def test_fmpy_finds_no_problem(fmu):
     assert validate_fmu(str(fmu)) == []
-    done = subprocess.run([sys.executable, "-m", "fmpy", "validate", str(fmu)], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-m", "fmpy", "validate", str(fmu)], capture_output=True, text=True
+    )
     assert done.returncode == 0
     assert "No problems found" in done.stdout
 
@@ -81,12 +101,22 @@ def test_documentation_is_inside(fmu):
     page = files["documentation/index.html"].decode()
     found = fmpy.read_model_description(str(fmu))
     for variable in found.modelVariables:
-        if variable.causality in ("parameter", "input", "output") and variable.type != "Clock" and not variable.dimensions:
+        if (
+            variable.causality in ("parameter", "input", "output")
+            and variable.type != "Clock"
+            and not variable.dimensions
+        ):
             assert re.search(rf"\b{variable.name}\b", page), variable.name
     for picture in re.findall(r'(?:src|data|href)="([^":#]+\.(?:png|svg|csv))"', page):
-        assert f"documentation/{picture}" in files or str(Path("documentation", picture)) in files, picture
+        assert (
+            f"documentation/{picture}" in files or str(Path("documentation", picture)) in files
+        ), picture
     assert files["model.png"].startswith(b"\x89PNG")
-    reference = [name for name in files if name.startswith("documentation/reference/") and name.endswith("_ref.csv")]
+    reference = [
+        name
+        for name in files
+        if name.startswith("documentation/reference/") and name.endswith("_ref.csv")
+    ]
     assert reference
     assert all(len(files[name].splitlines()) > 10 for name in reference)
 
@@ -127,7 +157,16 @@ def test_reference_results_are_what_the_fmu_gives(fmu, tmp_path):
 
 def test_no_path_of_the_machine_is_inside(fmu):
     """No file but pythonfmu's own binaries says where it was made."""
-    places = {"/work/", "/root/", "/home/", "/tmp/", str(ROOT), str(Path.home()), sys.prefix, tempfile.gettempdir()}
+    places = {
+        "/work/",
+        "/root/",
+        "/home/",
+        "/tmp/",
+        str(ROOT),
+        str(Path.home()),
+        sys.prefix,
+        tempfile.gettempdir(),
+    }
     for name, data in contents(fmu).items():
         if "python" in fmu.parent.name and name.startswith("binaries/"):
             continue
@@ -137,14 +176,27 @@ def test_no_path_of_the_machine_is_inside(fmu):
 
 def test_compiled_kernel_stands_alone(tmp_path):
     """Nothing outside itself but memset: it runs with every C library."""
-    name, data = next((n, d) for n, d in contents(PYTHON).items() if re.search(r"kernel-x86_64-linux\.so$", n))
+    name, data = next(
+        (n, d) for n, d in contents(PYTHON).items() if re.search(r"kernel-x86_64-linux\.so$", n)
+    )
     (tmp_path / "kernel.so").write_bytes(data)
     nm = ["nm", "-D", "--undefined-only", "kernel.so"]
     try:
         done = subprocess.run(nm, cwd=tmp_path, capture_output=True, text=True, check=True)
     except FileNotFoundError:
         pytest.skip("no nm here")
-    symbols = {line.split()[-1].split("@")[0] for line in done.stdout.splitlines() if " w " not in line}
+    symbols = {
+        line.split()[-1].split("@")[0] for line in done.stdout.splitlines() if " w " not in line
+    }
     assert symbols <= {"memset"}, name
-    defined = subprocess.run(["nm", "-D", "--defined-only", "kernel.so"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
-    assert {line.split()[-1] for line in defined.splitlines() if " T " in line} == {"initialize", "advance"}
+    defined = subprocess.run(
+        ["nm", "-D", "--defined-only", "kernel.so"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    assert {line.split()[-1] for line in defined.splitlines() if " T " in line} == {
+        "initialize",
+        "advance",
+    }

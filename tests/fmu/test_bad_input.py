@@ -1,4 +1,6 @@
-"""Every mistake gives a status and a message, and nothing else suffers: not the process, not the instance, not another one."""
+"""Every mistake gives a status and a message, and nothing else suffers: not the process, not the
+instance, not another one.
+"""
 
 import json
 from types import SimpleNamespace
@@ -48,7 +50,8 @@ gc.collect()
 answer(found)
 """
 )
-# The same call again and again: pythonfmu releases references at each, which shows only after some hundred calls.
+# The same call again and again: pythonfmu releases references at each, which shows only after some
+# hundred calls.
 AGAIN = (
     PREPARE
     + r"""
@@ -85,7 +88,9 @@ def outcomes(variant, tmp_path_factory):
     """What became of each case, and the lines each wrote to the error output."""
     folder = tmp_path_factory.mktemp("bad")
     (folder / "cases.json").write_text(json.dumps(CASES))
-    found, done = run_with_output(ONCE, variant.fmu, folder / "cases.json", 1, cwd=folder, pure=variant.pure)
+    found, done = run_with_output(
+        ONCE, variant.fmu, folder / "cases.json", 1, cwd=folder, pure=variant.pure
+    )
     written, key = {}, None
     for line in done.stderr.splitlines():
         if line.startswith("====="):
@@ -97,8 +102,14 @@ def outcomes(variant, tmp_path_factory):
 
 @pytest.mark.parametrize("key", CASES)
 def test_mistake_is_refused_with_a_message(outcomes, key):
-    """A status that is not OK, and a message that names the thing, its value and what is allowed; from pythonfmu as a line on stderr too."""
-    texts = [text.removeprefix("python: ") for text in CASES[key][2] if outcomes.pythonfmu or not text.startswith("python: ")]
+    """A status that is not OK, and a message that names the thing, its value and what is allowed;
+    from pythonfmu as a line on stderr too.
+    """
+    texts = [
+        text.removeprefix("python: ")
+        for text in CASES[key][2]
+        if outcomes.pythonfmu or not text.startswith("python: ")
+    ]
     for part in ("first", "free"):
         status, message = outcomes.found[key][part]
         assert status != 0

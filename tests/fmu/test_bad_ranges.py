@@ -48,7 +48,9 @@ answer([tried, missed, kept, f.outputs() == plain.outputs()])
 
 
 def test_every_range_holds(fmu, tmp_path):
-    """NaN, infinities and the numbers next to the ends are refused, the ends themselves are not; before and after initialisation."""
+    """NaN, infinities and the numbers next to the ends are refused, the ends themselves are not;
+    before and after initialisation.
+    """
     tried, missed, kept, same = run(RANGES, fmu, cwd=tmp_path)
     assert tried >= 5 * (18 + 6)
     assert missed == []
@@ -131,12 +133,19 @@ def test_long_step_ends(fmu, tmp_path):
     before, after = run(script, fmu, cwd=tmp_path, timeout=60)
     assert before["impact_count"] > 1e5
     assert after["x_rel_max"] == pytest.approx(before["x_rel"], abs=1e-14)
-    assert after == {**before, "box_impulse": 0.0, "box_impulse_moment": 0.0, "x_rel_max": after["x_rel_max"]}
+    assert after == {
+        **before,
+        "box_impulse": 0.0,
+        "box_impulse_moment": 0.0,
+        "x_rel_max": after["x_rel_max"],
+    }
     assert all(math.isfinite(value) for value in before.values())
 
 
 def test_overdamped_masses_are_supported(fmu, tmp_path):
-    """Overdamping is in range, so it has to give right numbers: mass 2 creeps back alone, as its closed form says."""
+    """Overdamping is in range, so it has to give right numbers: mass 2 creeps back alone, as its
+    closed form says.
+    """
     script = r"""
     f = open_fmu(PATH).start(box_amplitude=0.0, d2=5.0, x2_start=0.5)
     answer([f.step(time).get("x2", "v2", "impact_count") for time in (0.5, 2.0, 6.0)])
@@ -148,4 +157,6 @@ def test_overdamped_masses_are_supported(fmu, tmp_path):
         b = 0.5 - a
         assert count == 0
         assert x2 == pytest.approx(a * math.exp(slow * time) + b * math.exp(fast * time), rel=1e-12)
-        assert v2 == pytest.approx(slow * a * math.exp(slow * time) + fast * b * math.exp(fast * time), rel=1e-12)
+        assert v2 == pytest.approx(
+            slow * a * math.exp(slow * time) + fast * b * math.exp(fast * time), rel=1e-12
+        )

@@ -9,7 +9,8 @@ import pytest
 
 from .driver import run
 
-# The contract's table: name, causality, unit, start; typed in here, so that a slip in the project's table shows.
+# The contract's table: name, causality, unit, start; typed in here, so that a slip in the project's
+# table shows.
 PARAMETERS = """
 m1 kg 1 | m2 kg 1 | k1 N/m 1 | k2 N/m 1.2 | d1 N.s/m 0.01 | d2 N.s/m 0.01 | e 1 0.7 | gamma 1 * | x1_start m 0 | x2_start m 0 |
 v1_start m/s 0 | v2_start m/s 0 | phase_start rad 0
@@ -59,13 +60,24 @@ def test_parameters_and_inputs(variables):
     for causality, entries in (("parameter", table(PARAMETERS)), ("input", table(INPUTS))):
         for name, unit, start in entries:
             variable = variables[name]
-            assert (kind(variable), variable.causality, variable.unit) == ("Real", causality, unit), name
-            assert variable.variability == ("fixed" if causality == "parameter" else "continuous"), name
+            assert (kind(variable), variable.causality, variable.unit) == (
+                "Real",
+                causality,
+                unit,
+            ), name
+            assert variable.variability == (
+                "fixed" if causality == "parameter" else "continuous"
+            ), name
             assert start == "*" or float(variable.start) == float(start), name
             assert variable.description
             assert float(variable.min) < float(variable.max), name
     bonded = variables["bonded"]
-    assert (kind(bonded), bonded.causality, bonded.variability, bonded.start) == ("Boolean", "parameter", "fixed", "false")
+    assert (kind(bonded), bonded.causality, bonded.variability, bonded.start) == (
+        "Boolean",
+        "parameter",
+        "fixed",
+        "false",
+    )
     assert 0.0 < float(variables["gamma"].start) < 1e-2
 
 
@@ -74,8 +86,14 @@ def test_outputs(variables):
         variable = variables[name]
         assert (kind(variable), variable.causality, variable.unit) == ("Real", "output", unit), name
         assert variable.start is None
-    assert (kind(variables["in_contact"]), variables["in_contact"].causality) == ("Boolean", "output")
-    assert (kind(variables["impact_count"]), variables["impact_count"].causality) == ("Integer", "output")
+    assert (kind(variables["in_contact"]), variables["in_contact"].causality) == (
+        "Boolean",
+        "output",
+    )
+    assert (kind(variables["impact_count"]), variables["impact_count"].causality) == (
+        "Integer",
+        "output",
+    )
     for name in ("x_rel", "contact_force", "impact_count", "x_rel_max"):
         assert float(variables[name].min) == 0.0
     references = [v.valueReference for v in variables.values()]
@@ -87,7 +105,11 @@ def test_units_are_defined(found, variables):
     used = {variable.unit for variable in variables.values() if variable.unit}
     assert used == set(defined)
     for name, base in defined.items():
-        exponents = {key: getattr(base, key) for key in ("kg", "m", "s", "A", "K", "mol", "cd", "rad") if getattr(base, key)}
+        exponents = {
+            key: getattr(base, key)
+            for key in ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+            if getattr(base, key)
+        }
         assert exponents == BASE[name], name
         assert (base.factor, base.offset) == (1.0, 0.0)
 
@@ -98,11 +120,24 @@ def structure(fmu):
         root = ET.fromstring(archive.read("modelDescription.xml"))
     if root.get("fmiVersion").startswith("3"):
         names = {v.get("valueReference"): v.get("name") for v in root.find("ModelVariables")}
-        parts, key = (root.findall("ModelStructure/Output"), root.findall("ModelStructure/InitialUnknown")), "valueReference"
+        parts, key = (
+            (root.findall("ModelStructure/Output"), root.findall("ModelStructure/InitialUnknown")),
+            "valueReference",
+        )
     else:
         names = {str(i + 1): v.get("name") for i, v in enumerate(root.find("ModelVariables"))}
-        parts, key = (root.findall("ModelStructure/Outputs/Unknown"), root.findall("ModelStructure/InitialUnknowns/Unknown")), "index"
-    return [{names[u.get(key)]: [names[k] for k in u.attrib["dependencies"].split()] for u in part} for part in parts]  # an attribute each
+        parts, key = (
+            (
+                root.findall("ModelStructure/Outputs/Unknown"),
+                root.findall("ModelStructure/InitialUnknowns/Unknown"),
+            ),
+            "index",
+        )
+    # an attribute each
+    return [
+        {names[u.get(key)]: [names[k] for k in u.attrib["dependencies"].split()] for u in part}
+        for part in parts
+    ]
 
 
 def test_structure_is_complete(fmu, variables):
@@ -114,7 +149,9 @@ def test_structure_is_complete(fmu, variables):
 
 
 def test_initial_dependencies_are_true(fmu, tmp_path):
-    """Each start value in turn is changed: no output moves at the start that does not name it. In flight, in contact and at an impact."""
+    """Each start value in turn is changed: no output moves at the start that does not name it. In
+    flight, in contact and at an impact.
+    """
     script = r"""
     changes = dict(m1=1.5, m2=1.7, k1=1.3, k2=1.6, d1=0.3, d2=0.2, e=0.4, gamma=0.9, x1_start=-0.125, x2_start=0.375, v1_start=0.3, v2_start=-0.2,
                    phase_start=2.0, box_amplitude=2.0, box_frequency=0.9, box_acceleration=-3.0, box_jerk=2.0, box_snap=2.0, box_crackle=2.0,
@@ -160,4 +197,6 @@ def test_outputs_wait_for_the_next_step(fmu, tmp_path):
     """
     before, after, later = run(script, fmu, json.dumps({"x2_start": 0.5}), cwd=tmp_path)
     assert after == before
-    assert all(later[name] != before[name] for name in ("x1", "x2", "v1", "v2", "phase", "box_impulse"))
+    assert all(
+        later[name] != before[name] for name in ("x1", "x2", "v1", "v2", "phase", "box_impulse")
+    )

@@ -1,4 +1,6 @@
-"""The same bits again: two instances, two processes, a saved and restored state, the compiled kernel and its Python source."""
+"""The same bits again: two instances, two processes, a saved and restored state, the compiled
+kernel and its Python source.
+"""
 
 import json
 from textwrap import dedent
@@ -7,7 +9,8 @@ import pytest
 
 from .driver import FMUS, run
 
-# In chaotic motion (1.13) a lost bit grows to a first digit within some 150 s; at 0.4 the masses stick for a while in each period.
+# In chaotic motion (1.13) a lost bit grows to a first digit within some 150 s; at 0.4 the masses
+# stick for a while in each period.
 CASES = r"""
 cases = {"chaotic": dict(harmonic(1.13), m2=1.25), "sticking": dict(harmonic(0.4), e=0.3), "irregular": dict(harmonic(2.9), e=0.2)}
 
@@ -68,7 +71,9 @@ def test_two_processes(fmu, tmp_path):
 
 
 def test_state_is_saved_and_restored_in_one_process(fmu, tmp_path):
-    """Back and forth in flight and in contact, in the same and in another instance, at several depths."""
+    """Back and forth in flight and in contact, in the same and in another instance, at several
+    depths.
+    """
     script = (
         CASES
         + r"""
@@ -168,7 +173,9 @@ answer(saved)
 
 @pytest.mark.parametrize("eta", [1.13, 2.9])
 def test_compiled_kernel_gives_the_bits_of_its_source(tmp_path, eta):
-    """Over more than a thousand impacts, all outputs; the libraries mapped into the process show that none is compared with itself."""
+    """Over more than a thousand impacts, all outputs; the libraries mapped into the process show
+    that none is compared with itself.
+    """
     script = r"""
     eta = float(sys.argv[2])
     f = open_fmu(PATH).start(**harmonic(eta), e=0.7, d1=0.01, d2=0.01)
@@ -176,7 +183,9 @@ def test_compiled_kernel_gives_the_bits_of_its_source(tmp_path, eta):
     answer([rows, any(Path(p).name.startswith("kernel-") for p in maps())])
     """
     compiled, loaded = run(MAPS + dedent(script), FMUS["fmi2-python"], eta, cwd=tmp_path)
-    source, loaded_too = run(MAPS + dedent(script), FMUS["fmi2-python"], eta, cwd=tmp_path, pure=True)
+    source, loaded_too = run(
+        MAPS + dedent(script), FMUS["fmi2-python"], eta, cwd=tmp_path, pure=True
+    )
     assert loaded and not loaded_too
     assert compiled[-1]["impact_count"] > 1000
     assert compiled == source
@@ -185,6 +194,8 @@ def test_compiled_kernel_gives_the_bits_of_its_source(tmp_path, eta):
 def test_compiled_state_continues_in_the_source(tmp_path):
     """A serialised state is the same numbers for both forms."""
     save = "f = open_fmu(PATH).start(**harmonic(1.13)).step(77.0); data, time = f.save(); answer([data.hex(), f.step(300.0).outputs()])"
-    resume = "answer(open_fmu(PATH).restore(bytes.fromhex(sys.argv[2]), 77.0).step(300.0).outputs())"
+    resume = (
+        "answer(open_fmu(PATH).restore(bytes.fromhex(sys.argv[2]), 77.0).step(300.0).outputs())"
+    )
     data, outputs = run(save, FMUS["fmi2-python"], cwd=tmp_path)
     assert run(resume, FMUS["fmi2-python"], data, cwd=tmp_path, pure=True) == outputs

@@ -1,4 +1,6 @@
-"""``MotorShaker`` in all its forms: valid, the same bits, states that resume, inputs that are seen at once, and mistakes that are named."""
+"""``MotorShaker`` in all its forms: valid, the same bits, states that resume, inputs that are seen
+at once, and mistakes that are named.
+"""
 
 import csv
 import json
@@ -50,7 +52,9 @@ def fmu(request):
 
 def test_valid_and_as_the_contract_says(fmu):
     assert validate_fmu(str(fmu)) == []
-    variables = {variable.name: variable for variable in fmpy.read_model_description(str(fmu)).modelVariables}
+    variables = {
+        variable.name: variable for variable in fmpy.read_model_description(str(fmu)).modelVariables
+    }
     for name, causality, unit in (entry.split() for entry in CONTRACT.split("|")):
         assert (variables[name].causality, variables[name].unit) == (causality, unit), name
 
@@ -59,17 +63,26 @@ def test_exports_are_the_same_bytes_and_named_by_their_sources(tmp_path):
     """The elementary functions, which lie with the other kernel, are among the sources."""
     packages = ("shaker", "motor_shaker")
     first = export_copy(tmp_path / "first", packages=packages, PYTHONHASHSEED="1", TZ="UTC")
-    second = export_copy(tmp_path / "a second one", packages=packages, PYTHONHASHSEED="2", TZ="Asia/Tokyo")
+    second = export_copy(
+        tmp_path / "a second one", packages=packages, PYTHONHASHSEED="2", TZ="Asia/Tokyo"
+    )
     assert first.read_bytes() == second.read_bytes()
     guid = fmpy.read_model_description(str(first)).guid
     assert guid == fmpy.read_model_description(str(FMUS["fmi2-python"])).guid
-    changed = export_copy(tmp_path / "changed", [("kernels/numerics/elementary.py", "EXP_ZERO = 700.0", "EXP_ZERO = 701.0")], packages)
+    changed = export_copy(
+        tmp_path / "changed",
+        [("kernels/numerics/elementary.py", "EXP_ZERO = 700.0", "EXP_ZERO = 701.0")],
+        packages,
+    )
     assert fmpy.read_model_description(str(changed)).guid != guid
 
 
 def test_dependencies_tell_what_follows_an_input_at_once(fmu):
     found = fmpy.read_model_description(str(fmu))
-    direct = {unknown.variable.name: {variable.name for variable in unknown.dependencies} for unknown in found.outputs}
+    direct = {
+        unknown.variable.name: {variable.name for variable in unknown.dependencies}
+        for unknown in found.outputs
+    }
     electric = ("motor_current", "motor_torque", "motor_power")
     assert {name: known for name, known in direct.items() if known} == {
         "box_acceleration": {"voltage", "box_force"},
@@ -79,7 +92,9 @@ def test_dependencies_tell_what_follows_an_input_at_once(fmu):
 
 
 def test_initial_dependencies_are_true(fmu, tmp_path):
-    """Each start value in turn is changed: no output moves at the start that does not name it, and every one that is named moves something."""
+    """Each start value in turn is changed: no output moves at the start that does not name it, and
+    every one that is named moves something.
+    """
     script = r"""
     base = dict(angle_start=0.4, speed_start=30.0, position_start=0.01, velocity_start=0.2, voltage=5.0, box_force=2.0, box_force_1=3.0)
     inductive = {**base, "armature_inductance": 0.1, "current_start": 0.3}
@@ -103,9 +118,16 @@ def test_initial_dependencies_are_true(fmu, tmp_path):
     answer({name: sorted(keys) for name, keys in found.items()})
     """
     moved = run(script, fmu, cwd=tmp_path)
-    known = {u.variable.name: {v.name for v in u.dependencies or ()} for u in fmpy.read_model_description(str(fmu)).initialUnknowns}
-    assert {(name, key) for name, keys in moved.items() for key in keys if name not in known[key]} == set()
-    assert {(name, key) for key, names in known.items() for name in names if key not in moved[name]} == set()
+    known = {
+        u.variable.name: {v.name for v in u.dependencies or ()}
+        for u in fmpy.read_model_description(str(fmu)).initialUnknowns
+    }
+    assert {
+        (name, key) for name, keys in moved.items() for key in keys if name not in known[key]
+    } == set()
+    assert {
+        (name, key) for key, names in known.items() for name in names if key not in moved[name]
+    } == set()
 
 
 def test_the_forms_give_the_same_bits_and_states_resume(tmp_path):
@@ -124,14 +146,22 @@ def test_motion_is_that_of_the_equations(fmu, tmp_path):
     f = open_fmu(PATH).start(**values).step(0.25)
     answer(f.get("box_position", "box_velocity", "angle", "speed", "motor_energy"))
     """
-    values = {"voltage": 8.0, "box_force": 2.0, "box_force_1": 30.0, "box_force_2": -500.0, "box_force_3": 1e4}
+    values = {
+        "voltage": 8.0,
+        "box_force": 2.0,
+        "box_force_1": 30.0,
+        "box_force_2": -500.0,
+        "box_force_3": 1e4,
+    }
     found = run(script, fmu, json.dumps(values), cwd=tmp_path)
     expected = solve(values, (0.0,) * 5, 0.25)
     assert found == pytest.approx([*expected[:4], expected[5]], rel=1e-11)
 
 
 def test_acceleration_belongs_to_the_inputs_as_set_now(fmu, tmp_path):
-    """In initialisation mode and between steps, after a state was restored too; reading it changes nothing."""
+    """In initialisation mode and between steps, after a state was restored too; reading it changes
+    nothing.
+    """
     script = r"""
     f = open_fmu(PATH)
     f.enter()
@@ -159,7 +189,8 @@ def test_acceleration_belongs_to_the_inputs_as_set_now(fmu, tmp_path):
     rows, same = run(script, fmu, cwd=tmp_path)
     assert rows[:2] == pytest.approx([0.0, 2.0], rel=1e-2)
     assert rows[2] == rows[3] and rows[4] == rows[5]
-    assert 2.0 <= rows[4] - rows[2] < 2.0 * 1.01  # a force on box_mass = 5.5 kg; the unbalance takes part
+    # a force on box_mass = 5.5 kg; the unbalance takes part
+    assert 2.0 <= rows[4] - rows[2] < 2.0 * 1.01
     assert same
 
 
@@ -216,11 +247,20 @@ def test_failed_step_leaves_the_instance_where_it_was(fmu, tmp_path):
 def test_libcosim(form, tmp_path):
     """Another reader of the XML and another loop: the same bits."""
     pytest.importorskip("libcosimpy")
-    script = COSIM.replace('observer.last_integer_values(index, [variables["impact_count"]])', "None")
+    script = COSIM.replace(
+        'observer.last_integer_values(index, [variables["impact_count"]])', "None"
+    )
     names = ["box_position", "box_velocity", "angle", "speed", "motor_energy"]
     values = {"voltage": 7.0, "speed_start": 20.0}
     (rows, _, known), done = run_fresh(
-        script, FMUS[form], json.dumps(values), json.dumps(names), 0.03125, 64, cwd=tmp_path, env={"VIBROIMPACT_MESSAGES": ""}
+        script,
+        FMUS[form],
+        json.dumps(values),
+        json.dumps(names),
+        0.03125,
+        64,
+        cwd=tmp_path,
+        env={"VIBROIMPACT_MESSAGES": ""},
     )
     expected = run(
         r"""

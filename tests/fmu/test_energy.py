@@ -1,4 +1,6 @@
-"""The energy balance, from outputs alone: kinetic and elastic energy, work of the box, losses in dampers and impacts."""
+"""The energy balance, from outputs alone: kinetic and elastic energy, work of the box, losses in
+dampers and impacts.
+"""
 
 import json
 
@@ -7,7 +9,8 @@ import pytest
 
 from .driver import run
 
-# Energy relative to the box: E' = (m1 v1 + m2 v2) a Omega^2 sin(phase) - d1 v1^2 - d2 v2^2, and less at impacts.
+# Energy relative to the box: E' = (m1 v1 + m2 v2) a Omega^2 sin(phase) - d1 v1^2 - d2 v2^2, and
+# less at impacts.
 
 
 def energy(m1, m2, k1, k2, x1, x2, v1, v2):
@@ -45,8 +48,20 @@ def test_energy_of_free_motion_is_lost_in_impacts_alone(fmu, tmp_path, values):
 
 
 def test_energy_balance_of_driven_motion_closes(fmu, tmp_path):
-    """Work and damping losses by Gauss quadrature between impacts, through chaotic motion; its error is below 1e-12."""
-    values = {"m1": 1.0, "m2": 1.5, "k1": 1.0, "k2": 1.4, "d1": 0.02, "d2": 0.03, "e": 0.7, "box_amplitude": 0.8, "box_frequency": 1.13}
+    """Work and damping losses by Gauss quadrature between impacts, through chaotic motion; its
+    error is below 1e-12.
+    """
+    values = {
+        "m1": 1.0,
+        "m2": 1.5,
+        "k1": 1.0,
+        "k2": 1.4,
+        "d1": 0.02,
+        "d2": 0.03,
+        "e": 0.7,
+        "box_amplitude": 0.8,
+        "box_frequency": 1.13,
+    }
     script = r"""
     values, nodes, end = json.loads(sys.argv[2]), json.loads(sys.argv[3]), 100.0
     f = open_fmu(PATH).start(**values)
@@ -72,7 +87,9 @@ def test_energy_balance_of_driven_motion_closes(fmu, tmp_path):
     """
     points, weights = np.polynomial.legendre.leggauss(8)
     nodes = list(zip((0.5 + 0.5 * points).tolist(), (0.5 * weights).tolist(), strict=True))
-    first, last, samples, impacts, splits = run(script, fmu, json.dumps(values), json.dumps(nodes), cwd=tmp_path)
+    first, last, samples, impacts, splits = run(
+        script, fmu, json.dumps(values), json.dumps(nodes), cwd=tmp_path
+    )
     assert impacts > 20
     assert splits == impacts  # no two within a step: the quadrature knows them all
     masses = [values[name] for name in ("m1", "m2", "k1", "k2")]

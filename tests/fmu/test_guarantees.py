@@ -1,4 +1,6 @@
-"""The communication grid does not matter, amplitudes scale, masses never pass through each other, momentum and energy are kept."""
+"""The communication grid does not matter, amplitudes scale, masses never pass through each other,
+momentum and energy are kept.
+"""
 
 import json
 
@@ -6,8 +8,10 @@ import pytest
 
 from .driver import run
 
-# A dyadic grid: every time and every difference of two times is exact, so that all grids reach the very same point of time.
-# The last step is common to all grids, so that what belongs to a step (impulse, its moment, largest gap) must agree too.
+# A dyadic grid: every time and every difference of two times is exact, so that all grids reach the
+# very same point of time.
+# The last step is common to all grids, so that what belongs to a step (impulse, its moment, largest
+# gap) must agree too.
 GRIDS = r"""
 eta, end = float(sys.argv[2]), float(sys.argv[3])
 last = end - 0.25
@@ -32,7 +36,9 @@ answer(found)
 
 @pytest.mark.parametrize("eta", [0.4, 1.13, 2.9])
 def test_communication_grid_does_not_matter(fmu, tmp_path, eta):
-    """At eta = 1.13 the motion is chaotic: a difference in the last bit would have grown to one in the first digits."""
+    """At eta = 1.13 the motion is chaotic: a difference in the last bit would have grown to one in
+    the first digits.
+    """
     found = run(GRIDS, fmu, eta, 512, cwd=tmp_path)
     reference = found.pop("one step")
     assert reference["impact_count"] > 100
@@ -41,7 +47,9 @@ def test_communication_grid_does_not_matter(fmu, tmp_path, eta):
 
 
 def test_communication_grid_does_not_matter_after_inputs_changed(fmu, tmp_path):
-    """The same with inputs that change at common points of time, a constant acceleration among them."""
+    """The same with inputs that change at common points of time, a constant acceleration among
+    them.
+    """
     script = r"""
     changes = [(0.0, dict(box_frequency=1.13)), (20.0, dict(box_amplitude=0.5)), (41.5, dict(box_frequency=2.9, box_acceleration=0.05)),
                (60.25, dict(box_acceleration=0.0)), (96.0, {})]
@@ -64,7 +72,16 @@ def test_communication_grid_does_not_matter_after_inputs_changed(fmu, tmp_path):
 
 STROBOSCOPIC = [
     ({"box_frequency": 5.720780758293891, "box_amplitude": 0.03055549976383381, "e": 0.3}, 59, 59),
-    ({"box_frequency": 4.530369234871276, "box_amplitude": 0.04872286314565522, "e": 0.0, "gamma": 1e-3}, 59, 59),
+    (
+        {
+            "box_frequency": 4.530369234871276,
+            "box_amplitude": 0.04872286314565522,
+            "e": 0.0,
+            "gamma": 1e-3,
+        },
+        59,
+        59,
+    ),
     ({"d1": 100.0, "x1_start": -0.2, "x2_start": 0.3, "v1_start": -0.3, "v2_start": 0.6}, 1, 1024),
     ({"box_frequency": 1.13, "e": 0.3}, 60, 60),
 ]
@@ -72,7 +89,9 @@ STROBOSCOPIC = [
 
 @pytest.mark.parametrize(("values", "periods", "pieces"), STROBOSCOPIC)
 def test_steps_of_a_period_end_where_one_step_ends(fmu, tmp_path, values, periods, pieces):
-    """An importer's grid decides neither whether a step can be done; x_rel_max, which looks at each step, included."""
+    """An importer's grid decides neither whether a step can be done; x_rel_max, which looks at each
+    step, included.
+    """
     script = r"""
     values, periods, pieces = json.loads(sys.argv[2]), int(sys.argv[3]), int(sys.argv[4])
     size = 2.0 * math.pi / values.get("box_frequency", 0.4) * (periods / pieces)
@@ -87,7 +106,9 @@ def test_steps_of_a_period_end_where_one_step_ends(fmu, tmp_path, values, period
 
 
 def test_amplitudes_scale_to_the_last_bit(fmu, tmp_path):
-    """Displacements, velocities and forces times 2^n, energies times 4^n; times, counts and the paper's xi as they were."""
+    """Displacements, velocities and forces times 2^n, energies times 4^n; times, counts and the
+    paper's xi as they were.
+    """
     script = r"""
     starts = dict(x1_start=-0.375, x2_start=0.8125, v1_start=0.1, v2_start=-0.3)
     found = {}
@@ -103,16 +124,29 @@ def test_amplitudes_scale_to_the_last_bit(fmu, tmp_path):
     found = run(script, fmu, cwd=tmp_path)
     reference = found.pop("0")
     assert reference["impact_count"] > 50
-    unchanged = {"xi1", "xi2", "xi_rel", "phase", "in_contact", "impact_count", "impact_time", "contact_count"}
+    unchanged = {
+        "xi1",
+        "xi2",
+        "xi_rel",
+        "phase",
+        "in_contact",
+        "impact_count",
+        "impact_time",
+        "contact_count",
+    }
     for n, outputs in found.items():
         scale = 2.0 ** int(n)
-        expected = {name: value * (1.0 if name in unchanged else scale) for name, value in reference.items()}
+        expected = {
+            name: value * (1.0 if name in unchanged else scale) for name, value in reference.items()
+        }
         expected["impact_energy"] = reference["impact_energy"] * scale**2
         assert outputs == expected, n
 
 
 def test_masses_never_pass_through_each_other(fmu, tmp_path):
-    """x_rel >= 0 at dense and random points, and within a few roundings of every impact, where it is as small as it gets."""
+    """x_rel >= 0 at dense and random points, and within a few roundings of every impact, where it
+    is as small as it gets.
+    """
     script = r"""
     rng = random.Random(2)
     lowest, near, impacts = math.inf, [], 0
@@ -162,7 +196,8 @@ answer(found)
     [
         ({"m2": 3.0, "box_frequency": 1.13}, False),
         ({"m1": 5.0, "m2": 0.4, "k2": 0.9, "e": 0.3, "box_frequency": 2.9}, False),
-        ({"m2": 3.0, "e": 0.0, "k2": 0.7, "d2": 0.05, "box_frequency": 0.8}, True),  # a plastic impact begins a contact at full speed
+        # a plastic impact begins a contact at full speed
+        ({"m2": 3.0, "e": 0.0, "k2": 0.7, "d2": 0.05, "box_frequency": 0.8}, True),
     ],
 )
 def test_momentum_is_kept_at_impacts_and_starts_of_contact(fmu, tmp_path, values, contacts):

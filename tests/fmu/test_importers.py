@@ -1,4 +1,6 @@
-"""Importers with readers and loops of their own run the FMU and agree: FMPy's function and command line, and libcosim."""
+"""Importers with readers and loops of their own run the FMU and agree: FMPy's function and command
+line, and libcosim.
+"""
 
 import csv
 import json
@@ -14,7 +16,19 @@ import pytest
 from ..fresh import run_fresh
 from .driver import FMUS, run
 
-NAMES = ["x1", "x2", "v1", "v2", "x_rel", "x_rel_max", "box_force", "box_impulse", "phase", "impact_time", "impact_energy"]
+NAMES = [
+    "x1",
+    "x2",
+    "v1",
+    "v2",
+    "x_rel",
+    "x_rel_max",
+    "box_force",
+    "box_impulse",
+    "phase",
+    "impact_time",
+    "impact_energy",
+]
 EXACT_STEP, STOP = 0.125, 200.0  # dyadic: every importer's clock shows the same bits
 VALUES = {"box_frequency": 1.13, "m2": 1.5, "x2_start": 0.25}
 
@@ -28,7 +42,9 @@ def reference(tmp_path_factory):
     answer([[0.0, *f.get(*names)], *[[k * step, *f.step(k * step).get(*names)] for k in range(1, count + 1)]])
     """
     arguments = (json.dumps(NAMES), json.dumps(VALUES), EXACT_STEP, int(STOP / EXACT_STEP))
-    return np.array(run(script, FMUS["fmi2-python"], *arguments, cwd=tmp_path_factory.mktemp("reference")))
+    return np.array(
+        run(script, FMUS["fmi2-python"], *arguments, cwd=tmp_path_factory.mktemp("reference"))
+    )
 
 
 def test_simulate_fmu(fmu, tmp_path, reference):
@@ -44,7 +60,9 @@ def test_simulate_fmu(fmu, tmp_path, reference):
 
 
 def test_second_simulation_is_as_fast_as_the_first(tmp_path):
-    """FMPy extracts anew each time and deletes the folder afterwards, while Python keeps the modules: the kernel stays the compiled one."""
+    """FMPy extracts anew each time and deletes the folder afterwards, while Python keeps the
+    modules: the kernel stays the compiled one.
+    """
     script = r"""
     def compiled():
         return sum("/kernel-" in line for line in Path("/proc/self/maps").read_text().splitlines()) > 0
@@ -65,7 +83,9 @@ def test_second_simulation_is_as_fast_as_the_first(tmp_path):
 
 
 def test_steps_that_differ_in_the_last_bits(fmu, tmp_path):
-    """A tenth of a second is no binary number, so the loop's steps differ from each other; no step is refused and nothing adds up."""
+    """A tenth of a second is no binary number, so the loop's steps differ from each other; no step
+    is refused and nothing adds up.
+    """
     script = r"""
     values, names = {"box_frequency": 2.0, "box_amplitude": 0.25}, ["x1", "v1", "x2", "v2", "phase"]
     rows = fmpy.simulate_fmu(PATH, output_interval=0.1, stop_time=1000.0, start_values=values, output=names)
@@ -81,12 +101,34 @@ def test_steps_that_differ_in_the_last_bits(fmu, tmp_path):
 
 def test_fmpy_command_line(fmu, tmp_path, reference):
     """``fmpy simulate`` writes the same numbers into its table."""
-    command = [sys.executable, "-m", "fmpy", "simulate", str(fmu), "--stop-time", str(STOP), "--output-interval", str(EXACT_STEP)]
-    command += ["--start-values", *[text for name, value in VALUES.items() for text in (name, str(value))]]
+    command = [
+        sys.executable,
+        "-m",
+        "fmpy",
+        "simulate",
+        str(fmu),
+        "--stop-time",
+        str(STOP),
+        "--output-interval",
+        str(EXACT_STEP),
+    ]
+    command += [
+        "--start-values",
+        *[text for name, value in VALUES.items() for text in (name, str(value))],
+    ]
     command += ["--output-variables", *NAMES, "--output-file", "out.csv"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, env={**os.environ, "VIBROIMPACT_MESSAGES": ""})
-    # pythonfmu's library writes into freed memory when a process ends, which now and then aborts it: see test_limits
-    assert done.returncode == 0 or ("python" in fmu.parent.name and done.returncode == -6), done.stderr
+    done = subprocess.run(
+        command,
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "VIBROIMPACT_MESSAGES": ""},
+    )
+    # pythonfmu's library writes into freed memory when a process ends, which now and then aborts
+    # it: see test_limits
+    assert done.returncode == 0 or ("python" in fmu.parent.name and done.returncode == -6), (
+        done.stderr
+    )
     assert done.stderr.replace("corrupted double-linked list", "").strip() == ""
     with (tmp_path / "out.csv").open(newline="") as file:
         head, *rows = list(csv.reader(file))
@@ -126,11 +168,15 @@ os._exit(0)  # libcosim's own threads outlive it, and pythonfmu's library the FM
 
 @pytest.mark.parametrize("form", ["fmi2-python", "fmi2"])
 def test_libcosim(form, tmp_path, reference):
-    """Another reader of the XML and another loop, with nanoseconds for a clock: bits again. It knows no FMI 3.0."""
+    """Another reader of the XML and another loop, with nanoseconds for a clock: bits again. It
+    knows no FMI 3.0.
+    """
     pytest.importorskip("libcosimpy")
     count = int(STOP / EXACT_STEP)
     arguments = (FMUS[form], json.dumps(VALUES), json.dumps(NAMES), EXACT_STEP, count)
-    (rows, (impacts,), known), done = run_fresh(COSIM, *arguments, cwd=tmp_path, env={"VIBROIMPACT_MESSAGES": ""})
+    (rows, (impacts,), known), done = run_fresh(
+        COSIM, *arguments, cwd=tmp_path, env={"VIBROIMPACT_MESSAGES": ""}
+    )
     rows = np.array(rows)
     assert rows[:, 0] == pytest.approx(reference[1:, 0], abs=1e-9)
     assert np.array_equal(rows[:, 1:], reference[1:, 1:])

@@ -1,4 +1,6 @@
-"""Inputs that change: continuous phase, constant and piecewise cubic accelerations, against solutions of the equations of motion."""
+"""Inputs that change: continuous phase, constant and piecewise cubic accelerations, against
+solutions of the equations of motion.
+"""
 
 import json
 import math
@@ -13,7 +15,9 @@ MASSES = {"m1": 1.0, "m2": 1.5, "k1": 1.0, "k2": 1.4, "d1": 0.05, "d2": 0.03}
 
 
 def test_phase_is_continuous_when_the_frequency_changes(fmu, tmp_path):
-    """The phase is the integral of box_frequency, from phase_start on; positions and velocities do not jump either."""
+    """The phase is the integral of box_frequency, from phase_start on; positions and velocities do
+    not jump either.
+    """
     script = r"""
     f = open_fmu(PATH).start(phase_start=-1.0, box_frequency=0.4)
     frequencies, found, phase = (0.4, 3.0, 0.0, 1e3, 0.7, 0.7), [], -1.0
@@ -28,14 +32,19 @@ def test_phase_is_continuous_when_the_frequency_changes(fmu, tmp_path):
     answer(found)
     """
     found = run(script, fmu, cwd=tmp_path)
-    for frequency, (before, after, expected, phase) in zip((0.4, 3.0, 0.0, 1e3, 0.7, 0.7), found, strict=True):
-        assert after == pytest.approx(before, abs=1e-12 + 2e-15 * frequency**2)  # a time's rounding times the acceleration
+    for frequency, (before, after, expected, phase) in zip(
+        (0.4, 3.0, 0.0, 1e3, 0.7, 0.7), found, strict=True
+    ):
+        # a time's rounding times the acceleration
+        assert after == pytest.approx(before, abs=1e-12 + 2e-15 * frequency**2)
         assert 0.0 <= phase < 2.0 * math.pi
         assert math.remainder(phase - expected, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-11)
 
 
 def test_constant_acceleration_ends_in_static_displacement(fmu, tmp_path):
-    """Pushed apart, mass i comes to rest at -m_i g/k_i; pressed together, both at -(m1 + m2) g/(k1 + k2), with the force that takes."""
+    """Pushed apart, mass i comes to rest at -m_i g/k_i; pressed together, both at -(m1 + m2) g/(k1
+    + k2), with the force that takes.
+    """
     script = r"""
     masses, found = json.loads(sys.argv[2]), []
     for g in (0.5, -0.5):
@@ -51,15 +60,21 @@ def test_constant_acceleration_ends_in_static_displacement(fmu, tmp_path):
     together = 0.5 * (m1 + m2) / (k1 + k2)
     assert pressed["x1"] == pressed["x2"] == pytest.approx(together, rel=1e-12)
     assert pressed["in_contact"] and pressed["impact_count"] == 0
-    assert pressed["contact_force"] == pytest.approx(0.5 * m1 - k1 * together, rel=1e-9)  # what its spring does not carry of mass 1
+    # what its spring does not carry of mass 1
+    assert pressed["contact_force"] == pytest.approx(0.5 * m1 - k1 * together, rel=1e-9)
     for outputs in (parted, pressed):
         assert outputs["v1"] == pytest.approx(0.0, abs=1e-12)
 
 
 def signal(t):
-    """Box acceleration of the next test, smooth and without a period, and its first three derivatives."""
+    """Box acceleration of the next test, smooth and without a period, and its first three
+    derivatives.
+    """
     parts = ((0.8, 0.9, 0.3), (0.5, 1.7, 1.1), (-0.3, 2.3, 0.0))
-    return [sum(a * w**n * math.cos(w * t + p + 0.5 * math.pi * n) for a, w, p in parts) for n in range(4)]
+    return [
+        sum(a * w**n * math.cos(w * t + p + 0.5 * math.pi * n) for a, w, p in parts)
+        for n in range(4)
+    ]
 
 
 def motion(acceleration, end, values, times):
@@ -76,7 +91,16 @@ def motion(acceleration, end, values, times):
     gap.terminal, gap.direction = True, -1
     t, y, rows, impacts = 0.0, [values["x1_start"], 0.0, values["x2_start"], 0.0], {}, 0
     while t < end:
-        part = solve_ivp(right, (t, end), y, method="DOP853", rtol=1e-12, atol=1e-13, events=gap, dense_output=True)
+        part = solve_ivp(
+            right,
+            (t, end),
+            y,
+            method="DOP853",
+            rtol=1e-12,
+            atol=1e-13,
+            events=gap,
+            dense_output=True,
+        )
         rows.update({s: part.sol(s) for s in times if t <= s <= part.t[-1]})
         t, y = part.t[-1], part.y[:, -1].copy()
         if part.status == 1:
@@ -90,7 +114,9 @@ def motion(acceleration, end, values, times):
 
 
 def test_piecewise_cubic_acceleration_against_integration(fmu, tmp_path):
-    """With value and three derivatives set at each step the FMU follows a smooth signal to the fourth power of the step."""
+    """With value and three derivatives set at each step the FMU follows a smooth signal to the
+    fourth power of the step.
+    """
     values = {**MASSES, "e": 0.8, "x1_start": -0.5, "x2_start": 0.5}
     times = [0.5 * k for k in range(1, 41)]
     expected, impacts = motion(lambda t: signal(t)[0], times[-1], values, times)
@@ -124,7 +150,9 @@ def test_piecewise_cubic_acceleration_against_integration(fmu, tmp_path):
 
 
 def test_cubic_input_over_one_step_is_exact(fmu, tmp_path):
-    """The cubic holds over the whole step, far beyond small ones: bonded, against the closed form x = polynomial + decaying part."""
+    """The cubic holds over the whole step, far beyond small ones: bonded, against the closed form x
+    = polynomial + decaying part.
+    """
     g = [0.3, -0.2, 0.15, -0.05]
     script = r"""
     names = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
@@ -136,9 +164,16 @@ def test_cubic_input_over_one_step_is_exact(fmu, tmp_path):
 
     def right(t, y):
         force = 2.2 * y[0] + 0.02 * y[1]
-        return [y[1], -0.5 * force - (g[0] + t * (g[1] + t * (g[2] / 2 + t * g[3] / 6))), force, t * force]
+        return [
+            y[1],
+            -0.5 * force - (g[0] + t * (g[1] + t * (g[2] / 2 + t * g[3] / 6))),
+            force,
+            t * force,
+        ]
 
-    expected = solve_ivp(right, (0.0, 5.0), [0.0] * 4, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    expected = solve_ivp(right, (0.0, 5.0), [0.0] * 4, method="DOP853", rtol=1e-13, atol=1e-14).y[
+        :, -1
+    ]
     assert [x1, v1, impulse, moment] == pytest.approx(expected, abs=1e-11)
     assert (x2, v2) == (x1, v1)
 
@@ -146,7 +181,9 @@ def test_cubic_input_over_one_step_is_exact(fmu, tmp_path):
 @pytest.mark.parametrize("name", ["box_acceleration", "box_jerk", "box_snap", "box_crackle"])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_each_derivative_moves_masses_from_rest(fmu, tmp_path, name, sign):
-    """From rest at the touching point only the first derivative that does not vanish decides: apart for +, pressed together for -."""
+    """From rest at the touching point only the first derivative that does not vanish decides: apart
+    for +, pressed together for -.
+    """
     script = r"""
     f = open_fmu(PATH).start(box_amplitude=0.0, **{sys.argv[2]: float(sys.argv[3])})
     f.step(2.0**-10)

@@ -1,4 +1,6 @@
-"""Known limits: what an importer can still do that is answered by a crash, by silence or by a wrong number. Each test states what is right."""
+"""Known limits: what an importer can still do that is answered by a crash, by silence or by a wrong
+number. Each test states what is right.
+"""
 
 import json
 import shutil
@@ -18,7 +20,9 @@ def limit(reason, **more):
     return pytest.mark.xfail(strict=True, reason=reason, **more)
 
 
-@limit(f"{BOUND}; it decodes no other character of a file URI than the space, finds no script there and crashes")
+@limit(
+    f"{BOUND}; it decodes no other character of a file URI than the space, finds no script there and crashes"
+)
 @pytest.mark.parametrize("place", ["Jörg", "50 % off"])
 def test_extracted_below_a_folder_with_special_letters(tmp_path, place):
     """On Windows the temporary folder has the user's name in it."""
@@ -26,7 +30,9 @@ def test_extracted_below_a_folder_with_special_letters(tmp_path, place):
     assert run(script, PYTHON, tmp_path / place, cwd=tmp_path) == [pytest.approx(0.4)]
 
 
-@limit(f"{BOUND}; its own exception for a null pointer releases the references that the slave's exceptions keep")
+@limit(
+    f"{BOUND}; its own exception for a null pointer releases the references that the slave's exceptions keep"
+)
 def test_null_pointer_for_a_state(tmp_path):
     script = r"""
     f, refusals = open_fmu(PATH).start(), 0
@@ -64,7 +70,9 @@ def test_value_reference_above_two_to_the_31(tmp_path):
     assert "valueReference = 4000000000" in run(script, PYTHON, cwd=tmp_path)
 
 
-@limit("pythonfmu logs an exception without a category, so an importer that asks for logStatusError, as the XML offers, gets nothing")
+@limit(
+    "pythonfmu logs an exception without a category, so an importer that asks for logStatusError, as the XML offers, gets nothing"
+)
 def test_log_category_that_the_description_offers(tmp_path):
     script = r"""
     f = open_fmu(PATH)
@@ -78,7 +86,9 @@ def test_log_category_that_the_description_offers(tmp_path):
 
 
 @pytest.mark.slow
-@limit(f"{BOUND}; it destroys an object twice at the end of every process that has loaded it, which now and then aborts the process")
+@limit(
+    f"{BOUND}; it destroys an object twice at the end of every process that has loaded it, which now and then aborts the process"
+)
 def test_end_of_the_process(tmp_path):
     if not shutil.which("valgrind"):
         pytest.xfail("no valgrind here to see it with")
@@ -88,14 +98,23 @@ def test_end_of_the_process(tmp_path):
         + DRIVER.replace("if PYTHONFMU:", "if False:")
         + "f = open_fmu(PATH).start().step(1.0)\nf.free()\n"
     )
-    command = ["valgrind", "-q", "--undef-value-errors=no", sys.executable, str(script), str(PYTHON)]
+    command = [
+        "valgrind",
+        "-q",
+        "--undef-value-errors=no",
+        sys.executable,
+        str(script),
+        str(PYTHON),
+    ]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=500)
     assert done.returncode == 0
     assert "finalizePythonInterpreter" not in done.stderr
 
 
 def test_serialised_state_with_a_spoilt_number(fmu, tmp_path):
-    """NaN in the place of every number in turn: refused, at the latest by the step; never an output that is not finite with status OK."""
+    """NaN in the place of every number in turn: refused, at the latest by the step; never an output
+    that is not finite with status OK.
+    """
     script = r"""
     data, time = open_fmu(PATH).start(x2_start=0.5).step(3.0).save()
     f, silent = open_fmu(PATH), []
@@ -115,7 +134,9 @@ def test_serialised_state_with_a_spoilt_number(fmu, tmp_path):
     assert run(script, fmu, cwd=tmp_path) == []
 
 
-@limit("currentCommunicationPoint may be off by a billionth of the time itself, which is seconds where the start time is today's date")
+@limit(
+    "currentCommunicationPoint may be off by a billionth of the time itself, which is seconds where the start time is today's date"
+)
 def test_wrong_point_of_time_where_time_is_the_date(fmu, tmp_path):
     script = r"""
     f = open_fmu(PATH).start(1.7e9).step(1.7e9 + 1.0)
@@ -129,7 +150,9 @@ def test_wrong_point_of_time_where_time_is_the_date(fmu, tmp_path):
     assert "allowed is 1700000001.0 s" in run(script, fmu, cwd=tmp_path)
 
 
-@limit("beyond 2^62 quarter turns the compiled kernel's integers overflow, those of the source do not")
+@limit(
+    "beyond 2^62 quarter turns the compiled kernel's integers overflow, those of the source do not"
+)
 def test_absurd_time_in_source_and_compiled(tmp_path):
     script = r"""
     try:
@@ -141,7 +164,9 @@ def test_absurd_time_in_source_and_compiled(tmp_path):
 
 
 @pytest.mark.slow
-@limit("1e8 evaluations are some ten seconds for the compiled kernel, but a quarter of an hour for its source")
+@limit(
+    "1e8 evaluations are some ten seconds for the compiled kernel, but a quarter of an hour for its source"
+)
 def test_endless_step_in_the_source_ends(tmp_path):
     script = r"""
     try:
@@ -156,9 +181,13 @@ def test_endless_step_in_the_source_ends(tmp_path):
     assert "cannot finish" in messages[0]
 
 
-@limit("the project's own access switches the line on stderr off for the whole process, for good, and for its children")
+@limit(
+    "the project's own access switches the line on stderr off for the whole process, for good, and for its children"
+)
 def test_own_access_leaves_other_importers_their_messages(tmp_path):
-    """A notebook that has used the project's functions, then FMPy itself: a discarded step must not go unnoticed."""
+    """A notebook that has used the project's functions, then FMPy itself: a discarded step must not
+    go unnoticed.
+    """
     script = f"""
 import sys, fmpy, numpy
 from orchestrate.fmu import Instance
@@ -174,7 +203,10 @@ fmpy.simulate_fmu({str(PYTHON)!r}, stop_time=10.0, output_interval=1.0, start_va
 @limit("an answer that is not finite is refused without naming the variable that makes it so")
 @pytest.mark.parametrize(
     ("values", "culprit"),
-    [({"box_frequency": 1e-155, "x2_start": 1.0}, "x2_start = 1.0"), ({"bonded": True, "box_crackle": 1e100}, "box_crackle = 1e+100")],
+    [
+        ({"box_frequency": 1e-155, "x2_start": 1.0}, "x2_start = 1.0"),
+        ({"bonded": True, "box_crackle": 1e100}, "box_crackle = 1e+100"),
+    ],
 )
 def test_message_names_what_leaves_the_range(fmu, tmp_path, values, culprit):
     script = r"""

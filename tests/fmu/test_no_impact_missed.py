@@ -1,4 +1,6 @@
-"""No impact is missed, whatever the step: against small steps, at a graze, and against an independent event-driven solution."""
+"""No impact is missed, whatever the step: against small steps, at a graze, and against an
+independent event-driven solution.
+"""
 
 import json
 
@@ -10,7 +12,9 @@ from .driver import run
 
 
 def test_giant_steps_count_what_small_steps_count(fmu, tmp_path):
-    """From periodic to chaotic motion, with sticking: as many impacts and contacts in one step as in thousands."""
+    """From periodic to chaotic motion, with sticking: as many impacts and contacts in one step as
+    in thousands.
+    """
     script = r"""
     found = []
     for eta in (0.3, 0.4, 0.7, 1.05, 1.13, 1.5, 2.5, 2.9, 4.0):
@@ -30,7 +34,9 @@ def test_giant_steps_count_what_small_steps_count(fmu, tmp_path):
 
 
 def test_small_steps_show_every_impact_one_by_one(fmu, tmp_path):
-    """Steps so small that hardly two impacts share one: each impact is seen with its own time inside its step."""
+    """Steps so small that hardly two impacts share one: each impact is seen with its own time
+    inside its step.
+    """
     script = r"""
     f = open_fmu(PATH).start(**harmonic(1.13))
     rows = []
@@ -52,9 +58,11 @@ def test_small_steps_show_every_impact_one_by_one(fmu, tmp_path):
 
 @pytest.mark.parametrize(("excess", "touches"), [(1e-9, True), (-1e-9, False)])
 def test_graze_of_one_part_in_a_billion(fmu, tmp_path, excess, touches):
-    """Mass 1 rests; undamped mass 2 swings down to the touching point and a billionth of its amplitude beyond, or short of it.
+    """Mass 1 rests; undamped mass 2 swings down to the touching point and a billionth of its
+    amplitude beyond, or short of it.
 
-    With a constant acceleration g the rest positions are -g/k1 and -g/k2, so the gap is 1/k1 - 1/k2 + A cos(omega_2 t) for g = 1.
+    With a constant acceleration g the rest positions are -g/k1 and -g/k2, so the gap is 1/k1 - 1/k2
+    + A cos(omega_2 t) for g = 1.
     """
     middle = 1.0 - 1.0 / 1.2
     values = {"x1_start": -1.0, "x2_start": -1.0 / 1.2 + middle * (1.0 + excess)}
@@ -71,7 +79,9 @@ def test_graze_of_one_part_in_a_billion(fmu, tmp_path, excess, touches):
 
 @pytest.mark.parametrize("eta", [0.9960688001316983, 1.0839052450562332, 1.0861113018963422])
 def test_no_impact_is_made_out_of_rounding(fmu, tmp_path, eta):
-    """Drawn apart from rest (phase pi), the gap grows for a second at least: there is nothing to count."""
+    """Drawn apart from rest (phase pi), the gap grows for a second at least: there is nothing to
+    count.
+    """
     script = """
     answer(open_fmu(PATH).start(box_frequency=float(sys.argv[2]), phase_start=math.pi).step(1.0).get("impact_count", "x_rel"))
     """
@@ -94,13 +104,16 @@ class Oscillator:
         s, c = mpmath.sin(self.frequency * t), mpmath.cos(self.frequency * t)
         self.t0 = t
         self.a = x - self.sine * s - self.cosine * c
-        self.b = (v - self.frequency * (self.sine * c - self.cosine * s) + self.decay * self.a) / self.natural
+        self.b = (
+            v - self.frequency * (self.sine * c - self.cosine * s) + self.decay * self.a
+        ) / self.natural
 
     def position(self, t, lib=mpmath):
         number = float if lib is np else mpmath.mpf
         tau = t - number(self.t0)
         free = lib.exp(-number(self.decay) * tau) * (
-            number(self.a) * lib.cos(number(self.natural) * tau) + number(self.b) * lib.sin(number(self.natural) * tau)
+            number(self.a) * lib.cos(number(self.natural) * tau)
+            + number(self.b) * lib.sin(number(self.natural) * tau)
         )
         angle = number(self.frequency) * t
         return free + number(self.sine) * lib.sin(angle) + number(self.cosine) * lib.cos(angle)
@@ -111,7 +124,9 @@ class Oscillator:
 
 @mpmath.workdps(30)
 def event_driven(p, end):
-    """Impacts up to ``end`` as (time, closing speed) with 30 digits: dense scanning, then a bracketed root."""
+    """Impacts up to ``end`` as (time, closing speed) with 30 digits: dense scanning, then a
+    bracketed root.
+    """
     q = {name: mpmath.mpf(value) for name, value in p.items()}
     one = Oscillator(q["m1"], q["k1"], q["d1"], q["box_amplitude"], q["box_frequency"])
     two = Oscillator(q["m2"], q["k2"], q["d2"], q["box_amplitude"], q["box_frequency"])
@@ -126,7 +141,13 @@ def event_driven(p, end):
             assert below.size and below[0], "no impact, or one right after another"
             return impacts
         bracket = (mpmath.mpf(grid[below[0] - 1]), mpmath.mpf(grid[below[0]]))
-        t = mpmath.findroot(lambda s: two.position(s) - one.position(s), bracket, solver="anderson", tol=1e-28, verify=False)
+        t = mpmath.findroot(
+            lambda s: two.position(s) - one.position(s),
+            bracket,
+            solver="anderson",
+            tol=1e-28,
+            verify=False,
+        )
         if t > end:
             return impacts
         u1, u2, x = one.velocity(t), two.velocity(t), one.position(t)
@@ -139,11 +160,16 @@ def event_driven(p, end):
 
 @pytest.mark.parametrize(
     "more",
-    [{"box_frequency": 1.13, "box_amplitude": 1.0 / 1.13**2}, {"box_frequency": 1.13, "m2": 1.75, "d2": 0.04, "e": 0.8, "box_amplitude": 0.5}],
+    [
+        {"box_frequency": 1.13, "box_amplitude": 1.0 / 1.13**2},
+        {"box_frequency": 1.13, "m2": 1.75, "d2": 0.04, "e": 0.8, "box_amplitude": 0.5},
+    ],
     ids=["equal masses", "unequal masses"],
 )
 def test_impacts_against_an_independent_solution(fmu, tmp_path, more):
-    """Number, times and speeds of the impacts of a chaotic stretch; the rounding it amplifies bounds the difference."""
+    """Number, times and speeds of the impacts of a chaotic stretch; the rounding it amplifies
+    bounds the difference.
+    """
     values = {"m1": 1.0, "m2": 1.0, "k1": 1.0, "k2": 1.2, "d1": 0.01, "d2": 0.01, "e": 0.7}
     values |= {"x1_start": -0.25, "x2_start": 0.5, "v1_start": 0.125, "v2_start": -0.375, **more}
     expected = event_driven(values, 80.0)
@@ -164,4 +190,6 @@ def test_impacts_against_an_independent_solution(fmu, tmp_path, more):
     assert count > 15
     times = np.array([instant for _, instant, _ in rows])
     assert times == pytest.approx([instant for instant, _ in expected], abs=1e-10)
-    assert [closing for *_, closing in rows] == pytest.approx([closing for _, closing in expected], abs=1e-10)
+    assert [closing for *_, closing in rows] == pytest.approx(
+        [closing for _, closing in expected], abs=1e-10
+    )

@@ -8,11 +8,23 @@ import pytest
 
 from .driver import run
 
-VALUES = {"m1": 1.2, "m2": 0.8, "k1": 1.5, "k2": 2.0, "d1": 0.02, "d2": 0.05, "e": 0.6, "box_amplitude": 0.7, "box_frequency": 0.6}
+VALUES = {
+    "m1": 1.2,
+    "m2": 0.8,
+    "k1": 1.5,
+    "k2": 2.0,
+    "d1": 0.02,
+    "d2": 0.05,
+    "e": 0.6,
+    "box_amplitude": 0.7,
+    "box_frequency": 0.6,
+}
 
 
 def test_outputs_follow_their_definitions(fmu, tmp_path):
-    """Differences, the paper's xi, force on the box, compressive force, phase: in flight and in contact."""
+    """Differences, the paper's xi, force on the box, compressive force, phase: in flight and in
+    contact.
+    """
     script = r"""
     f = open_fmu(PATH).start(phase_start=1.0, **json.loads(sys.argv[2]))
     answer([{"time": f.step(k / 16).time, **f.outputs()} for k in range(1, 1000)])
@@ -25,16 +37,24 @@ def test_outputs_follow_their_definitions(fmu, tmp_path):
         x1, x2, v1, v2 = row["x1"], row["x2"], row["v1"], row["v2"]
         assert row["x_rel"] == x2 - x1
         assert row["v_rel"] == pytest.approx(v2 - v1, abs=1e-14)
-        assert [row["xi1"], row["xi2"], row["xi_rel"]] == pytest.approx([x1 / unit, x2 / unit, (x2 - x1) / unit], rel=1e-12)
-        assert row["box_force"] == pytest.approx(k1 * x1 + d1 * v1 + k2 * x2 + d2 * v2, rel=1e-12, abs=1e-14)
-        assert math.remainder(row["phase"] - 1.0 - frequency * row["time"], 2.0 * math.pi) == pytest.approx(0.0, abs=1e-12)
+        assert [row["xi1"], row["xi2"], row["xi_rel"]] == pytest.approx(
+            [x1 / unit, x2 / unit, (x2 - x1) / unit], rel=1e-12
+        )
+        assert row["box_force"] == pytest.approx(
+            k1 * x1 + d1 * v1 + k2 * x2 + d2 * v2, rel=1e-12, abs=1e-14
+        )
+        assert math.remainder(
+            row["phase"] - 1.0 - frequency * row["time"], 2.0 * math.pi
+        ) == pytest.approx(0.0, abs=1e-12)
         if row["in_contact"]:
             contacts += 1
             assert x1 == x2 and v1 == v2
             drive = a * frequency**2 * math.sin(row["phase"])
             together = (drive * (m1 + m2) - row["box_force"]) / (m1 + m2)
             # mass 1 has its spring, its damper, the drive and the other mass, which can only push
-            assert row["contact_force"] == pytest.approx(m1 * drive - k1 * x1 - d1 * v1 - m1 * together, abs=1e-12)
+            assert row["contact_force"] == pytest.approx(
+                m1 * drive - k1 * x1 - d1 * v1 - m1 * together, abs=1e-12
+            )
             assert row["contact_force"] >= 0.0
         else:
             assert row["contact_force"] == 0.0
@@ -51,7 +71,9 @@ def test_paper_displacements_are_zero_without_excitation(fmu, tmp_path):
 
 
 def test_what_belongs_to_a_step_is_exact(fmu, tmp_path):
-    """Impulse, its moment and the largest gap of long steps, with many impacts in them, against small ones put together."""
+    """Impulse, its moment and the largest gap of long steps, with many impacts in them, against
+    small ones put together.
+    """
     script = r"""
     values, found = json.loads(sys.argv[2]), []
     for more in ({}, dict(box_acceleration=0.1), dict(box_frequency=1.13, box_acceleration=-0.2, m2=2.0)):
@@ -72,7 +94,8 @@ def test_what_belongs_to_a_step_is_exact(fmu, tmp_path):
         step = 2.0**-6
         assert impulse == pytest.approx(np.sum(impulses), abs=1e-11)
         assert moment == pytest.approx(np.sum(moments + since * impulses), abs=1e-9)
-        # the trapezoidal rule knows nothing of impacts; dampers make the force jump there by d * jump, for less than a step
+        # the trapezoidal rule knows nothing of impacts; dampers make the force jump there by d *
+        # jump, for less than a step
         assert impulse == pytest.approx(np.sum(0.5 * step * (before + after)), abs=2e-3)
         assert largest == pytest.approx(np.max(largests), abs=1e-13)
         assert np.max(gaps) - 1e-14 <= largest <= np.max(gaps) + 1e-3
@@ -80,7 +103,9 @@ def test_what_belongs_to_a_step_is_exact(fmu, tmp_path):
 
 
 def test_largest_gap_between_samples_is_found(fmu, tmp_path):
-    """One step over a single summit of known height, and a step that ends before it; off, it stays 0."""
+    """One step over a single summit of known height, and a step that ends before it; off, it stays
+    0.
+    """
     script = r"""
     values = dict(box_amplitude=0.0, d2=0.0, v2_start=2.0)
     cases = (True, 2.5), (True, 0.5), (False, 2.5)

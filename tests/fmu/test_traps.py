@@ -14,11 +14,16 @@ PYTHON = FMUS["fmi2-python"]
 @pytest.fixture(scope="module")
 def other(tmp_path_factory):
     """An FMU of the same model name whose coefficient of restitution is another one."""
-    return export_copy(tmp_path_factory.mktemp("other"), [("models/oscillator/variables.py", '"e", "1", 0.7', '"e", "1", 0.25')])
+    return export_copy(
+        tmp_path_factory.mktemp("other"),
+        [("models/oscillator/variables.py", '"e", "1", 0.7', '"e", "1", 0.25')],
+    )
 
 
 def test_two_versions_in_one_process_do_not_share_code(other, tmp_path):
-    """Same model, script and class names: each has its own defaults and numbers, in whatever order they come, and its own states."""
+    """Same model, script and class names: each has its own defaults and numbers, in whatever order
+    they come, and its own states.
+    """
     script = r"""
     mine, other = sys.argv[1:3]
 
@@ -49,7 +54,9 @@ def test_two_versions_in_one_process_do_not_share_code(other, tmp_path):
 
 
 def test_host_with_modules_of_the_same_names(tmp_path):
-    """An importer that is itself written in Python, and has modules named as ours are, keeps them; the FMU does not get them."""
+    """An importer that is itself written in Python, and has modules named as ours are, keeps them;
+    the FMU does not get them.
+    """
     script = r"""
     import types
     names = ("fmu_src", "fmu_src.runtime", "runtime", "kernels", "models", "runtime.slave", "kernels.oscillator", "kernels.oscillator.memory", "oscillator", "models.oscillator.model",
@@ -63,19 +70,29 @@ def test_host_with_modules_of_the_same_names(tmp_path):
     new = sorted(name for name, module in sys.modules.items() if str(getattr(module, "__file__", "")).startswith(str(Fmu2.folders[PATH])))
     answer([outputs, [name for name in names if sys.modules[name] is not hosts[name]], new])
     """
-    plain = run("answer(open_fmu(PATH).start(**harmonic(1.13)).step(200.0).outputs())", PYTHON, cwd=tmp_path)
+    plain = run(
+        "answer(open_fmu(PATH).start(**harmonic(1.13)).step(200.0).outputs())", PYTHON, cwd=tmp_path
+    )
     outputs, replaced, new = run(script, PYTHON, cwd=tmp_path)
     assert outputs == plain
     assert replaced == []
     assert new
-    for name in new:  # the only modules an FMU brings: pythonfmu's, and ours under names with a hash of their contents
-        assert re.match(r"pythonfmu(\.|$)|fmu_[0-9a-f]{12}(\.|$)|TwoMassImpactOscillator_[0-9a-f]{12}$", name), name
+    # the only modules an FMU brings: pythonfmu's, and ours under names with a hash of their
+    # contents
+    for name in new:
+        assert re.match(
+            r"pythonfmu(\.|$)|fmu_[0-9a-f]{12}(\.|$)|TwoMassImpactOscillator_[0-9a-f]{12}$", name
+        ), name
 
 
 def test_script_is_tiny(tmp_path):
     """The script is read and run again for each instance: it defines the class and nothing else."""
     with zipfile.ZipFile(PYTHON) as archive:
-        (name,) = [n for n in archive.namelist() if re.match(r"resources/TwoMassImpactOscillator\w*\.py", n)]
+        (name,) = [
+            n
+            for n in archive.namelist()
+            if re.match(r"resources/TwoMassImpactOscillator\w*\.py", n)
+        ]
         assert len(archive.read(name)) < 1024
 
 
@@ -130,7 +147,9 @@ def test_instantiation_takes_less_than_a_second(fmu, tmp_path, pure):
         assert stepped < 1.0
 
 
-@pytest.mark.parametrize("name", ["%s%n%s%n", "%d %100000d %p", "ü €", "", "a" * 2000, "two\nlines"])
+@pytest.mark.parametrize(
+    "name", ["%s%n%s%n", "%d %100000d %p", "ü €", "", "a" * 2000, "two\nlines"]
+)
 def test_hostile_instance_names(fmu, tmp_path, name):
     """Names and texts end up in a printf format: a percent sign is a percent sign."""
     script = r"""
@@ -146,7 +165,9 @@ def test_hostile_instance_names(fmu, tmp_path, name):
 
 
 def test_percent_signs_in_a_message_reach_the_importer(tmp_path):
-    """The only text of a user's that a message repeats is a number, so a variable of a copied FMU gets a name with format directives."""
+    """The only text of a user's that a message repeats is a number, so a variable of a copied FMU
+    gets a name with format directives.
+    """
     script = r"""
     import ctypes
     module = [m for n, m in sys.modules.items() if n.endswith("runtime.slave")] if open_fmu(PATH) else []
@@ -167,7 +188,9 @@ def test_percent_signs_in_a_message_reach_the_importer(tmp_path):
 
 
 def test_discarded_step_is_noticed(tmp_path):
-    """FMPy's loop takes pythonfmu's discarded step for the end of the simulation and reports success: stderr has the reason."""
+    """FMPy's loop takes pythonfmu's discarded step for the end of the simulation and reports
+    success: stderr has the reason.
+    """
     script = r"""
     result = fmpy.simulate_fmu(PATH, stop_time=10.0, output_interval=1.0, start_values={"d1": 0.0}, output=["x1"],
                                input=__import__("numpy").array([(0.0, 0.9), (4.5, 0.9), (4.5, 1.0), (10.0, 1.0)],
@@ -188,7 +211,10 @@ def test_discarded_step_raises_in_the_project(fmu):
         instance.initialize(d1=0.0)
         instance.step(0.0, 1.0)
         instance.set(box_frequency=1.0)
-        with pytest.raises(FmuError, match=r"box_frequency = 1.0 rad/s is the natural frequency of mass 1.*allowed is d1 > 0"):
+        with pytest.raises(
+            FmuError,
+            match=r"box_frequency = 1.0 rad/s is the natural frequency of mass 1.*allowed is d1 > 0",
+        ):
             instance.step(1.0, 2.0)
         instance.set(box_frequency=0.4)
         instance.step(1.0, 2.0)  # it stayed where it was

@@ -1,4 +1,4 @@
-"""What lets the kernel compile as it stands and give the same bits everywhere: rules on its source."""
+"""Rules on the source that let the kernel compile as it stands and give the same bits anywhere."""
 
 import ast
 import builtins
@@ -9,15 +9,39 @@ import pytest
 from fmu_src import kernels
 
 FOLDER = Path(kernels.__file__).parent
-SOURCES = sorted({*FOLDER.rglob("*.py")} - {FOLDER / "numerics" / "slots.py"})  # which runs at import only
+# which runs at import only
+SOURCES = sorted({*FOLDER.rglob("*.py")} - {FOLDER / "numerics" / "slots.py"})
 PARSED = [ast.parse(path.read_text("utf-8"), feature_version=(3, 9)) for path in SOURCES]
-TREES = pytest.mark.parametrize("tree", PARSED, ids=[f"{path.parent.name}-{path.stem}" for path in SOURCES])
+TREES = pytest.mark.parametrize(
+    "tree", PARSED, ids=[f"{path.parent.name}-{path.stem}" for path in SOURCES]
+)
 SHARED = {"numerics.elementary", "numerics.slots"}
 EXACT = {"sqrt", "floor"}  # what IEEE 754 fixes to the last bit
 CALLABLE = {"abs", "min", "max", "range", "float", "int"}
 FORBIDDEN = (
-    *(ast.Try, ast.Raise, ast.Assert, ast.With, ast.Global, ast.Nonlocal, ast.Lambda, ast.ClassDef, ast.AsyncFunctionDef, ast.Await),
-    *(ast.List, ast.Dict, ast.Set, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.Yield, ast.YieldFrom),
+    *(
+        ast.Try,
+        ast.Raise,
+        ast.Assert,
+        ast.With,
+        ast.Global,
+        ast.Nonlocal,
+        ast.Lambda,
+        ast.ClassDef,
+        ast.AsyncFunctionDef,
+        ast.Await,
+    ),
+    *(
+        ast.List,
+        ast.Dict,
+        ast.Set,
+        ast.ListComp,
+        ast.SetComp,
+        ast.DictComp,
+        ast.GeneratorExp,
+        ast.Yield,
+        ast.YieldFrom,
+    ),
     *(ast.Starred, ast.JoinedStr, ast.NamedExpr, ast.Pow, ast.FloorDiv, ast.MatMult, ast.Delete),
 )
 
@@ -47,7 +71,9 @@ def test_functions_are_plain_arithmetic(tree):
     for function in functions(tree):
         for node in ast.walk(function):
             assert not isinstance(node, FORBIDDEN), ast.unparse(node)
-            assert node is function or not isinstance(node, ast.FunctionDef), f"nested {ast.unparse(node)}"
+            assert node is function or not isinstance(node, ast.FunctionDef), (
+                f"nested {ast.unparse(node)}"
+            )
         assert not function.decorator_list
         assert not function.args.defaults
         assert not function.args.vararg
@@ -57,9 +83,17 @@ def test_functions_are_plain_arithmetic(tree):
 @TREES
 def test_only_exact_functions_are_called(tree):
     for node in ast.walk(tree):
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "math":
+        if (
+            isinstance(node, ast.Attribute)
+            and isinstance(node.value, ast.Name)
+            and node.value.id == "math"
+        ):
             assert node.attr in EXACT, node.attr
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and hasattr(builtins, node.func.id):
+        if (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Name)
+            and hasattr(builtins, node.func.id)
+        ):
             assert node.func.id in CALLABLE, node.func.id
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             assert ast.unparse(node.func.value) == "math"
@@ -69,7 +103,9 @@ def test_only_exact_functions_are_called(tree):
 def test_nothing_outside_the_memory_is_kept(tree):
     for node in tree.body:
         documented = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-        assert documented or isinstance(node, (ast.Import, ast.ImportFrom, ast.Assign, ast.FunctionDef))
+        assert documented or isinstance(
+            node, (ast.Import, ast.ImportFrom, ast.Assign, ast.FunctionDef)
+        )
     for function in functions(tree):
         for node in ast.walk(function):
             if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):

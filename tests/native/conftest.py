@@ -24,12 +24,17 @@ def cannot(reason):
     missing = [name for name in ("numba", "ziglang") if importlib.util.find_spec(name) is None]
     if missing:
         pytest.skip(f"{', '.join(missing)} missing: {reason}")
-    pytest.fail(f"a new version of Numba or ziglang breaks the way the native FMUs are made: {reason}", pytrace=False)
+    pytest.fail(
+        f"a new version of Numba or ziglang breaks the way the native FMUs are made: {reason}",
+        pytrace=False,
+    )
 
 
 @pytest.fixture(scope="session")
 def fmus():
-    """Paths of the FMUs by form; the project's conftest.py has exported what was missing or out of date."""
+    """Paths of the FMUs by form; the project's conftest.py has exported what was missing or out of
+    date.
+    """
     missing = [form for form in FORMS if not up_to_date(form, "TwoMassImpactOscillator", BUILD)]
     if missing:
         cannot(f"no FMU of the form {', '.join(missing)} was made")
@@ -58,22 +63,32 @@ def compiled_once_more(folder):
 
 @pytest.fixture(scope="session")
 def kernel_objects(tmp_path_factory):
-    """The kernel compiled once more, for builds made by tests: nothing is left over from the FMUs' own build."""
+    """The kernel compiled once more, for builds made by tests: nothing is left over from the FMUs'
+    own build.
+    """
     base = tmp_path_factory.getbasetemp()
-    found = compiled_once_more((base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "kernel")
+    found = compiled_once_more(
+        (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "kernel"
+    )
     return cannot(found) if isinstance(found, Exception) else found
 
 
 @pytest.fixture
 def hide(monkeypatch, kernel_objects):
-    """A function that takes a C compiler away from the exporter: ``"ziglang"``, or ``"own"``, the machine's."""
+    """A function that takes a C compiler away from the exporter: ``"ziglang"``, or ``"own"``, the
+    machine's.
+    """
     for form in (native_form, pythonfmu_form):
         monkeypatch.setattr(form, "compile_objects", lambda _: kernel_objects)
     linking.say_once.cache_clear()
 
     def away(*names):
         if "ziglang" in names:
-            monkeypatch.setattr(linking, "importlib", SimpleNamespace(util=SimpleNamespace(find_spec=lambda _: None)))
+            monkeypatch.setattr(
+                linking,
+                "importlib",
+                SimpleNamespace(util=SimpleNamespace(find_spec=lambda _: None)),
+            )
         if "own" in names:
             monkeypatch.setattr(linking, "shutil", SimpleNamespace(which=lambda _: None))
 
@@ -94,7 +109,9 @@ def importer_of(fmus, tmp_path_factory):
         if version not in made:
             folder = tmp_path_factory.mktemp(version)
             program = importers.compile_importer(version, fmus[version], folder)
-            made[version] = importers.Importer(program, importers.binary(fmus[version], version, folder), version)
+            made[version] = importers.Importer(
+                program, importers.binary(fmus[version], version, folder), version
+            )
         return made[version]
 
     return make

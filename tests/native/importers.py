@@ -1,4 +1,6 @@
-"""The project's importers in C, compiled against an FMU, and the FMU's shim rebuilt with checks inside."""
+"""The project's importers in C, compiled against an FMU, and the FMU's shim rebuilt with checks
+inside.
+"""
 
 import importlib.util
 import math
@@ -29,7 +31,11 @@ def own_compiler():
 
 def ziglang(target="native"):
     """The C compiler of ziglang, as a command; None where it is not installed."""
-    return [sys.executable, "-m", "ziglang", "cc", "-target", target] if importlib.util.find_spec("ziglang") else None
+    return (
+        [sys.executable, "-m", "ziglang", "cc", "-target", target]
+        if importlib.util.find_spec("ziglang")
+        else None
+    )
 
 
 def compiler():
@@ -47,7 +53,9 @@ def binary(fmu, version, folder, windows=False):
     """The FMU's binary, unpacked; returns its path."""
     suffix = ".dll" if windows else ".so"
     with zipfile.ZipFile(fmu) as archive:
-        return Path(archive.extract(f"binaries/{FOLDERS[version][windows]}/{MODEL.name}{suffix}", folder))
+        return Path(
+            archive.extract(f"binaries/{FOLDERS[version][windows]}/{MODEL.name}{suffix}", folder)
+        )
 
 
 def names_header(fmu):
@@ -61,8 +69,15 @@ def names_header(fmu):
             continue
         settable = variable.causality in ("parameter", "input")
         limits = [c_double(variable.min, -math.inf), c_double(variable.max, math.inf)]
-        cells = [f'"{variable.name}"', f"{variable.valueReference}u", f"'{TYPES[variable.type]}'", str(int(settable))]
-        rows.append("    {" + ", ".join([*cells, str(int(variable.variability == "fixed")), *limits]) + "},")
+        cells = [
+            f'"{variable.name}"',
+            f"{variable.valueReference}u",
+            f"'{TYPES[variable.type]}'",
+            str(int(settable)),
+        ]
+        rows.append(
+            "    {" + ", ".join([*cells, str(int(variable.variability == "fixed")), *limits]) + "},"
+        )
     token = description.guid or description.instantiationToken
     defines = ["#include <math.h>", f'#define TOKEN "{token}"', f"#define TIME_REFERENCE {time}u"]
     return "\n".join([*defines, "static const Name NAMES[] = {", *rows, "};", ""])
@@ -81,11 +96,26 @@ def compile_importer(version, fmu, folder, command=None, options=("-O1", "-g")):
     for name, content in native_form.fmi_headers(version).items():
         (folder / name).write_bytes(content)
     number = version[-1]
-    sources = [HERE / name for name in ("modes.c", f"importer{number}.c", f"hostile{number}.c", f"arguments{number}.c")]
+    sources = [
+        HERE / name
+        for name in ("modes.c", f"importer{number}.c", f"hostile{number}.c", f"arguments{number}.c")
+    ]
     target = folder / f"importer{number}.exe"
     windows = any("windows" in word for word in command or ())
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
-    run_compiler([*(command or compiler()), *WARNINGS, *options, f"-I{folder}", "-o", target, *sources, *libraries], folder)
+    run_compiler(
+        [
+            *(command or compiler()),
+            *WARNINGS,
+            *options,
+            f"-I{folder}",
+            "-o",
+            target,
+            *sources,
+            *libraries,
+        ],
+        folder,
+    )
     return target
 
 
@@ -95,12 +125,19 @@ def units(version):
 
 
 def rebuild_shim(version, folder, objects, options=SANITIZE):
-    """The FMU's binary again, from its own C sources and kernel, with other options; returns its path."""
+    """The FMU's binary again, from its own C sources and kernel, with other options; returns its
+    path.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     token = native_form.guid("oscillator", "oscillator", version)
     digest = native_form.source_digest("vibroimpact", "oscillator")
     header = native_form.model_header(MODEL, token, digest)
-    files = {**native_form.shim_sources(version), **native_form.fmi_headers(version), "model.h": header, "kernel.o": objects["x86_64-linux"]}
+    files = {
+        **native_form.shim_sources(version),
+        **native_form.fmi_headers(version),
+        "model.h": header,
+        "kernel.o": objects["x86_64-linux"],
+    }
     for name, content in files.items():
         (folder / name).write_bytes(content)
     target = folder / "rebuilt.so"
@@ -122,13 +159,26 @@ class Importer:
         """Run a mode; returns the completed process."""
         command = [*under, self.program, self.library, *arguments]
         text = "".join(f"{float(time).hex()}\n" for time in times)
-        done = subprocess.run([*map(str, command)], input=text, capture_output=True, text=True, timeout=timeout, env=env)
+        done = subprocess.run(
+            [*map(str, command)],
+            input=text,
+            capture_output=True,
+            text=True,
+            timeout=timeout,
+            env=env,
+        )
         if success:
-            assert done.returncode == 0, f"exit code {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}"
+            assert done.returncode == 0, (
+                f"exit code {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}"
+            )
         return done
 
     def simulate(self, names, times, under=(), **values):
         """Outputs at each of ``times``, the first one being the start: a list of lists of float."""
         settings = [f"{name}={float(value).hex()}" for name, value in values.items()]
         done = self.run("simulate", ",".join(names), *settings, under=under, times=times)
-        return [[float.fromhex(cell) for cell in line.split()] for line in done.stdout.splitlines() if not line.startswith("CHECKS")]
+        return [
+            [float.fromhex(cell) for cell in line.split()]
+            for line in done.stdout.splitlines()
+            if not line.startswith("CHECKS")
+        ]

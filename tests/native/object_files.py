@@ -1,4 +1,6 @@
-"""Small readers of ELF and PE files: what a shared library exports, what it needs, what of it can be written."""
+"""Small readers of ELF and PE files: what a shared library exports, what it needs, what of it can
+be written.
+"""
 
 import struct
 
@@ -26,12 +28,18 @@ class Elf:
         self.sections = {self.text(texts + row[0]): row for row in rows}
         self.exports, self.imports, self.needed = set(), set(), set()
         self.read_dynamic()
-        self.writable = {name: row[5] for name, row in self.sections.items() if row[2] & 1 and not self.fixed(name)}
+        self.writable = {
+            name: row[5]
+            for name, row in self.sections.items()
+            if row[2] & 1 and not self.fixed(name)
+        }
 
     @staticmethod
     def fixed(name):
         """Whether the loader makes the section read-only, or it is the compiler's own frame."""
-        return name.startswith((".data.rel.ro", ".dynamic", ".got", ".relro_padding", ".init_array", ".fini_array"))
+        return name.startswith(
+            (".data.rel.ro", ".dynamic", ".got", ".relro_padding", ".init_array", ".fini_array")
+        )
 
     def text(self, offset):
         return self.data[offset : self.data.index(b"\0", offset)].decode()
@@ -87,7 +95,10 @@ class Pe:
 
     def read_exports(self, address):
         count, _, names = struct.unpack_from("<III", self.data, self.at(address) + 24)
-        return {self.text(struct.unpack_from("<I", self.data, self.at(names) + 4 * i)[0]) for i in range(count)}
+        return {
+            self.text(struct.unpack_from("<I", self.data, self.at(names) + 4 * i)[0])
+            for i in range(count)
+        }
 
     def read_imports(self, address):
         found, place = {}, self.at(address)
@@ -97,6 +108,8 @@ class Pe:
                 return found
             functions, row = found.setdefault(self.text(name), set()), self.at(lookup)
             while (entry := struct.unpack_from("<Q", self.data, row)[0]) != 0:
-                functions.add(self.text((entry & 0x7FFFFFFF) + 2) if not entry >> 63 else f"#{entry & 0xFFFF}")
+                functions.add(
+                    self.text((entry & 0x7FFFFFFF) + 2) if not entry >> 63 else f"#{entry & 0xFFFF}"
+                )
                 row += 8
             place += 20

@@ -1,4 +1,6 @@
-"""FMPy's view of an FMU in this process: variables by name in FMI 2.0 and 3.0, event mode where asked for."""
+"""FMPy's view of an FMU in this process: variables by name in FMI 2.0 and 3.0, event mode where
+asked for.
+"""
 
 import ctypes
 import tempfile
@@ -10,9 +12,33 @@ from fmpy.fmi1 import FMICallException
 
 STEPS = 100_000  # more than any test takes: one that waits for what never comes has to end
 IMPACT = 2000  # value reference of the clock
-COMMON = ["x1", "x2", "v1", "v2", "x_rel", "v_rel", "xi1", "xi2", "xi_rel", "box_force", "box_impulse", "box_impulse_moment"]
-COMMON += ["contact_force", "in_contact", "phase", "impact_count", "impact_time", "impact_velocity", "impact_energy", "x_rel_max", "contact_count"]
-STATE = [name for name in COMMON if name not in ("box_impulse", "box_impulse_moment", "x_rel_max")]  # what is not about the last step
+COMMON = [
+    "x1",
+    "x2",
+    "v1",
+    "v2",
+    "x_rel",
+    "v_rel",
+    "xi1",
+    "xi2",
+    "xi_rel",
+    "box_force",
+    "box_impulse",
+    "box_impulse_moment",
+]
+COMMON += [
+    "contact_force",
+    "in_contact",
+    "phase",
+    "impact_count",
+    "impact_time",
+    "impact_velocity",
+    "impact_energy",
+    "x_rel_max",
+    "contact_count",
+]
+# what is not about the last step
+STATE = [name for name in COMMON if name not in ("box_impulse", "box_impulse_moment", "x_rel_max")]
 
 
 class Slave:
@@ -27,15 +53,26 @@ class Slave:
         fmpy.extract(str(path), self._folder.name)
         token = description.guid or description.instantiationToken
         identifier = description.coSimulation.modelIdentifier
-        identity = {"guid": token, "unzipDirectory": self._folder.name, "modelIdentifier": identifier, "instanceName": "a"}
+        identity = {
+            "guid": token,
+            "unzipDirectory": self._folder.name,
+            "modelIdentifier": identifier,
+            "instanceName": "a",
+        }
         if self.third:
             self.fmu = fmi3.FMU3Slave(**identity)
             options = {"eventModeUsed": event_mode, "earlyReturnAllowed": early_return}
-            self.fmu.instantiate(logMessage=lambda _e, _s, _c, text: self.messages.append(text.decode()), loggingOn=True, **options)
+            self.fmu.instantiate(
+                logMessage=lambda _e, _s, _c, text: self.messages.append(text.decode()),
+                loggingOn=True,
+                **options,
+            )
         else:
             self.fmu = fmi2.FMU2Slave(**identity)
             self.callbacks = fmi2.fmi2CallbackFunctions()
-            self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(lambda _e, _i, _s, _c, text: self.messages.append(text.decode()))
+            self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
+                lambda _e, _i, _s, _c, text: self.messages.append(text.decode())
+            )
             self.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
             self.callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
             fmpy.logging.addLoggerProxy(ctypes.byref(self.callbacks))
@@ -60,7 +97,9 @@ class Slave:
         """All elements of an array, which FMI 2.0 has one by one."""
         if self.third:
             variable = self.variables[name]
-            return list(self.fmu.getFloat64([variable.valueReference], int(variable.dimensions[0].start)))
+            return list(
+                self.fmu.getFloat64([variable.valueReference], int(variable.dimensions[0].start))
+            )
         return self.get(*[other for other in self.variables if other.startswith(f"{name}[")])
 
     def start(self, time=0.0, **values):
@@ -78,10 +117,14 @@ class Slave:
         return self
 
     def step(self, time):
-        """Step towards ``time``; returns whether an event is to be handled and whether the step ended early (FMI 3.0)."""
+        """Step towards ``time``; returns whether an event is to be handled and whether the step
+        ended early (FMI 3.0).
+        """
         self.steps += 1
         assert self.steps < STEPS
-        told = self.fmu.doStep(currentCommunicationPoint=self.time, communicationStepSize=time - self.time)
+        told = self.fmu.doStep(
+            currentCommunicationPoint=self.time, communicationStepSize=time - self.time
+        )
         if not self.third:
             self.time = time
             return None

@@ -1,4 +1,6 @@
-"""What is in the binaries: FMI functions and the kernel, nothing else; the same bytes each time; the Windows one runs the same."""
+"""What is in the binaries: FMI functions and the kernel, nothing else; the same bytes each time;
+the Windows one runs the same.
+"""
 
 import os
 import re
@@ -15,13 +17,49 @@ from . import importers
 from .object_files import Elf, Pe
 from .slave import COMMON, harmonic
 
-LIBC = {"calloc", "malloc", "free", "memcpy", "memset", "memcmp", "bcmp", "snprintf", "strtod", "strtol"}
+LIBC = {
+    "calloc",
+    "malloc",
+    "free",
+    "memcpy",
+    "memset",
+    "memcmp",
+    "bcmp",
+    "snprintf",
+    "strtod",
+    "strtol",
+}
 LIBC |= {"strlen", "strchr", "strcmp", "strcpy", "strncat", "strpbrk"}
-LOADER = {"__cxa_finalize", "__gmon_start__", "_ITM_deregisterTMCloneTable", "_ITM_registerTMCloneTable", "__stack_chk_fail"}
-WINE = next((path for path in (shutil.which("wine64"), shutil.which("wine"), "/usr/lib/wine/wine64") if path and Path(path).exists()), None)
+LOADER = {
+    "__cxa_finalize",
+    "__gmon_start__",
+    "_ITM_deregisterTMCloneTable",
+    "_ITM_registerTMCloneTable",
+    "__stack_chk_fail",
+}
+WINE = next(
+    (
+        path
+        for path in (shutil.which("wine64"), shutil.which("wine"), "/usr/lib/wine/wine64")
+        if path and Path(path).exists()
+    ),
+    None,
+)
 ABSENT_IN_CO_SIMULATION = {  # FMI 2.0's header has the functions of both kinds of FMU
-    *("fmi2EnterEventMode", "fmi2NewDiscreteStates", "fmi2EnterContinuousTimeMode", "fmi2CompletedIntegratorStep", "fmi2SetTime"),
-    *("fmi2SetContinuousStates", "fmi2GetDerivatives", "fmi2GetEventIndicators", "fmi2GetContinuousStates", "fmi2GetNominalsOfContinuousStates"),
+    *(
+        "fmi2EnterEventMode",
+        "fmi2NewDiscreteStates",
+        "fmi2EnterContinuousTimeMode",
+        "fmi2CompletedIntegratorStep",
+        "fmi2SetTime",
+    ),
+    *(
+        "fmi2SetContinuousStates",
+        "fmi2GetDerivatives",
+        "fmi2GetEventIndicators",
+        "fmi2GetContinuousStates",
+        "fmi2GetNominalsOfContinuousStates",
+    ),
 }
 
 
@@ -33,7 +71,10 @@ def version(request):
 def functions_of_header(version):
     """Every function the standard's header declares for co-simulation."""
     text = native_form.fmi_headers(version)[f"{version}Functions.h"].decode()
-    return set(re.findall(rf"_Export\s+{version}\w+TYPE\s+({version}\w+)\s*;", text)) - ABSENT_IN_CO_SIMULATION
+    return (
+        set(re.findall(rf"_Export\s+{version}\w+TYPE\s+({version}\w+)\s*;", text))
+        - ABSENT_IN_CO_SIMULATION
+    )
 
 
 def test_linux_binary_exports_fmi_and_imports_libc(fmus, version, tmp_path):
@@ -42,7 +83,8 @@ def test_linux_binary_exports_fmi_and_imports_libc(fmus, version, tmp_path):
     assert elf.exports == functions_of_header(version)
     assert elf.imports <= LIBC | LOADER
     assert elf.needed == {"libc.so.6"}
-    assert sum(elf.writable.values()) <= 16  # the start-up code of some compilers has a flag and a pointer
+    # the start-up code of some compilers has a flag and a pointer
+    assert sum(elf.writable.values()) <= 16
 
 
 def test_windows_binary_exports_fmi_and_imports_the_system(fmus, version, tmp_path):
@@ -53,7 +95,9 @@ def test_windows_binary_exports_fmi_and_imports_the_system(fmus, version, tmp_pa
     assert pe.machine == 0x8664
     assert pe.exports == functions_of_header(version)
     for library in pe.imports:
-        assert re.fullmatch(r"(?i)kernel32\.dll|api-ms-win-crt-[a-z]+-l1-1-0\.dll|ucrtbase\.dll", library)
+        assert re.fullmatch(
+            r"(?i)kernel32\.dll|api-ms-win-crt-[a-z]+-l1-1-0\.dll|ucrtbase\.dll", library
+        )
     assert not [name for names in pe.imports.values() for name in names if "fma" in name.lower()]
 
 
@@ -85,12 +129,22 @@ def test_windows_binary_has_the_same_bits(fmus, importer_of, version, tmp_path):
     if command is None:
         pytest.skip("the importer for Windows is compiled by ziglang")
     program = importers.compile_importer(version, fmus[version], tmp_path / "importer", command)
-    windows = importers.Importer(program, importers.binary(fmus[version], version, tmp_path, windows=True), version)
-    wine = {"env": {**os.environ, "WINEPREFIX": str(tmp_path / "prefix"), "WINEDEBUG": "-all"}, "under": (WINE,), "timeout": 600}
+    windows = importers.Importer(
+        program, importers.binary(fmus[version], version, tmp_path, windows=True), version
+    )
+    wine = {
+        "env": {**os.environ, "WINEPREFIX": str(tmp_path / "prefix"), "WINEDEBUG": "-all"},
+        "under": (WINE,),
+        "timeout": 600,
+    }
     settings = [f"{name}={value.hex()}" for name, value in harmonic(1.13).items()]
     times = [16.0 * k for k in range(257)]
     told = windows.run("simulate", ",".join(COMMON), *settings, times=times, **wine).stdout
-    found = [[float.fromhex(cell) for cell in line.split()] for line in told.splitlines() if not line.startswith("CHECKS")]
+    found = [
+        [float.fromhex(cell) for cell in line.split()]
+        for line in told.splitlines()
+        if not line.startswith("CHECKS")
+    ]
     assert found == importer_of(version).simulate(COMMON, times, **harmonic(1.13))
     assert found[-1][COMMON.index("impact_count")] > 500
     assert "FAILURES 0" in windows.run("hostile", **wine).stdout

@@ -1,4 +1,6 @@
-"""Pure Python, its compiled form, native FMI 2.0 and native FMI 3.0 give the same bits, each in a process of its own, through chaos."""
+"""Pure Python, its compiled form, native FMI 2.0 and native FMI 3.0 give the same bits, each in a
+process of its own, through chaos.
+"""
 
 import json
 
@@ -43,7 +45,9 @@ def run(fmu, tmp_path, end, count, values, **options):
 
 @pytest.mark.parametrize(("eta", "end"), [(1.13, 18432.0), (2.9, 16384.0)])
 def test_same_bits_in_every_form(fmus, tmp_path, eta, end):
-    """More than 4,000 impacts: were the last bit different once, the numbers would soon have nothing in common."""
+    """More than 4,000 impacts: were the last bit different once, the numbers would soon have
+    nothing in common.
+    """
     values = {**harmonic(eta), "e": 0.7, "d1": 0.01, "d2": 0.01}
     forms = {
         "pure Python": run(fmus["fmi2-python"], tmp_path / "pure", end, 64, values, pure=True),
@@ -51,13 +55,17 @@ def test_same_bits_in_every_form(fmus, tmp_path, eta, end):
         "fmi2": run(fmus["fmi2"], tmp_path / "fmi2", end, 64, values),
         "fmi3": run(fmus["fmi3"], tmp_path / "fmi3", end, 64, values),
     }
-    compiled = {name: any("kernel-" in path for path in form.pop("mapped")) for name, form in forms.items()}
+    compiled = {
+        name: any("kernel-" in path for path in form.pop("mapped")) for name, form in forms.items()
+    }
     assert compiled == {"pure Python": False, "compiled": True, "fmi2": False, "fmi3": False}
     reference = forms.pop("pure Python")["rows"]
     assert float.fromhex(reference[-1][COMMON.index("impact_count")]) > 4000
     for name, form in forms.items():
         for k, (row, expected) in enumerate(zip(form["rows"], reference, strict=True)):
-            different = [output for output, a, b in zip(COMMON, row, expected, strict=True) if a != b]
+            different = [
+                output for output, a, b in zip(COMMON, row, expected, strict=True) if a != b
+            ]
             assert not different, f"{name}, step {k}"
 
 

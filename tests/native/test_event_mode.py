@@ -1,4 +1,6 @@
-"""FMI 3.0 event mode: the clock ticks at every impact, at its exact time, and nowhere else; the trajectory stays what it is."""
+"""FMI 3.0 event mode: the clock ticks at every impact, at its exact time, and nowhere else; the
+trajectory stays what it is.
+"""
 
 import math
 
@@ -9,7 +11,11 @@ from .slave import IMPACT, STATE, harmonic, slave
 CHAOS = harmonic(1.13)
 REGIMES = pytest.mark.parametrize(
     ("values", "end"),
-    [(CHAOS, 512.0), ({}, 256.0), ({**harmonic(0.8), "e": 0.3, "m1": 0.3, "k1": 1.7, "d1": 0.0}, 256.0)],
+    [
+        (CHAOS, 512.0),
+        ({}, 256.0),
+        ({**harmonic(0.8), "e": 0.3, "m1": 0.3, "k1": 1.7, "d1": 0.0}, 256.0),
+    ],
     ids=["chaos", "defaults", "contacts"],
 )
 
@@ -102,7 +108,9 @@ def test_without_early_return_the_clock_ticks_at_the_end_of_steps_with_impacts(f
 
 
 def test_an_ignored_tick_is_gone_after_the_next_step(fmus):
-    """An importer need not handle the event; and leaving event mode without an update ends the tick too."""
+    """An importer need not handle the event; and leaving event mode without an update ends the tick
+    too.
+    """
     with slave(fmus["fmi3"], event_mode=True) as fmu:
         fmu.start(**CHAOS)
         assert fmu.step(20.0) == (True, False)
@@ -133,7 +141,10 @@ def test_an_impact_at_the_start_ticks_after_initialisation(fmus, velocity, activ
 
 def test_saving_in_event_mode_saves_the_tick(fmus):
     """In the same instance and, serialised, in a new one; the run goes on from there."""
-    with slave(fmus["fmi3"], event_mode=True, early_return=True) as fmu, slave(fmus["fmi3"], event_mode=True, early_return=True) as other:
+    with (
+        slave(fmus["fmi3"], event_mode=True, early_return=True) as fmu,
+        slave(fmus["fmi3"], event_mode=True, early_return=True) as other,
+    ):
         fmu.start(**CHAOS)
         while not fmu.step(fmu.time + 8.0)[0]:
             pass
@@ -174,8 +185,17 @@ def collect_rest(fmu):
 
 @pytest.mark.parametrize("scale", [1.0, 1.7], ids=["omega=1", "omega=1.7"])
 def test_time_does_not_run_backwards_next_to_an_impact(fmus, scale):
-    """Communication points a few units in the last place around each impact: every step ends at or after its beginning."""
-    values = {**CHAOS, "k1": scale**2, "k2": 1.2 * scale**2, "box_frequency": 1.13 * scale, "d1": 0.01 * scale, "d2": 0.01 * scale}
+    """Communication points a few units in the last place around each impact: every step ends at or
+    after its beginning.
+    """
+    values = {
+        **CHAOS,
+        "k1": scale**2,
+        "k2": 1.2 * scale**2,
+        "box_frequency": 1.13 * scale,
+        "d1": 0.01 * scale,
+        "d2": 0.01 * scale,
+    }
     with slave(fmus["fmi3"], event_mode=True, early_return=True) as fmu:
         fmu.start(0.1, **values)
         times = []
@@ -228,4 +248,9 @@ def test_references_outside_the_model_description_are_refused(fmus):
 def test_the_clock_of_the_model_description(fmus):
     with slave(fmus["fmi3"]) as fmu:
         clock = fmu.variables["impact"]
-        assert (clock.type, clock.valueReference, clock.causality, clock.intervalVariability) == ("Clock", IMPACT, "output", "triggered")
+        assert (clock.type, clock.valueReference, clock.causality, clock.intervalVariability) == (
+            "Clock",
+            IMPACT,
+            "output",
+            "triggered",
+        )

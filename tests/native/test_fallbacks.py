@@ -28,9 +28,16 @@ def binaries(fmu):
 
 
 def same_run(fmu, other, tmp_path):
-    """Whether two FMUs go the same way; and the files of a compiled kernel in the first one's process."""
-    found, expected = run(fmu, tmp_path / "a", 512.0, 8, harmonic(1.13)), run(other, tmp_path / "b", 512.0, 8, harmonic(1.13))
-    return found["rows"] == expected["rows"], [path for path in found["mapped"] if "kernel-" in path]
+    """Whether two FMUs go the same way; and the files of a compiled kernel in the first one's
+    process.
+    """
+    found, expected = (
+        run(fmu, tmp_path / "a", 512.0, 8, harmonic(1.13)),
+        run(other, tmp_path / "b", 512.0, 8, harmonic(1.13)),
+    )
+    return found["rows"] == expected["rows"], [
+        path for path in found["mapped"] if "kernel-" in path
+    ]
 
 
 def test_without_a_compiler_there_is_the_pythonfmu_fmu_and_one_line(fmus, hide, tmp_path, caplog):
@@ -38,12 +45,16 @@ def test_without_a_compiler_there_is_the_pythonfmu_fmu_and_one_line(fmus, hide, 
     made = build(tmp_path / "build", names=ONE)
     assert forms(made) == ["fmi2-python"]
     (line,) = caplog.messages
-    assert "no C compiler" in line and "ziglang" in line and "pure Python" in line and "\n" not in line
+    assert (
+        "no C compiler" in line and "ziglang" in line and "pure Python" in line and "\n" not in line
+    )
     assert validate_fmu(str(made[0])) == []
     assert same_run(made[0], fmus["fmi2"], tmp_path) == (True, [])
 
 
-def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(fmus, hide, importer_of, tmp_path, caplog):
+def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(
+    fmus, hide, importer_of, tmp_path, caplog
+):
     hide("ziglang")
     if importers.own_compiler() is None:
         pytest.skip("the machine has no C compiler of its own")
@@ -60,15 +71,23 @@ def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(fmus, hide
     for path in made[1:]:
         assert validate_fmu(str(path)) == []
         version = path.parent.name
-        own = importers.Importer(importer_of(version).program, importers.binary(path, version, tmp_path), version)
-        assert own.simulate(COMMON, times, **harmonic(1.13)) == importer_of(version).simulate(COMMON, times, **harmonic(1.13))
+        own = importers.Importer(
+            importer_of(version).program, importers.binary(path, version, tmp_path), version
+        )
+        assert own.simulate(COMMON, times, **harmonic(1.13)) == importer_of(version).simulate(
+            COMMON, times, **harmonic(1.13)
+        )
         assert "FAILURES 0" in own.run("hostile").stdout
 
 
-def test_without_a_compiler_of_its_own_the_machine_makes_the_same_bytes(fmus, hide, tmp_path, caplog):
+def test_without_a_compiler_of_its_own_the_machine_makes_the_same_bytes(
+    fmus, hide, tmp_path, caplog
+):
     hide("own")
     made = build(tmp_path, ["fmi2", "fmi3"], ONE)
-    assert [path.read_bytes() for path in made] == [fmus[form].read_bytes() for form in ("fmi2", "fmi3")]
+    assert [path.read_bytes() for path in made] == [
+        fmus[form].read_bytes() for form in ("fmi2", "fmi3")
+    ]
     assert not caplog.messages
 
 
@@ -77,7 +96,13 @@ def test_without_numba_the_command_line_says_one_line(tmp_path):
     (tmp_path / "numba.py").write_text("raise ModuleNotFoundError(\"No module named 'numba'\")\n")
     path = os.pathsep.join([str(tmp_path), str(ROOT)])
     command = [sys.executable, "-m", "orchestrate", "build", "--folder", str(tmp_path / "build")]
-    done = subprocess.run(command, cwd=tmp_path, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True)
+    done = subprocess.run(
+        command,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0
     (line,) = done.stderr.splitlines()
     assert line.endswith("pure Python: No module named 'numba'")

@@ -22,17 +22,26 @@ def cubic(k):
 def set_derivatives(fmu, values):
     reference = fmu.variables["box_acceleration"].valueReference
     fmu.set(box_acceleration=values["box_acceleration"])
-    fmu.fmu.setRealInputDerivatives([reference] * 3, list(ORDERS.values()), [values[name] for name in ORDERS])
+    fmu.fmu.setRealInputDerivatives(
+        [reference] * 3, list(ORDERS.values()), [values[name] for name in ORDERS]
+    )
 
 
-@pytest.mark.parametrize("used", [{"box_jerk"}, {"box_snap"}, {"box_crackle"}, set(ORDERS)], ids=["jerk", "snap", "crackle", "all"])
+@pytest.mark.parametrize(
+    "used",
+    [{"box_jerk"}, {"box_snap"}, {"box_crackle"}, set(ORDERS)],
+    ids=["jerk", "snap", "crackle", "all"],
+)
 def test_input_derivatives_are_the_variables_for_them(fmus, used):
     """Through impacts, over steps of changing length."""
     with slave(fmus["fmi2"]) as fmu, slave(fmus["fmi2"]) as twin:
         for one in (fmu, twin):
             one.start(**harmonic(1.13))
         for k in range(400):
-            values = {name: value if name in used or name == "box_acceleration" else 0.0 for name, value in cubic(k).items()}
+            values = {
+                name: value if name in used or name == "box_acceleration" else 0.0
+                for name, value in cubic(k).items()
+            }
             set_derivatives(fmu, values)
             twin.set(**values)
             for one in (fmu, twin):
@@ -61,7 +70,9 @@ def test_input_derivatives_before_the_first_step(fmus, phase):
 
 
 def start_in_contact(fmu, setter):
-    """Outputs after inputs were set in initialisation mode by ``setter``, outputs having been looked at before."""
+    """Outputs after inputs were set in initialisation mode by ``setter``, outputs having been
+    looked at before.
+    """
     fmu.fmu.setupExperiment(startTime=0.0)
     fmu.fmu.enterInitializationMode()
     assert fmu.one("in_contact")
@@ -76,16 +87,25 @@ def start_in_contact(fmu, setter):
 def test_input_derivatives_in_initialisation_mode_after_outputs_were_read(fmus):
     """A jerk that opens the contact at once; without it the start is one of contact."""
     with slave(fmus["fmi2"]) as fmu, slave(fmus["fmi2"]) as twin:
-        found = start_in_contact(fmu, lambda one: one.fmu.setRealInputDerivatives([one.variables["box_acceleration"].valueReference], [1], [5.0]))
+        found = start_in_contact(
+            fmu,
+            lambda one: one.fmu.setRealInputDerivatives(
+                [one.variables["box_acceleration"].valueReference], [1], [5.0]
+            ),
+        )
         assert found == start_in_contact(twin, lambda one: one.set(box_jerk=5.0))
         assert not found[0][COMMON.index("in_contact")]
 
 
-@pytest.mark.parametrize("name", ["x1", "m1", "box_amplitude", "box_jerk", "box_crackle", "impact_time"])
+@pytest.mark.parametrize(
+    "name", ["x1", "m1", "box_amplitude", "box_jerk", "box_crackle", "impact_time"]
+)
 def test_only_box_acceleration_has_input_derivatives(fmus, name):
     with slave(fmus["fmi2"]) as fmu:
         fmu.start()
-        assert "box_acceleration" in fmu.refused("setRealInputDerivatives", [fmu.variables[name].valueReference], [1], [0.5])
+        assert "box_acceleration" in fmu.refused(
+            "setRealInputDerivatives", [fmu.variables[name].valueReference], [1], [0.5]
+        )
 
 
 @pytest.mark.parametrize("order", [0, 4, -1, 2**31 - 1, -(2**31)])
@@ -93,7 +113,9 @@ def test_only_three_orders_of_input_derivatives(fmus, order):
     with slave(fmus["fmi2"]) as fmu:
         fmu.start()
         reference = fmu.variables["box_acceleration"].valueReference
-        assert "orders 1 to 3" in fmu.refused("setRealInputDerivatives", [reference] * 2, [1, order], [0.5, 0.5])
+        assert "orders 1 to 3" in fmu.refused(
+            "setRealInputDerivatives", [reference] * 2, [1, order], [0.5, 0.5]
+        )
         assert fmu.one("box_jerk") == 0.0  # all or none
 
 
@@ -117,5 +139,14 @@ def test_output_derivatives_are_the_velocities(fmus, form):
             fmu.step(0.5 * (k + 1))
             assert get(references, [1, 1, 1]) == fmu.get("v1", "v2", "v_rel")
         refuse = "getOutputDerivatives" if fmu.third else "getRealOutputDerivatives"
-        for name, order in (("x1", 0), ("x1", 2), ("x1", -1), ("v1", 1), ("phase", 1), ("m1", 1), ("box_acceleration", 1), ("impact_count", 1)):
+        for name, order in (
+            ("x1", 0),
+            ("x1", 2),
+            ("x1", -1),
+            ("v1", 1),
+            ("phase", 1),
+            ("m1", 1),
+            ("box_acceleration", 1),
+            ("impact_count", 1),
+        ):
             fmu.refused(refuse, [fmu.variables[name].valueReference], [order])

@@ -1,4 +1,6 @@
-"""The native FMUs through the project's own importers in C: FMPy's numbers, no Python, many instances, threads, a million steps."""
+"""The native FMUs through the project's own importers in C: FMPy's numbers, no Python, many
+instances, threads, a million steps.
+"""
 
 import random
 import re
@@ -11,7 +13,8 @@ from fmu_src.kernels.oscillator import memory as at
 from .importers import Importer, binary, compile_importer, ziglang
 from .slave import COMMON, harmonic, slave
 
-HEADER, HEAD = 64, 3  # bytes before the numbers of a serialised state, and numbers before the memory
+# bytes before the numbers of a serialised state, and numbers before the memory
+HEADER, HEAD = 64, 3
 
 
 def slot(index):
@@ -24,7 +27,11 @@ def uneven_times(end):
     return sorted({0.0, end, *(draw.uniform(0.0, end) for _ in range(300))})
 
 
-@pytest.mark.parametrize("values", [{}, {**harmonic(1.13), "e": 0.9, "m2": 1.7, "d1": 0.03}, {"bonded": True}], ids=["defaults", "chaos", "bonded"])
+@pytest.mark.parametrize(
+    "values",
+    [{}, {**harmonic(1.13), "e": 0.9, "m2": 1.7, "d1": 0.03}, {"bonded": True}],
+    ids=["defaults", "chaos", "bonded"],
+)
 def test_numbers_are_those_of_fmpy(importer, fmus, values):
     times = uneven_times(300.0)
     found = importer.simulate(COMMON, times, **values)
@@ -34,14 +41,24 @@ def test_numbers_are_those_of_fmpy(importer, fmus, values):
         for time in times[1:]:
             fmu.step(time)
             expected.append(fmu.get(*COMMON))
-    assert [[cell.hex() for cell in row] for row in found] == [[float(cell).hex() for cell in row] for row in expected]
+    assert [[cell.hex() for cell in row] for row in found] == [
+        [float(cell).hex() for cell in row] for row in expected
+    ]
     assert bool(values.get("bonded")) == (found[-1][COMMON.index("impact_count")] == 0.0)
 
 
 def test_there_is_no_python_in_the_process(importer):
     linked = subprocess.run(["ldd", str(importer.library)], capture_output=True, text=True).stdout
-    assert {line.split()[0].rsplit("/", 1)[-1] for line in linked.splitlines()} <= {"linux-vdso.so.1", "libc.so.6", "ld-linux-x86-64.so.2"}
-    mapped = {line.rsplit("/", 1)[-1] for line in importer.run("maps").stdout.splitlines() if line.startswith("/")}
+    assert {line.split()[0].rsplit("/", 1)[-1] for line in linked.splitlines()} <= {
+        "linux-vdso.so.1",
+        "libc.so.6",
+        "ld-linux-x86-64.so.2",
+    }
+    mapped = {
+        line.rsplit("/", 1)[-1]
+        for line in importer.run("maps").stdout.splitlines()
+        if line.startswith("/")
+    }
     assert importer.library.name in mapped
     assert not [name for name in mapped if "python" in name.lower()]
     system = {"libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "ld-linux-x86-64.so.2"}
@@ -49,12 +66,20 @@ def test_there_is_no_python_in_the_process(importer):
 
 
 def test_importer_compiled_by_ziglang(fmus, importer, tmp_path):
-    """What is compiled where the machine has no C compiler; and another compiler's eye on the importer."""
+    """What is compiled where the machine has no C compiler; and another compiler's eye on the
+    importer.
+    """
     if ziglang() is None:
         pytest.skip("ziglang is not installed")
-    other = Importer(compile_importer(importer.version, fmus[importer.version], tmp_path, ziglang()), importer.library, importer.version)
+    other = Importer(
+        compile_importer(importer.version, fmus[importer.version], tmp_path, ziglang()),
+        importer.library,
+        importer.version,
+    )
     times = uneven_times(300.0)
-    assert other.simulate(COMMON, times, **harmonic(1.13)) == importer.simulate(COMMON, times, **harmonic(1.13))
+    assert other.simulate(COMMON, times, **harmonic(1.13)) == importer.simulate(
+        COMMON, times, **harmonic(1.13)
+    )
     assert "FAILURES 0" in other.run("hostile").stdout
 
 
@@ -73,7 +98,9 @@ def test_a_million_small_steps(importer):
 
 
 def test_speed_of_a_step_without_impact(importer):
-    """Under 0.3 us of processor time is wanted and found on a machine of 2.6 GHz; the bound is wide, the numbers are printed."""
+    """Under 0.3 us of processor time is wanted and found on a machine of 2.6 GHz; the bound is
+    wide, the numbers are printed.
+    """
     found = dict(re.findall(r"SPEED (.*) ([\d.]+) ns", importer.run("speed", 50_000).stdout))
     print(importer.version, found)
     for kind in ("bonded", "flight", "flight, x_rel_max off"):
@@ -92,7 +119,11 @@ def test_two_versions_in_one_process_do_not_meet(fmus, importer_of, tmp_path):
         times=times,
         env={"LD_PRELOAD": str(binary(fmus["fmi3"], "fmi3", tmp_path))},
     )
-    rows = [[float.fromhex(cell) for cell in line.split()] for line in together.stdout.splitlines() if not line.startswith("CHECKS")]
+    rows = [
+        [float.fromhex(cell) for cell in line.split()]
+        for line in together.stdout.splitlines()
+        if not line.startswith("CHECKS")
+    ]
     assert rows == alone
     assert other.simulate(COMMON, times, **harmonic(1.13)) == alone
 
@@ -114,7 +145,13 @@ BODY = [
     (at.TIME, "inf"),
     (at.TIME, "nan"),
 ]
-HIDDEN = [(at.MODE, "77"), (at.X1, "nan"), (at.ORIGIN, "nan"), (at.IMPACT_COUNT, "-5"), (at.END_KIND, "nan")]
+HIDDEN = [
+    (at.MODE, "77"),
+    (at.X1, "nan"),
+    (at.ORIGIN, "nan"),
+    (at.IMPACT_COUNT, "-5"),
+    (at.END_KIND, "nan"),
+]
 
 
 @pytest.mark.parametrize(("index", "value"), BODY + HIDDEN)
@@ -129,7 +166,9 @@ def test_a_forged_state_with_a_value_out_of_range_is_refused(importer, index, va
 
 def test_no_forged_state_crashes(importer):
     """Made by somebody who knows the checksum: wrong in, wrong out, but the process lives."""
-    assert int(re.search(r"TAKEN (\d+)\n.* FAILURES 0", importer.run("forge").stdout).group(1)) > 1000
+    assert (
+        int(re.search(r"TAKEN (\d+)\n.* FAILURES 0", importer.run("forge").stdout).group(1)) > 1000
+    )
 
 
 @pytest.mark.parametrize("number", [0, 1, 2])
@@ -139,9 +178,14 @@ def test_a_head_that_is_no_number_is_refused(importer, number, value, sealed):
     assert importer.run("corrupt", HEADER + 8 * number, value, *sealed).stdout.startswith("REFUSED")
 
 
-@pytest.mark.parametrize(("number", "value"), [(0, "-1"), (0, "4.5"), (0, "1e300"), (0, "64"), (2, "-1"), (2, "0.5"), (2, "4"), (2, "1e300")])
+@pytest.mark.parametrize(
+    ("number", "value"),
+    [(0, "-1"), (0, "4.5"), (0, "1e300"), (0, "64"), (2, "-1"), (2, "0.5"), (2, "4"), (2, "1e300")],
+)
 def test_a_forged_phase_or_flag_is_refused(importer, number, value):
-    assert importer.run("corrupt", HEADER + 8 * number, value, "sealed").stdout.startswith("REFUSED")
+    assert importer.run("corrupt", HEADER + 8 * number, value, "sealed").stdout.startswith(
+        "REFUSED"
+    )
 
 
 @pytest.mark.parametrize("d1", [0.0, 0.005, 0.0099])

@@ -1,4 +1,6 @@
-"""Every byte accounted for: valgrind over the FMU's own binary, sanitizers in its shim built anew from the C sources."""
+"""Every byte accounted for: valgrind over the FMU's own binary, sanitizers in its shim built anew
+from the C sources.
+"""
 
 import shutil
 
@@ -6,7 +8,14 @@ import pytest
 
 from . import importers
 
-VALGRIND = ("valgrind", "-q", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=all", "--show-leak-kinds=all")
+VALGRIND = (
+    "valgrind",
+    "-q",
+    "--error-exitcode=9",
+    "--leak-check=full",
+    "--errors-for-leak-kinds=all",
+    "--show-leak-kinds=all",
+)
 MODES = [("hostile",), ("many", 20, 40, 200), ("million", 4000, "under valgrind")]
 
 
@@ -15,7 +24,9 @@ def clean(done):
     assert done.stderr == ""
 
 
-needs_valgrind = pytest.mark.skipif(shutil.which("valgrind") is None, reason="valgrind is not installed")
+needs_valgrind = pytest.mark.skipif(
+    shutil.which("valgrind") is None, reason="valgrind is not installed"
+)
 
 
 @needs_valgrind
@@ -26,9 +37,13 @@ def test_no_leak_and_no_error_under_valgrind(importer, mode):
 
 @needs_valgrind
 def test_valgrind_sees_the_same_bits(importer):
-    """The kernel needs no more than what valgrind's processor has: no fused multiply-add, no 80-bit numbers."""
+    """The kernel needs no more than what valgrind's processor has: no fused multiply-add, no 80-bit
+    numbers.
+    """
     names, times, values = ["x1", "x2", "impact_count"], [0.0, 50.0, 200.0], {"box_frequency": 1.13}
-    assert importer.simulate(names, times, under=VALGRIND, **values) == importer.simulate(names, times, **values)
+    assert importer.simulate(names, times, under=VALGRIND, **values) == importer.simulate(
+        names, times, **values
+    )
 
 
 @needs_valgrind
@@ -43,25 +58,37 @@ def checked(request, fmus, kernel_objects, tmp_path_factory, sanitizer):
     """Importer and rebuilt binary with a sanitizer in both."""
     version = request.param
     folder = tmp_path_factory.mktemp("checked")
-    program = importers.compile_importer(version, fmus[version], folder / "importer", options=("-O1", "-g", *sanitizer))
-    return importers.Importer(program, importers.rebuild_shim(version, folder / "shim", kernel_objects, sanitizer), version)
+    program = importers.compile_importer(
+        version, fmus[version], folder / "importer", options=("-O1", "-g", *sanitizer)
+    )
+    return importers.Importer(
+        program,
+        importers.rebuild_shim(version, folder / "shim", kernel_objects, sanitizer),
+        version,
+    )
 
 
 @pytest.fixture
 def sanitizer(request, tmp_path):
     """Options of a sanitizer, checked to work here."""
     if importers.own_compiler() is None:
-        pytest.skip("the machine has no C compiler of its own, and ziglang's sanitizers do not load from a shared library")
+        pytest.skip(
+            "the machine has no C compiler of its own, and ziglang's sanitizers do not load from a shared library"
+        )
     (tmp_path / "empty.c").write_text("int main(void) { return 0; }\n")
     try:
-        importers.run_compiler([*importers.own_compiler(), *request.param, "empty.c", "-o", "empty"], tmp_path)
+        importers.run_compiler(
+            [*importers.own_compiler(), *request.param, "empty.c", "-o", "empty"], tmp_path
+        )
         importers.Importer(tmp_path / "empty", "", "").run()
     except AssertionError as reason:
         pytest.skip(f"the compiler has no such sanitizer: {reason}")
     return request.param
 
 
-@pytest.mark.parametrize("sanitizer", [importers.SANITIZE], indirect=True, ids=["address,undefined"])
+@pytest.mark.parametrize(
+    "sanitizer", [importers.SANITIZE], indirect=True, ids=["address,undefined"]
+)
 def test_no_error_with_sanitizers_in_the_shim(checked):
     """A thousand instances and a million steps too; leaks are counted at the end of each process."""
     clean(checked.run("hostile"))
@@ -78,6 +105,7 @@ def test_no_number_is_cast_that_has_no_integer(fmus, kernel_objects, tmp_path):
     if importers.compiler() is None:
         pytest.skip("there is no C compiler")
     program = importers.compile_importer("fmi2", fmus["fmi2"], tmp_path / "importer")
-    options = ("-fsanitize=float-cast-overflow", "-fsanitize-undefined-trap-on-error")  # traps: no library of the sanitizer is needed
+    # traps: no library of the sanitizer is needed
+    options = ("-fsanitize=float-cast-overflow", "-fsanitize-undefined-trap-on-error")
     library = importers.rebuild_shim("fmi2", tmp_path / "shim", kernel_objects, options)
     importers.Importer(program, library, "fmi2").run("hostile")

@@ -22,7 +22,9 @@ declare ptr @NRT_MemInfo_alloc(i64)
 
 
 def test_installed_numba_compiles_the_kernel(kernel_objects):
-    """Fails, not skips, where Numba is there and its output is not what it was; ``kernel_objects`` says what is wrong."""
+    """Fails, not skips, where Numba is there and its output is not what it was; ``kernel_objects``
+    says what is wrong.
+    """
     assert set(kernel_objects) == set(PLATFORMS)
     assert kernel_objects["x86_64-linux"][:4] == b"\x7fELF"
     assert kernel_objects["x86_64-windows"][:2] == b"\x64\x86"
@@ -30,13 +32,25 @@ def test_installed_numba_compiles_the_kernel(kernel_objects):
 
 @pytest.mark.skipif(shutil.which("objdump") is None, reason="objdump is not installed")
 def test_kernel_has_no_instruction_beyond_the_baseline(kernel_objects, tmp_path):
-    """No fused multiply-add, whose bits would differ, and no AVX, which older processors lack; nothing is called but what the linker has."""
+    """No fused multiply-add, whose bits would differ, and no AVX, which older processors lack;
+    nothing is called but what the linker has.
+    """
     (tmp_path / "kernel.o").write_bytes(kernel_objects["x86_64-linux"])
-    code = subprocess.run(["objdump", "-d", "--no-show-raw-insn", "kernel.o"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
-    instructions = {line.split("\t")[1].split()[0] for line in code.splitlines() if line.count("\t") > 0}
+    code = subprocess.run(
+        ["objdump", "-d", "--no-show-raw-insn", "kernel.o"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    instructions = {
+        line.split("\t")[1].split()[0] for line in code.splitlines() if line.count("\t") > 0
+    }
     assert {"mulsd", "addsd"} <= instructions
     assert not [name for name in instructions if name.startswith("v") or name == "fld"]
-    symbols = subprocess.run(["objdump", "-t", "kernel.o"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    symbols = subprocess.run(
+        ["objdump", "-t", "kernel.o"], cwd=tmp_path, capture_output=True, text=True, check=True
+    ).stdout
     assert {line.split()[-1] for line in symbols.splitlines() if "*UND*" in line} <= {"memset"}
 
 
@@ -49,7 +63,10 @@ def test_a_kernel_that_needs_the_runtime_of_numba_is_refused():
 @pytest.mark.parametrize(
     ("source", "told"),
     [
-        ("__version__ = '9.9'\ndef njit(**_): return lambda f: f", "Numba 9.9 cannot compile the kernel: AttributeError: .*types"),
+        (
+            "__version__ = '9.9'\ndef njit(**_): return lambda f: f",
+            "Numba 9.9 cannot compile the kernel: AttributeError: .*types",
+        ),
         ("raise ModuleNotFoundError('No module named numba')", "No module named numba"),
     ],
     ids=["another interface", "missing"],

@@ -58,7 +58,9 @@ def test_sample_count_may_change_between_steps(fmu_path):
 
 @pytest.mark.parametrize("count", [0, 7, ROOM])
 def test_largest_gap_is_that_of_small_steps(fmu_path, count):
-    """Not below what small steps see, and not above by more than a summit differs from the largest of two rounded numbers."""
+    """Not below what small steps see, and not above by more than a summit differs from the largest
+    of two rounded numbers.
+    """
     with slave(fmu_path) as fmu, slave(fmu_path) as fine:
         fmu.start(sample_count=count, **harmonic(1.13))
         fine.start(**harmonic(1.13))

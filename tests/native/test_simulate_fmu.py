@@ -11,12 +11,20 @@ NAMES = ["x1", "x2", "v1", "v2", "impact_count", "impact_time"]
 
 
 def simulate(path, **options):
-    arguments = {"stop_time": 128.0, "output_interval": 0.25, "start_values": CHAOS, "output": NAMES, **options}
+    arguments = {
+        "stop_time": 128.0,
+        "output_interval": 0.25,
+        "start_values": CHAOS,
+        "output": NAMES,
+        **options,
+    }
     return fmpy.simulate_fmu(str(path), fmi_type="CoSimulation", **arguments)
 
 
 def same(found, expected):
-    """FMPy comes back to its grid by subtracting and adding times: the last bit of a time may differ, and the state's with it."""
+    """FMPy comes back to its grid by subtracting and adding times: the last bit of a time may
+    differ, and the state's with it.
+    """
     for name in NAMES:
         np.testing.assert_allclose(found[name], expected[name], rtol=0.0, atol=1e-11)
     assert np.array_equal(found["impact_count"], expected["impact_count"])
@@ -28,7 +36,8 @@ def test_simulation_is_the_same_with_and_without_event_mode(fmus):
     assert reference["impact_count"][-1] > 20
     plain = simulate(fmus["fmi3"])
     assert all(np.array_equal(plain[name], reference[name]) for name in NAMES)
-    ticking = simulate(fmus["fmi3"], use_event_mode=True)  # two rows at each event: before and after it
+    # two rows at each event: before and after it
+    ticking = simulate(fmus["fmi3"], use_event_mode=True)
     assert len(ticking) > len(plain)
     assert set(ticking["time"]) == set(plain["time"])
     _, last = np.unique(ticking["time"][::-1], return_index=True)
@@ -45,7 +54,10 @@ def test_simulation_is_the_same_with_and_without_event_mode(fmus):
 @pytest.mark.parametrize("form", ["fmi2", "fmi3"])
 def test_an_input_signal_is_held_over_the_step(fmus, form):
     times = np.arange(0.0, 40.25, 0.25)
-    signal = np.array(list(zip(times, 0.1 * np.sin(times), strict=True)), dtype=[("time", float), ("box_acceleration", float)])
+    signal = np.array(
+        list(zip(times, 0.1 * np.sin(times), strict=True)),
+        dtype=[("time", float), ("box_acceleration", float)],
+    )
     found = simulate(fmus[form], input=signal, stop_time=32.0, start_values={})
     with slave(fmus[form]) as fmu:
         fmu.start()

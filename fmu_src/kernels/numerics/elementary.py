@@ -1,8 +1,9 @@
 """Sine, cosine and exponential function from ``+ - * /`` and ``floor`` alone.
 
-The mathematical libraries of different systems, and different processors under one library, round these functions
-differently; a chaotic trajectory shows it after some hundred impacts. Here they are Taylor polynomials on a reduced argument,
-truncated below 1e-19, so that every machine gives the same bits. Errors stay within 2 units in the last place.
+The mathematical libraries of different systems, and different processors under one library, round
+these functions differently; a chaotic trajectory shows it after some hundred impacts. Here they are
+Taylor polynomials on a reduced argument, truncated below 1e-19, so that every machine gives the
+same bits. Errors stay within 2 units in the last place.
 """
 
 import math
@@ -34,7 +35,10 @@ def sincos_turns(u):
     y2 = y * y  # the polynomials in pairs of pairs: shorter chains of dependent operations
     y4 = y2 * y2
     s = (-1.0 / 6.0 + y * (1.0 / 120.0)) + y2 * (-1.0 / 5040.0 + y * (1.0 / 362880.0))
-    s += y4 * ((-1.0 / 39916800.0 + y * (1.0 / 6227020800.0)) + y2 * (-1.0 / 1307674368000.0 + y * (1.0 / 355687428096000.0)))
+    s += y4 * (
+        (-1.0 / 39916800.0 + y * (1.0 / 6227020800.0))
+        + y2 * (-1.0 / 1307674368000.0 + y * (1.0 / 355687428096000.0))
+    )
     s = s * y * x + x
     c = (1.0 / 24.0 - y * (1.0 / 720.0)) + y2 * (1.0 / 40320.0 - y * (1.0 / 3628800.0))
     c += y4 * ((1.0 / 479001600.0 - y * (1.0 / 87178291200.0)) + y2 * (1.0 / 20922789888000.0))

@@ -1,11 +1,12 @@
 """The vibro-impact kernel: two masses in a shaken box, exact between and through impacts.
 
-Standard library only, relative imports only, plain floats in one flat memory: the same source runs in any Python 3.9+ and
-compiles under Numba as it stands. Only ``+ - * /``, ``sqrt`` and ``floor`` touch the numbers, which IEEE 754 fixes to the
-last bit, so every build of it on every machine gives the same bits.
+Standard library only, relative imports only, plain floats in one flat memory: the same source runs
+in any Python 3.9+ and compiles under Numba as it stands. Only ``+ - * /``, ``sqrt`` and ``floor``
+touch the numbers, which IEEE 754 fixes to the last bit, so every build of it on every machine gives
+the same bits.
 
-Non-dimensional time ``tau = omega t`` (4) throughout; displacements stay in metres, because the equations are linear in the
-amplitude: the paper's ``xi`` (3) is the displacement over ``a eta^2``.
+Non-dimensional time ``tau = omega t`` (4) throughout; displacements stay in metres, because the
+equations are linear in the amplitude: the paper's ``xi`` (3) is the displacement over ``a eta^2``.
 
 ========================  =====================================================================
 module                    the paper's equations

@@ -1,18 +1,22 @@
 """Permanent contact: its force (18) and the side on which a state begins, (19)-(20).
 
-On the boundary, both masses together at one velocity, the sign of f decides: pressed together or pulled apart. Where f vanishes, the
-first of its derivatives that does not vanish decides. "Vanishes" means: below the rounding of the terms it is made of.
+On the boundary, both masses together at one velocity, the sign of f decides: pressed together or
+pulled apart. Where f vanishes, the first of its derivatives that does not vanish decides.
+"Vanishes" means: below the rounding of the terms it is made of.
 """
 
 from . import memory as at
 from .excitation import cubic_at
 
 ROUNDING = 1e-14
-HIGHEST = 5  # with a cubic forcing, from rest, some derivative of f up to the fifth does not vanish, or all do
+# with a cubic forcing, from rest, some derivative of f up to the fifth does not vanish, or all do
+HIGHEST = 5
 
 
 def contact_force(m, x, v):
-    """The f of (18): the acceleration with which the gap would open at displacement ``x`` and common velocity ``v``."""
+    """The f of (18): the acceleration with which the gap would open at displacement ``x`` and
+    common velocity ``v``.
+    """
     return m[at.FORCE_V] * v + m[at.FORCE_X] * x
 
 
@@ -38,7 +42,8 @@ def forcing_derivative(m, order, sine, cosine, cubic):
 
 
 def first_derivative(m, x, v, lowest):
-    """First derivative of f, from order ``lowest`` on, that does not vanish in common motion from (x, v).
+    """First derivative of f, from order ``lowest`` on, that does not vanish in common motion from
+    (x, v).
 
     Returns
     -------

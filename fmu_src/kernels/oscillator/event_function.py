@@ -1,12 +1,13 @@
 """The event function of a state: positive inside it, its first root is the state's end.
 
-In flight it is the gap ``xi_2 - xi_1`` (13), in permanent contact minus the contact force ``-f`` (19). Both are one kind of
-signal, a harmonic, a cubic and up to two decaying free parts, and so is each derivative: written so, one root finder serves both,
-and every derivative is bounded in closed form for all later times.
+In flight it is the gap ``xi_2 - xi_1`` (13), in permanent contact minus the contact force ``-f``
+(19). Both are one kind of signal, a harmonic, a cubic and up to two decaying free parts, and so is
+each derivative: written so, one root finder serves both, and every derivative is bounded in closed
+form for all later times.
 """
 
-from . import memory as at
 from ..numerics.elementary import sincos_turns
+from . import memory as at
 from .response import bases, basis
 from .series import gap_at
 
@@ -30,7 +31,9 @@ def set_gap(m):
 
 
 def set_contact_force(m):
-    """Event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 - omega_2^2) xi_3`` (18)."""
+    """Event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 - omega_2^2)
+    xi_3`` (18).
+    """
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     h_cos, h_sin, eta = m[at.HARMONIC_3], m[at.HARMONIC_3 + 1], m[at.ETA]
     m[at.EVENT_HARMONIC] = p * eta * h_sin + q * h_cos
@@ -57,7 +60,9 @@ def set_bounds(m, branch_a):
 
 
 def bounds(m, branch_a, order):
-    """Bounds of the event function's derivative of an order >= 4, at all later times: steady part, free parts A and B at tau = 0."""
+    """Bounds of the event function's derivative of an order >= 4, at all later times: steady part,
+    free parts A and B at tau = 0.
+    """
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     for _ in range(order):
         steady *= m[at.ETA]
@@ -86,7 +91,8 @@ def free_part(m, b, c, w, C, S):
 
 
 def evaluate(m, tau):
-    """The event function at ``tau``: value, four derivatives, and a bound of the fifth from there on.
+    """The event function at ``tau``: value, four derivatives, and a bound of the fifth from there
+    on.
 
     Returns
     -------
@@ -98,13 +104,19 @@ def evaluate(m, tau):
         return h0, h1, h2, h3, h4, m[at.BOUND] + m[at.BOUND + 1] + m[at.BOUND + 2]
     if m[at.MODE] == at.FLIGHT:
         C_1, S_1, decay, C_2, S_2, decay_2 = bases(m, tau)
-        h0, h1, h2, h3, h4 = free_part(m, at.BRANCH_1, m[at.EVENT_FREE_A], m[at.EVENT_FREE_A + 1], C_1, S_1)
-        b0, b1, b2, b3, b4 = free_part(m, at.BRANCH_2, m[at.EVENT_FREE_B], m[at.EVENT_FREE_B + 1], C_2, S_2)
+        h0, h1, h2, h3, h4 = free_part(
+            m, at.BRANCH_1, m[at.EVENT_FREE_A], m[at.EVENT_FREE_A + 1], C_1, S_1
+        )
+        b0, b1, b2, b3, b4 = free_part(
+            m, at.BRANCH_2, m[at.EVENT_FREE_B], m[at.EVENT_FREE_B + 1], C_2, S_2
+        )
         h0, h1, h2, h3, h4 = h0 + b0, h1 + b1, h2 + b2, h3 + b3, h4 + b4
         bound = m[at.BOUND] + decay * m[at.BOUND + 1] + decay_2 * m[at.BOUND + 2]
     else:
         C_1, S_1, decay = basis(m, at.BRANCH_3, tau)
-        h0, h1, h2, h3, h4 = free_part(m, at.BRANCH_3, m[at.EVENT_FREE_A], m[at.EVENT_FREE_A + 1], C_1, S_1)
+        h0, h1, h2, h3, h4 = free_part(
+            m, at.BRANCH_3, m[at.EVENT_FREE_A], m[at.EVENT_FREE_A + 1], C_1, S_1
+        )
         bound = m[at.BOUND] + decay * m[at.BOUND + 1]
     if m[at.FORCING] != 0.0:
         eta = m[at.ETA]
@@ -131,7 +143,9 @@ def rounding(m, tau):
     """What the event function's terms at ``tau`` may lose by rounding."""
     size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     branch_a = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
-    size += free_bound(m, branch_a, at.EVENT_FREE_A, 0) + free_bound(m, at.BRANCH_2, at.EVENT_FREE_B, 0)
+    size += free_bound(m, branch_a, at.EVENT_FREE_A, 0) + free_bound(
+        m, at.BRANCH_2, at.EVENT_FREE_B, 0
+    )
     if m[at.CUBIC_PRESENT] != 0.0:
         power = 1.0
         for i in range(4):

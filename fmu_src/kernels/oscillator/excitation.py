@@ -1,15 +1,17 @@
 """The box's motion over one segment: right-hand side of (6), a harmonic plus a cubic in time.
 
-A segment lasts as long as the inputs stay as they are. With a jerk, snap or crackle set, that is one communication step.
-Relative to the box a mass is driven by minus the box's acceleration: ``a Omega^2 sin(phase)`` minus the cubic.
+A segment lasts as long as the inputs stay as they are. With a jerk, snap or crackle set, that is
+one communication step. Relative to the box a mass is driven by minus the box's acceleration: ``a
+Omega^2 sin(phase)`` minus the cubic.
 """
 
 import math
 
-from . import memory as at
 from ..numerics.elementary import TWO_PI
+from . import memory as at
 
-NEAR_RESONANCE = 1e-12  # (|i eta - lambda| / omega_i)^2 below which an undamped response has no usable closed form
+# (|i eta - lambda| / omega_i)^2 below which an undamped response has no usable closed form
+NEAR_RESONANCE = 1e-12
 
 
 def inputs_changed(m):
@@ -28,7 +30,8 @@ def begin_segment(m):
     Returns
     -------
     int
-        OK, or RESONANCE_i where branch i is undamped and driven within 1e-6 of its natural frequency.
+        OK, or RESONANCE_i where branch i is undamped and driven within 1e-6 of its natural
+        frequency.
     """
     for i in range(6):
         m[at.SEGMENT_INPUTS + i] = m[at.BOX_AMPLITUDE + i]
@@ -87,7 +90,9 @@ def cubic_at(m, age):
 
 
 def set_cubic_response(m, b, response, cubic):
-    """The cubic that solves (6) for a cubic forcing: value and three derivatives, by comparing coefficients."""
+    """The cubic that solves (6) for a cubic forcing: value and three derivatives, by comparing
+    coefficients.
+    """
     w, twice = m[b + at.OMEGA_SQUARED], 2.0 * m[b + at.DAMPING]
     q3 = cubic[3] / w
     q2 = (cubic[2] - twice * q3) / w

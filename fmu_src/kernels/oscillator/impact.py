@@ -9,7 +9,9 @@ def common_velocity(m, v1, v2):
 
 
 def restitution(m, v1, v2):
-    """Velocities after an impact, (15) with ``(1+e)/(1+mu)`` in its second line: momentum kept, gap velocity times -e."""
+    """Velocities after an impact, (15) with ``(1+e)/(1+mu)`` in its second line: momentum kept, gap
+    velocity times -e.
+    """
     common = common_velocity(m, v1, v2)
     part = m[at.E] * (v1 - v2) / (1.0 + m[at.MU])
     return common - m[at.MU] * part, common + part
@@ -18,8 +20,9 @@ def restitution(m, v1, v2):
 def sticks(m, separation, force):
     """Whether chattering ends here, (17) without a velocity scale.
 
-    The masses are pressed together by ``force`` (18) < 0 and would part with the velocity ``separation``: the next flight, a
-    parabola of duration ``2 separation/|force|``, would last less than gamma. Both sides scale with the amplitude.
+    The masses are pressed together by ``force`` (18) < 0 and would part with the velocity
+    ``separation``: the next flight, a parabola of duration ``2 separation/|force|``, would last
+    less than gamma. Both sides scale with the amplitude.
 
     Parameters
     ----------
@@ -33,7 +36,9 @@ def sticks(m, separation, force):
 
 
 def count_impact(m, time, closing, lost):
-    """Enter an impact into the energy balance; ``closing`` is the velocity before it (m per unit of tau), ``lost`` the part of its square that is lost."""
+    """Enter an impact into the energy balance; ``closing`` is the velocity before it (m per unit of
+    tau), ``lost`` the part of its square that is lost.
+    """
     m[at.IMPACT_COUNT] += 1.0
     m[at.IMPACT_TIME] = time
     velocity = closing * m[at.OMEGA]

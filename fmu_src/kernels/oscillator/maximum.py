@@ -1,4 +1,6 @@
-"""The largest gap over a piece of flight: from summit to summit, with the certified steps of the root finder."""
+"""The largest gap over a piece of flight: from summit to summit, with the certified steps of the
+root finder.
+"""
 
 from . import memory as at
 from .event_function import evaluate
@@ -8,9 +10,13 @@ SMALLEST = 1e-9  # least progress, in tau: a summit is flat, nothing is lost
 
 
 def climb(h1, h2, h3, h4, bound, reach):
-    """A step towards the next summit, and whether it ends there: height is of second order in the summit's place, 1e-9 of it will do."""
+    """A step towards the next summit, and whether it ends there: height is of second order in the
+    summit's place, 1e-9 of it will do.
+    """
     root = parabola_root(h1, h2, h3)
-    if root < reach and (abs(h4) + bound * root) * root * root * root <= -6e-9 * reach * (h2 + h3 * root):
+    if root < reach and (abs(h4) + bound * root) * root * root * root <= -6e-9 * reach * (
+        h2 + h3 * root
+    ):
         return root, True
     scale = 1.0 / bound if bound > 0.0 else 1.0
     step = clear_step(h1 * scale, h2 * scale, h3 * scale, h4 * scale, -bound * scale, 0.0, reach)
@@ -18,9 +24,11 @@ def climb(h1, h2, h3, h4, bound, reach):
 
 
 def largest_gap(m, start, stop, highest):
-    """The larger of ``highest`` and the largest gap in ``start <= tau <= stop`` of the present flight.
+    """The larger of ``highest`` and the largest gap in ``start <= tau <= stop`` of the present
+    flight.
 
-    Climbing, the walk goes to the first root of the gap's slope; elsewhere to the first point that rises above what is known.
+    Climbing, the walk goes to the first root of the gap's slope; elsewhere to the first point that
+    rises above what is known.
     """
     tau = start
     reach = longest_step(m)
@@ -38,7 +46,15 @@ def largest_gap(m, start, stop, highest):
             summit = False
         else:
             scale = 1.0 / bound if bound > 0.0 else 1.0
-            step = clear_step(0.0, -h1 * scale if h1 < 0.0 else 0.0, -h2 * scale, -h3 * scale, -h4 * scale, bound * scale, reach)
+            step = clear_step(
+                0.0,
+                -h1 * scale if h1 < 0.0 else 0.0,
+                -h2 * scale,
+                -h3 * scale,
+                -h4 * scale,
+                bound * scale,
+                reach,
+            )
             summit = False
             if step < SMALLEST:
                 step = SMALLEST

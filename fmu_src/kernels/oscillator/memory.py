@@ -88,7 +88,8 @@ HARMONIC_1 = slot(2)  # a eta^2 (a_i, b_i) of (11), cosine and sine
 HARMONIC_2 = slot(2)
 HARMONIC_3 = slot(2)
 SEGMENT_INPUTS = slot(6)  # the inputs the segment was made of
-CUBIC_ON = slot()  # the cubic has more than its constant: to be set anew at each communication point
+# the cubic has more than its constant: to be set anew at each communication point
+CUBIC_ON = slot()
 CUBIC = slot(4)  # value and three derivatives of the forcing's cubic at the segment's start
 SEGMENT_AGE = slot()  # tau since the segment's start, at the present state's start
 

@@ -1,14 +1,15 @@
 """The states and their sequence (1): flight, permanent contact, glued.
 
-A state begins with its initial conditions (9), from which its closed form and its event function follow; it ends at the event function's first
-root, found once and kept. Communication points only look at it. Which state follows is decided on the boundary by the gap, then its
-velocity, then the first derivative that does not vanish.
+A state begins with its initial conditions (9), from which its closed form and its event function
+follow; it ends at the event function's first root, found once and kept. Communication points only
+look at it. Which state follows is decided on the boundary by the gap, then its velocity, then the
+first derivative that does not vanish.
 """
 
-from . import memory as at
-from .event_function import bounds, evaluate, set_contact_force, set_gap
-from .contact import contact_force, first_derivative
 from ..numerics.elementary import fraction, sincos_turns
+from . import memory as at
+from .contact import contact_force, first_derivative
+from .event_function import bounds, evaluate, set_contact_force, set_gap
 from .excitation import cubic_at, set_cubic_response
 from .impact import common_velocity, count_impact, restitution, sticks
 from .response import bases, basis, displacement, set_free
@@ -33,13 +34,19 @@ def state_at(m, tau):
     sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
     if m[at.MODE] == at.FLIGHT:
         C_1, S_1, _, C_2, S_2, _ = bases(m, tau)
-        x1, v1 = displacement(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, tau, C_1, S_1, sine, cosine)
-        x2, v2 = displacement(m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, tau, C_2, S_2, sine, cosine)
+        x1, v1 = displacement(
+            m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, tau, C_1, S_1, sine, cosine
+        )
+        x2, v2 = displacement(
+            m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, tau, C_2, S_2, sine, cosine
+        )
         if x2 < x1:  # by rounding, at the very end of a flight
             x1 = x2 = common_position(m, x1, x2)
         return x1, v1, x2, v2
     C, S, _ = basis(m, at.BRANCH_3, tau)
-    x3, v3 = displacement(m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, tau, C, S, sine, cosine)
+    x3, v3 = displacement(
+        m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, tau, C, S, sine, cosine
+    )
     return x3, v3, x3, v3
 
 
@@ -49,7 +56,9 @@ def common_position(m, x1, x2):
 
 
 def move_origin(m, tau):
-    """Let a new state begin ``tau`` after the start of the present one, (5), without losing digits over millions of states."""
+    """Let a new state begin ``tau`` after the start of the present one, (5), without losing digits
+    over millions of states.
+    """
     total = m[at.ORIGIN] + tau
     part = total - m[at.ORIGIN]
     error = (m[at.ORIGIN] - (total - part)) + (tau - part)
@@ -78,7 +87,8 @@ def begin(m, x1, v1, x2, v2, lowest):
     x1, v1, x2, v2 : float
         m, and m per unit of tau.
     lowest : int
-        First derivative of f that may decide on the boundary: 1 where f is known to vanish, at a release, else 0.
+        First derivative of f that may decide on the boundary: 1 where f is known to vanish, at a
+        release, else 0.
     """
     if m[at.MODE] == at.GLUED:
         begin_common(m, at.GLUED, x1, v1)
@@ -139,7 +149,7 @@ def begin_flight(m, x1, v1, x2, v2):
 
 
 def begin_common(m, mode, x, v):
-    """Both masses as one, in permanent contact or glued; its event function is the contact force."""
+    """Both masses as one, in contact or glued; its event function is the contact force."""
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:
@@ -171,7 +181,9 @@ def leave_impact(m, x, v1, slope):
     x, v1, slope : float
         Common displacement, velocity of mass 1, and gap velocity > 0.
     """
-    order = series_order(m, slope, contact_force(m, x, v1) - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope)
+    order = series_order(
+        m, slope, contact_force(m, x, v1) - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
+    )
     set_series(m, x, v1, slope, order)
     if order > 4:
         duration = short_flight(m, order, bound_at_start(m))
@@ -179,7 +191,13 @@ def leave_impact(m, x, v1, slope):
             m[at.SERIES] = order
             find_end(m, duration)
             return
-    leave_rising(m, slope, 2.0 * m[at.SERIES_GAP + 2], 6.0 * m[at.SERIES_GAP + 3], 24.0 * m[at.SERIES_GAP + 4])
+    leave_rising(
+        m,
+        slope,
+        2.0 * m[at.SERIES_GAP + 2],
+        6.0 * m[at.SERIES_GAP + 3],
+        24.0 * m[at.SERIES_GAP + 4],
+    )
 
 
 def bound_at_start(m):
@@ -195,7 +213,9 @@ def find_end(m, tau):
 
 
 def leave_rising(m, h1, h2, h3, h4):
-    """Leave a start on the boundary with the event function's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``: no root lies before CLEAR."""
+    """Leave a start on the boundary with the event function's derivatives, ``h1 > 0``, or ``h1 = 0
+    < h2``: no root lies before CLEAR.
+    """
     step, found = step_from(0.0, h1, h2, h3, h4, bound_at_start(m), 0.0, longest_step(m))
     m[at.CLEAR] = step
     if found:
@@ -210,7 +230,8 @@ def leave(m, order, value, h3, h4):
     m : flat memory
         With the new state's event function.
     order : int
-        Of the event function's first derivative that does not vanish, 0 where the event function itself does not, -1 if all vanish.
+        Of the event function's first derivative that does not vanish, 0 where the event function
+        itself does not, -1 if all vanish.
     value : float
         That derivative, > 0.
     h3, h4 : float
@@ -226,7 +247,8 @@ def leave(m, order, value, h3, h4):
         return
     branch = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
     bound = derivative_bound(m, branch, order + 1)
-    # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of zero
+    # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of
+    # zero
     m[at.CLEAR] = 0.5 * (order + 1) * value / bound if bound > 0.0 else INFINITE
 
 

@@ -1,8 +1,8 @@
 """What an importer sees at a communication point, in SI units."""
 
+from ..numerics.elementary import TWO_PI, fraction, sincos_turns
 from . import memory as at
 from .contact import contact_force
-from ..numerics.elementary import TWO_PI, fraction, sincos_turns
 from .motion import state_at
 
 
@@ -32,10 +32,12 @@ def momentum(m):
 
 
 def write_impulse(m, h, momentum_before, moment_before, turn_before):
-    """Integrals of the force on the box over a step of ``h`` seconds, by momentum: impacts are internal and drop out.
+    """Integrals of the force on the box over a step of ``h`` seconds, by momentum: impacts are
+    internal and drop out.
 
-    ``box_force = -P' - (m1 + m2) y''`` with P the momentum relative to the box and y'' its acceleration, so the integral is a
-    difference of momenta, its moment a difference of displacements, and what the box's motion adds is known in closed form.
+    ``box_force = -P' - (m1 + m2) y''`` with P the momentum relative to the box and y'' its
+    acceleration, so the integral is a difference of momenta, its moment a difference of
+    displacements, and what the box's motion adds is known in closed form.
     """
     after, moment_after = momentum(m)
     mass = m[at.M1] + m[at.M2]

@@ -2,10 +2,11 @@
 
 import math
 
-from . import memory as at
 from ..numerics.elementary import TWO_PI
+from . import memory as at
 
-SAME = 1e-15  # relative difference below which two quotients of parameters are equal but for rounding
+# relative difference below which two quotients of parameters are equal but for rounding
+SAME = 1e-15
 
 
 def derive(m):
@@ -17,7 +18,8 @@ def derive(m):
     damping_2 = m[at.D2] / (2.0 * omega * m[at.M2])
     damping_3 = (m[at.D1] + m[at.D2]) / (2.0 * omega * (m[at.M1] + m[at.M2]))
     omega_2_squared = kappa / mu  # (7); omega_1 = 1
-    if abs(omega_2_squared - 1.0) <= SAME:  # two oscillators that are alike must not part or touch by rounding
+    # two oscillators that are alike must not part or touch by rounding
+    if abs(omega_2_squared - 1.0) <= SAME:
         omega_2_squared = 1.0
     if abs(damping_2 - damping_1) <= SAME * damping_1:
         damping_2 = damping_1
@@ -34,9 +36,10 @@ def derive(m):
 def set_branch(m, b, damping, omega_squared):
     """Constants of one linear oscillator: under-, critically and overdamped alike.
 
-    The envelope (rate r, factor s) bounds both basis functions for all ``t >= 0``:
-    ``|e^{-D t} cos nu t| <= e^{-r t}`` and ``|e^{-D t} sin(nu t)/nu| <= s e^{-r t}``, with cosh and sinh beyond critical damping.
-    Near the critical damping ``1/nu`` says nothing; there ``t e^{-D t/4} <= 4/(e D)`` does.
+    The envelope (rate r, factor s) bounds both basis functions for all ``t >= 0``: ``|e^{-D t} cos
+    nu t| <= e^{-r t}`` and ``|e^{-D t} sin(nu t)/nu| <= s e^{-r t}``, with cosh and sinh beyond
+    critical damping. Near the critical damping ``1/nu`` says nothing; there ``t e^{-D t/4} <= 4/(e
+    D)`` does.
     """
     omega_i = math.sqrt(omega_squared)
     nu_squared = (omega_i - damping) * (omega_i + damping)  # (11)
@@ -44,7 +47,8 @@ def set_branch(m, b, damping, omega_squared):
     if nu_squared > 0.0 and 4.0 * nu > damping:
         rate, sine = damping, 1.0 / nu
     elif 4.0 * nu > damping:
-        rate, sine = omega_squared / (damping + nu), 0.5 / nu  # the slower exponent, D - sqrt(D^2 - omega_i^2)
+        # the slower exponent, D - sqrt(D^2 - omega_i^2)
+        rate, sine = omega_squared / (damping + nu), 0.5 / nu
     else:
         rate, sine = 0.5 * damping, 1.4715177646857693 / damping  # 4/e
     m[b + at.DAMPING] = damping

@@ -1,12 +1,13 @@
 """The closed-form linear oscillator, (9)-(11).
 
-The free part is ``c C(tau) + (v + D c) S(tau)`` with ``C = e^{-D tau} cos nu tau`` and ``S = e^{-D tau} sin(nu tau)/nu``; c and v
-are the initial conditions (9) less the forced response. C and S go over continuously into critical damping
-(``e^{-D tau}``, ``tau e^{-D tau}``) and overdamping (cosh, sinh).
+The free part is ``c C(tau) + (v + D c) S(tau)`` with ``C = e^{-D tau} cos nu tau`` and ``S = e^{-D
+tau} sin(nu tau)/nu``; c and v are the initial conditions (9) less the forced response. C and S go
+over continuously into critical damping (``e^{-D tau}``, ``tau e^{-D tau}``) and overdamping (cosh,
+sinh).
 """
 
-from . import memory as at
 from ..numerics.elementary import exp_decay, sincos_turns
+from . import memory as at
 
 
 def basis(m, b, tau):
@@ -33,10 +34,16 @@ def basis(m, b, tau):
     x = nu * tau
     if x < 0.5:  # sinh(x)/x by its series: the difference of exponentials would cancel
         y = x * x
-        sinhc = 1.0 + y / 6.0 * (1.0 + y / 20.0 * (1.0 + y / 42.0 * (1.0 + y / 72.0 * (1.0 + y / 110.0 * (1.0 + y / 156.0)))))
+        sinhc = 1.0 + y / 6.0 * (
+            1.0
+            + y / 20.0 * (1.0 + y / 42.0 * (1.0 + y / 72.0 * (1.0 + y / 110.0 * (1.0 + y / 156.0))))
+        )
         half = 0.5 * x
         z = half * half
-        root = half * (1.0 + z / 6.0 * (1.0 + z / 20.0 * (1.0 + z / 42.0 * (1.0 + z / 72.0 * (1.0 + z / 110.0)))))
+        root = half * (
+            1.0
+            + z / 6.0 * (1.0 + z / 20.0 * (1.0 + z / 42.0 * (1.0 + z / 72.0 * (1.0 + z / 110.0))))
+        )
         decay = exp_decay(damping * tau)
         return decay * (1.0 + 2.0 * root * root), decay * tau * sinhc, exp_decay(rate * tau)
     slow = exp_decay(m[b + at.OMEGA_SQUARED] / (damping + nu) * tau)
@@ -105,7 +112,9 @@ def displacement(m, b, harmonic, free, cubic, tau, C, S, sine, cosine):
 
 
 def set_free(m, b, harmonic, free, cubic, x, v, sine, cosine):
-    """Free amplitudes c and v + D c from the initial conditions (9): alpha_i and nu_i beta_i of (11)."""
+    """Free amplitudes c and v + D c from the initial conditions (9): alpha_i and nu_i beta_i of
+    (11).
+    """
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0
     if m[at.CUBIC_PRESENT] != 0.0:

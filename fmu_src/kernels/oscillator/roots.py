@@ -1,9 +1,11 @@
 """Certified first root of an event function, (13) and (19).
 
-From a point where h and four derivatives are known and the fifth is bounded by B from there on, the quintic
-``h + h' s + h'' s^2/2 + h''' s^3/6 + h'''' s^4/24 - B s^5/120`` lies below the event function: up to its first root the event function has none. The walk steps
-from one such quintic to the next; nothing is sampled, so no root can be skipped, and it converges with fifth order at a simple root. The walk
-depends on the state alone, not on where the importer's communication points lie: it goes on where it was left.
+From a point where h and four derivatives are known and the fifth is bounded by B from there on, the
+quintic ``h + h' s + h'' s^2/2 + h''' s^3/6 + h'''' s^4/24 - B s^5/120`` lies below the event
+function: up to its first root the event function has none. The walk steps from one such quintic to
+the next; nothing is sampled, so no root can be skipped, and it converges with fifth order at a
+simple root. The walk depends on the state alone, not on where the importer's communication points
+lie: it goes on where it was left.
 """
 
 import math
@@ -17,7 +19,7 @@ TRIALS = 3
 
 
 def parabola_root(h0, h1, h2):
-    """First positive root of ``h0 + h1 s + h2 s^2/2`` for ``h0 >= 0``; infinity if there is none."""
+    """First positive root of ``h0 + h1 s + h2 s^2/2`` for ``h0 >= 0``; infinity if none."""
     square = h1 * h1 - 2.0 * h0 * h2
     if square < 0.0:
         return INFINITE
@@ -30,21 +32,24 @@ def parabola_root(h0, h1, h2):
 
 
 def lowest_curvature(h2, h3, h4, bound, s):
-    """The parabola ``h0 + h1 t + c t^2/2`` with this c lies below the quintic for ``0 <= t <= s``."""
+    """The parabola ``h0 + h1 t + c t^2/2`` with this c is below the quintic for ``0 <= t <= s``."""
     bent = h4 * (1.0 / 12.0) - bound * s * (1.0 / 60.0)
     lowered = h3 * (1.0 / 3.0) + (s * bent if bent < 0.0 else 0.0)
     return h2 + s * lowered if lowered < 0.0 else h2
 
 
 def clear_step(h0, h1, h2, h3, h4, bound, reach):
-    """A step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120`` stays positive.
+    """A step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120`` stays
+    positive.
 
-    For every trial s, ``min(s, first root of the parabola below the quintic up to s)`` is safe; trials close in on the s where both agree.
+    For every trial s, ``min(s, first root of the parabola below the quintic up to s)`` is safe;
+    trials close in on the s where both agree.
 
     Parameters
     ----------
     h0, h1, h2, h3, h4 : float
-        Value and four derivatives, ``h0 > 0``, or ``h0 = 0 < h1``, or ``h0 = h1 = 0 < h2``. A lower bound will do for h4.
+        Value and four derivatives, ``h0 > 0``, or ``h0 = 0 < h1``, or ``h0 = h1 = 0 < h2``. A lower
+        bound will do for h4.
     bound : float
         Of the fifth derivative, >= 0.
     reach : float
@@ -59,7 +64,8 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
     if far > reach:
         far = reach
     clear = parabola_root(h0, h1, lowest_curvature(h2, h3, h4, bound, far))
-    if h1 >= 0.0 and h2 > 0.0:  # rising, and no parabola below turns down before the lowest curvature vanishes
+    # rising, and no parabola below turns down before the lowest curvature vanishes
+    if h1 >= 0.0 and h2 > 0.0:
         bent = (h4 if h4 < 0.0 else 0.0) * (1.0 / 6.0) - bound * far * (1.0 / 30.0)
         rising = parabola_root(h2, (h3 if h3 < 0.0 else 0.0) * (1.0 / 3.0), bent)
         if rising > clear:
@@ -81,7 +87,9 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
 
 
 def walk(m, target):
-    """Walk on until the state's end is found or no root lies before ``target``; ends early when the step's work is used up."""
+    """Walk on until the state's end is found or no root lies before ``target``; ends early when the
+    step's work is used up.
+    """
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
         tau = m[at.CLEAR]
         renewal = renewal_age(m)
@@ -100,10 +108,12 @@ def walk(m, target):
 
 
 def lifted(m, tau, h0, h1):
-    """A value of the event function that is not positive, or a positive one where it is zero but for rounding and no crossing is in sight.
+    """A value of the event function that is not positive, or a positive one where it is zero but
+    for rounding and no crossing is in sight.
 
-    Near a start on the boundary the event function may be smaller than the rounding of its terms for a while; the side was decided when the state
-    began, and holds until the event function is seen to cross.
+    Near a start on the boundary the event function may be smaller than the rounding of its terms
+    for a while; the side was decided when the state began, and holds until the event function is
+    seen to cross.
     """
     floor = rounding(m, tau)
     if h0 < -floor or floor < -1e-6 * h1:
@@ -112,7 +122,9 @@ def lifted(m, tau, h0, h1):
 
 
 def renewal_age(m):
-    """The age at which a state is written anew: the angles of (10) stay small, and with them their rounding."""
+    """The age at which a state is written anew: the angles of (10) stay small, and with them their
+    rounding.
+    """
     return 1024.0 / max(m[at.FASTEST], m[at.ETA])
 
 
@@ -129,7 +141,8 @@ def next_step(h0, h1, h2, h3, h4, bound, tau, reach):
     h0, h1, h2, h3, h4, bound : float
         As in :func:`clear_step`; any sign of h0.
     tau : float
-        Where the walk stands. The accuracy wanted is the rounding of a time of the size of ``tau + reach``.
+        Where the walk stands. The accuracy wanted is the rounding of a time of the size of ``tau +
+        reach``.
     reach : float
         Longest step wanted, > 0.
 
@@ -145,8 +158,10 @@ def next_step(h0, h1, h2, h3, h4, bound, tau, reach):
 
 def step_from(h0, h1, h2, h3, h4, bound, tau, reach):
     """As :func:`next_step`, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
-    scale = 1.0 / bound if bound > 0.0 else 1.0  # powers of time only: scaled amplitudes take the same steps
-    h0, h1, h2, h3, h4, bound = h0 * scale, h1 * scale, h2 * scale, h3 * scale, h4 * scale, bound * scale
+    # powers of time only: scaled amplitudes take the same steps
+    scale = 1.0 / bound if bound > 0.0 else 1.0
+    h0, h1, h2 = h0 * scale, h1 * scale, h2 * scale
+    h3, h4, bound = h3 * scale, h4 * scale, bound * scale
     step = clear_step(h0, h1, h2, h3, h4, bound, reach)
     root = taylor_root(h0, h1, h2, h3, h4, bound, step, EPS * (tau + reach))
     if root > 0.0:
@@ -155,9 +170,11 @@ def step_from(h0, h1, h2, h3, h4, bound, tau, reach):
 
 
 def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
-    """The root, where the quartic without the bound gives it to within ``accuracy`` and it is certainly the first; else 0.
+    """The root, where the quartic without the bound gives it to within ``accuracy`` and it is
+    certainly the first; else 0.
 
-    The step before it is clear; from there on the slope is certainly negative, so there is no other root.
+    The step before it is clear; from there on the slope is certainly negative, so there is no other
+    root.
     """
     root = step
     slope = -1.0
@@ -165,13 +182,24 @@ def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
     if bound * square * square * step > 240.0 * (abs(h1) + abs(h2) * step) * accuracy:
         return 0.0
     for _ in range(3):  # Newton's method, from the safe side
-        value = h0 + root * (h1 + root * (h2 * 0.5 + root * (h3 * (1.0 / 6.0) + root * h4 * (1.0 / 24.0))))
+        value = h0 + root * (
+            h1 + root * (h2 * 0.5 + root * (h3 * (1.0 / 6.0) + root * h4 * (1.0 / 24.0)))
+        )
         slope = h1 + root * (h2 + root * (h3 * 0.5 + root * h4 * (1.0 / 6.0)))
         if slope >= 0.0:
             return 0.0
         root -= value / slope
     square = root * root
-    if bound * square * square * root > -120.0 * slope * accuracy or root < step or root > 1.5 * step:
+    if (
+        bound * square * square * root > -120.0 * slope * accuracy
+        or root < step
+        or root > 1.5 * step
+    ):
         return 0.0
-    rise = h2 + (h3 if h3 > 0.0 else 0.0) * root * 0.5 + (h4 if h4 > 0.0 else 0.0) * square * (1.0 / 6.0) + bound * square * root * (1.0 / 24.0)
+    rise = (
+        h2
+        + (h3 if h3 > 0.0 else 0.0) * root * 0.5
+        + (h4 if h4 > 0.0 else 0.0) * square * (1.0 / 6.0)
+        + bound * square * root * (1.0 / 24.0)
+    )
     return root if h1 + rise * (step if rise < 0.0 else root) < 0.0 else 0.0

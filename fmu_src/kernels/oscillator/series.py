@@ -1,23 +1,30 @@
 """Taylor series of a flight from its start on the boundary.
 
-The closed form gives the gap as a difference of displacements, to within their rounding; a flight in chattering may be lower than that. The gap's
-own equation, ``g'' = -2 D_2 g' - omega_2^2 g + 2 (D_1 - D_2) xi_1' + (omega_1^2 - omega_2^2) xi_1`` from (6), gives its derivatives at the start
+The closed form gives the gap as a difference of displacements, to within their rounding; a flight
+in chattering may be lower than that. The gap's own equation, ``g'' = -2 D_2 g' - omega_2^2 g + 2
+(D_1 - D_2) xi_1' + (omega_1^2 - omega_2^2) xi_1`` from (6), gives its derivatives at the start
 without any cancellation, and with them a short flight from start to end.
 """
 
 from . import memory as at
 from .excitation import cubic_at
 
-SHORT = 0.2  # of a radian of the fastest change: from here on twelve terms leave more than the rounding
+# of a radian of the fastest change: from here on twelve terms leave more than the rounding
+SHORT = 0.2
 SHORTER = 0.02  # and eight terms
 ENOUGH = 1e-9  # relative: the next step of Newton's method would be its square
 
 
 def series_order(m, slope, curvature):
-    """How many terms a flight needs that begins with a gap velocity and acceleration: 4 where it is not short."""
+    """How many terms a flight needs that begins with a gap velocity and acceleration: 4 where it is
+    not short.
+    """
     if curvature >= 0.0:
         return 4
-    fastest = max(m[at.ETA], m[at.FASTEST] + 2.0 * max(m[at.BRANCH_1 + at.DAMPING], m[at.BRANCH_2 + at.DAMPING]))
+    fastest = max(
+        m[at.ETA],
+        m[at.FASTEST] + 2.0 * max(m[at.BRANCH_1 + at.DAMPING], m[at.BRANCH_2 + at.DAMPING]),
+    )
     angle = 2.0 * slope * fastest
     if angle > SHORT * -curvature:
         return 4
@@ -25,7 +32,9 @@ def series_order(m, slope, curvature):
 
 
 def set_series(m, x, v, slope, order):
-    """Coefficients of xi_1 and of the gap from ``gap = 0, gap' = slope`` at displacement ``x``, velocity ``v`` of mass 1."""
+    """Coefficients of xi_1 and of the gap from ``gap = 0, gap' = slope`` at displacement ``x``,
+    velocity ``v`` of mass 1.
+    """
     m[at.SERIES_X] = x
     m[at.SERIES_X + 1] = v
     m[at.SERIES_GAP] = 0.0
@@ -48,12 +57,15 @@ def set_series(m, x, v, slope, order):
         x_k, x_dot = m[at.SERIES_X + k], rate * m[at.SERIES_X + k + 1]
         g_k, g_dot = m[at.SERIES_GAP + k], rate * m[at.SERIES_GAP + k + 1]
         m[at.SERIES_X + k + 2] = (drive - (twice_1 * x_dot + square_1 * x_k)) * part
-        m[at.SERIES_GAP + k + 2] = ((force_v * x_dot + force_x * x_k) - (twice_2 * g_dot + square_2 * g_k)) * part
+        m[at.SERIES_GAP + k + 2] = (
+            (force_v * x_dot + force_x * x_k) - (twice_2 * g_dot + square_2 * g_k)
+        ) * part
         m[at.SERIES_DRIVE + k + 2] = -eta_squared * part * m[at.SERIES_DRIVE + k]
 
 
 def short_flight(m, order, bound):
-    """Duration of a short flight, where it is certain: its gap is concave throughout, so it has one root; else 0.
+    """Duration of a short flight, where it is certain: its gap is concave throughout, so it has one
+    root; else 0.
 
     Parameters
     ----------
@@ -64,7 +76,8 @@ def short_flight(m, order, bound):
     bound : float
         Of the gap's fifth derivative.
     """
-    g1, g2, g3, g4 = m[at.SERIES_GAP + 1], m[at.SERIES_GAP + 2], m[at.SERIES_GAP + 3], m[at.SERIES_GAP + 4]
+    g1, g2 = m[at.SERIES_GAP + 1], m[at.SERIES_GAP + 2]
+    g3, g4 = m[at.SERIES_GAP + 3], m[at.SERIES_GAP + 4]
     root = -g1 / g2
     longest = 1.5 * root
     highest = 6.0 * g3 if g3 > 0.0 else 0.0

@@ -1,8 +1,10 @@
-"""The two entry points: an instance is one flat memory, initialised once and then advanced from one communication point to the next."""
+"""The two entry points: an instance is one flat memory, initialised once and then advanced from one
+communication point to the next.
+"""
 
+from ..numerics.elementary import TWO_PI, fraction
 from . import memory as at
 from .event_function import evaluate
-from ..numerics.elementary import TWO_PI, fraction
 from .excitation import begin_segment, inputs_changed
 from .maximum import largest_gap
 from .motion import begin, begin_common, begin_flight, end_state, move_origin, set_turn, state_at
@@ -36,7 +38,9 @@ def initialize(m, time):
     m[at.BOX_IMPULSE_MOMENT] = 0.0
     if m[at.X2_START] < m[at.X1_START]:
         return at.START_OVERLAP
-    if m[at.BONDED] != 0.0 and (m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]):
+    if m[at.BONDED] != 0.0 and (
+        m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]
+    ):
         return at.START_BONDED
     set_turn(m, m[at.PHASE_START] / TWO_PI)
     code = begin_segment(m)
@@ -44,7 +48,14 @@ def initialize(m, time):
         return code
     m[at.WORK_LIMIT] = WORK_BASE
     m[at.MODE] = at.GLUED if m[at.BONDED] != 0.0 else at.CONTACT
-    begin(m, m[at.X1_START], m[at.V1_START] / m[at.OMEGA], m[at.X2_START], m[at.V2_START] / m[at.OMEGA], 0)
+    begin(
+        m,
+        m[at.X1_START],
+        m[at.V1_START] / m[at.OMEGA],
+        m[at.X2_START],
+        m[at.V2_START] / m[at.OMEGA],
+        0,
+    )
     write(m, 0.0)
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     return finite(m)
@@ -57,12 +68,14 @@ def local_time(m, time):
 
 
 def advance(m, time):
-    """Advance to the communication point ``time`` (s) with the inputs in ``m``, or to the first impact where STOP_AT_IMPACT is set.
+    """Advance to the communication point ``time`` (s) with the inputs in ``m``, or to the first
+    impact where STOP_AT_IMPACT is set.
 
     Returns
     -------
     int
-        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be thrown away.
+        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be
+        thrown away.
     """
     before = m[at.TIME]
     h = time - before
@@ -70,7 +83,9 @@ def advance(m, time):
     m[at.TARGET] = time
     m[at.WORK] = 0.0
     m[at.STOPPED] = 0.0
-    m[at.WORK_LIMIT] = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA])
+    m[at.WORK_LIMIT] = min(
+        WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA]
+    )
     momentum_before, moment_before = momentum(m)
     now = local_time(m, m[at.TIME])
     turn = fraction(m[at.TURN] + m[at.ETA_TURNS] * now)
@@ -104,7 +119,9 @@ def finite(m):
 
 
 def renew_segment(m, now):
-    """Begin a segment with the present inputs, ``now`` after the present state's start; positions and phase are continuous."""
+    """Begin a segment with the present inputs, ``now`` after the present state's start; positions
+    and phase are continuous.
+    """
     x1, v1, x2, v2 = state_at(m, now)
     goes_on = now > 0.0 and m[at.MODE] != at.GLUED and inside(m, now)
     move_origin(m, now)
@@ -121,20 +138,25 @@ def renew_segment(m, now):
 
 
 def inside(m, tau):
-    """Whether the event function has not been crossed, positive or zero but for rounding: gap and contact force do not jump with the inputs."""
+    """Whether the event function has not been crossed, positive or zero but for rounding: gap and
+    contact force do not jump with the inputs.
+    """
     h0, h1, _, _, _, _ = evaluate(m, tau)
     return h0 > 0.0 or lifted(m, tau, h0, h1) > 0.0
 
 
 def run_samples(m, start, time, now):
-    """Run to ``time``, keeping the states at equal parts of the step on the way; returns the present state's age there.
+    """Run to ``time``, keeping the states at equal parts of the step on the way; returns the
+    present state's age there.
 
     Where the step stops at an impact, the samples that are left show the state there.
     """
     count = int(m[at.SAMPLE_COUNT])
     for i in range(count):
         if m[at.STOPPED] == 0.0:
-            now = run_states(m, start + (time - start) * ((i + 1.0) / count) if i + 1 < count else time, now)
+            now = run_states(
+                m, start + (time - start) * ((i + 1.0) / count) if i + 1 < count else time, now
+            )
         keep_sample(m, i, now)
     return now if count > 0 else run_states(m, time, now)
 

@@ -1,4 +1,5 @@
-"""Box and rotor as one right-hand side: a mass matrix of two rows, the motor's circuit, and the energies they exchange.
+"""Box and rotor as one right-hand side: a mass matrix of two rows, the motor's circuit, and the
+energies they exchange.
 
 With S = unbalance_mass unbalance_radius, position y, angle phi, speed w, current i:
 
@@ -16,7 +17,9 @@ NO_NUMBER = 1e400 - 1e400  # and the sub-step is tried again
 
 def force(m, t):
     """Force on the box, N, ``t`` after the communication step's beginning."""
-    return m[at.BOX_FORCE] + t * (m[at.BOX_FORCE_1] + 0.5 * t * (m[at.BOX_FORCE_2] + t * m[at.BOX_FORCE_3] / 3.0))
+    return m[at.BOX_FORCE] + t * (
+        m[at.BOX_FORCE_1] + 0.5 * t * (m[at.BOX_FORCE_2] + t * m[at.BOX_FORCE_3] / 3.0)
+    )
 
 
 def static_current(m, speed):
@@ -28,7 +31,8 @@ def accelerations(m, sine, cosine, p, q):
     """Solve the mass matrix: ``M a + S cos(phi) b = p``, ``S cos(phi) a + J b = q``."""
     mass, inertia, coupling = m[at.BOX_MASS], m[at.ROTOR_INERTIA], m[at.UNBALANCE] * cosine
     unbalance = m[at.UNBALANCE]
-    free = mass * inertia - unbalance * unbalance  # M J - S^2 cos^2 = (M J - S^2) + S^2 sin^2, without cancelling
+    # M J - S^2 cos^2 = (M J - S^2) + S^2 sin^2, without cancelling
+    free = mass * inertia - unbalance * unbalance
     determinant = free + unbalance * sine * (unbalance * sine)
     return (inertia * p - coupling * q) / determinant, (mass * q - coupling * p) / determinant
 
@@ -44,7 +48,8 @@ def rates(m, stage, t):
         Time since the communication step's beginning, s.
     """
     turn = m[at.TURN] + m[at.STAGE + at.ROTATION] / TWO_PI
-    position, velocity, speed = m[at.STAGE + at.POSITION], m[at.STAGE + at.VELOCITY], m[at.STAGE + at.ROTATION_SPEED]
+    position, velocity = m[at.STAGE + at.POSITION], m[at.STAGE + at.VELOCITY]
+    speed = m[at.STAGE + at.ROTATION_SPEED]
     sine, cosine = NO_NUMBER, NO_NUMBER
     if abs(turn) < MOST_TURNS:
         sine, cosine = sincos_turns(turn)

@@ -1,7 +1,8 @@
 """A communication step in sub-steps of the formula, as long as its error estimate allows.
 
-Sub-steps begin anew at each communication point, because the force on the box is a new cubic there; only the length that the tolerance
-allowed is remembered. Everything remembered is part of the state, so a run that is resumed gives the same bits.
+Sub-steps begin anew at each communication point, because the force on the box is a new cubic there;
+only the length that the tolerance allowed is remembered. Everything remembered is part of the
+state, so a run that is resumed gives the same bits.
 """
 
 import math
@@ -28,13 +29,16 @@ from .tableau import (
 )
 
 TOLERANCE = 1e-12  # of each sub-step, relative to the states' scales
-RADIANS = 1.0  # the longest sub-step, whatever the estimate: it could be blind to what goes round in between
+# the longest sub-step, whatever the estimate: it could be blind to what goes round in between
+RADIANS = 1.0
 SAFETY, SMALLEST, LARGEST = 0.9, 0.2, 5.0  # change of length from one sub-step to the next
 TINY, MANY = 1e-300, 1e6
 
 
 def stages(m, t, h):
-    """All stages of a sub-step of length ``h`` that begins ``t`` after the communication step did; its end is in NEXT."""
+    """All stages of a sub-step of length ``h`` that begins ``t`` after the communication step did;
+    its end is in NEXT.
+    """
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s]
     rates(m, 0, t)
@@ -77,7 +81,9 @@ def stages(m, t, h):
 
 
 def scale(m, state, h):
-    """What an error of a state is measured by: its own size, and what the other states make of it within the sub-step."""
+    """What an error of a state is measured by: its own size, and what the other states make of it
+    within the sub-step.
+    """
     size = max(abs(m[at.STATE + state]), abs(m[at.NEXT + state]))
     speed = max(abs(m[at.STATE + at.ROTATION_SPEED]), abs(m[at.NEXT + at.ROTATION_SPEED]))
     arm = m[at.UNBALANCE] / m[at.BOX_MASS]
@@ -85,7 +91,11 @@ def scale(m, state, h):
         return size + arm + h * max(abs(m[at.STATE + at.VELOCITY]), abs(m[at.NEXT + at.VELOCITY]))
     if state == at.VELOCITY:
         frequency = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS])
-        return size + arm * speed + frequency * max(abs(m[at.STATE + at.POSITION]), abs(m[at.NEXT + at.POSITION]))
+        return (
+            size
+            + arm * speed
+            + frequency * max(abs(m[at.STATE + at.POSITION]), abs(m[at.NEXT + at.POSITION]))
+        )
     if state == at.ROTATION:
         return 1.0
     if state == at.CURRENT:
@@ -94,7 +104,9 @@ def scale(m, state, h):
 
 
 def error(m, h):
-    """Estimated error of the sub-step over what is allowed; Hairer's combination of the estimates of order 5 and 3."""
+    """Estimated error of the sub-step over what is allowed; Hairer's combination of the estimates
+    of order 5 and 3.
+    """
     sum_5, sum_3 = 0.0, 0.0
     for state in range(at.CONTROLLED):
         allowed = TOLERANCE * scale(m, state, h) + TINY
@@ -121,7 +133,9 @@ def accept(m):
 
 
 def factor(ratio):
-    """How much longer the next sub-step may be, for an error ``ratio`` of this one: its eighth root, by square roots."""
+    """How much longer the next sub-step may be, for an error ``ratio`` of this one: its eighth
+    root, by square roots.
+    """
     if ratio < 1e-8:
         return LARGEST
     change = SAFETY / math.sqrt(math.sqrt(math.sqrt(ratio)))
@@ -139,12 +153,15 @@ def through(m, length):
     t = 0.0
     while t < length:
         left = length - t
-        fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(m[at.STATE + at.ROTATION_SPEED])
+        fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(
+            m[at.STATE + at.ROTATION_SPEED]
+        )
         h = min(left, m[at.HINT]) if m[at.HINT] > 0.0 else left
         h = RADIANS / fastest if h * fastest > RADIANS else h
         if h < left < MANY * h:  # equal parts, so that no short one is left over at the end
             h = left / -math.floor(-left / h)
-        h = left if h == left else (t + h) - t  # what the time really grows by: a million roundings add up
+        # what the time really grows by: a million roundings add up
+        h = left if h == left else (t + h) - t
         m[at.REPORT] = t
         if m[at.WORK] >= m[at.WORK_LIMIT]:
             return at.UNFINISHED

@@ -1,4 +1,6 @@
-"""What an importer sees at a communication point: the states reached, and what follows from them with the inputs as set now."""
+"""What an importer sees at a communication point: the states reached, and what follows from them
+with the inputs as set now.
+"""
 
 from ..numerics.elementary import sincos_turns
 from . import memory as at
@@ -8,11 +10,15 @@ from .equations import accelerations, static_current
 def write(m):
     """All outputs but the angle, which is summed where it grows."""
     sine, cosine = sincos_turns(m[at.TURN])
-    position, velocity, speed = m[at.STATE + at.POSITION], m[at.STATE + at.VELOCITY], m[at.STATE + at.ROTATION_SPEED]
-    current = m[at.STATE + at.CURRENT] if m[at.ARMATURE_INDUCTANCE] > 0.0 else static_current(m, speed)
+    position, velocity = m[at.STATE + at.POSITION], m[at.STATE + at.VELOCITY]
+    speed = m[at.STATE + at.ROTATION_SPEED]
+    current = (
+        m[at.STATE + at.CURRENT] if m[at.ARMATURE_INDUCTANCE] > 0.0 else static_current(m, speed)
+    )
     torque = m[at.MOTOR_CONSTANT] * current
     unbalance = m[at.UNBALANCE]
-    p = unbalance * speed * speed * sine - m[at.BOX_DAMPING] * velocity - m[at.BOX_STIFFNESS] * position + m[at.BOX_FORCE]
+    p = unbalance * speed * speed * sine - m[at.BOX_DAMPING] * velocity
+    p = p - m[at.BOX_STIFFNESS] * position + m[at.BOX_FORCE]
     box, rotor = accelerations(m, sine, cosine, p, torque)
     m[at.BOX_POSITION] = position
     m[at.BOX_VELOCITY] = velocity
@@ -25,20 +31,32 @@ def write(m):
     m[at.MOTOR_ENERGY] = m[at.STATE + at.MOTOR_WORK]
     m[at.BOX_DAMPER_ENERGY] = m[at.STATE + at.DAMPER_LOSS]
     m[at.BOX_FORCE_WORK] = m[at.STATE + at.FORCE_WORK]
-    kinetic = 0.5 * m[at.BOX_MASS] * velocity * velocity + 0.5 * m[at.ROTOR_INERTIA] * speed * speed + unbalance * velocity * speed * cosine
+    kinetic = (
+        0.5 * m[at.BOX_MASS] * velocity * velocity
+        + 0.5 * m[at.ROTOR_INERTIA] * speed * speed
+        + unbalance * velocity * speed * cosine
+    )
     m[at.STORED_ENERGY] = kinetic + 0.5 * m[at.BOX_STIFFNESS] * position * position
 
 
 def jerk(m, sine, cosine, box, rotor):
-    """Time derivative of the box's acceleration: the equations differentiated once, with the voltage constant."""
+    """Time derivative of the box's acceleration: the equations differentiated once, with the
+    voltage constant.
+    """
     unbalance, speed = m[at.UNBALANCE], m[at.STATE + at.ROTATION_SPEED]
     constant = m[at.MOTOR_CONSTANT]
     if m[at.ARMATURE_INDUCTANCE] > 0.0:
-        drop = m[at.VOLTAGE] - m[at.ARMATURE_RESISTANCE] * m[at.STATE + at.CURRENT] - constant * speed
+        drop = (
+            m[at.VOLTAGE] - m[at.ARMATURE_RESISTANCE] * m[at.STATE + at.CURRENT] - constant * speed
+        )
         current_rate = drop / m[at.ARMATURE_INDUCTANCE]
     else:
         current_rate = -constant * rotor / m[at.ARMATURE_RESISTANCE]
-    p = m[at.BOX_FORCE_1] - m[at.BOX_DAMPING] * box - m[at.BOX_STIFFNESS] * m[at.STATE + at.VELOCITY]
+    p = (
+        m[at.BOX_FORCE_1]
+        - m[at.BOX_DAMPING] * box
+        - m[at.BOX_STIFFNESS] * m[at.STATE + at.VELOCITY]
+    )
     p += unbalance * speed * (3.0 * rotor * sine + speed * speed * cosine)
     q = constant * current_rate + unbalance * box * speed * sine
     return accelerations(m, sine, cosine, p, q)[0]

@@ -1,4 +1,6 @@
-"""The entry points: an instance is one flat memory, initialised once and then advanced from one communication point to the next."""
+"""The entry points: an instance is one flat memory, initialised once and then advanced from one
+communication point to the next.
+"""
 
 import math
 
@@ -46,7 +48,8 @@ def advance(m, time):
     Returns
     -------
     int
-        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be thrown away.
+        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be
+        thrown away.
     """
     before = m[at.TIME]
     length = time - before

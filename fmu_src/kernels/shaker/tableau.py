@@ -1,7 +1,9 @@
-"""The explicit Runge-Kutta formula of order 8 with 12 stages by Dormand and Prince, with error estimates of order 5 and 3.
+"""The explicit Runge-Kutta formula of order 8 with 12 stages by Dormand and Prince, with error
+estimates of order 5 and 3.
 
-E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, 2nd edition, section II.10 (DOP853). Written out, because
-a compiled kernel cannot look into a table by an index that it computes: each function is a sum over rates of change of state ``s``.
+E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, 2nd edition,
+section II.10 (DOP853). Written out, because a compiled kernel cannot look into a table by an index
+that it computes: each function is a sum over rates of change of state ``s``.
 """
 
 from .memory import RATES, STATES
@@ -48,17 +50,30 @@ def slope_3(m, s):
 
 def slope_4(m, s):
     """Mean rate up to stage 4."""
-    return 0.2413651341592667 * m[K0 + s] + -0.8845494793282861 * m[K2 + s] + 0.924834003261792 * m[K3 + s]
+    return (
+        0.2413651341592667 * m[K0 + s]
+        + -0.8845494793282861 * m[K2 + s]
+        + 0.924834003261792 * m[K3 + s]
+    )
 
 
 def slope_5(m, s):
     """Mean rate up to stage 5."""
-    return 0.037037037037037035 * m[K0 + s] + 0.17082860872947386 * m[K3 + s] + 0.12546768756682242 * m[K4 + s]
+    return (
+        0.037037037037037035 * m[K0 + s]
+        + 0.17082860872947386 * m[K3 + s]
+        + 0.12546768756682242 * m[K4 + s]
+    )
 
 
 def slope_6(m, s):
     """Mean rate up to stage 6."""
-    return 0.037109375 * m[K0 + s] + 0.17025221101954405 * m[K3 + s] + 0.06021653898045596 * m[K4 + s] + -0.017578125 * m[K5 + s]
+    return (
+        0.037109375 * m[K0 + s]
+        + 0.17025221101954405 * m[K3 + s]
+        + 0.06021653898045596 * m[K4 + s]
+        + -0.017578125 * m[K5 + s]
+    )
 
 
 def slope_7(m, s):

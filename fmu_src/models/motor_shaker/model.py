@@ -1,8 +1,8 @@
 """``MotorShaker`` as the exporters see it. Standard library only: it travels inside the FMU."""
 
-from ...runtime.table import Model
 from ...kernels.shaker import memory as at
 from ...kernels.shaker import stepper
+from ...runtime.table import Model
 from .variables import VARIABLES
 
 MESSAGES = {

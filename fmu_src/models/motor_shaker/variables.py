@@ -1,13 +1,19 @@
 """The variable table of ``MotorShaker``. Standard library only: it travels inside the FMU."""
 
-from ...runtime.table import LARGE, TINY, drive, numbered, output, parameter
 from ...kernels.shaker import memory
+from ...runtime.table import LARGE, TINY, drive, numbered, output, parameter
 
 LIMIT = 1e30  # of start values and inputs: squares, sums and energies of them stay finite
 
 BOX = ("box_mass", "box_stiffness", "box_damping", "position_start", "velocity_start")
 ROTOR = ("unbalance_mass", "unbalance_radius", "rotor_inertia", "angle_start", "speed_start")
-CIRCUIT = ("motor_constant", "armature_resistance", "armature_inductance", "current_start", "speed_start")
+CIRCUIT = (
+    "motor_constant",
+    "armature_resistance",
+    "armature_inductance",
+    "current_start",
+    "speed_start",
+)
 STORED = (*(name for name in BOX if name != "box_damping"), *ROTOR)
 FORCE = ("box_force", "box_force_1")
 ALL = (*BOX, *ROTOR, *(name for name in CIRCUIT if name not in ROTOR), "voltage")
@@ -39,10 +45,14 @@ PARAMETERS = (
     not_negative("box_damping", "N.s/m", 4.125, "Damping of the box's suspension, c_b"),
     not_negative("unbalance_mass", "kg", 0.025, "Mass of the unbalance, m_u"),
     not_negative("unbalance_radius", "m", 0.02, "Its distance from the axis, r"),
-    positive("rotor_inertia", "kg.m2", 5e-5, "Moment of inertia of the rotor with the unbalance, J"),
+    positive(
+        "rotor_inertia", "kg.m2", 5e-5, "Moment of inertia of the rotor with the unbalance, J"
+    ),
     not_negative("motor_constant", "N.m/A", 0.06, "Torque over current, and voltage over speed, K"),
     positive("armature_resistance", "Ohm", 12.0, "Resistance of the armature, R_a"),
-    not_negative("armature_inductance", "H", 0.0, "Inductance of the armature, L; 0: static torque line"),
+    not_negative(
+        "armature_inductance", "H", 0.0, "Inductance of the armature, L; 0: static torque line"
+    ),
     start("angle_start", "rad", "Angle of the unbalance at the start", 1e6),
     start("speed_start", "rad/s", "Speed of the rotor at the start", 1e9),
     start("position_start", "m", "Position of the box at the start"),
@@ -51,17 +61,36 @@ PARAMETERS = (
 )
 INPUTS = (
     given("voltage", "V", "Voltage of the motor, U, constant over the step"),
-    given("box_force", "N", "Force on the box over the step: value at its beginning", input_derivatives=3),
+    given(
+        "box_force",
+        "N",
+        "Force on the box over the step: value at its beginning",
+        input_derivatives=3,
+    ),
     given("box_force_1", "N/s", "First time derivative of box_force at the beginning of the step"),
-    given("box_force_2", "N/s2", "Second time derivative of box_force at the beginning of the step"),
+    given(
+        "box_force_2", "N/s2", "Second time derivative of box_force at the beginning of the step"
+    ),
     given("box_force_3", "N/s3", "Third time derivative of box_force at the beginning of the step"),
 )
 NOW = {"dependencies": ("voltage", "box_force")}
 JERK = {"dependencies": ("voltage", *FORCE)}
 ELECTRIC = {"dependencies": ("voltage",)}
 OUTPUTS = (
-    output("box_position", "m", "Position of the box, y", ("position_start",), derivative="box_velocity"),
-    output("box_velocity", "m/s", "Velocity of the box", ("velocity_start",), derivative="box_acceleration"),
+    output(
+        "box_position",
+        "m",
+        "Position of the box, y",
+        ("position_start",),
+        derivative="box_velocity",
+    ),
+    output(
+        "box_velocity",
+        "m/s",
+        "Velocity of the box",
+        ("velocity_start",),
+        derivative="box_acceleration",
+    ),
     output(
         "box_acceleration",
         "m/s2",
@@ -70,15 +99,50 @@ OUTPUTS = (
         derivative="box_jerk",
         **NOW,
     ),
-    output("box_jerk", "m/s3", "Time derivative of box_acceleration, with the inputs as set now", (*ALL, *FORCE), **JERK),
-    output("angle", "rad", "Angle of the unbalance since angle_start = 0, phi, full turns included", ("angle_start",), derivative="speed"),
+    output(
+        "box_jerk",
+        "m/s3",
+        "Time derivative of box_acceleration, with the inputs as set now",
+        (*ALL, *FORCE),
+        **JERK,
+    ),
+    output(
+        "angle",
+        "rad",
+        "Angle of the unbalance since angle_start = 0, phi, full turns included",
+        ("angle_start",),
+        derivative="speed",
+    ),
     output("speed", "rad/s", "Speed of the rotor", ("speed_start",)),
     output("motor_current", "A", "Current of the motor", (*CIRCUIT, "voltage"), **ELECTRIC),
-    output("motor_torque", "N.m", "Torque of the motor on the rotor, K i", (*CIRCUIT, "voltage"), **ELECTRIC),
-    output("motor_power", "W", "Mechanical power of the motor, torque times speed", (*CIRCUIT, "voltage"), **ELECTRIC),
-    output("motor_energy", "J", "Mechanical work of the motor since the start, integral of motor_power"),
-    output("box_damper_energy", "J", "Energy lost in the damper of the box's suspension since the start"),
+    output(
+        "motor_torque",
+        "N.m",
+        "Torque of the motor on the rotor, K i",
+        (*CIRCUIT, "voltage"),
+        **ELECTRIC,
+    ),
+    output(
+        "motor_power",
+        "W",
+        "Mechanical power of the motor, torque times speed",
+        (*CIRCUIT, "voltage"),
+        **ELECTRIC,
+    ),
+    output(
+        "motor_energy", "J", "Mechanical work of the motor since the start, integral of motor_power"
+    ),
+    output(
+        "box_damper_energy",
+        "J",
+        "Energy lost in the damper of the box's suspension since the start",
+    ),
     output("box_force_work", "J", "Work of box_force on the box since the start"),
-    output("stored_energy", "J", "Kinetic energy of box and rotor, and energy of the box's spring", STORED),
+    output(
+        "stored_energy",
+        "J",
+        "Kinetic energy of box and rotor, and energy of the box's spring",
+        STORED,
+    ),
 )
 VARIABLES = numbered(PARAMETERS + INPUTS + OUTPUTS, memory)

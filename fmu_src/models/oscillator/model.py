@@ -1,8 +1,10 @@
-"""``TwoMassImpactOscillator`` as the exporters see it. Standard library only: it travels inside the FMU."""
+"""``TwoMassImpactOscillator`` as the exporters see it. Standard library only: it travels inside the
+FMU.
+"""
 
-from ...runtime.table import Array, Clock, Model
 from ...kernels.oscillator import memory as at
 from ...kernels.oscillator import stepper
+from ...runtime.table import Array, Clock, Model
 from .variables import VARIABLES
 
 
@@ -47,7 +49,12 @@ MODEL = Model(
     arrays=(
         Array("positions", "Displacements x1, x2 relative to the box", "x1", 2),
         Array("velocities", "Velocities v1, v2 relative to the box", "v1", 2),
-        Array("x1_sample", "x1 at equal parts of the last step, as many as sample_count", "x1_sample[1]", at.SAMPLES),
+        Array(
+            "x1_sample",
+            "x1 at equal parts of the last step, as many as sample_count",
+            "x1_sample[1]",
+            at.SAMPLES,
+        ),
         Array("x2_sample", "x2 at equal parts of the last step", "x2_sample[1]", at.SAMPLES),
         Array("v1_sample", "v1 at equal parts of the last step", "v1_sample[1]", at.SAMPLES),
         Array("v2_sample", "v2 at equal parts of the last step", "v2_sample[1]", at.SAMPLES),

@@ -1,7 +1,20 @@
-"""The variable table of ``TwoMassImpactOscillator``. Standard library only: it travels inside the FMU."""
+"""The variable table of ``TwoMassImpactOscillator``. Standard library only: it travels inside the
+FMU.
+"""
 
-from ...runtime.table import BOOLEAN, HUGE, INTEGER, LARGE, TINY, Variable, drive, numbered, output, parameter
 from ...kernels.oscillator import memory
+from ...runtime.table import (
+    BOOLEAN,
+    HUGE,
+    INTEGER,
+    LARGE,
+    TINY,
+    Variable,
+    drive,
+    numbered,
+    output,
+    parameter,
+)
 
 MECHANICS = ("m1", "m2", "k1", "k2", "d1", "d2")
 STARTS = ("x1_start", "x2_start", "v1_start", "v2_start")
@@ -23,7 +36,14 @@ COUNT = {"variability": "discrete", "type": INTEGER, "minimum": 0}
 def samples(name, unit, description):
     """A local variable for each state kept inside a step."""
     return tuple(
-        Variable(f"{name}[{i + 1}]", f"{description}, sample {i + 1} of the last step", "local", unit, initial="calculated", series=name)
+        Variable(
+            f"{name}[{i + 1}]",
+            f"{description}, sample {i + 1} of the last step",
+            "local",
+            unit,
+            initial="calculated",
+            series=name,
+        )
         for i in range(memory.SAMPLES)
     )
 
@@ -31,10 +51,28 @@ def samples(name, unit, description):
 SCALARS = (
     parameter("m1", "kg", 1.0, "Mass 1", minimum=TINY, maximum=LARGE),
     parameter("m2", "kg", 1.0, "Mass 2", minimum=TINY, maximum=LARGE),
-    parameter("k1", "N/m", 1.0, "Stiffness between mass 1 and the box", minimum=TINY, maximum=LARGE),
-    parameter("k2", "N/m", 1.2, "Stiffness between mass 2 and the box", minimum=TINY, maximum=LARGE),
-    parameter("d1", "N.s/m", 0.01, "Viscous damping between mass 1 and the box", minimum=0.0, maximum=LARGE),
-    parameter("d2", "N.s/m", 0.01, "Viscous damping between mass 2 and the box", minimum=0.0, maximum=LARGE),
+    parameter(
+        "k1", "N/m", 1.0, "Stiffness between mass 1 and the box", minimum=TINY, maximum=LARGE
+    ),
+    parameter(
+        "k2", "N/m", 1.2, "Stiffness between mass 2 and the box", minimum=TINY, maximum=LARGE
+    ),
+    parameter(
+        "d1",
+        "N.s/m",
+        0.01,
+        "Viscous damping between mass 1 and the box",
+        minimum=0.0,
+        maximum=LARGE,
+    ),
+    parameter(
+        "d2",
+        "N.s/m",
+        0.01,
+        "Viscous damping between mass 2 and the box",
+        minimum=0.0,
+        maximum=LARGE,
+    ),
     parameter("e", "1", 0.7, "Coefficient of restitution", minimum=0.0, maximum=1.0),
     parameter(
         "gamma",
@@ -44,14 +82,28 @@ SCALARS = (
         minimum=1e-9,
         maximum=1.0,
     ),
-    parameter("bonded", "", 0.0, "true: the undamaged structure, both masses glued for good", type=BOOLEAN),
+    parameter(
+        "bonded", "", 0.0, "true: the undamaged structure, both masses glued for good", type=BOOLEAN
+    ),
     start("x1_start", "m", "Displacement of mass 1 at the start"),
     start("x2_start", "m", "Displacement of mass 2 at the start, not below x1_start"),
     start("v1_start", "m/s", "Velocity of mass 1 at the start"),
     start("v2_start", "m/s", "Velocity of mass 2 at the start"),
-    parameter("phase_start", "rad", 0.0, "Phase of the harmonic excitation at the start", minimum=-1e6, maximum=1e6),
     parameter(
-        "x_rel_max_on", "", 1.0, "false: x_rel_max is not computed and stays 0, for speed", type=BOOLEAN, variability="tunable"
+        "phase_start",
+        "rad",
+        0.0,
+        "Phase of the harmonic excitation at the start",
+        minimum=-1e6,
+        maximum=1e6,
+    ),
+    parameter(
+        "x_rel_max_on",
+        "",
+        1.0,
+        "false: x_rel_max is not computed and stays 0, for speed",
+        type=BOOLEAN,
+        variability="tunable",
     ),
     drive("box_amplitude", "m", 1.0, "Amplitude a of the harmonic box motion a sin(phase)"),
     drive(
@@ -69,32 +121,93 @@ SCALARS = (
         "Acceleration of the box added to the harmonic one: value at the beginning of the step",
         input_derivatives=3,
     ),
-    drive("box_jerk", "m/s3", 0.0, "First time derivative of box_acceleration at the beginning of the step"),
-    drive("box_snap", "m/s4", 0.0, "Second time derivative of box_acceleration at the beginning of the step"),
-    drive("box_crackle", "m/s5", 0.0, "Third time derivative of box_acceleration at the beginning of the step"),
+    drive(
+        "box_jerk",
+        "m/s3",
+        0.0,
+        "First time derivative of box_acceleration at the beginning of the step",
+    ),
+    drive(
+        "box_snap",
+        "m/s4",
+        0.0,
+        "Second time derivative of box_acceleration at the beginning of the step",
+    ),
+    drive(
+        "box_crackle",
+        "m/s5",
+        0.0,
+        "Third time derivative of box_acceleration at the beginning of the step",
+    ),
     output("x1", "m", "Displacement of mass 1 relative to the box", MASS_1, derivative="v1"),
     output("x2", "m", "Displacement of mass 2 relative to the box", MASS_2, derivative="v2"),
     output("v1", "m/s", "Velocity of mass 1 relative to the box", ALL),
     output("v2", "m/s", "Velocity of mass 2 relative to the box", ALL),
     output("x_rel", "m", "Gap x2 - x1", ("x1_start", "x2_start"), minimum=0.0, derivative="v_rel"),
     output("v_rel", "m/s", "Velocity of the gap v2 - v1", ALL),
-    output("xi1", "1", "Displacement of mass 1 over a eta^2, paper's (3); 0 where a eta = 0", MASS_1 + DRIVE + ("k1", "m1")),
-    output("xi2", "1", "Displacement of mass 2 over a eta^2, paper's (3); 0 where a eta = 0", MASS_2 + DRIVE + ("k1", "m1")),
-    output("xi_rel", "1", "Gap over a eta^2, paper's (21); 0 where a eta = 0", ("x1_start", "x2_start", "k1", "m1") + DRIVE),
-    output("box_force", "N", "Force of springs and dampers on the box, k1 x1 + d1 v1 + k2 x2 + d2 v2", ALL),
-    output("box_impulse", "N.s", "Integral of box_force over the last communication step, exact, through impacts too"),
+    output(
+        "xi1",
+        "1",
+        "Displacement of mass 1 over a eta^2, paper's (3); 0 where a eta = 0",
+        MASS_1 + DRIVE + ("k1", "m1"),
+    ),
+    output(
+        "xi2",
+        "1",
+        "Displacement of mass 2 over a eta^2, paper's (3); 0 where a eta = 0",
+        MASS_2 + DRIVE + ("k1", "m1"),
+    ),
+    output(
+        "xi_rel",
+        "1",
+        "Gap over a eta^2, paper's (21); 0 where a eta = 0",
+        ("x1_start", "x2_start", "k1", "m1") + DRIVE,
+    ),
+    output(
+        "box_force",
+        "N",
+        "Force of springs and dampers on the box, k1 x1 + d1 v1 + k2 x2 + d2 v2",
+        ALL,
+    ),
+    output(
+        "box_impulse",
+        "N.s",
+        "Integral of box_force over the last communication step, exact, through impacts too",
+    ),
     output(
         "box_impulse_moment",
         "N.s2",
         "Integral of (time since the step began) times box_force over the last communication step",
     ),
-    output("contact_force", "N", "Compressive force between the masses in permanent contact, paper's (18)", ALL, minimum=0.0),
+    output(
+        "contact_force",
+        "N",
+        "Compressive force between the masses in permanent contact, paper's (18)",
+        ALL,
+        minimum=0.0,
+    ),
     output("in_contact", "", "Permanent contact", ALL, type=BOOLEAN, **DISCRETE),
-    output("phase", "rad", "Phase of the harmonic excitation in [0, 2 pi)", ("phase_start",), minimum=0.0, maximum=6.283185307179586),
+    output(
+        "phase",
+        "rad",
+        "Phase of the harmonic excitation in [0, 2 pi)",
+        ("phase_start",),
+        minimum=0.0,
+        maximum=6.283185307179586,
+    ),
     output("impact_count", "", "Impacts since the start", ALL, **COUNT),
     output("impact_time", "s", "Time of the last impact; 0 before the first", ALL, **DISCRETE),
-    output("impact_velocity", "m/s", "Closing speed before the last impact; 0 before the first", ALL, minimum=0.0, **DISCRETE),
-    output("impact_energy", "J", "Energy lost in impacts since the start", ALL, minimum=0.0, **DISCRETE),
+    output(
+        "impact_velocity",
+        "m/s",
+        "Closing speed before the last impact; 0 before the first",
+        ALL,
+        minimum=0.0,
+        **DISCRETE,
+    ),
+    output(
+        "impact_energy", "J", "Energy lost in impacts since the start", ALL, minimum=0.0, **DISCRETE
+    ),
     output(
         "x_rel_max",
         "m",
@@ -102,7 +215,9 @@ SCALARS = (
         ("x1_start", "x2_start", "x_rel_max_on"),
         minimum=0.0,
     ),
-    output("contact_count", "", "Permanent contacts begun by impacts since the start", ALL, **COUNT),
+    output(
+        "contact_count", "", "Permanent contacts begun by impacts since the start", ALL, **COUNT
+    ),
     parameter(
         "sample_count",
         "",

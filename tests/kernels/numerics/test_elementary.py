@@ -1,4 +1,4 @@
-"""Sine, cosine and exponential function within 2 units in the last place, for large arguments too."""
+"""Sine, cosine and exponential function to 2 units in the last place, also for large arguments."""
 
 import math
 
@@ -11,7 +11,11 @@ from fmu_src.kernels.numerics.elementary import TWO_PI, exp_decay, fraction, sin
 
 from ..oscillator.kernel import examples
 
-TURNS = st.floats(-1.0, 1.0) | st.floats(-(2.0**50), 2.0**50) | st.builds(math.ldexp, st.integers(-(2**20), 2**20), st.integers(-23, 10))
+TURNS = (
+    st.floats(-1.0, 1.0)
+    | st.floats(-(2.0**50), 2.0**50)
+    | st.builds(math.ldexp, st.integers(-(2**20), 2**20), st.integers(-23, 10))
+)
 
 
 def ulps(value, exact):

@@ -1,4 +1,6 @@
-"""A kernel's flat memory from keyword arguments, steps that must succeed, and the states a step passes through."""
+"""A kernel's flat memory from keyword arguments, steps that must succeed, and the states a step
+passes through.
+"""
 
 import math
 from unittest.mock import patch
@@ -23,7 +25,12 @@ DEFAULTS = {
     "box_frequency": 0.4,
     "x_rel_max_on": 1.0,
 }
-OUTPUTS = tuple(range(at.X1, at.BOX_IMPULSE)) + tuple(range(at.CONTACT_FORCE, at.X_REL_MAX)) + (at.CONTACT_COUNT, at.TIME)  # of a point of time
+# of a point of time
+OUTPUTS = (
+    tuple(range(at.X1, at.BOX_IMPULSE))
+    + tuple(range(at.CONTACT_FORCE, at.X_REL_MAX))
+    + (at.CONTACT_COUNT, at.TIME)
+)
 least_work = patch.multiple(stepper, WORK_BASE=5000.0, WORK_RATE=0.0)  # steps that give up early
 CHAOTIC = {"box_frequency": 0.7}  # default structure: tens of impacts a period, no period
 
@@ -62,7 +69,9 @@ def outputs(m):
 
 
 def pieces(m, time):
-    """Advance to ``time``; the parts of states passed through, as (state's memory, age at entry, age at exit)."""
+    """Advance to ``time``; the parts of states passed through, as (state's memory, age at entry,
+    age at exit).
+    """
     passed = []
     entry = [0.0 if inputs_changed(m) else stepper.local_time(m, m[at.TIME])]
     end_state = motion.end_state
@@ -87,7 +96,13 @@ def flight(x1, v1, x2, v2, **values):
 
 def examples(count):
     """Settings of a property-based test: the same examples on every machine, however slow."""
-    return settings(max_examples=count, deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
+    return settings(
+        max_examples=count,
+        deadline=None,
+        derandomize=True,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
 
 
 def sizes(low, high):
@@ -102,11 +117,17 @@ def rounded(low, high):
 
 @st.composite
 def structures(draw, damping=2.0):
-    """Structures with omega = 1, their excitation and phase: light and heavy masses, undamped to overdamped, with a cubic.
+    """Structures with omega = 1, their excitation and phase: light and heavy masses, undamped to
+    overdamped, with a cubic.
 
-    Not near critical damping, where the sums of exponentials that the kernel is compared with cancel in double precision.
+    Not near critical damping, where the sums of exponentials that the kernel is compared with
+    cancel in double precision.
     """
-    values = {"m2": draw(sizes(0.2, 5.0)), "k2": draw(sizes(0.2, 5.0)), "box_frequency": draw(sizes(0.15, 4.0))}
+    values = {
+        "m2": draw(sizes(0.2, 5.0)),
+        "k2": draw(sizes(0.2, 5.0)),
+        "box_frequency": draw(sizes(0.15, 4.0)),
+    }
     for name, critical in (("d1", 2.0), ("d2", 2.0 * math.sqrt(values["k2"] * values["m2"]))):
         value = draw(st.just(0.0) | sizes(1e-3, damping))
         values[name] = 0.9 * value if abs(value - critical) < 0.05 * critical else value

@@ -1,6 +1,8 @@
-"""Whole trajectories without the kernel: event by event in high precision, and by an ODE solver with event location.
+"""Whole trajectories without the kernel: event by event in high precision, and by an ODE solver
+with event location.
 
-Flights begin and end as in the corrected (12)-(20), in SI units; ``gamma`` counts in units of 1/omega of mass 1.
+Flights begin and end as in the corrected (12)-(20), in SI units; ``gamma`` counts in units of
+1/omega of mass 1.
 """
 
 import math
@@ -22,7 +24,9 @@ def collide(values, v1, v2):
 
 def opening(values, x, v):
     """Acceleration with which the gap would open with both masses at ``x`` and velocity ``v``."""
-    return (values["k1"] * x + values["d1"] * v) / values["m1"] - (values["k2"] * x + values["d2"] * v) / values["m2"]
+    return (values["k1"] * x + values["d1"] * v) / values["m1"] - (
+        values["k2"] * x + values["d2"] * v
+    ) / values["m2"]
 
 
 def event_by_event(values, state, stop):
@@ -53,11 +57,14 @@ def event_by_event(values, state, stop):
         time, blind = time + end, 0.0
         x, v1, v2 = state[0], state[1], state[3]
         if mode == CONTACT:
-            mode, blind = FLIGHT, 1e-3  # the gap opens with the third power of time: below rounding at first
+            # the gap opens with the third power of time: below rounding at first
+            mode, blind = FLIGHT, 1e-3
             events.append((time, "release"))
             continue
         w1, w2 = collide(values, v1, v2)
-        pull = opening(values, x, w1 + (w2 - w1) * mp.mpf(values["m2"]) / (mp.mpf(values["m1"]) + values["m2"]))
+        pull = opening(
+            values, x, w1 + (w2 - w1) * mp.mpf(values["m2"]) / (mp.mpf(values["m1"]) + values["m2"])
+        )
         if pull < 0 and 2 * (w2 - w1) * omega < values["gamma"] * -pull:
             w1 = w2 = collide({**values, "e": 0}, v1, v2)[0]
             mode = CONTACT
@@ -66,11 +73,15 @@ def event_by_event(values, state, stop):
 
 
 def impacts_by_solver(values, state, stop):
-    """Times of impacts by a Runge-Kutta solver of eighth order, and the state at ``stop``; without permanent contact."""
+    """Times of impacts by a Runge-Kutta solver of eighth order, and the state at ``stop``; without
+    permanent contact.
+    """
     a, frequency = values["box_amplitude"], values["box_frequency"]
 
     def slope(t, y):
-        drive = a * frequency**2 * math.sin(frequency * t + values.get("phase_start", 0.0)) - values.get("box_acceleration", 0.0)
+        drive = a * frequency**2 * math.sin(
+            frequency * t + values.get("phase_start", 0.0)
+        ) - values.get("box_acceleration", 0.0)
         pull_1 = (values["k1"] * y[0] + values["d1"] * y[1]) / values["m1"]
         pull_2 = (values["k2"] * y[2] + values["d2"] * y[3]) / values["m2"]
         return y[1], drive - pull_1, y[3], drive - pull_2
@@ -81,7 +92,9 @@ def impacts_by_solver(values, state, stop):
     gap.terminal, gap.direction = True, -1
     time, times = 0.0, []
     while True:
-        done = solve_ivp(slope, (time, stop), state, "DOP853", rtol=1e-12, atol=1e-14, events=gap, max_step=0.1)
+        done = solve_ivp(
+            slope, (time, stop), state, "DOP853", rtol=1e-12, atol=1e-14, events=gap, max_step=0.1
+        )
         time, state = done.t[-1], done.y[:, -1]
         if done.status == 0:
             return times, state

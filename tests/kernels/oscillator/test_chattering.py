@@ -1,4 +1,6 @@
-"""Chattering ends where it should, also where its last flights are lower than the rounding of the displacements; stops on the way do no harm."""
+"""Chattering ends where it should, also where its last flights are lower than the rounding of the
+displacements; stops on the way do no harm.
+"""
 
 import math
 
@@ -8,7 +10,14 @@ from fmu_src.kernels.oscillator import memory as at
 
 from .kernel import advanced, least_work, outputs, started
 
-PRESSED = {"x1_start": 1.0, "x2_start": 1.0, "v1_start": 5e-4, "v2_start": -5e-4, "box_amplitude": 0.0}  # f = -0.2, closing with 1 mm/s
+# f = -0.2, closing with 1 mm/s
+PRESSED = {
+    "x1_start": 1.0,
+    "x2_start": 1.0,
+    "v1_start": 5e-4,
+    "v2_start": -5e-4,
+    "box_amplitude": 0.0,
+}
 
 
 @pytest.mark.parametrize("e", [0.0, 0.3, 0.7, 0.95])
@@ -21,16 +30,26 @@ def test_a_bouncing_mass_comes_to_rest_after_as_many_impacts_as_a_ball(gamma, e)
         flown += 2 * e * closing / 0.2
         impacts, closing = impacts + 1, e * closing
     assert m[at.IN_CONTACT] == 1.0
-    assert m[at.IMPACT_COUNT] == pytest.approx(impacts, abs=1 + 0.02 * impacts)  # f varies by some per cent meanwhile
+    # f varies by some per cent meanwhile
+    assert m[at.IMPACT_COUNT] == pytest.approx(impacts, abs=1 + 0.02 * impacts)
     assert m[at.IMPACT_TIME] == pytest.approx(flown, rel=0.1, abs=1e-12)
-    assert m[at.IMPACT_ENERGY] == pytest.approx(0.25e-6, rel=0.01)  # almost all of the closing energy
+    # almost all of the closing energy
+    assert m[at.IMPACT_ENERGY] == pytest.approx(0.25e-6, rel=0.01)
 
 
 @pytest.mark.parametrize(
     "values",
     [
         {"m2": 0.644, "k2": 0.16, "d1": 0.0, "d2": 4e-4, "gamma": 1.5e-6, "phase_start": math.pi},
-        {"m2": 1.69, "k2": 2.32, "d1": 1e-3, "d2": 0.0, "e": 0.9, "gamma": 1.7e-6, "phase_start": -4.92},
+        {
+            "m2": 1.69,
+            "k2": 2.32,
+            "d1": 1e-3,
+            "d2": 0.0,
+            "e": 0.9,
+            "gamma": 1.7e-6,
+            "phase_start": -4.92,
+        },
         {"m2": 0.144, "k2": 3.23, "d1": 2.6e-4, "d2": 0.0, "e": 0.3, "gamma": 1.7e-5},
     ],
 )
@@ -41,7 +60,14 @@ def test_parted_by_damping_and_pressed_by_stiffness_from_rest(values):
     assert m[at.IN_CONTACT] == 1.0
 
 
-@pytest.mark.parametrize("values", [{"e": 0.3, "gamma": 1e-8}, {"e": 0.7, "gamma": 1e-6}, {"e": 0.5, "gamma": 1e-7, "box_frequency": 0.3}])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"e": 0.3, "gamma": 1e-8},
+        {"e": 0.7, "gamma": 1e-6},
+        {"e": 0.5, "gamma": 1e-7, "box_frequency": 0.3},
+    ],
+)
 def test_stopping_at_the_shortest_flights_leaves_no_trace(values):
     free, stopped = advanced(started(**values), 200.0), started(**values)
     stopped[at.STOP_AT_IMPACT] = 1.0

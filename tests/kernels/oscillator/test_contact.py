@@ -1,4 +1,6 @@
-"""Which side of the boundary a state begins on, pressed together all through contact, released where the force vanishes."""
+"""Which side of the boundary a state begins on, pressed together all through contact, released
+where the force vanishes.
+"""
 
 import math
 
@@ -20,17 +22,23 @@ HALF_TURN = math.pi  # its sine is 1.2e-16 as a float, and nothing as an angle
 
 
 def separate_gap(values, x, v, phase, t):
-    """Gap after a time ``t`` if both masses moved on their own from a common start, by Newton's law."""
+    """Gap after a time ``t`` if both masses moved on their own from a common start, by Newton's
+    law.
+    """
     first, second = truth.apart({**DEFAULTS, **values}, (x, v, x, v), phase)
     return (second - first)(t)
 
 
 @pytest.mark.parametrize("kappa", [0.5, 2.0])
 @pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("drive", [{"phase_start": 0.0}, {"phase_start": 1.0}, {"phase_start": HALF_TURN}, {"phase_start": -1.0}])
+@pytest.mark.parametrize(
+    "drive",
+    [{"phase_start": 0.0}, {"phase_start": 1.0}, {"phase_start": HALF_TURN}, {"phase_start": -1.0}],
+)
 def test_from_rest_the_first_motion_decides(kappa, sign, drive):
     values = {"k2": kappa, "box_amplitude": float(sign), **drive}
-    forward = sign * (1 if drive["phase_start"] in (0.0, 1.0) else -1)  # into which both masses go: at once, or by jerk at phase 0 and pi
+    # into which both masses go: at once, or by jerk at phase 0 and pi
+    forward = sign * (1 if drive["phase_start"] in (0.0, 1.0) else -1)
     pressed = (kappa > 1.0) == (forward > 0)  # in front, the stiffer mass 2 presses back
     m = started(**values)
     assert m[at.IN_CONTACT] == float(pressed)
@@ -41,7 +49,9 @@ def test_from_rest_the_first_motion_decides(kappa, sign, drive):
 
 @pytest.mark.parametrize("name", ["acceleration", "jerk", "snap", "crackle"])
 @pytest.mark.parametrize("value", [0.3, -0.3])
-@pytest.mark.parametrize("structure", [{"k2": 2.0}, {"k2": 0.5}, {"k2": 1.0, "d1": 0.2}, {"k2": 1.0, "d2": 0.2}])
+@pytest.mark.parametrize(
+    "structure", [{"k2": 2.0}, {"k2": 0.5}, {"k2": 1.0, "d1": 0.2}, {"k2": 1.0, "d2": 0.2}]
+)
 def test_from_rest_each_derivative_of_the_box_may_decide(structure, name, value):
     values = {**structure, "box_amplitude": 0.0, f"box_{name}": value}
     pressed = separate_gap(values, 0, 0, mp.mpf(0), mp.mpf("1e-3")) < 0
@@ -56,7 +66,9 @@ def test_from_rest_newton_decides(values, phase):
     unlike = abs(values["k2"] / values["m2"] - 1.0), abs(values["d2"] / values["m2"] - values["d1"])
     assume(all(difference == 0.0 or difference > 1e-6 for difference in unlike))
     with mp.workdps(250):
-        gap = separate_gap(values, 0, 0, mp.pi if phase == HALF_TURN else mp.mpf(phase), mp.mpf("1e-15"))
+        gap = separate_gap(
+            values, 0, 0, mp.pi if phase == HALF_TURN else mp.mpf(phase), mp.mpf("1e-15")
+        )
         pressed = gap < mp.mpf("1e-150")  # alike, they stay together
     assert started(**values)[at.IN_CONTACT] == float(pressed)
 
@@ -85,7 +97,14 @@ def test_where_the_force_vanishes_its_slope_decides(values, v, sign):
     assert m[at.IMPACT_COUNT] == 0.0
 
 
-CONTACTS = pytest.mark.parametrize("values", [{"e": 0.3}, {"e": 0.0, "d1": 0.3, "d2": 0.02, "box_frequency": 0.7}, {"m2": 2.0, "k2": 1.0, "e": 0.1}])
+CONTACTS = pytest.mark.parametrize(
+    "values",
+    [
+        {"e": 0.3},
+        {"e": 0.0, "d1": 0.3, "d2": 0.02, "box_frequency": 0.7},
+        {"m2": 2.0, "k2": 1.0, "e": 0.1},
+    ],
+)
 
 
 @CONTACTS
@@ -106,7 +125,11 @@ def test_pressed_together_all_through_contact(values):
 def test_released_masses_part(values):
     m = started(**values)
     passed = pieces(m, 120.0)
-    released = [after for before, after in zip(passed, passed[1:], strict=False) if before[0][at.MODE] == at.CONTACT]
+    released = [
+        after
+        for before, after in zip(passed, passed[1:], strict=False)
+        if before[0][at.MODE] == at.CONTACT
+    ]
     assert len(released) >= 4
     for state, _, end in released:
         assert state[at.MODE] == at.FLIGHT

@@ -1,4 +1,6 @@
-"""What cannot be computed is said with a code, within bounded work: never a hang, an exception or a number that is not one."""
+"""What cannot be computed is said with a code, within bounded work: never a hang, an exception or a
+number that is not one.
+"""
 
 import math
 
@@ -72,8 +74,15 @@ def test_extreme_parameters_end_with_a_code(data):
     draw = data.draw
     values = {name: draw(sizes(1e-6, 1e6)) for name in ("m1", "m2", "k1", "k2", "box_frequency")}
     values |= {name: draw(st.just(0.0) | sizes(1e-6, 1e6)) for name in ("d1", "d2")}
-    values |= {name: draw(st.just(0.0) | sizes(1e-9, 1e9)) for name in ("box_amplitude", "box_jerk", "x2_start")}
-    values |= {"e": draw(st.floats(0.0, 1.0)), "gamma": draw(sizes(1e-9, 1.0)), "v1_start": draw(st.floats(-1e6, 1e6))}
+    values |= {
+        name: draw(st.just(0.0) | sizes(1e-9, 1e9))
+        for name in ("box_amplitude", "box_jerk", "x2_start")
+    }
+    values |= {
+        "e": draw(st.floats(0.0, 1.0)),
+        "gamma": draw(sizes(1e-9, 1.0)),
+        "v1_start": draw(st.floats(-1e6, 1e6)),
+    }
     m = unstarted(**values)
     assume(stepper.initialize(m, 0.0) == at.OK)
     for step in (1e-6, 1.0, 1e4):

@@ -1,4 +1,6 @@
-"""The event function is the gap or minus the contact force; its derivatives are theirs, its bounds hold for all later times."""
+"""The event function is the gap or minus the contact force; its derivatives are theirs, its bounds
+hold for all later times.
+"""
 
 import mpmath as mp
 import numpy as np
@@ -14,7 +16,9 @@ from . import truth
 from .kernel import DEFAULTS, examples, started, structures
 
 AGES = st.floats(0.0, 40.0)
-STATES = st.tuples(st.floats(-1.0, 0.0), st.floats(-1.0, 1.0), st.floats(0.01, 1.0), st.floats(-1.0, 1.0))
+STATES = st.tuples(
+    st.floats(-1.0, 0.0), st.floats(-1.0, 1.0), st.floats(0.01, 1.0), st.floats(-1.0, 1.0)
+)
 
 
 def flight_and_gap(values, state):
@@ -47,7 +51,12 @@ def size(signal):
 @MAKERS
 @examples(60)
 @given(structures(), STATES, AGES)
-@example({"d1": 2.0, "d2": 2.0 + 1e-9, "k2": 1.0, "box_frequency": 0.4, "phase_start": 1.0}, (-0.3, 0.2, 0.5, -0.4), 1.5)  # critical damping
+# critical damping
+@example(
+    {"d1": 2.0, "d2": 2.0 + 1e-9, "k2": 1.0, "box_frequency": 0.4, "phase_start": 1.0},
+    (-0.3, 0.2, 0.5, -0.4),
+    1.5,
+)
 def test_value_and_derivatives(make, values, state, age):
     m, signal = make(values, state)
     found = event_function.evaluate(m, age)[:5]

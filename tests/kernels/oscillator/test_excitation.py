@@ -1,4 +1,6 @@
-"""The box's motion over a segment: phase and state go on when inputs change, a cubic may be handed over in parts."""
+"""The box's motion over a segment: phase and state go on when inputs change, a cubic may be handed
+over in parts.
+"""
 
 import math
 
@@ -21,7 +23,10 @@ STARTS = {"x1_start": -0.2, "x2_start": 0.1, "v1_start": 0.1, "v2_start": -0.3}
 def test_cubic_by_its_derivatives(cubic, age):
     m = [0.0] * at.SIZE
     m[at.CUBIC : at.CUBIC + 4] = cubic
-    expected = [sum(cubic[k] * age ** (k - i) / math.factorial(k - i) for k in range(i, 4)) for i in range(4)]
+    expected = [
+        sum(cubic[k] * age ** (k - i) / math.factorial(k - i) for k in range(i, 4))
+        for i in range(4)
+    ]
     assert list(cubic_at(m, age)) == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
@@ -35,15 +40,22 @@ def test_state_and_phase_go_on_when_inputs_change(phase, time, frequency, accele
     advanced(m, time)
     assert [m[at.X1], m[at.X2], m[at.V1], m[at.V2]] == pytest.approx(before, abs=1e-13)
     advanced(m, time + 2.0)
-    assert m[at.PHASE] == pytest.approx(math.fmod(phase + 0.7 * time + 2.0 * frequency, 2 * math.pi), abs=1e-13)
+    assert m[at.PHASE] == pytest.approx(
+        math.fmod(phase + 0.7 * time + 2.0 * frequency, 2 * math.pi), abs=1e-13
+    )
 
 
 def handed_over(cubic, age):
     """The cubic's inputs for a step that begins at an age."""
-    return {name: sum(cubic[k] * age ** (k - i) / math.factorial(k - i) for k in range(i, 4)) for i, name in enumerate(CUBIC)}
+    return {
+        name: sum(cubic[k] * age ** (k - i) / math.factorial(k - i) for k in range(i, 4))
+        for i, name in enumerate(CUBIC)
+    }
 
 
-@pytest.mark.parametrize("cubic", [(0.3, -0.2, 0.1, 0.05), (0.0, 0.0, 0.0, 0.2), (-0.5, 0.4, 0.0, 0.0)])
+@pytest.mark.parametrize(
+    "cubic", [(0.3, -0.2, 0.1, 0.05), (0.0, 0.0, 0.0, 0.2), (-0.5, 0.4, 0.0, 0.0)]
+)
 def test_a_cubic_in_parts_is_the_cubic_in_one(cubic):
     whole = started(**STARTS, **handed_over(cubic, 0.0))
     parts = started(**STARTS, **handed_over(cubic, 0.0))
@@ -59,7 +71,8 @@ def test_a_cubic_in_parts_is_the_cubic_in_one(cubic):
 def test_a_constant_acceleration_bends_the_springs():
     m = started(box_acceleration=0.5, box_amplitude=0.0, d1=0.5, d2=0.5, k2=0.8)
     advanced(m, 200.0)
-    assert m[at.X1] == m[at.X2] == pytest.approx(-0.5 * 2.0 / 1.8, rel=1e-12)  # pressed together: mass over stiffness
+    # pressed together: mass over stiffness
+    assert m[at.X1] == m[at.X2] == pytest.approx(-0.5 * 2.0 / 1.8, rel=1e-12)
     set_inputs(m, box_acceleration=-0.5)
     advanced(m, 400.0)
     assert [m[at.X1], m[at.X2]] == pytest.approx([0.5, 0.5 / 0.8], rel=1e-12)
@@ -68,7 +81,9 @@ def test_a_constant_acceleration_bends_the_springs():
 def test_without_a_frequency_the_amplitude_is_nothing():
     m = advanced(started(box_frequency=0.0, phase_start=1.0, **STARTS), 9.0)
     still = advanced(started(box_amplitude=0.0, box_frequency=0.0, phase_start=1.0, **STARTS), 9.0)
-    assert [m[i] for i in (at.X1, at.X2, at.V1, at.V2, at.PHASE)] == [still[i] for i in (at.X1, at.X2, at.V1, at.V2, at.PHASE)]
+    assert [m[i] for i in (at.X1, at.X2, at.V1, at.V2, at.PHASE)] == [
+        still[i] for i in (at.X1, at.X2, at.V1, at.V2, at.PHASE)
+    ]
     assert (m[at.XI1], m[at.XI2], m[at.XI_REL]) == (0.0, 0.0, 0.0)
 
 

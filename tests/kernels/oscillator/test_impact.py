@@ -1,4 +1,6 @@
-"""An impact keeps momentum, reverses the gap's velocity times e, and loses what the energy balance says; sticking has no scale of its own."""
+"""An impact keeps momentum, reverses the gap's velocity times e, and loses what the energy balance
+says; sticking has no scale of its own.
+"""
 
 import math
 
@@ -58,7 +60,9 @@ def test_sticking_is_scale_free(separation, force, gamma, n):
     m = unstarted(gamma=gamma)
     assume(force == 0.0 or abs(force) > 1e-100)
     assume(separation == 0.0 or separation > 1e-100)
-    assert sticks(m, separation, force) == sticks(m, math.ldexp(separation, n), math.ldexp(force, n))
+    assert sticks(m, separation, force) == sticks(
+        m, math.ldexp(separation, n), math.ldexp(force, n)
+    )
 
 
 def test_masses_that_are_pulled_apart_do_not_stick():
@@ -71,7 +75,9 @@ def test_masses_that_are_pulled_apart_do_not_stick():
     assert sticks(m, 0.49, -1.0)
 
 
-@pytest.mark.parametrize("values", [{}, {"m2": 3.0, "k2": 1.0}, {"m1": 0.2, "k1": 0.7, "e": 0.0}, {"m2": 0.3, "e": 1.0}])
+@pytest.mark.parametrize(
+    "values", [{}, {"m2": 3.0, "k2": 1.0}, {"m1": 0.2, "k1": 0.7, "e": 0.0}, {"m2": 0.3, "e": 1.0}]
+)
 def test_impacts_of_a_run(values):
     m = started(x1_start=-0.5, x2_start=0.2, v1_start=1.0, v2_start=-0.7, **values)
     energy = 0.0
@@ -85,7 +91,9 @@ def test_impacts_of_a_run(values):
             e = 0.0 if after[at.MODE] == at.CONTACT else m[at.E]
             assert now[1] == pytest.approx(-e * before[1], abs=1e-14 * before[2])
             assert after[at.IMPACT_VELOCITY] == pytest.approx(-before[1], abs=1e-14 * before[2])
-            assert after[at.IMPACT_TIME] == pytest.approx((state[at.ORIGIN] + end) / m[at.OMEGA], rel=1e-14)
+            assert after[at.IMPACT_TIME] == pytest.approx(
+                (state[at.ORIGIN] + end) / m[at.OMEGA], rel=1e-14
+            )
             energy += before[3] - now[3]
     assert m[at.IMPACT_COUNT] >= 1.0
     assert m[at.IMPACT_ENERGY] == pytest.approx(energy, rel=1e-12)
@@ -95,7 +103,12 @@ def momentum_and_gap_velocity(m, age):
     """Momentum, gap velocity, speed scale and kinetic energy at an age."""
     _, v1, _, v2 = (m[at.OMEGA] * value for value in state_at(m, age))
     m1, m2 = m[at.M1], m[at.M2]
-    return m1 * v1 + m2 * v2, v2 - v1, (m1 + m2) * (1.0 + abs(v1) + abs(v2)), 0.5 * (m1 * v1 * v1 + m2 * v2 * v2)
+    return (
+        m1 * v1 + m2 * v2,
+        v2 - v1,
+        (m1 + m2) * (1.0 + abs(v1) + abs(v2)),
+        0.5 * (m1 * v1 * v1 + m2 * v2 * v2),
+    )
 
 
 def test_an_impact_at_the_start_counts():

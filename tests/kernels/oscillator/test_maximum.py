@@ -1,4 +1,6 @@
-"""The largest gap over a step is the maximum: not below any sample, not above the best that optimisation finds."""
+"""The largest gap over a step is the maximum: not below any sample, not above the best that
+optimisation finds.
+"""
 
 import math
 
@@ -12,9 +14,21 @@ from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.motion import state_at
 
 from . import truth
-from .kernel import DEFAULTS, advanced, examples, least_work, pieces, set_inputs, sizes, started, structures
+from .kernel import (
+    DEFAULTS,
+    advanced,
+    examples,
+    least_work,
+    pieces,
+    set_inputs,
+    sizes,
+    started,
+    structures,
+)
 
-STATES = st.tuples(st.floats(-1.0, 0.0), st.floats(-1.0, 0.0), st.floats(0.2, 1.0), st.floats(0.0, 1.0))
+STATES = st.tuples(
+    st.floats(-1.0, 0.0), st.floats(-1.0, 0.0), st.floats(0.2, 1.0), st.floats(0.0, 1.0)
+)
 
 
 def summit(gap, start, stop):
@@ -34,7 +48,8 @@ def summit(gap, start, stop):
 def test_over_a_piece_of_flight(values, state, start, length):
     names = ("x1_start", "v1_start", "x2_start", "v2_start")
     m = started(**values, **dict(zip(names, state, strict=True)))
-    values = {**values, "box_jerk": 0.0, "box_snap": 0.0, "box_crackle": 0.0}  # else the cubic begins anew at the step
+    # else the cubic begins anew at the step
+    values = {**values, "box_jerk": 0.0, "box_snap": 0.0, "box_crackle": 0.0}
     set_inputs(m, box_jerk=0.0, box_snap=0.0, box_crackle=0.0)
     advanced(m, start, start + length)
     first, second = truth.apart({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
@@ -47,7 +62,15 @@ def test_over_a_piece_of_flight(values, state, start, length):
     assert m[at.X_REL_MAX] == pytest.approx(highest, rel=1e-12, abs=1e-14 * terms)
 
 
-@pytest.mark.parametrize("values", [{"box_frequency": 0.7}, {"e": 0.3}, {"box_frequency": 1.045, "d1": 0.1, "d2": 0.1}, {"k2": 3.0, "d1": 1.5}])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"box_frequency": 0.7},
+        {"e": 0.3},
+        {"box_frequency": 1.045, "d1": 0.1, "d2": 0.1},
+        {"k2": 3.0, "d1": 1.5},
+    ],
+)
 def test_over_steps_with_impacts_and_contact(values):
     m = started(**values)
     time = 0.0
@@ -96,6 +119,12 @@ def test_switched_off_it_stays_zero():
 
 @least_work
 def test_right_after_a_start_from_rest():
-    values = {"m2": 0.13382651145246977, "k2": 0.159505453032413, "d1": 0.0, "d2": 0.0, "box_frequency": 1.2476410867983083}
+    values = {
+        "m2": 0.13382651145246977,
+        "k2": 0.159505453032413,
+        "d1": 0.0,
+        "d2": 0.0,
+        "box_frequency": 1.2476410867983083,
+    }
     m = advanced(started(phase_start=math.pi, **values), 0.2)
     assert m[at.X_REL_MAX] == pytest.approx(m[at.X_REL], abs=1e-15)

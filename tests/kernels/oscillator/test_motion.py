@@ -1,4 +1,6 @@
-"""Sequences of states: whole trajectories against two independent references, long flights, masses that always move together."""
+"""Sequences of states: whole trajectories against two independent references, long flights, masses
+that always move together.
+"""
 
 import math
 from fractions import Fraction
@@ -24,7 +26,9 @@ def events(m, stop):
     found = []
     for state, _, end in pieces(m, stop)[:-1]:
         if state[at.END_KIND] == at.END_EVENT:
-            found.append(((state[at.ORIGIN] + state[at.ORIGIN_LOW] + end) / state[at.OMEGA], state[at.MODE]))
+            found.append(
+                ((state[at.ORIGIN] + state[at.ORIGIN_LOW] + end) / state[at.OMEGA], state[at.MODE])
+            )
     return found
 
 
@@ -33,8 +37,26 @@ def events(m, stop):
     [
         {"box_frequency": 1.3, "stop": 60.0},
         {"box_frequency": 0.4, "e": 0.3, "gamma": 1e-3, "stop": 60.0},
-        {"m1": 0.7, "m2": 1.9, "k1": 2.3, "k2": 1.1, "d1": 0.2, "d2": 0.05, "box_frequency": 1.1, "phase_start": 2.0, "stop": 60.0},
-        {"k2": 3.0, "d1": 2.5, "d2": 0.0, "e": 0.9, "box_frequency": 0.8, "box_acceleration": 0.2, "stop": 60.0},
+        {
+            "m1": 0.7,
+            "m2": 1.9,
+            "k1": 2.3,
+            "k2": 1.1,
+            "d1": 0.2,
+            "d2": 0.05,
+            "box_frequency": 1.1,
+            "phase_start": 2.0,
+            "stop": 60.0,
+        },
+        {
+            "k2": 3.0,
+            "d1": 2.5,
+            "d2": 0.0,
+            "e": 0.9,
+            "box_frequency": 0.8,
+            "box_acceleration": 0.2,
+            "stop": 60.0,
+        },
         {"d1": 1.9, "d2": 0.3, "e": 0.0, "box_frequency": 0.6, "stop": 60.0},
     ],
 )
@@ -47,13 +69,21 @@ def test_event_by_event_in_high_precision(values):
     found = events(m, stop)
     assert len(found) == len(expected) >= 5
     assert [mode == at.CONTACT for _, mode in found] == [kind == "release" for _, kind in expected]
-    assert [time for time, _ in found] == pytest.approx([float(time) for time, _ in expected], rel=1e-12)
+    assert [time for time, _ in found] == pytest.approx(
+        [float(time) for time, _ in expected], rel=1e-12
+    )
     speed = float(m[at.FORCING])
-    assert [m[i] for i in (at.X1, at.V1, at.X2, at.V2)] == pytest.approx([float(value) for value in state], abs=1e-11 * (1.0 + speed))
+    assert [m[i] for i in (at.X1, at.V1, at.X2, at.V2)] == pytest.approx(
+        [float(value) for value in state], abs=1e-11 * (1.0 + speed)
+    )
 
 
 @pytest.mark.parametrize(
-    "values", [{"box_frequency": 1.045, "d1": 0.1, "d2": 0.1}, {"box_frequency": 2.0, "m2": 2.0, "k2": 3.0, "d1": 0.1, "d2": 0.3}]
+    "values",
+    [
+        {"box_frequency": 1.045, "d1": 0.1, "d2": 0.1},
+        {"box_frequency": 2.0, "m2": 2.0, "k2": 3.0, "d1": 0.1, "d2": 0.3},
+    ],
 )
 def test_periods_by_an_ode_solver(values):
     values = {**DEFAULTS, **values}
@@ -73,7 +103,9 @@ def test_a_flight_of_thousands_of_radians_is_written_anew():
     assert m[at.ORIGIN] > 4000.0
     assert m[at.IMPACT_COUNT] == 0.0
     first, second = truth.apart({**DEFAULTS, **values}, (3.0, 0.0, 6.0, 0.0), mp.mpf(0))
-    assert [m[at.X1], m[at.X2]] == pytest.approx([float(first(5000)), float(second(5000))], rel=1e-12)
+    assert [m[at.X1], m[at.X2]] == pytest.approx(
+        [float(first(5000)), float(second(5000))], rel=1e-12
+    )
 
 
 @examples(20)
@@ -84,20 +116,43 @@ def test_separation_times_add_up_without_loss(ages, eta_turns):
     for age in ages:
         move_origin(m, age)
     exact = sum(map(Fraction, ages))
-    assert abs(Fraction(m[at.ORIGIN]) + Fraction(m[at.ORIGIN_LOW]) - exact) <= Fraction(len(ages), 2**100) * exact
+    assert (
+        abs(Fraction(m[at.ORIGIN]) + Fraction(m[at.ORIGIN_LOW]) - exact)
+        <= Fraction(len(ages), 2**100) * exact
+    )
     turns = exact * Fraction(eta_turns)
     distance = abs(Fraction(m[at.TURN]) - (turns - math.floor(turns)))
     assert 0.0 <= m[at.TURN] < 1.0
     assert min(distance, 1 - distance) <= float(max(ages)) * len(ages) * 4e-16
 
 
-@pytest.mark.parametrize("values", [{"k2": 1.0}, {"m2": 4.0, "k2": 4.0, "d1": 0.25, "d2": 1.0}, {"m2": 0.5, "k2": 0.5, "d1": 0.0, "d2": 0.0}])
-@pytest.mark.parametrize("drive", [{"box_frequency": 1.3}, {"box_frequency": 0.4, "phase_start": math.pi, "box_acceleration": -0.3}])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"k2": 1.0},
+        {"m2": 4.0, "k2": 4.0, "d1": 0.25, "d2": 1.0},
+        {"m2": 0.5, "k2": 0.5, "d1": 0.0, "d2": 0.0},
+    ],
+)
+@pytest.mark.parametrize(
+    "drive",
+    [
+        {"box_frequency": 1.3},
+        {"box_frequency": 0.4, "phase_start": math.pi, "box_acceleration": -0.3},
+    ],
+)
 def test_equal_oscillators_always_move_together(values, drive):
     m = started(**values, **drive, x1_start=0.2, x2_start=0.2, v1_start=-0.4, v2_start=-0.4)
     for i in range(1, 200):
         advanced(m, 0.5 * i)
-        assert (m[at.X_REL], m[at.V_REL], m[at.X_REL_MAX], m[at.CONTACT_FORCE], m[at.IMPACT_COUNT], m[at.IN_CONTACT]) == (0, 0, 0, 0, 0, 1)
+        assert (
+            m[at.X_REL],
+            m[at.V_REL],
+            m[at.X_REL_MAX],
+            m[at.CONTACT_FORCE],
+            m[at.IMPACT_COUNT],
+            m[at.IN_CONTACT],
+        ) == (0, 0, 0, 0, 0, 1)
     whole = {**DEFAULTS, **values, **drive}
     common, _ = truth.together(whole, 0.2, -0.4, mp.mpf(drive.get("phase_start", 0.0)))
     assert m[at.X1] == pytest.approx(float(common(99.5)), abs=1e-12)
@@ -105,7 +160,18 @@ def test_equal_oscillators_always_move_together(values, drive):
 
 @pytest.mark.parametrize("e", [0.0, 0.4, 1.0])
 def test_free_motion_conserves_energy_up_to_impacts(e):
-    m = started(x1_start=-1.0, x2_start=0.5, v1_start=0.8, v2_start=-0.3, d1=0.0, d2=0.0, box_amplitude=0.0, e=e, m2=2.0, k2=5.0)
+    m = started(
+        x1_start=-1.0,
+        x2_start=0.5,
+        v1_start=0.8,
+        v2_start=-0.3,
+        d1=0.0,
+        d2=0.0,
+        box_amplitude=0.0,
+        e=e,
+        m2=2.0,
+        k2=5.0,
+    )
     start = energy(m)
     for i in range(1, 101):
         advanced(m, 0.5 * i)
@@ -120,7 +186,10 @@ def energy(m):
     return 0.5 * (kinetic + m[at.K1] * m[at.X1] ** 2 + m[at.K2] * m[at.X2] ** 2)
 
 
-@pytest.mark.parametrize("values", [{"box_frequency": 0.7}, {"box_frequency": 0.4, "e": 0.2}, {"box_frequency": 1.9, "e": 1.0}])
+@pytest.mark.parametrize(
+    "values",
+    [{"box_frequency": 0.7}, {"box_frequency": 0.4, "e": 0.2}, {"box_frequency": 1.9, "e": 1.0}],
+)
 def test_never_through_each_other(values):
     m = started(**values)
     for state, entry, end in pieces(m, 150.0):
@@ -133,10 +202,14 @@ def test_never_through_each_other(values):
 
 
 def part_from_rest(kappa, frequency):
-    """From rest two nearly equal oscillators; the memory after a while, and the gap then by Newton's law."""
+    """From rest two nearly equal oscillators; the memory after a while, and the gap then by
+    Newton's law.
+    """
     m = started(k2=kappa, box_frequency=frequency)
     advanced(m, 0.5 / frequency)
-    first, second = truth.apart({**DEFAULTS, "k2": kappa, "box_frequency": frequency}, (0, 0, 0, 0), mp.mpf(0))
+    first, second = truth.apart(
+        {**DEFAULTS, "k2": kappa, "box_frequency": frequency}, (0, 0, 0, 0), mp.mpf(0)
+    )
     return m, float((second - first)(0.5 / frequency))
 
 
@@ -154,7 +227,8 @@ def test_from_rest_the_first_moments_are_not_lost_in_rounding():
         for kappa in (1 - 1e-3, 1 - 1e-4, 1 - 1e-5, 1 - 1e-6, 1 - 1e-7, 1 - 1e-8):
             m, gap = part_from_rest(kappa, frequency)
             assert m[at.IMPACT_COUNT] == 0.0
-            assert m[at.WORK] < 20000.0  # small steps: a bound of the free parts is far above the gap's own size
+            # small steps: a bound of the free parts is far above the gap's own size
+            assert m[at.WORK] < 20000.0
             assert m[at.X_REL] == pytest.approx(gap, abs=1e-15)
 
 
@@ -162,7 +236,9 @@ def test_from_rest_the_first_moments_are_not_lost_in_rounding():
 @pytest.mark.parametrize("m1, k1", [(0.1, 0.3), (0.7, 0.1), (0.3, 1.7), (1.1, 0.9)])
 @least_work
 def test_oscillators_equal_up_to_rounding_move_together(m1, k1, factor):
-    m = started(box_frequency=1.3, m1=m1, k1=k1, d1=0.02, m2=factor * m1, k2=factor * k1, d2=factor * 0.02)
+    m = started(
+        box_frequency=1.3, m1=m1, k1=k1, d1=0.02, m2=factor * m1, k2=factor * k1, d2=factor * 0.02
+    )
     for i in range(1, 50):
         advanced(m, 2.0 * i)
         assert m[at.X_REL_MAX] == m[at.IMPACT_COUNT] == 0.0

@@ -1,4 +1,6 @@
-"""Energy, impulse and its moment against quadrature over the states passed through: nothing is lost between, at or after impacts."""
+"""Energy, impulse and its moment against quadrature over the states passed through: nothing is lost
+between, at or after impacts.
+"""
 
 import math
 
@@ -18,17 +20,40 @@ RUNS = [
     CHAOTIC,
     {"e": 0.2},
     {"box_frequency": 0.9, "e": 1.0, "box_acceleration": 0.5},
-    {"m1": 0.6, "m2": 2.1, "k1": 1.9, "k2": 1.3, "d1": 0.3, "d2": 0.02, "box_frequency": 1.1, "phase_start": 2.0},
-    {"m1": 3.0, "m2": 0.4, "k1": 0.5, "k2": 0.9, "d1": 0.0, "d2": 1.5, "box_frequency": 0.35, "e": 0.5},
+    {
+        "m1": 0.6,
+        "m2": 2.1,
+        "k1": 1.9,
+        "k2": 1.3,
+        "d1": 0.3,
+        "d2": 0.02,
+        "box_frequency": 1.1,
+        "phase_start": 2.0,
+    },
+    {
+        "m1": 3.0,
+        "m2": 0.4,
+        "k1": 0.5,
+        "k2": 0.9,
+        "d1": 0.0,
+        "d2": 1.5,
+        "box_frequency": 0.35,
+        "e": 0.5,
+    },
 ]
 
 
 def integrals(passed, functions):
-    """Integrals over time (s) of functions of (m, t, x1, v1, x2, v2), and of their absolute values."""
+    """Integrals over time (s) of functions of (m, t, x1, v1, x2, v2), and of their magnitudes."""
     total, absolute = [0.0] * len(functions), [0.0] * len(functions)
     for m, entry, end in passed:
         omega = m[at.OMEGA]
-        count = max(1, math.ceil((end - entry) * max(m[at.FASTEST], m[at.ETA], m[at.BRANCH_1], m[at.BRANCH_2]) / 0.7))
+        count = max(
+            1,
+            math.ceil(
+                (end - entry) * max(m[at.FASTEST], m[at.ETA], m[at.BRANCH_1], m[at.BRANCH_2]) / 0.7
+            ),
+        )
         edges = np.linspace(entry, end, count + 1)
         for low, high in zip(edges, edges[1:], strict=False):
             for node, weight in zip(NODES, WEIGHTS, strict=True):
@@ -36,7 +61,13 @@ def integrals(passed, functions):
                 x1, v1, x2, v2 = state_at(m, age)
                 time = m[at.START_TIME] + (m[at.ORIGIN] + m[at.ORIGIN_LOW] + age) / omega
                 for i, function in enumerate(functions):
-                    part = 0.5 * (high - low) / omega * weight * function(m, time, x1, omega * v1, x2, omega * v2)
+                    part = (
+                        0.5
+                        * (high - low)
+                        / omega
+                        * weight
+                        * function(m, time, x1, omega * v1, x2, omega * v2)
+                    )
                     total[i] += part
                     absolute[i] += abs(part)
     return total, absolute
@@ -51,8 +82,14 @@ def dissipation(m, time, x1, v1, x2, v2):
 
 
 def drive_power(m, time, x1, v1, x2, v2):
-    """Of the inertial forces, minus mass times the box's acceleration; the cubic begins with the run, at time 0."""
-    harmonic = m[at.BOX_AMPLITUDE] * m[at.BOX_FREQUENCY] ** 2 * math.sin(m[at.PHASE_START] + m[at.BOX_FREQUENCY] * time)
+    """Of the inertial forces, minus mass times the box's acceleration; the cubic begins with the
+    run, at time 0.
+    """
+    harmonic = (
+        m[at.BOX_AMPLITUDE]
+        * m[at.BOX_FREQUENCY] ** 2
+        * math.sin(m[at.PHASE_START] + m[at.BOX_FREQUENCY] * time)
+    )
     cubic = sum(m[at.BOX_ACCELERATION + i] * time**i / math.factorial(i) for i in range(4))
     return (harmonic - cubic) * (m[at.M1] * v1 + m[at.M2] * v2)
 
@@ -70,7 +107,9 @@ def test_the_energy_balance_closes(values, more, stop):
     passed = pieces(m, stop)
     (work, lost), (work_size, _) = integrals(passed, [drive_power, dissipation])
     assert m[at.IMPACT_COUNT] >= 1
-    assert energy(m) - before == pytest.approx(work - lost - m[at.IMPACT_ENERGY], abs=1e-10 * (work_size + before))
+    assert energy(m) - before == pytest.approx(
+        work - lost - m[at.IMPACT_ENERGY], abs=1e-10 * (work_size + before)
+    )
 
 
 @pytest.mark.parametrize("values", RUNS)
@@ -89,7 +128,11 @@ def test_impulse_and_its_moment_over_a_long_step(values, more, stop):
 
 
 @examples(25)
-@given(st.sampled_from(RUNS), st.lists(st.floats(1e-3, 4.0), min_size=1, max_size=12), st.tuples(*[st.floats(-0.5, 0.5)] * 4))
+@given(
+    st.sampled_from(RUNS),
+    st.lists(st.floats(1e-3, 4.0), min_size=1, max_size=12),
+    st.tuples(*[st.floats(-0.5, 0.5)] * 4),
+)
 def test_impulses_of_steps_with_changing_inputs(values, steps, cubic):
     m = started(time=2.0, **values, x1_start=-0.4, x2_start=0.3, v1_start=0.5)
     time = 2.0
@@ -115,8 +158,12 @@ def test_impulses_of_parts_add_up(values):
         advanced(parts, 20.0 if i == 199 else 0.1 * (i + 1))
         moment += parts[at.BOX_IMPULSE_MOMENT] + 0.1 * i * parts[at.BOX_IMPULSE]
         impulse += parts[at.BOX_IMPULSE]
-    assert impulse == pytest.approx(whole[at.BOX_IMPULSE], abs=1e-12 * 20.0 * (1.0 + abs(whole[at.BOX_FORCE])))
-    assert moment == pytest.approx(whole[at.BOX_IMPULSE_MOMENT], abs=1e-12 * 400.0 * (1.0 + abs(whole[at.BOX_FORCE])))
+    assert impulse == pytest.approx(
+        whole[at.BOX_IMPULSE], abs=1e-12 * 20.0 * (1.0 + abs(whole[at.BOX_FORCE]))
+    )
+    assert moment == pytest.approx(
+        whole[at.BOX_IMPULSE_MOMENT], abs=1e-12 * 400.0 * (1.0 + abs(whole[at.BOX_FORCE]))
+    )
 
 
 @pytest.mark.parametrize("values", RUNS)
@@ -127,8 +174,12 @@ def test_outputs_agree_with_each_other(values):
         unit = m[at.BOX_AMPLITUDE] * m[at.BOX_FREQUENCY] ** 2 * m[at.M1] / m[at.K1]
         assert m[at.X_REL] == m[at.X2] - m[at.X1] >= 0.0
         assert m[at.V_REL] == pytest.approx(m[at.V2] - m[at.V1], abs=1e-14)
-        assert [m[at.XI1] * unit, m[at.XI2] * unit, m[at.XI_REL] * unit] == pytest.approx([m[at.X1], m[at.X2], m[at.X_REL]], rel=1e-14)
-        assert m[at.BOX_FORCE] == pytest.approx(box_force(m, 0.0, m[at.X1], m[at.V1], m[at.X2], m[at.V2]), abs=1e-14)
+        assert [m[at.XI1] * unit, m[at.XI2] * unit, m[at.XI_REL] * unit] == pytest.approx(
+            [m[at.X1], m[at.X2], m[at.X_REL]], rel=1e-14
+        )
+        assert m[at.BOX_FORCE] == pytest.approx(
+            box_force(m, 0.0, m[at.X1], m[at.V1], m[at.X2], m[at.V2]), abs=1e-14
+        )
         assert 0.0 <= m[at.PHASE] < 2 * math.pi
         assert m[at.IN_CONTACT] == 0.0 or (m[at.X_REL], m[at.V_REL]) == (0.0, 0.0)
         assert m[at.TIME] == 0.21 * i

@@ -1,4 +1,6 @@
-"""The closed-form oscillator against an ODE solver and in high precision, from undamped to overdamped, and its envelope."""
+"""The closed-form oscillator against an ODE solver and in high precision, from undamped to
+overdamped, and its envelope.
+"""
 
 import math
 
@@ -9,8 +11,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.numerics.elementary import TWO_PI, sincos_turns
+from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.excitation import cubic_at, set_cubic_response, set_harmonic
 from fmu_src.kernels.oscillator.parameters import set_branch
 from fmu_src.kernels.oscillator.response import basis, displacement, set_free
@@ -19,8 +21,29 @@ from . import truth
 from .kernel import examples, sizes
 
 BRANCH, HARMONIC, FREE, CUBIC = at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A
-DAMPINGS = [0.0, 0.005, 0.3, 0.97, 1.0 - 1e-6, 1.0 - 1e-13, 1.0, 1.0 + 1e-13, 1.0 + 1e-6, 1.03, 1.5, 40.0]  # over omega_i; 1 is critical
-FORCING = {"box_amplitude": 0.7, "box_frequency": 0.9, "box_acceleration": 0.3, "box_jerk": -0.2, "box_snap": 0.1, "box_crackle": 0.05}
+# over omega_i; 1 is critical
+DAMPINGS = [
+    0.0,
+    0.005,
+    0.3,
+    0.97,
+    1.0 - 1e-6,
+    1.0 - 1e-13,
+    1.0,
+    1.0 + 1e-13,
+    1.0 + 1e-6,
+    1.03,
+    1.5,
+    40.0,
+]
+FORCING = {
+    "box_amplitude": 0.7,
+    "box_frequency": 0.9,
+    "box_acceleration": 0.3,
+    "box_jerk": -0.2,
+    "box_snap": 0.1,
+    "box_crackle": 0.05,
+}
 
 
 def oscillator(damping, omega_squared, x, v, phase, forcing=FORCING):
@@ -41,7 +64,17 @@ def oscillator(damping, omega_squared, x, v, phase, forcing=FORCING):
 def state(m, tau):
     """Displacement and velocity at an age."""
     C, S, _ = basis(m, BRANCH, tau)
-    return displacement(m, BRANCH, HARMONIC, FREE, CUBIC, tau, C, S, *sincos_turns(m[at.TURN] + m[at.ETA] / TWO_PI * tau))
+    return displacement(
+        m,
+        BRANCH,
+        HARMONIC,
+        FREE,
+        CUBIC,
+        tau,
+        C,
+        S,
+        *sincos_turns(m[at.TURN] + m[at.ETA] / TWO_PI * tau),
+    )
 
 
 @pytest.mark.parametrize("ratio", DAMPINGS)
@@ -51,8 +84,16 @@ def test_against_an_ode_solver(ratio, omega_squared):
     m = oscillator(damping, omega_squared, 0.4, -0.8, 1.1)
 
     def slope(t, y):
-        cubic = sum(FORCING[f"box_{name}"] * t**i / math.factorial(i) for i, name in enumerate(("acceleration", "jerk", "snap", "crackle")))
-        drive = FORCING["box_amplitude"] * FORCING["box_frequency"] ** 2 * math.sin(FORCING["box_frequency"] * t + 1.1) - cubic
+        cubic = sum(
+            FORCING[f"box_{name}"] * t**i / math.factorial(i)
+            for i, name in enumerate(("acceleration", "jerk", "snap", "crackle"))
+        )
+        drive = (
+            FORCING["box_amplitude"]
+            * FORCING["box_frequency"] ** 2
+            * math.sin(FORCING["box_frequency"] * t + 1.1)
+            - cubic
+        )
         return y[1], drive - 2 * damping * y[1] - omega_squared * y[0]
 
     t = np.linspace(0.0, 12.0, 25)
@@ -62,19 +103,36 @@ def test_against_an_ode_solver(ratio, omega_squared):
 
 
 @examples(150)
-@given(st.sampled_from(DAMPINGS) | sizes(1e-3, 1e3), sizes(0.05, 20.0), st.floats(-1, 1), st.floats(-1, 1), st.floats(0, 6.2), st.floats(0, 50))
+@given(
+    st.sampled_from(DAMPINGS) | sizes(1e-3, 1e3),
+    sizes(0.05, 20.0),
+    st.floats(-1, 1),
+    st.floats(-1, 1),
+    st.floats(0, 6.2),
+    st.floats(0, 50),
+)
 def test_in_high_precision(ratio, omega_squared, x, v, phase, tau):
     damping = ratio * math.sqrt(omega_squared)
     if damping == 0.0 and abs(omega_squared - FORCING["box_frequency"] ** 2) < 1e-3:
         damping = 0.01
     m = oscillator(damping, omega_squared, x, v, phase)
     with mp.workdps(60):
-        exact = truth.oscillator(1, 2 * mp.mpf(damping), omega_squared, mp.mpf(x), mp.mpf(v), truth.box(FORCING, mp.mpf(phase)))
+        exact = truth.oscillator(
+            1,
+            2 * mp.mpf(damping),
+            omega_squared,
+            mp.mpf(x),
+            mp.mpf(v),
+            truth.box(FORCING, mp.mpf(phase)),
+        )
         values = [float(exact(tau)), float(exact.derivative()(tau))]
     rate = max(1.0, math.sqrt(omega_squared))
-    terms = sum(abs(m[i]) for i in (HARMONIC, HARMONIC + 1, FREE)) + sum(abs(m[CUBIC + i]) * max(1.0, tau) ** i for i in range(4))
+    terms = sum(abs(m[i]) for i in (HARMONIC, HARMONIC + 1, FREE)) + sum(
+        abs(m[CUBIC + i]) * max(1.0, tau) ** i for i in range(4)
+    )
     terms += abs(m[FREE + 1]) * m[BRANCH + at.ENVELOPE_SINE]
-    angle = 1.0 + (rate + damping * math.exp(-min(tau, 1.0))) * tau  # an angle's or exponent's own rounding
+    # an angle's or exponent's own rounding
+    angle = 1.0 + (rate + damping * math.exp(-min(tau, 1.0))) * tau
     for found, value, unit in zip(state(m, tau), values, (1.0, rate + 2 * damping), strict=True):
         assert abs(found - value) <= 4e-15 * terms * angle * unit
 
@@ -83,10 +141,14 @@ def test_in_high_precision(ratio, omega_squared, x, v, phase, tau):
 @given(st.floats(0.05, 20.0), st.floats(0.0, 30.0), st.integers(0, 40))
 def test_continuous_across_critical_damping(omega_squared, tau, k):
     critical = math.sqrt(omega_squared)
-    near = [oscillator(critical * (1.0 + sign * 2.0**-k / 8), omega_squared, 0.3, 0.4, 0.0) for sign in (-1, 0, 1)]
+    near = [
+        oscillator(critical * (1.0 + sign * 2.0**-k / 8), omega_squared, 0.3, 0.4, 0.0)
+        for sign in (-1, 0, 1)
+    ]
     below, at_it, above = (state(m, tau)[0] for m in near)
     middle = 0.5 * (below + above)
-    steep = (1.0 + critical * tau) ** 4 * (1.0 + 1.0 / omega_squared) ** 4  # the response is a smooth function of the damping
+    # the response is a smooth function of the damping
+    steep = (1.0 + critical * tau) ** 4 * (1.0 + 1.0 / omega_squared) ** 4
     assert abs(middle - at_it) <= (4.0**-k + 1e-14) * steep
 
 
@@ -99,7 +161,11 @@ def test_critical_damping_is_met_exactly():
 
 
 @examples(400)
-@given(st.sampled_from(DAMPINGS) | sizes(1e-4, 1e4) | st.floats(0.9, 1.1), sizes(1e-3, 1e3), sizes(1e-3, 1e4))
+@given(
+    st.sampled_from(DAMPINGS) | sizes(1e-4, 1e4) | st.floats(0.9, 1.1),
+    sizes(1e-3, 1e3),
+    sizes(1e-3, 1e4),
+)
 @example(1.03, 1.0, 3.7)
 @example(1.0328, 1.0, 8.0)
 def test_envelope_bounds_the_basis(ratio, omega_squared, age):

@@ -1,4 +1,6 @@
-"""The certified step never passes a root; the walk finds the first root, which a scan in high precision finds too."""
+"""The certified step never passes a root; the walk finds the first root, which a scan in high
+precision finds too.
+"""
 
 import math
 
@@ -16,7 +18,9 @@ from .kernel import CHAOTIC, DEFAULTS, advanced, examples, pieces, sizes, starte
 
 SIGNED = st.just(0.0) | sizes(1e-12, 1e3) | sizes(1e-12, 1e3).map(lambda x: -x)
 HEIGHTS = st.just(0.0) | sizes(1e-15, 1e3)
-STATES = st.tuples(st.floats(-1.0, 0.0), st.floats(-1.0, 1.0), st.floats(0.01, 1.0), st.floats(-1.0, 1.0))
+STATES = st.tuples(
+    st.floats(-1.0, 0.0), st.floats(-1.0, 1.0), st.floats(0.01, 1.0), st.floats(-1.0, 1.0)
+)
 
 
 REACH = 6.0
@@ -24,15 +28,27 @@ REACH = 6.0
 
 def quintic(h, bound, s):
     """The lower bound of an event function, and the size of its terms."""
-    terms = [mp.mpf(value) * s**k / mp.factorial(k) for k, value in enumerate(h)] + [-mp.mpf(bound) * s**5 / 120]
+    terms = [mp.mpf(value) * s**k / mp.factorial(k) for k, value in enumerate(h)] + [
+        -mp.mpf(bound) * s**5 / 120
+    ]
     return sum(terms), sum(map(abs, terms))
 
 
 def lowest(h, bound, stop):
     """The quintic's least value on (0, stop], relative to the size of its terms there."""
     with mp.workdps(60):
-        slope = [-mp.mpf(bound) / 24, mp.mpf(h[4]) / 6, mp.mpf(h[3]) / 2, mp.mpf(h[2]), mp.mpf(h[1])]
-        flat = [mp.re(s) for s in mp.polyroots(slope[::-1], maxsteps=500, extraprec=400, asc=True) if abs(mp.im(s)) <= abs(s) * mp.mpf("1e-20")]
+        slope = [
+            -mp.mpf(bound) / 24,
+            mp.mpf(h[4]) / 6,
+            mp.mpf(h[3]) / 2,
+            mp.mpf(h[2]),
+            mp.mpf(h[1]),
+        ]
+        flat = [
+            mp.re(s)
+            for s in mp.polyroots(slope[::-1], maxsteps=500, extraprec=400, asc=True)
+            if abs(mp.im(s)) <= abs(s) * mp.mpf("1e-20")
+        ]
         values = [quintic(h, bound, s) for s in (mp.mpf(stop), *flat) if 0 < s <= stop]
         return float(min(value / terms for value, terms in values))
 
@@ -53,7 +69,9 @@ def test_a_clear_step_is_certified(h0, h1, h2, h3, h4, bound):
 
 
 def carry(value, falls):
-    """How far a positive term outweighs the falling ones, each a coefficient and the power it has more than that term."""
+    """How far a positive term outweighs the falling ones, each a coefficient and the power it has
+    more than that term.
+    """
     return min((value / (4.0 * fall)) ** (1.0 / power) for fall, power in falls if fall > 0.0)
 
 
@@ -65,9 +83,14 @@ def test_a_clear_step_is_not_small_without_need(h0, h1, h2, h3, h4, bound):
     assume(h0 > 0.0 or h1 > 0.0 or (h1 == 0.0 and h2 > 0.0))
     step = clear_step(h0, h1, h2, h3, h4, bound, REACH)
     if h0 > 0.0:
-        assert step >= 0.02 * min(REACH, carry(h0, [(-h1, 1), (-h2 / 2, 2), (-h3 / 6, 3), (-h4 / 24, 4), (bound / 120, 5)]))
+        assert step >= 0.02 * min(
+            REACH,
+            carry(h0, [(-h1, 1), (-h2 / 2, 2), (-h3 / 6, 3), (-h4 / 24, 4), (bound / 120, 5)]),
+        )
     if h1 > 0.0:
-        assert step >= 0.02 * min(REACH, carry(h1, [(-h2 / 2, 1), (-h3 / 6, 2), (-h4 / 24, 3), (bound / 120, 4)]))
+        assert step >= 0.02 * min(
+            REACH, carry(h1, [(-h2 / 2, 1), (-h3 / 6, 2), (-h4 / 24, 3), (bound / 120, 4)])
+        )
 
 
 @examples(100)
@@ -75,11 +98,21 @@ def test_a_clear_step_is_not_small_without_need(h0, h1, h2, h3, h4, bound):
 def test_a_clear_step_is_scale_free(h0, h1, h2, h3, h4, bound, n):
     assume(h0 > 0.0 or h1 > 0.0 or (h1 == 0.0 and h2 > 0.0))
     unit = math.ldexp(1.0, n)
-    assert clear_step(unit * h0, unit * h1, unit * h2, unit * h3, unit * h4, unit * bound, REACH) == clear_step(h0, h1, h2, h3, h4, bound, REACH)
+    assert clear_step(
+        unit * h0, unit * h1, unit * h2, unit * h3, unit * h4, unit * bound, REACH
+    ) == clear_step(h0, h1, h2, h3, h4, bound, REACH)
 
 
 @examples(300)
-@given(sizes(1e-3, 1.0), sizes(1e-3, 1.0), SIGNED, SIGNED, SIGNED, sizes(1e-3, 10.0), st.floats(0.01, 1.0))
+@given(
+    sizes(1e-3, 1.0),
+    sizes(1e-3, 1.0),
+    SIGNED,
+    SIGNED,
+    SIGNED,
+    sizes(1e-3, 10.0),
+    st.floats(0.01, 1.0),
+)
 @example(0.641, 0.0593, -18.0, 79.8, 3.57, 0.1, 0.353)  # these rise somewhere between
 @example(0.531, 0.669, 0.164, -0.0128, 1.85, 0.1, 0.973)
 def test_a_root_by_taylor_is_the_only_one_from_the_clear_step_on(h0, fall, h2, h3, h4, bound, step):
@@ -104,19 +137,31 @@ def first_end(m, horizon):
 
 
 def agree(found, expected, signal, horizon):
-    """Whether both are the same root, as close as the rounding of the event function's terms lets it be."""
+    """Whether both are the same root, as close as the rounding of the event function's terms lets
+    it be.
+    """
     if expected is None:
         return found is None or found > horizon * (1 - 1e-9)
-    terms = sum(abs(complex(c)) for c, _ in signal.terms) + sum(abs(float(p)) * horizon**k for k, p in enumerate(signal.polynomial))
+    terms = sum(abs(complex(c)) for c, _ in signal.terms) + sum(
+        abs(float(p)) * horizon**k for k, p in enumerate(signal.polynomial)
+    )
     slope = abs(float(signal.derivative()(expected)))
-    return found is not None and abs(found - float(expected)) <= 1e-15 * (1.0 + found) + 1e-14 * terms / slope
+    return (
+        found is not None
+        and abs(found - float(expected)) <= 1e-15 * (1.0 + found) + 1e-14 * terms / slope
+    )
 
 
 @examples(80)
 @given(structures(), STATES)
-@example({"m2": 1.274, "k2": 0.448, "d1": 0.0, "d2": 27.1, "box_frequency": 0.117, "phase_start": 0.633}, (-0.867, 0.783, 0.461, -0.530))
+@example(
+    {"m2": 1.274, "k2": 0.448, "d1": 0.0, "d2": 27.1, "box_frequency": 0.117, "phase_start": 0.633},
+    (-0.867, 0.783, 0.461, -0.530),
+)
 def test_first_impact_of_a_flight(values, state):
-    m = started(x1_start=state[0], v1_start=state[1], x2_start=state[2], v2_start=state[3], **values)
+    m = started(
+        x1_start=state[0], v1_start=state[1], x2_start=state[2], v2_start=state[3], **values
+    )
     first, second = truth.apart({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
     gap = second - first
     expected = truth.first_root(gap, 12.0)
@@ -126,7 +171,13 @@ def test_first_impact_of_a_flight(values, state):
 @examples(80)
 @given(structures(damping=0.5), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 def test_release_from_contact(values, x, v):
-    values = {**values, "box_acceleration": 0.0, "box_jerk": 0.0, "box_snap": 0.0, "box_crackle": 0.0}
+    values = {
+        **values,
+        "box_acceleration": 0.0,
+        "box_jerk": 0.0,
+        "box_snap": 0.0,
+        "box_crackle": 0.0,
+    }
     m = started(x1_start=x, x2_start=x, v1_start=v, v2_start=v, **values)
     assume(m[at.MODE] == at.CONTACT)
     _, push = truth.together({**DEFAULTS, **values}, x, v, mp.mpf(values["phase_start"]))
@@ -137,7 +188,9 @@ def test_release_from_contact(values, x, v):
 
 def gap_of(x2, values, state, phase=0.0):
     """Gap by Newton's law, the start of mass 2 displaced."""
-    first, second = truth.apart({**DEFAULTS, **values}, (state[0], state[1], x2, state[3]), mp.mpf(phase))
+    first, second = truth.apart(
+        {**DEFAULTS, **values}, (state[0], state[1], x2, state[3]), mp.mpf(phase)
+    )
     return second - first
 
 
@@ -149,7 +202,9 @@ def first_minimum(gap):
 
 
 def grazing_start(values, state, depth):
-    """x2 at the start for which the gap's first minimum is ``depth``, by Newton's method; and the time of that minimum."""
+    """x2 at the start for which the gap's first minimum is ``depth``, by Newton's method; and the
+    time of that minimum.
+    """
     x2 = mp.mpf(state[2])
     for _ in range(7):
         gap, nearby = (gap_of(x2 + shift, values, state) for shift in (0, mp.mpf("1e-20")))
@@ -160,9 +215,17 @@ def grazing_start(values, state, depth):
 
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("depth", [1e-6, 1e-8, 1e-10])
-@pytest.mark.parametrize("values", [{"box_frequency": 0.4}, {"box_frequency": 1.3, "d1": 0.2}, {"box_frequency": 2.2, "d1": 0.0, "d2": 0.4}])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"box_frequency": 0.4},
+        {"box_frequency": 1.3, "d1": 0.2},
+        {"box_frequency": 2.2, "d1": 0.0, "d2": 0.4},
+    ],
+)
 def test_a_near_miss_and_a_graze(values, depth, sign):
-    values, state = {"k2": 3.0, **values}, (-2.0, 0.5, -1.6, -0.8)  # closing, but the stiffer spring pulls mass 2 back
+    # closing, but the stiffer spring pulls mass 2 back
+    values, state = {"k2": 3.0, **values}, (-2.0, 0.5, -1.6, -0.8)
     x2, bottom = grazing_start(values, state, sign * depth)
     m = started(x1_start=state[0], v1_start=state[1], x2_start=x2, v2_start=state[3], **values)
     gap = gap_of(x2, values, state)
@@ -172,7 +235,10 @@ def test_a_near_miss_and_a_graze(values, depth, sign):
     assert agree(first_end(m, 20.0), expected, gap, 20.0)
 
 
-@pytest.mark.parametrize("values", [CHAOTIC, {"box_frequency": 0.4, "e": 0.3}, {"d1": 0.3, "d2": 0.1, "box_frequency": 0.5}])
+@pytest.mark.parametrize(
+    "values",
+    [CHAOTIC, {"box_frequency": 0.4, "e": 0.3}, {"d1": 0.3, "d2": 0.1, "box_frequency": 0.5}],
+)
 def test_every_state_ends_on_a_root(values):
     m = started(**values)
     for state, _, end in pieces(m, 300.0)[:-1]:
@@ -187,8 +253,16 @@ def test_the_walk_does_not_depend_on_where_it_is_interrupted():
     assert once[at.ORIGIN : at.END_KIND + 1] == often[at.ORIGIN : at.END_KIND + 1]
 
 
-@pytest.mark.parametrize("ratio", [0.9, 1 - 1e-4, 1 - 1e-8, 1 - 1e-13, 1.0, 1 + 1e-13, 1 + 1e-8, 1 + 1e-4, 1.1, 20.0])
+@pytest.mark.parametrize(
+    "ratio", [0.9, 1 - 1e-4, 1 - 1e-8, 1 - 1e-13, 1.0, 1 + 1e-13, 1 + 1e-8, 1 + 1e-4, 1.1, 20.0]
+)
 def test_the_walk_is_short_around_critical_damping(ratio):
-    m = started(d1=2.0 * ratio, d2=2.0 * ratio * math.sqrt(1.2), x2_start=1.0, v2_start=0.5, x_rel_max_on=0.0)
+    m = started(
+        d1=2.0 * ratio,
+        d2=2.0 * ratio * math.sqrt(1.2),
+        x2_start=1.0,
+        v2_start=0.5,
+        x_rel_max_on=0.0,
+    )
     advanced(m, 40.0)
     assert m[at.WORK] < 1000.0

@@ -1,4 +1,6 @@
-"""Short flights by their series: as exact relative to the gap itself, however low it is, as the closed form is relative to the displacements."""
+"""Short flights by their series: as exact relative to the gap itself, however low it is, as the
+closed form is relative to the displacements.
+"""
 
 import mpmath as mp
 import pytest
@@ -17,10 +19,14 @@ PLACES = st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)
 
 
 def leaving(values, x, v, slope):
-    """A flight that has just left an impact, its gap in high precision, and a scale of the motion's size."""
+    """A flight that has just left an impact, its gap in high precision, and a scale of the motion's
+    size.
+    """
     v2 = v + slope
     m = flight(x, v, x, v2, **values)
-    first, second = truth.apart({**DEFAULTS, **values}, (x, v, x, v2), mp.mpf(values["phase_start"]))
+    first, second = truth.apart(
+        {**DEFAULTS, **values}, (x, v, x, v2), mp.mpf(values["phase_start"])
+    )
     return m, first, second - first
 
 
@@ -31,7 +37,8 @@ def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
     if m[at.SERIES] == 0.0:
         return
 
-    def rounding(tau):  # of the gap's own terms, which may cancel; those of the displacements are larger by far
+    # of the gap's own terms, which may cancel; those of the displacements are larger by far
+    def rounding(tau):
         return 1e-14 * (slope * tau + (abs(m[at.FORCE_V] * v) + abs(m[at.FORCE_X] * x)) * tau * tau)
 
     with mp.workdps(50):
@@ -42,7 +49,10 @@ def test_a_short_flight_ends_on_the_gaps_first_root(values, x, v, slope):
         for part in (0.1, 0.5, 0.9):
             tau = part * end
             x1, v1, x2, v2 = state_at(m, tau)
-            assert abs(x1 - first(mp.mpf(tau))) <= 1e-15 and abs(v1 - first.derivative()(mp.mpf(tau))) <= 1e-14
+            assert (
+                abs(x1 - first(mp.mpf(tau))) <= 1e-15
+                and abs(v1 - first.derivative()(mp.mpf(tau))) <= 1e-14
+            )
             assert abs(evaluate(m, tau)[0] - gap(mp.mpf(tau))) <= rounding(tau)
             assert x2 >= x1
 

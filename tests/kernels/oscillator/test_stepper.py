@@ -1,4 +1,6 @@
-"""The two entry points: the communication grid, the scale and the instance leave no trace in any bit."""
+"""The two entry points: the communication grid, the scale and the instance leave no trace in any
+bit.
+"""
 
 import math
 
@@ -46,16 +48,40 @@ def test_a_power_of_two_scales_to_the_last_bit(name, n):
     unit = math.ldexp(1.0, n)
     starts = {"x1_start": -0.1, "x2_start": 0.3, "v1_start": 0.2, "v2_start": -0.5}
     run = {"box_amplitude": 1.0, "box_acceleration": 0.0, **RUNS[name], **starts}
-    scaled = {key: value * unit for key, value in run.items() if key in starts or key in ("box_amplitude", "box_acceleration")}
+    scaled = {
+        key: value * unit
+        for key, value in run.items()
+        if key in starts or key in ("box_amplitude", "box_acceleration")
+    }
     m, big = started(**run), started(**{**run, **scaled})
     for time in (3.0, 11.0, 60.5):
         advanced(m, time)
         advanced(big, time)
-        for slot in (at.X1, at.X2, at.V1, at.V2, at.X_REL, at.V_REL, at.X_REL_MAX, at.BOX_FORCE, at.CONTACT_FORCE, at.IMPACT_VELOCITY):
+        for slot in (
+            at.X1,
+            at.X2,
+            at.V1,
+            at.V2,
+            at.X_REL,
+            at.V_REL,
+            at.X_REL_MAX,
+            at.BOX_FORCE,
+            at.CONTACT_FORCE,
+            at.IMPACT_VELOCITY,
+        ):
             assert big[slot] == unit * m[slot]
         for slot in (at.BOX_IMPULSE, at.BOX_IMPULSE_MOMENT):
             assert big[slot] == unit * m[slot]
-        for slot in (at.XI1, at.XI2, at.XI_REL, at.PHASE, at.IMPACT_TIME, at.IMPACT_COUNT, at.IN_CONTACT, at.CONTACT_COUNT):
+        for slot in (
+            at.XI1,
+            at.XI2,
+            at.XI_REL,
+            at.PHASE,
+            at.IMPACT_TIME,
+            at.IMPACT_COUNT,
+            at.IN_CONTACT,
+            at.CONTACT_COUNT,
+        ):
             assert big[slot] == m[slot]
         assert big[at.IMPACT_ENERGY] == unit * unit * m[at.IMPACT_ENERGY]
 
@@ -91,7 +117,18 @@ def test_an_empty_step_changes_nothing():
 
 def test_bonded_masses_are_one_oscillator():
     m = started(bonded=1.0, x1_start=0.3, x2_start=0.3, v1_start=-0.2, v2_start=-0.2)
-    one = started(m1=2.0, k1=2.2, d1=0.02, m2=2.0, k2=2.2, d2=0.02, x1_start=0.3, x2_start=0.3, v1_start=-0.2, v2_start=-0.2)
+    one = started(
+        m1=2.0,
+        k1=2.2,
+        d1=0.02,
+        m2=2.0,
+        k2=2.2,
+        d2=0.02,
+        x1_start=0.3,
+        x2_start=0.3,
+        v1_start=-0.2,
+        v2_start=-0.2,
+    )
     advanced(m, 77.0)
     advanced(one, 77.0)
     assert m[at.X1] == pytest.approx(one[at.X1], rel=1e-12)
@@ -104,8 +141,12 @@ def test_samples_inside_a_step_are_its_states(name):
     for step in (1, 2):
         advanced(whole, 30.0 * step)
         for i in range(40):
-            advanced(parts, whole[at.TIME] if i == 39 else 30.0 * (step - 1) + 30.0 * ((i + 1.0) / 40.0))
-            found = [whole[slot + i] for slot in (at.X1_SAMPLE, at.X2_SAMPLE, at.V1_SAMPLE, at.V2_SAMPLE)]
+            advanced(
+                parts, whole[at.TIME] if i == 39 else 30.0 * (step - 1) + 30.0 * ((i + 1.0) / 40.0)
+            )
+            found = [
+                whole[slot + i] for slot in (at.X1_SAMPLE, at.X2_SAMPLE, at.V1_SAMPLE, at.V2_SAMPLE)
+            ]
             assert found == [parts[slot] for slot in (at.X1, at.X2, at.V1, at.V2)]
     assert outputs(whole) == outputs(parts)
 

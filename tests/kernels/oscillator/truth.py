@@ -1,6 +1,8 @@
-"""Independent truth: the two oscillators in SI units as sums of complex exponentials, in high precision; first roots by scan and polish.
+"""Independent truth: the two oscillators in SI units as sums of complex exponentials, in high
+precision; first roots by scan and polish.
 
-Nothing here comes from the kernel: no omega, no mu, no branches of damping. Newton's law of each mass, its characteristic roots, and mpmath.
+Nothing here comes from the kernel: no omega, no mu, no branches of damping. Newton's law of each
+mass, its characteristic roots, and mpmath.
 """
 
 import mpmath as mp
@@ -20,10 +22,15 @@ class Signal:
         return self + -1 * other
 
     def __add__(self, other):
-        return Signal(self.terms + other.terms, [a + b for a, b in zip(self.polynomial, other.polynomial, strict=True)])
+        return Signal(
+            self.terms + other.terms,
+            [a + b for a, b in zip(self.polynomial, other.polynomial, strict=True)],
+        )
 
     def __rmul__(self, factor):
-        return Signal([(factor * c, s) for c, s in self.terms], [factor * p for p in self.polynomial])
+        return Signal(
+            [(factor * c, s) for c, s in self.terms], [factor * p for p in self.polynomial]
+        )
 
     def derivative(self):
         return Signal([(c * s, s) for c, s in self.terms], [*self.polynomial[1:], mp.mpf(0)])
@@ -52,20 +59,35 @@ def taylor(derivatives, t):
 
 
 def box(values, phase):
-    """The box's acceleration as a Signal; ``values`` are inputs by name, ``phase`` (rad) that of the harmonic part at t = 0."""
-    a, frequency = mp.mpf(values.get("box_amplitude", 1.0)), mp.mpf(values.get("box_frequency", 0.0))
-    cubic = [mp.mpf(values.get(f"box_{name}", 0.0)) for name in ("acceleration", "jerk", "snap", "crackle")]
-    return Signal([(mp.mpc(0, 1) * a * frequency**2 * mp.expj(phase), mp.mpc(0, frequency))], cubic)  # -a Omega^2 sin
+    """The box's acceleration as a Signal; ``values`` are inputs by name, ``phase`` (rad) that of
+    the harmonic part at t = 0.
+    """
+    a, frequency = (
+        mp.mpf(values.get("box_amplitude", 1.0)),
+        mp.mpf(values.get("box_frequency", 0.0)),
+    )
+    cubic = [
+        mp.mpf(values.get(f"box_{name}", 0.0))
+        for name in ("acceleration", "jerk", "snap", "crackle")
+    ]
+    # -a Omega^2 sin
+    return Signal([(mp.mpc(0, 1) * a * frequency**2 * mp.expj(phase), mp.mpc(0, frequency))], cubic)
 
 
 def oscillator(mass, damping, stiffness, x, v, acceleration):
-    """Displacement relative to a box of the given acceleration, from initial conditions at t = 0."""
+    """Displacement relative to a box of given acceleration, from initial conditions at t = 0."""
     mass, damping, stiffness = mp.mpf(mass), mp.mpf(damping), mp.mpf(stiffness)
-    forced = [(-c / (s * s + damping / mass * s + stiffness / mass), s) for c, s in acceleration.terms]
+    forced = [
+        (-c / (s * s + damping / mass * s + stiffness / mass), s) for c, s in acceleration.terms
+    ]
     cubic = [mp.mpf(0)] * 4
-    for _ in range(4):  # mass q'' + damping q' + stiffness q = -mass p: exact after four rounds, p being a cubic
+    # mass q'' + damping q' + stiffness q = -mass p: exact after four rounds, p being a cubic
+    for _ in range(4):
         first, second = [*cubic[1:], 0], [*cubic[2:], 0, 0]
-        cubic = [(-mass * p - damping * q1 - mass * q2) / stiffness for p, q1, q2 in zip(acceleration.polynomial, first, second, strict=True)]
+        cubic = [
+            (-mass * p - damping * q1 - mass * q2) / stiffness
+            for p, q1, q2 in zip(acceleration.polynomial, first, second, strict=True)
+        ]
     part = Signal(forced, cubic)
     half = damping / (2 * mass)
     split = mp.sqrt(mp.mpc(half * half - stiffness / mass))
@@ -86,10 +108,14 @@ def apart(values, state, phase):
 
 
 def together(values, x, v, phase):
-    """Both masses as one, and the force with which mass 2 is pushed by mass 1 (Newton's law of mass 1)."""
+    """Both masses as one, and the force with which mass 2 is pushed by mass 1 (Newton's law of mass
+    1).
+    """
     m1, d1, k1 = (mp.mpf(values[name]) for name in ("m1", "d1", "k1"))
     shaken = box(values, phase)
-    common = oscillator(m1 + values["m2"], d1 + values["d2"], k1 + values["k2"], mp.mpf(x), mp.mpf(v), shaken)
+    common = oscillator(
+        m1 + values["m2"], d1 + values["d2"], k1 + values["k2"], mp.mpf(x), mp.mpf(v), shaken
+    )
     speed = common.derivative()
     return common, -1 * (m1 * (speed.derivative() + shaken) + d1 * speed + k1 * common)
 
@@ -100,7 +126,9 @@ def polish(signal, low, high):
 
 
 def first_root(signal, stop, start=0.0):
-    """First root in ``start < t <= stop``, or None: a scan with hundreds of points a period, each near miss settled by its own minimum."""
+    """First root in ``start < t <= stop``, or None: a scan with hundreds of points a period, each
+    near miss settled by its own minimum.
+    """
     spacing = 0.02 / signal.fastest()
     fine = start + np.geomspace(1e-8, 1.0, 60) * min(spacing, stop - start)
     t = np.concatenate([fine, np.arange(fine[-1] + spacing, stop, spacing), [stop]])

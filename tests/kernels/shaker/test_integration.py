@@ -11,7 +11,13 @@ from fmu_src.kernels.shaker import memory as at
 from .truth import DEFAULTS, STATES, right_hand_side, solve
 
 MOVING = {"angle_start": 0.3, "speed_start": 40.0, "position_start": 1e-3, "velocity_start": -0.05}
-FORCED = {"voltage": 5.0, "box_force": 3.0, "box_force_1": -40.0, "box_force_2": 900.0, "box_force_3": -3e4}
+FORCED = {
+    "voltage": 5.0,
+    "box_force": 3.0,
+    "box_force_1": -40.0,
+    "box_force_2": 900.0,
+    "box_force_3": -3e4,
+}
 
 
 def started(**values):
@@ -43,7 +49,7 @@ def test_motion_is_that_of_the_equations(inductance, stop):
 
 
 def test_tolerance_bounds_the_error():
-    """The formula's own error falls with its tolerance, and stays near it where sub-steps are many."""
+    """The formula's own error falls with its tolerance, and stays near it over many sub-steps."""
     values, errors = {"voltage": 9.0, **MOVING}, []
     expected = solve({"voltage": 9.0}, (1e-3, -0.05, 0.3, 40.0, 0.0), 1.0)
     for tolerance in (1e-6, 1e-9, 1e-12):
@@ -62,7 +68,12 @@ def test_energy_is_kept():
     before = m[at.STORED_ENERGY]
     for k in range(1, 200):
         assert stepper.advance(m, k * 0.013) == at.OK
-        balance = m[at.MOTOR_ENERGY] + m[at.BOX_FORCE_WORK] - m[at.BOX_DAMPER_ENERGY] - (m[at.STORED_ENERGY] - before)
+        balance = (
+            m[at.MOTOR_ENERGY]
+            + m[at.BOX_FORCE_WORK]
+            - m[at.BOX_DAMPER_ENERGY]
+            - (m[at.STORED_ENERGY] - before)
+        )
         assert abs(balance) < 1e-12 * (1.0 + abs(m[at.BOX_FORCE_WORK]))
 
 
@@ -108,7 +119,12 @@ def test_inductance_goes_to_zero():
     stepper.advance(expected, 0.02)
     errors = []
     for inductance in (4e-3, 2e-3, 1e-3):
-        m = started(voltage=5.0, armature_inductance=inductance, current_start=(5.0 - 0.06 * 40.0) / 12.0, **MOVING)
+        m = started(
+            voltage=5.0,
+            armature_inductance=inductance,
+            current_start=(5.0 - 0.06 * 40.0) / 12.0,
+            **MOVING,
+        )
         assert stepper.advance(m, 0.02) == at.OK
         errors.append(abs(m[at.SPEED] - expected[at.SPEED]))
     assert 1.8 < errors[0] / errors[1] < 2.3
@@ -131,7 +147,9 @@ def test_a_step_that_would_take_too_long_ends():
     assert 0.0 < m[at.REPORT] < 1.0
 
 
-@pytest.mark.parametrize("values", [{"box_force": 1e30, "box_force_3": 1e30}, {"voltage": 1e30, "motor_constant": 1e30}])
+@pytest.mark.parametrize(
+    "values", [{"box_force": 1e30, "box_force_3": 1e30}, {"voltage": 1e30, "motor_constant": 1e30}]
+)
 def test_what_leaves_the_numbers_ends(values):
     m = started(**values)
     assert stepper.advance(m, 1e90) in (at.NOT_FINITE, at.UNFINISHED)

@@ -32,9 +32,20 @@ def right_hand_side(values):
         y, v, phi, w, current, _ = s
         if L == 0.0:
             current = (p["voltage"] - K * w) / R
-        force = p["box_force"] + p["box_force_1"] * t + p["box_force_2"] * t**2 / 2 + p["box_force_3"] * t**3 / 6
-        matrix = [[p["box_mass"], unbalance * np.cos(phi)], [unbalance * np.cos(phi), p["rotor_inertia"]]]
-        right = [unbalance * w * w * np.sin(phi) - p["box_damping"] * v - p["box_stiffness"] * y + force, K * current]
+        force = (
+            p["box_force"]
+            + p["box_force_1"] * t
+            + p["box_force_2"] * t**2 / 2
+            + p["box_force_3"] * t**3 / 6
+        )
+        matrix = [
+            [p["box_mass"], unbalance * np.cos(phi)],
+            [unbalance * np.cos(phi), p["rotor_inertia"]],
+        ]
+        right = [
+            unbalance * w * w * np.sin(phi) - p["box_damping"] * v - p["box_stiffness"] * y + force,
+            K * current,
+        ]
         a, b = np.linalg.solve(matrix, right)
         return [v, a, w, b, (p["voltage"] - R * current - K * w) / L if L else 0.0, K * current * w]
 
@@ -43,5 +54,7 @@ def right_hand_side(values):
 
 def solve(values, start, stop):
     """State at ``stop`` from ``start`` = (y, y', phi, phi', i) at 0, and the motor's work."""
-    found = solve_ivp(right_hand_side(values), (0.0, stop), [*start, 0.0], method="DOP853", rtol=1e-13, atol=1e-15)
+    found = solve_ivp(
+        right_hand_side(values), (0.0, stop), [*start, 0.0], method="DOP853", rtol=1e-13, atol=1e-15
+    )
     return found.y[:, -1]
