@@ -1,0 +1,4 @@
+"""Names of the models."""
+
+OSCILLATOR = "TwoMassImpactOscillator"
+SHAKER = "MotorShaker"

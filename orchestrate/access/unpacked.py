@@ -1,0 +1,102 @@
+"""Where FMUs are unpacked: one temporary folder a process, removed at its end, or by the next process where it was killed."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import hashlib
+import io
+import os
+import re
+import shutil
+import sys
+import tempfile
+import threading
+from pathlib import Path
+
+from ..errors import InputError
+from .description import Description
+
+PREFIX = "vibroimpact-fmu-"
+_lock = threading.RLock()
+_folders: dict[int, Path] = {}  # by process: a forked child makes its own
+
+
+def unpacked(description: Description) -> Path:
+    """The folder with an FMU's files; unpacked once in a process.
+
+    Raises
+    ------
+    InputError
+        Where the file is not the one described any more.
+    """
+    with _lock:
+        folder = process_folder() / description.digest[:32]
+        if not folder.is_dir():
+            data = description.path.read_bytes()
+            if hashlib.sha256(data).hexdigest() != description.digest:
+                text = f"FMU {description.path}: it has changed since it was read"
+                raise InputError(f"{text}; expected a file that stays")
+            unpack(data, folder)
+        return folder
+
+
+def unpack(data: bytes, folder: Path) -> None:
+    """Unpack whole or not at all."""
+    import fmpy
+
+    partial = folder.with_suffix(".partial")
+    try:
+        fmpy.extract(io.BytesIO(data), partial)
+        partial.rename(folder)
+    except BaseException:
+        shutil.rmtree(partial, ignore_errors=True)
+        raise
+
+
+def process_folder() -> Path:
+    """This process's folder, made at the first call."""
+    pid = os.getpid()
+    folder = _folders.get(pid)
+    if folder is None or not folder.is_dir():
+        remove_leftovers(Path(tempfile.gettempdir()))
+        folder = _folders[pid] = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{pid}-"))
+        atexit.register(remove, folder, pid)
+    return folder
+
+
+def remove(folder: Path, pid: int) -> None:
+    """Remove a folder at the end of the process that made it, but not at the end of one forked from it."""
+    if os.getpid() == pid:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def remove_leftovers(parent: Path) -> None:
+    """Remove this user's folders whose processes are gone: killed ones do not clean up."""
+    for folder in parent.glob(f"{PREFIX}*"):
+        match = re.match(rf"{PREFIX}(\d+)-", folder.name)
+        with contextlib.suppress(OSError):
+            if match and is_mine(folder) and not is_alive(int(match[1])):
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def is_mine(folder: Path) -> bool:
+    """Whether it is a folder, not a link to one, and this user's."""
+    return (
+        folder.is_dir()
+        and not folder.is_symlink()
+        and (sys.platform == "win32" or folder.lstat().st_uid == os.getuid())
+    )
+
+
+def is_alive(pid: int) -> bool:
+    """Whether there is such a process. Windows has no such question without harm: there it is always yes."""
+    if sys.platform == "win32":
+        return True
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        pass
+    return True
