@@ -1,0 +1,327 @@
+"""The house in order: each floor knows only those below it, dynamic imports counted.
+
+An import is seen wherever it stands: at the top, inside a function, by ``import_module``, or as the
+name of a module of ours in a string (``python -m ...``, an entry point). An import by a name that
+is put together at run time cannot be read, so it is not allowed outside the places named here.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+OURS = ("fmu_src", "orchestrate", "tools")
+FILES = sorted(
+    path.relative_to(ROOT).as_posix() for name in OURS for path in (ROOT / name).rglob("*.py")
+)
+BELOW_ANSWERS = {"errors", "structures", "access", "running"}
+FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know beside itself
+    "errors": set(),
+    "version": set(),
+    "structures": {"errors"},
+    "access": {"errors", "structures"},
+    "running": {"errors", "version"},
+    "response": BELOW_ANSWERS,
+    "dynamics": BELOW_ANSWERS | {"response"},
+    "weak_drive": BELOW_ANSWERS | {"response", "dynamics"},
+    "figures": {"errors", "running"},
+    "paper": BELOW_ANSWERS | {"version", "response", "dynamics", "figures"},
+    "__init__": BELOW_ANSWERS | {"version", "response", "dynamics", "weak_drive"},
+    "cli": BELOW_ANSWERS | {"__init__", "version", "weak_drive", "figures", "paper"},
+    "__main__": {"cli"},
+}
+PARTS: dict[str, set[str]] = {  # and of fmu_src
+    "kernels.numerics": set(),
+    "kernels.oscillator": {"kernels.numerics"},
+    "kernels.shaker": {"kernels.numerics"},
+    "runtime": set(),
+    "models": {"kernels.oscillator", "kernels.shaker", "runtime"},
+    "export": {"runtime"},
+}
+DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/compile_kernel.py"}
+ONLY_IN = {  # packages of others, and the one place of ours that may know them
+    "fmpy": "orchestrate/access/",
+    "matplotlib": "orchestrate/figures/",
+    "loky": "orchestrate/running/",
+    "distributed": "orchestrate/running/",
+    "sqlite3": "orchestrate/running/",
+    "tqdm": "orchestrate/running/",
+    "argparse": ("orchestrate/cli/", "tools/"),
+    "platformdirs": "orchestrate/access/",
+    "pythonfmu": ("fmu_src/export/", "fmu_src/runtime/"),
+    "numba": "fmu_src/export/",
+    "llvmlite": "fmu_src/export/",
+    "ziglang": "fmu_src/export/",
+}
+
+
+@functools.cache
+def tree_of(file: str) -> ast.Module:
+    """Syntax tree of a source file."""
+    return ast.parse((ROOT / file).read_text(encoding="utf-8"), file)
+
+
+def module_name(file: str) -> str:
+    """Dotted name of a source file's module."""
+    return file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+
+
+def called(node: ast.AST) -> str:
+    """Name of the function in a call."""
+    if not isinstance(node, ast.Call):
+        return ""
+    return getattr(node.func, "attr", getattr(node.func, "id", ""))
+
+
+def docstrings(tree: ast.AST) -> set[ast.AST]:
+    """The nodes that are docstrings."""
+    found: set[ast.AST] = set()
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list) and body and isinstance(body[0], ast.Expr):
+            found.add(body[0].value)
+    return found
+
+
+def imports(tree: ast.Module, file: str) -> Iterator[str]:
+    """Absolute names of all that a file imports, wherever and however."""
+    package = file.split("/")[:-1]
+    texts = docstrings(tree)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            stem = ".".join([*base, *([node.module] if node.module else [])])
+            yield from (f"{stem}.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.Constant) and node not in texts:
+            yield from named(node.value)
+        if called(node) in ("import_module", "__import__"):
+            yield from dynamic(node)  # type: ignore[arg-type]
+
+
+def named(value: object) -> Iterator[str]:
+    """The module of ours that a string names, as in ``-m orchestrate.cli`` or an entry point."""
+    name = value.partition(":")[0] if isinstance(value, str) else ""
+    words = name.split(".")
+    if len(words) > 1 and words[0] in OURS and all(word.isidentifier() for word in words):
+        yield name
+
+
+def dynamic(call: ast.Call) -> Iterator[str]:
+    """What ``import_module`` imports; ``?`` where that cannot be read."""
+    argument = call.args[0] if call.args else None
+    yield argument.value if isinstance(argument, ast.Constant) else "?"
+
+
+def uses(file: str, package: str) -> bool:
+    """Whether a file imports a package."""
+    names = imports(tree_of(file), file)
+    return any(name == package or name.startswith(f"{package}.") for name in names)
+
+
+def users(package: str) -> set[str]:
+    """The files that import a package."""
+    return {file for file in FILES if uses(file, package)}
+
+
+def part_of(name: str) -> str:
+    """The floor, or the part of ``fmu_src``, that a dotted name of ours belongs to."""
+    root, *rest = name.split(".")
+    if root == "orchestrate":
+        return rest[0] if rest and rest[0] in FLOORS else "__init__"
+    if rest[:1] == ["kernels"]:
+        return ".".join(rest[:2])
+    return rest[0] if rest else ""
+
+
+def test_the_reader_of_imports_sees_all_kinds():
+    text = (
+        "import a.b\nfrom c import d\nfrom ..e import f\nfrom . import g\n"
+        "def h():\n    import i\n    __import__('j')\n    import_module(f'k.{a}')\n"
+        "COMMAND = ['-m', 'orchestrate.cli']\nENTRY = 'orchestrate.cli:main'\n"
+        "def k():\n    'orchestrate.paper'\n"
+    )
+    found = set(imports(ast.parse(text), "orchestrate/figures/x.py"))
+    expected = {"a.b", "c.d", "orchestrate.e.f", "orchestrate.figures.g", "i", "j", "?"}
+    assert found == expected | {"orchestrate.cli"}
+    assert len(FILES) > 80
+
+
+@pytest.mark.parametrize("file", [file for file in FILES if file.startswith("orchestrate/")])
+def test_a_floor_knows_only_those_below(file):
+    mine = part_of(module_name(file))
+    known = {part_of(n) for n in imports(tree_of(file), file) if n.split(".")[0] == "orchestrate"}
+    assert known <= FLOORS[mine] | {mine}
+
+
+@pytest.mark.parametrize("file", [file for file in FILES if file.startswith("fmu_src/")])
+def test_a_part_of_the_fmus_knows_only_what_it_is_made_of(file):
+    mine = part_of(module_name(file))
+    known = {part_of(n) for n in imports(tree_of(file), file) if n.split(".")[0] == "fmu_src"}
+    assert known <= PARTS.get(mine, set()) | {mine, ""}
+
+
+def test_the_fmus_know_nothing_of_their_use():
+    assert not {file for file in users("orchestrate") if file.startswith("fmu_src/")}
+
+
+def test_the_sources_of_the_fmus_are_known_in_two_places():
+    found = {file for file in users("fmu_src") if file.startswith("orchestrate/")}
+    assert found == {"orchestrate/access/exported.py", "orchestrate/structures/ranges.py"}
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_imports_can_be_read(file):
+    if file not in DYNAMIC:
+        assert "?" not in imports(tree_of(file), file)
+
+
+@pytest.mark.parametrize("package", ONLY_IN)
+def test_a_package_of_others_is_known_in_one_place(package):
+    places = ONLY_IN[package]
+    assert [file for file in users(package) if not file.startswith(places)] == []
+
+
+def test_commands_do_not_know_each_other():
+    commands = {
+        path.stem
+        for path in (ROOT / "orchestrate" / "cli").glob("*.py")
+        if path.stem not in ("__init__", "options", "output")
+    }
+    assert {"build", "sweep", "paper"} <= commands
+    for command in commands:
+        file = f"orchestrate/cli/{command}.py"
+        names = {n.split(".")[2] for n in imports(tree_of(file), file) if ".cli." in n}
+        assert not names & commands, file
+
+
+def test_figures_take_files_from_the_runner_and_nothing_else():
+    for file in FILES:
+        if file.startswith("orchestrate/figures/"):
+            names = {n for n in imports(tree_of(file), file) if n.startswith("orchestrate.running")}
+            assert all(n.startswith("orchestrate.running.files") for n in names), file
+
+
+def test_a_kernel_imports_math_and_its_own_modules_alone():
+    for file in FILES:
+        if file.startswith("fmu_src/kernels/"):
+            names = imports(tree_of(file), file)
+            assert all(n == "math" or n.startswith("fmu_src.kernels.") for n in names), file
+
+
+def test_the_build_folder_is_no_package():
+    assert (ROOT / "build").is_dir()
+    assert not list((ROOT / "build").glob("*.py"))
+
+
+def definitions(tree: ast.AST) -> Iterator[ast.AST]:
+    """Public functions, methods and classes, those inside functions left out."""
+    stack: list[ast.AST] = [tree]
+    while stack:
+        for node in ast.iter_child_nodes(stack.pop()):
+            if isinstance(node, ast.ClassDef):
+                stack.append(node)
+            if isinstance(node, (*FUNCTIONS, ast.ClassDef)) and not node.name.startswith("_"):
+                yield node
+
+
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_functions_are_short(file):
+    lengths = {
+        node.name: (node.end_lineno or 0) - node.body[0].lineno + 1 - has_docstring(node)
+        for node in ast.walk(tree_of(file))
+        if isinstance(node, FUNCTIONS)
+    }
+    assert {name: length for name, length in lengths.items() if length > 45} == {}
+
+
+def has_docstring(node: ast.AST) -> int:
+    """Lines of a function's docstring."""
+    if ast.get_docstring(node) is None:  # type: ignore[arg-type]
+        return 0
+    text = node.body[0]  # type: ignore[attr-defined]
+    return text.end_lineno - text.lineno + 1
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_all_that_is_public_has_a_docstring(file):
+    tree = tree_of(file)
+    assert ast.get_docstring(tree), "the module has none"
+    assert [node.name for node in definitions(tree) if not ast.get_docstring(node)] == []
+
+
+def described(docstring: str | None) -> list[str] | None:
+    """Names in the ``Parameters`` section of a numpydoc docstring, None without one."""
+    lines = (docstring or "").splitlines()
+    heads = zip(lines[:-1], lines[1:], strict=True)
+    begin = next(
+        (i for i, (a, b) in enumerate(heads) if a == "Parameters" and b.startswith("---")), None
+    )
+    if begin is None:
+        return None
+    names: list[str] = []
+    for line, after in zip(lines[begin + 2 :], [*lines[begin + 3 :], ""], strict=True):
+        if after.startswith("---"):
+            break
+        if line and not line.startswith(" "):
+            names += [name.strip().lstrip("*") for name in line.split(" : ")[0].split(",")]
+    return names
+
+
+def taken(node: ast.AST) -> list[str]:
+    """Names of the arguments of a function or a constructor, or of a dataclass's fields."""
+    if isinstance(node, ast.ClassDef):
+        own = [part for part in node.body if isinstance(part, FUNCTIONS)]
+        made = next((part for part in own if part.name == "__init__"), None)
+        if made is None:
+            fields = (part for part in node.body if isinstance(part, ast.AnnAssign))
+            return [part.target.id for part in fields if isinstance(part.target, ast.Name)]
+        node = made
+    given = node.args  # type: ignore[attr-defined]
+    every = [*given.posonlyargs, *given.args, *filter(None, [given.vararg])]
+    every += [*given.kwonlyargs, *filter(None, [given.kwarg])]
+    return [argument.arg for argument in every if argument.arg not in ("self", "cls")]
+
+
+def test_the_reader_of_docstrings():
+    text = (
+        "Idea.\n\nParameters\n----------\na, b : int\n    Two.\n*c : str\n\nReturns\n-------\nd\n"
+    )
+    assert described(text) == ["a", "b", "c"]
+    assert described("Idea.") is None
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_described_parameters_are_the_arguments(file):
+    wrong = {}
+    for node in definitions(tree_of(file)):
+        names = described(ast.get_docstring(node))  # type: ignore[arg-type]
+        if names is not None and names != taken(node):
+            wrong[node.name] = (names, taken(node))  # type: ignore[attr-defined]
+    assert wrong == {}
+
+
+ANNOTATED = [
+    file for file in FILES if file.startswith(("orchestrate/", "fmu_src/export/", "tools/"))
+]
+
+
+@pytest.mark.parametrize("file", ANNOTATED)
+def test_every_function_is_annotated(file):
+    bare = []
+    for node in ast.walk(tree_of(file)):
+        if isinstance(node, FUNCTIONS):
+            given = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+            named = [a for a in given if a.arg not in ("self", "cls")]
+            if node.returns is None or any(a.annotation is None for a in named):
+                bare.append(node.name)
+    assert [name for name in bare if not (name.startswith("__") and name != "__init__")] == []
