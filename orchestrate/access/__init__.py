@@ -1,4 +1,18 @@
-"""The one place that talks to FMPy: FMUs described, found, exported, instantiated, stepped and read."""
+"""The one place that talks to FMPy.
+
+====================  =============================================================================
+module                idea
+====================  =============================================================================
+:mod:`.description`   what an FMU says of itself
+:mod:`.exported`      the FMUs of the present sources: exported where missing, and found
+:mod:`.models`        names of the models
+:mod:`.unpacked`      where FMUs are unpacked, once a process
+:mod:`.instance`      a co-simulation instance: set, step, read, save its state
+:mod:`.events`        a motion impact by impact
+:mod:`.begin`         how a motion begins, and its states at equal times
+:mod:`.channel`       fast calls on one instance, for co-simulation masters
+====================  =============================================================================
+"""
 
 from .begin import REST, begin, sampled
 from .channel import Channel

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -33,7 +31,8 @@ def begin(
     start : array-like of 4 floats
         x1, x2 in m, v1, v2 in m/s.
     **values
-        Further start values and inputs, by the FMU's names. ``x_rel_max`` is off unless asked for here.
+        Further start values and inputs, by the FMU's names. ``x_rel_max`` is off unless asked for
+        here (``x_rel_max_on=True``).
     """
     state = dict(zip(STARTS, map(float, np.asarray(start)), strict=True))
     given = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}

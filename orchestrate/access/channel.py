@@ -1,6 +1,7 @@
-"""Fast calls on one instance: preallocated arrays, one call for many variables, one handle for each kept state.
+"""Fast calls on one instance, for co-simulation masters.
 
-Only Real variables. Both FMI versions; statuses are checked by FMPy.
+Preallocated arrays, one call for many variables, one handle for each state that is kept. Only Real
+variables. Both FMI versions; statuses are checked by FMPy.
 """
 
 from __future__ import annotations

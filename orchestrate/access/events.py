@@ -1,7 +1,8 @@
-"""A motion impact by impact: the FMI 3.0 form returns early from a step at each impact, at its exact time.
+"""A motion impact by impact.
 
-Between impacts the motion does not depend on the steps, so states sampled in a second run belong to the same motion
-to the last bit.
+The FMI 3.0 form returns early from a step at each impact, at its exact time. Between impacts the
+motion does not depend on the steps, so states sampled in a second run belong to the same motion to
+the last bit.
 """
 
 from __future__ import annotations

@@ -66,8 +66,8 @@ def build(
                 reasons.append(f"{form}/{name}.fmu: {reason}")
     if reasons and not written:
         raise InputError(f"{reasons[0]}; expected an installation of vibroimpact[build]")
-    for reason in reasons:
-        log.warning("%s", reason)
+    for line in reasons:
+        log.warning("%s", line)
     return written
 
 
@@ -201,8 +201,8 @@ def find(
     form : str
         Of ``FORMS``; where no native FMU can be made here, the one by pythonfmu serves instead.
     folder : path-like, optional
-        Build folder to look in and to export to. By default that of a clone; without a clone, the FMUs that came
-        with the package, and the user's cache folder.
+        Build folder to look in and to export to. By default that of a clone; without a clone, the
+        FMUs that came with the package, and the user's cache folder.
     fmu : path-like, optional
         The user's own FMU, taken as it is.
 
@@ -243,8 +243,8 @@ def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
     Parameters
     ----------
     running : mapping
-        ``fmu``: the user's own FMU, or a mapping of model names to them. ``build_folder``: as ``folder`` of
-        :func:`find`.
+        ``fmu``: the user's own FMU, or a mapping of model names to them. ``build_folder``: as
+        ``folder`` of :func:`find`.
 
     Returns
     -------

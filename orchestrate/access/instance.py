@@ -1,4 +1,4 @@
-"""A co-simulation instance: set, step, read, save its state; the FMU's own words where it refuses."""
+"""A co-simulation instance: set, step, read, save its state."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ class Instance:
 
     Notes
     -----
-    Every status but OK raises :class:`FmuError` with what the FMU logged, a discarded step too: importers' own
-    loops may take that for the end of the simulation.
+    Every status but OK raises :class:`FmuError` with what the FMU logged, a discarded step too:
+    importers' own loops may take that for the end of the simulation.
 
     Examples
     --------
@@ -178,8 +178,8 @@ class Instance:
         Parameters
         ----------
         *names : str
-            The name of a series (``x1_sample``) stands for all its elements: indexed scalars in FMI 2.0, one array
-            in FMI 3.0.
+            The name of a series (``x1_sample``) stands for all its elements: indexed scalars in
+            FMI 2.0, one array in FMI 3.0.
 
         Returns
         -------
@@ -205,8 +205,12 @@ class Instance:
         values = (c_double * sum(length for _, length in found))()
         arguments = [self._fmu.component, references, len(found), values]
         if self.is_fmi3:
-            return self._fmu.fmi3GetFloat64, [*arguments, len(values)], np.frombuffer(values)
-        return self._fmu.fmi2GetReal, arguments, np.frombuffer(values)
+            return (
+                self._fmu.fmi3GetFloat64,
+                [*arguments, len(values)],
+                np.ctypeslib.as_array(values),
+            )
+        return self._fmu.fmi2GetReal, arguments, np.ctypeslib.as_array(values)
 
     def elements(self, name: str) -> list[tuple[Any, int]]:
         """Variables a name stands for, each with its number of values."""

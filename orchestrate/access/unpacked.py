@@ -1,4 +1,7 @@
-"""Where FMUs are unpacked: one temporary folder a process, removed at its end, or by the next process where it was killed."""
+"""Where FMUs are unpacked: a temporary folder of the process.
+
+It is removed at the end of the process; where that was killed, at the start of another one.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,7 @@ import threading
 from pathlib import Path
 
 from ..errors import InputError
+from ..running.files import alive
 from .description import Description
 
 PREFIX = "vibroimpact-fmu-"
@@ -55,7 +59,7 @@ def unpack(data: bytes, folder: Path) -> None:
 
 
 def process_folder() -> Path:
-    """This process's folder, made at the first call."""
+    """The folder of this process, made at the first call."""
     pid = os.getpid()
     folder = _folders.get(pid)
     if folder is None or not folder.is_dir():
@@ -66,7 +70,7 @@ def process_folder() -> Path:
 
 
 def remove(folder: Path, pid: int) -> None:
-    """Remove a folder at the end of the process that made it, but not at the end of one forked from it."""
+    """Remove a folder at the end of the process that made it, not of one forked from it."""
     if os.getpid() == pid:
         shutil.rmtree(folder, ignore_errors=True)
 
@@ -76,7 +80,7 @@ def remove_leftovers(parent: Path) -> None:
     for folder in parent.glob(f"{PREFIX}*"):
         match = re.match(rf"{PREFIX}(\d+)-", folder.name)
         with contextlib.suppress(OSError):
-            if match and is_mine(folder) and not is_alive(int(match[1])):
+            if match and is_mine(folder) and not alive(int(match[1])):
                 shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -87,16 +91,3 @@ def is_mine(folder: Path) -> bool:
         and not folder.is_symlink()
         and (sys.platform == "win32" or folder.lstat().st_uid == os.getuid())
     )
-
-
-def is_alive(pid: int) -> bool:
-    """Whether there is such a process. Windows has no such question without harm: there it is always yes."""
-    if sys.platform == "win32":
-        return True
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        pass
-    return True

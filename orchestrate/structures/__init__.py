@@ -1,7 +1,29 @@
-"""What a user describes: a structure, its excitation, a motor with a box; SI or non-dimensional."""
+"""What a user describes: a structure, its excitation, a motor with a box; SI or non-dimensional.
+
+==================  ===============================================================================
+module              idea
+==================  ===============================================================================
+:mod:`.structure`   two oscillators and their contact
+:mod:`.excitation`  the harmonic motion of the box
+:mod:`.drive`       a motor with an unbalance, and the box that it shakes
+:mod:`.ranges`      names, units, defaults and ranges, from the FMUs' variable tables
+:mod:`.files`       TOML files of these, and the sets that come with the package
+:mod:`.sections`    what stands in their sections
+==================  ===============================================================================
+"""
 
 from .drive import Drive
 from .excitation import Excitation
+from .files import SETS, read, resolve, write
 from .structure import PARAMETERS, Structure
 
-__all__ = ["PARAMETERS", "Drive", "Excitation", "Structure"]
+__all__ = [
+    "PARAMETERS",
+    "SETS",
+    "Drive",
+    "Excitation",
+    "Structure",
+    "read",
+    "resolve",
+    "write",
+]

@@ -1,4 +1,4 @@
-"""A motor with an unbalance on a box on springs: what shakes a structure where its power is limited."""
+"""A motor with an unbalance on a box on springs: it shakes a structure with limited power."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names, units, defaults and ranges of all that a user describes, from the FMUs' own variable tables."""
+"""Names, units, defaults and ranges of what a user describes, from the FMUs' variable tables."""
 
 from __future__ import annotations
 
@@ -169,8 +169,8 @@ def made_of(given: Mapping[str, float], make: Callable[[], Described]) -> Descri
 def recover(guess: float, forward: Callable[[float], float], target: float) -> float:
     """The number that ``forward`` turns into ``target`` to the last bit.
 
-    Division does not undo a multiplication exactly. Of the few numbers about ``guess`` that give the
-    target, the one with the fewest digits is taken: it is the one that somebody wrote down.
+    Division does not undo a multiplication exactly. Of the few numbers about ``guess`` that give
+    the target, the one with the fewest digits is taken: it is the one that somebody wrote down.
 
     Examples
     --------

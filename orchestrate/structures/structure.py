@@ -242,9 +242,9 @@ class Structure:
         Parameters
         ----------
         **changes
-            SI names leave all other SI values as they are. Of the paper's numbers, ``mu`` keeps m1 and the
-            damping ratios, ``omega`` keeps m1 and all ratios, the others change one SI value each;
-            ``D`` sets D1 and D2. SI names are taken first.
+            SI names leave all other SI values as they are. Of the paper's numbers, ``mu`` keeps m1
+            and the damping ratios, ``omega`` keeps m1 and all ratios, the others change one SI
+            value each; ``D`` sets D1 and D2. SI names are taken first.
 
         Examples
         --------
@@ -267,7 +267,7 @@ class Structure:
         new = {k: v for k, v in fixed.by_ratios(ratios).items() if k not in changes}
         return made_of(ratios, lambda: dataclasses.replace(fixed, **new))
 
-    def by_ratios(self, ratios: dict[str, float]) -> dict[str, float]:
+    def by_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
         """The SI values that change where the paper's numbers ``ratios`` are set."""
         both = {"D1": ratios["D"], "D2": ratios["D"]} if "D" in ratios else {}
         given = {**ratios, **both}

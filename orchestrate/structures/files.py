@@ -1,0 +1,187 @@
+"""TOML files that describe a structure, its excitation, a motor and a box; and the shipped sets.
+
+================  ================================================================================
+section           keys
+================  ================================================================================
+``[structure]``   SI: ``m1 m2 k1 k2 d1 d2``; or the paper's numbers: ``mu kappa`` and ``D``, or
+                  ``D1 D2``, which ``m1`` and one of ``omega_hz omega_rad_s omega_rpm`` scale;
+                  with both: ``e gamma bonded``
+``[excitation]``  one of ``frequency_hz frequency_rad_s frequency_rpm eta``; one of ``amplitude``
+                  (m) and ``acceleration_g`` (peak, in 9.80665 m/s^2), which may be left out with
+                  ``eta``: 1/eta^2 m; ``phase`` (rad)
+``[motor]``       ``unbalance_mass unbalance_radius rotor_inertia motor_constant
+                  armature_resistance armature_inductance``, SI; or ``beta epsilon b``
+``[box]``         ``box_mass box_stiffness box_damping``, SI; or ``Omega_b D_b``. What is not SI
+                  refers to the structure.
+================  ================================================================================
+
+What may be left out has the default of its class.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError
+from .drive import Drive
+from .excitation import Excitation
+from .ranges import DRIVE, STRUCTURE, one_of
+from .sections import Section, read_drive, read_excitation, read_structure
+from .structure import Structure
+
+FOLDER = Path(__file__).parent / "sets"
+SETS = {name: FOLDER / f"{name}.toml" for name in ("paper", "quick", "beam")}
+SECTIONS = ("structure", "excitation", "motor", "box")
+
+Described = Structure | Excitation | Drive
+
+
+def resolve(source: str | PathLike[str]) -> Path:
+    """The file of a shipped set's name or of a path.
+
+    Raises
+    ------
+    InputError
+        Where there is neither.
+
+    Examples
+    --------
+    >>> resolve("beam").name
+    'beam.toml'
+    """
+    if str(source) in SETS:
+        return SETS[str(source)]
+    path = Path(source)
+    if not path.is_file():
+        what = "a folder" if path.is_dir() else "no such file"
+        expected = one_of(str(source), SETS).replace("expected", "expected a TOML file or")
+        raise InputError(f"{source}: {what}; {expected}")
+    return path
+
+
+def read(source: str | PathLike[str], structure: Structure | None = None) -> dict[str, Described]:
+    """Read all that a file describes.
+
+    Parameters
+    ----------
+    source : path-like
+        A TOML file, or the name of a shipped set.
+    structure : Structure, optional
+        What non-dimensional numbers refer to where the file has no ``[structure]``.
+
+    Returns
+    -------
+    dict
+        Of the keys ``"structure"``, ``"excitation"`` and ``"drive"`` those that the file has.
+
+    Raises
+    ------
+    InputError
+        Where something is wrong in it: file, section, key, value and what is expected.
+
+    Examples
+    --------
+    >>> sorted(read("quick"))
+    ['drive', 'structure']
+    """
+    path = resolve(source)
+    tables = parse(path)
+    for name, values in tables.items():
+        if name not in SECTIONS:
+            raise InputError(f"{path}: {name}: no section; {one_of(name, SECTIONS)}")
+        if not isinstance(values, dict):
+            raise InputError(f"{path}: {name} = {values!r}: expected a section [{name}]")
+    sections = {name: Section(path, name, values) for name, values in tables.items()}
+    found: dict[str, Described] = {}
+    if "structure" in sections:
+        found["structure"] = structure = read_structure(sections["structure"])
+    if "excitation" in sections:
+        found["excitation"] = read_excitation(sections["excitation"], structure)
+    if sections.keys() & {"motor", "box"}:
+        for name in {"motor", "box"} - sections.keys():
+            raise InputError(f"{path}: no section [{name}]; expected [motor] and [box] together")
+        found["drive"] = read_drive(sections["motor"], sections["box"], structure)
+    return found
+
+
+def read_section(
+    source: str | PathLike[str], name: str, structure: Structure | None = None
+) -> Described:
+    """Read one thing that a file describes, ``"structure"``, ``"excitation"`` or ``"drive"``."""
+    found = read(source, structure)
+    if name not in found:
+        expected = "[motor] and [box]" if name == "drive" else f"[{name}]"
+        raise InputError(f"{source}: describes no {name}; expected {expected}")
+    return found[name]
+
+
+def parse(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file."""
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        reason = error.strerror or str(error)
+    except ValueError as error:  # of the syntax, or of the encoding
+        reason = str(error).splitlines()[0]
+    raise InputError(f"{path}: not readable as TOML ({reason}); expected sections and key = value")
+
+
+def write(
+    path: str | PathLike[str],
+    *,
+    structure: Structure | None = None,
+    excitation: Excitation | None = None,
+    drive: Drive | None = None,
+) -> Path:
+    """Write a file that :func:`read` gives back to the last bit; SI units.
+
+    Parameters
+    ----------
+    path : path-like
+    structure, excitation, drive
+        What is to be in it.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    StoreError
+        Where it cannot be written; what stood there before still does.
+    """
+    from ..running.files import write_whole
+
+    tables: dict[str, Mapping[str, float | bool]] = {}
+    if structure is not None:
+        tables["structure"] = structure.parameters()
+    if excitation is not None:
+        phase, amplitude = excitation.phase, excitation.amplitude
+        frequency = {"frequency_rad_s": excitation.frequency}
+        tables["excitation"] = {**frequency, "amplitude": amplitude, "phase": phase}
+    if drive is not None:
+        values = drive.parameters()
+        box = {name: values.pop(name) for name in list(values) if name.startswith("box_")}
+        tables |= {"motor": values, "box": box}
+    text = "\n".join(toml_table(name, values) for name, values in tables.items())
+    return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
+
+
+def toml_table(name: str, values: Mapping[str, float | bool]) -> str:
+    """One section as TOML, with the meaning of each key."""
+    described = {**STRUCTURE, **DRIVE}
+    lines = [f"[{name}]"]
+    for key, value in values.items():
+        line = f"{key} = {str(value).lower() if isinstance(value, bool) else repr(value)}"
+        quantity = described.get(key)
+        note = f"  # {quantity.description}, {quantity.unit}" if quantity else ""
+        lines.append(line + note.removesuffix(", 1"))
+    return "\n".join([*lines, ""])

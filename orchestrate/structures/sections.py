@@ -1,0 +1,191 @@
+"""Sections of a TOML file, read key by key: what is wrong is said with file, section and key."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from ..errors import InputError
+from .drive import Drive
+from .excitation import Excitation
+from .ranges import (
+    DRIVE,
+    EXCITATION,
+    LARGEST,
+    NUMBERS,
+    SMALLEST,
+    STRUCTURE,
+    Quantity,
+    check_flag,
+    one_of,
+)
+from .structure import Structure
+
+GRAVITY = 9.80665  # m/s^2, by definition
+TO_RAD_S: dict[str, Callable[[float], float]] = {
+    "hz": lambda value: 2.0 * math.pi * value,
+    "rad_s": lambda value: value,
+    "rpm": lambda value: 2.0 * math.pi * value / 60.0,
+}
+COMMON = ("e", "gamma", "bonded")
+SI_STRUCTURE = ("m1", "m2", "k1", "k2", "d1", "d2")
+OMEGAS = tuple(f"omega_{unit}" for unit in TO_RAD_S)
+RATIOS = ("mu", "kappa", "D", "D1", "D2", *OMEGAS)
+FREQUENCIES = (*(f"frequency_{unit}" for unit in TO_RAD_S), "eta")
+AMPLITUDES = ("amplitude", "acceleration_g")
+SI_BOX = tuple(name for name in DRIVE if name.startswith("box_"))
+SI_MOTOR = tuple(name for name in DRIVE if name not in SI_BOX)
+MOTOR_NUMBERS, BOX_NUMBERS = ("beta", "epsilon", "b"), ("Omega_b", "D_b")
+QUANTITIES = {
+    **{q.name: q for q in (*STRUCTURE.values(), *EXCITATION.values(), *DRIVE.values())},
+    **NUMBERS,
+    **{
+        f"{what}_{unit}": Quantity(f"{what}_{unit}", "1", "", SMALLEST, LARGEST)
+        for what in ("omega", "frequency")
+        for unit in TO_RAD_S
+    },
+    "acceleration_g": Quantity("acceleration_g", "1", "", 0.0, LARGEST),
+}
+Described = TypeVar("Described")
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section's keys and values, and where they stand."""
+
+    path: Path
+    name: str
+    values: dict[str, Any]
+
+    def error(self, key: str, text: str) -> InputError:
+        """A mistake at a key."""
+        value = f" = {self.values[key]!r}" if key in self.values else ""
+        return InputError(f"{self.path}: {self.name}.{key}{value}: {text}")
+
+    def allow(self, *known: str) -> None:
+        """See that there are no other keys."""
+        for key in self.values:
+            if key not in known:
+                raise self.error(key, f"no key of [{self.name}]; {one_of(key, known)}")
+
+    def given(self, keys: Collection[str]) -> list[str]:
+        """Those of the keys that are there."""
+        return [key for key in keys if key in self.values]
+
+    def either(self, first: Collection[str], second: Collection[str]) -> bool:
+        """Whether there are keys of the second kind; there may not be both kinds."""
+        one, two = self.given(first), self.given(second)
+        if one and two:
+            kinds = f"{', '.join(first)}, or {', '.join(second)}"
+            raise self.error(two[0], f"beside {one[0]}; expected keys of one kind: {kinds}")
+        return bool(two)
+
+    def at_most_one(self, keys: Collection[str]) -> str | None:
+        """The one of the keys that is there."""
+        found = self.given(keys)
+        if len(found) > 1:
+            raise self.error(found[1], f"beside {found[0]}; expected one of {', '.join(keys)}")
+        return found[0] if found else None
+
+    def exactly_one(self, keys: Collection[str]) -> str:
+        """The one of the keys that has to be there."""
+        found = self.at_most_one(keys)
+        if found is None:
+            raise InputError(f"{self.path}: [{self.name}]: expected one of {', '.join(keys)}")
+        return found
+
+    def need(self, keys: Collection[str]) -> None:
+        """See that all of the keys are there."""
+        for key in keys:
+            if key not in self.values:
+                raise self.error(key, f"missing; expected all of {', '.join(keys)}")
+
+    def number(self, key: str) -> float:
+        """The number at a key, in its range."""
+        try:
+            return QUANTITIES[key].check(self.values[key])
+        except InputError as error:
+            raise InputError(f"{self.path}: {self.name}.{error}") from None
+
+    def numbers(self, keys: Collection[str]) -> dict[str, float]:
+        """The numbers at those of the keys that are there."""
+        return {key: self.number(key) for key in self.given(keys)}
+
+    def rad_s(self, key: str) -> float:
+        """The frequency at a key whose ending says the unit, rad/s."""
+        what, _, unit = key.partition("_")
+        return TO_RAD_S[unit](self.number(key))
+
+    def make(self, maker: Callable[[], Described]) -> Described:
+        """What ``maker`` makes, its complaints with the section's name."""
+        try:
+            return maker()
+        except InputError as error:
+            raise InputError(f"{self.path}: [{self.name}]: {error}") from None
+
+
+def read_structure(section: Section) -> Structure:
+    """The structure of ``[structure]``."""
+    section.allow(*COMMON, *SI_STRUCTURE, *RATIOS)
+    values: dict[str, Any] = section.numbers(("e", "gamma"))
+    if "bonded" in section.values:
+        try:
+            values["bonded"] = check_flag("bonded", section.values["bonded"])
+        except InputError as error:
+            raise InputError(f"{section.path}: {section.name}.{error}") from None
+    if not section.either(SI_STRUCTURE[1:], RATIOS):
+        values |= section.numbers(SI_STRUCTURE)
+        return section.make(lambda: Structure(**values))
+    if section.either(("D",), ("D1", "D2")):
+        section.need(("D1", "D2"))
+    values |= section.numbers(("m1", "mu", "kappa", "D", "D1", "D2"))
+    omega = section.at_most_one(OMEGAS)
+    if omega:
+        values["omega"] = section.rad_s(omega)
+    return section.make(lambda: Structure.nondimensional(**values))
+
+
+def read_excitation(section: Section, structure: Structure | None) -> Excitation:
+    """The excitation of ``[excitation]``."""
+    section.allow(*FREQUENCIES, *AMPLITUDES, "phase")
+    key = section.exactly_one(FREQUENCIES)
+    amplitude_key = section.at_most_one(AMPLITUDES)
+    phase = section.numbers(("phase",))
+    if key == "eta":
+        eta = section.number("eta")
+        if structure is None:
+            raise section.error("eta", "it refers to a structure; expected a section [structure]")
+        if amplitude_key is None:
+            return section.make(lambda: Excitation.nondimensional(eta, structure, **phase))
+        frequency = eta * structure.omega
+    else:
+        frequency = section.rad_s(key)
+    amplitude = section.number(section.exactly_one(AMPLITUDES))
+    if amplitude_key == "acceleration_g":
+        amplitude = amplitude * GRAVITY / frequency**2
+    return section.make(lambda: Excitation(frequency=frequency, amplitude=amplitude, **phase))
+
+
+def read_drive(motor: Section, box: Section, structure: Structure | None) -> Drive:
+    """The drive of ``[motor]`` and ``[box]``."""
+    motor.allow(*SI_MOTOR, *MOTOR_NUMBERS)
+    box.allow(*SI_BOX, *BOX_NUMBERS)
+    by_numbers = motor.either(SI_MOTOR, MOTOR_NUMBERS)
+    if box.either(SI_BOX, BOX_NUMBERS) != by_numbers:
+        kind = ", ".join(BOX_NUMBERS if by_numbers else SI_BOX)
+        beside = "non-dimensional" if by_numbers else "SI"
+        raise InputError(f"{box.path}: [box] beside a {beside} [motor]: expected {kind}")
+    if not by_numbers:
+        motor.need([name for name in SI_MOTOR if name != "armature_inductance"])
+        box.need(SI_BOX)
+        values = {**motor.numbers(SI_MOTOR), **box.numbers(SI_BOX)}
+        return motor.make(lambda: Drive(**values))
+    motor.need(MOTOR_NUMBERS)
+    box.need(BOX_NUMBERS)
+    if structure is None:
+        raise motor.error("beta", "it refers to a structure; expected a section [structure]")
+    numbers = {**motor.numbers(MOTOR_NUMBERS), **box.numbers(BOX_NUMBERS)}
+    return motor.make(lambda: Drive.nondimensional(**numbers, structure=structure))
