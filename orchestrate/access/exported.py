@@ -6,12 +6,12 @@ import functools
 import logging
 import os
 from collections.abc import Callable, Iterable, Mapping
-from importlib.metadata import PackageNotFoundError, version
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, StoreError
+from ..version import __version__
 from .description import Description, describe
 from .models import OSCILLATOR, SHAKER
 
@@ -96,7 +96,7 @@ def export(name: str, form: str, folder: Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         log.info("exporting %s (a model's first export compiles a C library: up to a minute)", path)
-        return Path(exporter(form)[0](*model_of(name), *MODELS[name], folder / form))
+        return Path(exporter(form)[0](model_of(name), *MODELS[name], folder / form))
     except OSError as error:
         reason = error.strerror or error
         raise StoreError(f"{folder}: {reason}; expected a folder that can be written") from None
@@ -173,11 +173,7 @@ def default_folder() -> Path:
         return CLONE / "build"
     from platformdirs import user_cache_path
 
-    try:
-        release = version("vibroimpact")
-    except PackageNotFoundError:
-        release = "unpacked"
-    return user_cache_path("vibroimpact", appauthor=False) / "fmus" / release
+    return user_cache_path("vibroimpact", appauthor=False) / "fmus" / __version__
 
 
 def is_clone(root: Path) -> bool:

@@ -174,10 +174,10 @@ def recover(guess: float, forward: Callable[[float], float], target: float) -> f
 
     Examples
     --------
-    >>> 0.015 * 1.1 / 1.1
-    0.015000000000000001
-    >>> recover(0.015 * 1.1 / 1.1, lambda number: number * 1.1, 0.015 * 1.1)
-    0.015
+    >>> 0.05 * 0.7 / 0.7
+    0.049999999999999996
+    >>> recover(0.05 * 0.7 / 0.7, lambda number: number * 0.7, 0.05 * 0.7)
+    0.05
     """
     near = [guess]
     for _ in range(3):
