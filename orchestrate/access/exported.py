@@ -10,28 +10,27 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from fmu_src.export import forms as sources
+from fmu_src.export.errors import CannotExport
+
 from ..errors import InputError, StoreError
+from ..running.files import open_folder
 from ..version import __version__
 from .description import Description, describe
-from .models import OSCILLATOR, SHAKER
 
 log = logging.getLogger(__name__)
 
-FORMS = ("fmi2-python", "fmi2", "fmi3")
-WITHOUT_COMPILER = "fmi2-python"
-MODELS = {OSCILLATOR: ("oscillator", "oscillator"), SHAKER: ("shaker", "motor_shaker")}
+FORMS: tuple[str, ...] = sources.FORMS
+MODELS: tuple[str, ...] = tuple(sources.MODELS)
+WITHOUT_COMPILER = sources.PYTHON_FORM
 SHIPPED = Path(__file__).parent / "fmus"
 CLONE = Path(__file__).resolve().parents[2]
-
-
-class CannotExport(Exception):
-    """Why an FMU cannot be made here, as one line."""
 
 
 def build(
     folder: str | PathLike[str] | None = None,
     forms: Iterable[str] = FORMS,
-    names: Iterable[str] = tuple(MODELS),
+    names: Iterable[str] = MODELS,
 ) -> list[Path]:
     """Export models in the given forms.
 
@@ -56,33 +55,36 @@ def build(
     StoreError
         Where the folder cannot be written.
     """
-    target = default_folder() if folder is None else Path(folder)
-    written, reasons = [], []
-    for form in forms:
-        for name in names:
-            try:
-                written.append(export(name, form, target))
-            except CannotExport as reason:
-                reasons.append(f"{form}/{name}.fmu: {reason}")
-    if reasons and not written:
-        raise InputError(f"{reasons[0]}; expected an installation of vibroimpact[build]")
-    for line in reasons:
-        log.warning("%s", line)
-    return written
+    forms = tuple(forms)
+    wanted = [(form, name) for name in names for form in forms]
+    return export_all(wanted, default_folder() if folder is None else Path(folder))
 
 
 def refresh(folder: str | PathLike[str] | None = None, forms: Iterable[str] = FORMS) -> list[Path]:
     """Export what is missing or out of date; returns what was written."""
     target = default_folder() if folder is None else Path(folder)
-    written = []
-    for form in forms:
-        stale = [name for name in MODELS if not up_to_date(form, name, target)]
-        written += build(target, [form], stale)
+    forms = tuple(forms)
+    wanted = [(form, name) for name in MODELS for form in forms]
+    return export_all([pair for pair in wanted if not up_to_date(*pair, target)], target)
+
+
+def export_all(wanted: Iterable[tuple[str, str]], folder: Path) -> list[Path]:
+    """Export models in forms; those that cannot be made here are left out, unless all are."""
+    written, reasons = [], []
+    for form, name in wanted:
+        try:
+            written.append(export(name, form, folder))
+        except CannotExport as reason:
+            reasons.append(f"{form}/{name}.fmu cannot be made: {reason}")
+    if reasons and not written:
+        raise InputError(reasons[0])
+    for line in reasons:
+        log.warning("%s", line)
     return written
 
 
 def export(name: str, form: str, folder: Path) -> Path:
-    """Export one model in one form to ``folder/FORM/NAME.fmu``.
+    """Export one model in one form to ``folder/FORM/NAME.fmu``, whole or not at all.
 
     Raises
     ------
@@ -92,62 +94,21 @@ def export(name: str, form: str, folder: Path) -> Path:
         Where the folder cannot be written.
     """
     check(name, form)
+    open_folder(folder)
     path = folder / form / f"{name}.fmu"
+    log.info("exporting %s (a model's first export compiles a C library: up to a minute)", path)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        log.info("exporting %s (a model's first export compiles a C library: up to a minute)", path)
-        return Path(exporter(form)[0](model_of(name), *MODELS[name], folder / form))
+        return sources.export(name, form, folder)
     except OSError as error:
         reason = error.strerror or error
         raise StoreError(f"{folder}: {reason}; expected a folder that can be written") from None
-    except Exception as error:
-        if not is_reason(error):
-            raise
-        raise CannotExport(str(error)) from None
-
-
-def is_reason(error: Exception) -> bool:
-    """Whether an exporter failed for want of something, not by a defect."""
-    from fmu_src.export.linking import NoCompiler
-
-    return isinstance(error, ImportError | NoCompiler)
-
-
-def exporter(form: str) -> tuple[Callable[..., Path], Callable[[str, str], str]]:
-    """What writes an FMU of a form, and what tells the GUID it would bear."""
-    if form == WITHOUT_COMPILER:
-        from fmu_src.export import pythonfmu_form
-
-        return pythonfmu_form.export, pythonfmu_form.guid
-    from fmu_src.export import native_form
-
-    return (
-        functools.partial(native_form.export, version=form),
-        functools.partial(native_form.guid, version=form),
-    )
-
-
-def model_of(name: str) -> Any:
-    """The model as the exporters see it."""
-    from importlib import import_module
-
-    return import_module(f"fmu_src.models.{MODELS[name][1]}.model").MODEL
 
 
 @functools.cache
 def guid(form: str, name: str) -> str:
-    """The GUID of an FMU of the present sources.
-
-    Raises
-    ------
-    CannotExport
-        Where a package that decides it is missing.
-    """
+    """The GUID of an FMU of the present sources."""
     check(name, form)
-    try:
-        return exporter(form)[1](*MODELS[name])
-    except ImportError as error:
-        raise CannotExport(str(error)) from None
+    return sources.guid(name, form)
 
 
 def check(name: str, form: str) -> None:
@@ -163,7 +124,7 @@ def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:
     path = Path(folder) / form / f"{name}.fmu"
     try:
         return path.is_file() and describe(path, name).guid == guid(form, name)
-    except (InputError, CannotExport):  # damaged, or nobody can tell: to be made anew
+    except InputError:  # damaged: to be made anew
         return False
 
 
@@ -220,7 +181,7 @@ def find(
     if fmu is not None:
         return describe(fmu, model)
     places = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
-    reasons = []
+    reasons: list[CannotExport] = []
     for wanted in dict.fromkeys((form, WITHOUT_COMPILER)):
         for place in places:
             if up_to_date(wanted, model, place):
@@ -228,9 +189,9 @@ def find(
         try:
             return describe(export(model, wanted, places[0]), model)
         except CannotExport as reason:
-            reasons.append(str(reason))
-    text = f"FMU {model}: there is none of the present sources, and none can be made ({reasons[0]})"
-    raise InputError(f"{text}; expected an installation of vibroimpact[build], or an own FMU")
+            reasons.append(reason)
+    text = f"FMU {model}: there is none of the present sources, and none can be made here"
+    raise InputError(f"{text}: {reasons[0]}, or an FMU of your own")
 
 
 def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
