@@ -11,6 +11,7 @@ module              idea
 :mod:`.files`       files that appear whole or not at all
 :mod:`.provenance`  where a dataset comes from, in its attributes
 :mod:`.executors`   who computes: this process, processes of this machine, workers of a cluster
+:mod:`.progress`    how far a job is, and what may be computed next, guesses included
 :mod:`.runner`      keeps them busy until every result is there
 ==================  ===============================================================================
 """

@@ -30,14 +30,38 @@ RETRIES = 3  # a chunk whose worker is lost is computed by others
 
 
 def compute(
-    job: Job, fmus: Mapping[str, Path | bytes], items: Sequence[Any], carry: Table | None
-) -> Table:
-    """One chunk, wherever it is computed; FMUs travel to other machines as bytes."""
+    job: Job,
+    fmus: Mapping[str, Path | bytes],
+    items: Sequence[Any],
+    carry: Table | None,
+    lead: Sequence[Any],
+) -> tuple[bytes, Table]:
+    """One chunk, wherever it is computed; FMUs travel to other machines as bytes.
+
+    Parameters
+    ----------
+    job : Job
+    fmus : mapping
+    items : sequence
+    carry : dict of ndarray, optional
+        What the chunk starts from.
+    lead : sequence
+        Items to compute first, from the job's own beginning, in place of ``carry``.
+
+    Returns
+    -------
+    start : bytes
+        What it started from, of a sequential job.
+    table : dict of ndarray
+    """
     paths = {
         model: unpacked(model, fmu) if isinstance(fmu, bytes) else fmu
         for model, fmu in fmus.items()
     }
-    return job.work(paths, items, carry)
+    if lead:
+        carry = job.work(paths, lead, None)
+    start = job.seam(carry) if job.lead and carry is not None else b""
+    return start, job.work(paths, items, carry)
 
 
 def unpacked(model: str, content: bytes) -> Path:

@@ -56,6 +56,7 @@ class Job(ABC):
     models: ClassVar[tuple[str, ...]] = ("TwoMassImpactOscillator",)
     chunk: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
+    lead: ClassVar[int] = 0  # items after which a sequential job has forgotten its beginning
     item: ClassVar[str] = "it"  # what the progress bar counts
 
     def needs(self) -> tuple[str, ...]:
@@ -90,6 +91,10 @@ class Job(ABC):
         -------
         dict of ndarray
         """
+
+    def seam(self, table: Table) -> bytes:
+        """What the chunk after this one starts from, of a sequential job with a ``lead``."""
+        raise NotImplementedError
 
     @abstractmethod
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any
 from .executors import Cluster, Here, Processes, Workers, at_work, compute
 from .files import open_folder
 from .identity import Fmu, Identity, identity_of
-from .job import Chunk, Job, Table
+from .job import Job, Table
 from .options import RunOptions
-from .provenance import with_provenance
-from .store import Store, open_store
+from .progress import Progress, Task
+from .store import open_store
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,73 +73,6 @@ def answer_all(
     return {job.name: folder / f"{job.name}.nc" for job in jobs}
 
 
-class Progress:
-    """How far a job is: which chunks are there, and which may be computed next.
-
-    Parameters
-    ----------
-    job : Job
-    store : Store
-    identity : dict
-    fmus : mapping of str to Fmu
-    """
-
-    def __init__(self, job: Job, store: Store, identity: Identity, fmus: Mapping[str, Fmu]) -> None:
-        self.job, self.store, self.identity, self.fmus = job, store, identity, fmus
-        self.chunks = job.chunks()
-        self.result = store.result()
-        self.there = set(range(len(self.chunks))) if self.complete else store.indices()
-        self.under_way: set[int] = set()
-        self.inputs: Mapping[str, xr.Dataset] = {}
-        self.items: Sequence[Any] | None = None
-
-    @property
-    def complete(self) -> bool:
-        """Whether the result is there."""
-        return self.result is not None
-
-    def done(self) -> int:
-        """Items computed."""
-        return sum(self.chunks[index].last - self.chunks[index].first for index in self.there)
-
-    def start(self, inputs: Mapping[str, xr.Dataset]) -> None:
-        """Make the items, once the needed results are there."""
-        self.inputs = inputs
-        self.items = self.job.items(inputs)
-        self.finish_if_done()
-
-    def next_chunk(self) -> Chunk | None:
-        """A chunk that is ready to be computed."""
-        for chunk in self.chunks:
-            if chunk.index in self.there or chunk.index in self.under_way:
-                continue
-            if chunk.after is None or chunk.after in self.there:
-                return chunk
-        return None
-
-    def task(self, chunk: Chunk) -> tuple[Sequence[Any], Table | None]:
-        """What a worker needs for a chunk: its items, and what it starts from."""
-        assert self.items is not None, "not started"
-        carry = None if chunk.after is None else self.store.get(chunk.after)
-        return self.items[chunk.first : chunk.last], carry
-
-    def enter(self, chunk: Chunk, table: Table) -> None:
-        """Keep a chunk; the last one makes the result."""
-        self.store.put(chunk.index, table)
-        self.under_way.discard(chunk.index)
-        self.there.add(chunk.index)
-        self.finish_if_done()
-
-    def finish_if_done(self) -> None:
-        """Make the result where all chunks are there."""
-        if self.complete or len(self.there) < len(self.chunks):
-            return
-        dataset = self.job.dataset(self.store.table(), self.inputs)
-        dataset = with_provenance(dataset, self.job, self.identity, self.fmus, self.store.begun)
-        self.result = self.store.finish(dataset)
-        self.inputs, self.items = {}, None
-
-
 class Runner:
     """Jobs on their way to results.
 
@@ -155,7 +88,7 @@ class Runner:
         self.jobs, self.options = jobs, options
         self.fmus: dict[str, Fmu] = {model: find(model) for job in jobs for model in job.models}
         self.states: dict[str, Progress] = {}
-        self.futures: dict[Future[Table], tuple[Progress, Chunk]] = {}
+        self.futures: dict[Future[tuple[bytes, Table]], tuple[Progress, Task]] = {}
         self.clock = time.perf_counter()
         self.fresh = 0  # items computed by this call
 
@@ -204,35 +137,31 @@ class Runner:
             return Cluster(self.options.cluster)
         return Processes(self.options.processes)
 
+    def done(self) -> int:
+        """Items computed."""
+        return sum(state.done() for state in self.states.values())
+
     def little_left(self) -> bool:
         """Whether what is left is not worth starting processes, or cannot be shared out."""
         if self.options.processes == 1 or not self.fresh:
             return True
-        left = sum(state.job.count() - state.done() for state in self.states.values())
+        left = sum(state.job.count() for state in self.states.values()) - self.done()
         seconds = (time.perf_counter() - self.clock) / self.fresh * left
-        return seconds < WORTH or self.ready_chunks(2) < 2
+        return seconds < WORTH or self.share() < 2
 
-    def ready_chunks(self, most: int) -> int:
-        """Chunks that could be computed at once, counted up to ``most``."""
-        count = 0
-        for state in self.states.values():
-            if self.ready(state):
-                free = (c for c in state.chunks if c.index not in state.there)
-                count += sum(1 for c in free if c.after is None or c.after in state.there)
-            if count >= most:
-                break
-        return count
+    def share(self) -> int:
+        """How many workers could be busy now, about."""
+        return sum(state.open_tasks() for state in self.states.values() if self.ready(state))
 
     def bar(self) -> Any:
         """A progress bar over all items."""
         from tqdm.auto import tqdm
 
         total = sum(state.job.count() for state in self.states.values())
-        done = sum(state.done() for state in self.states.values())
         single = self.jobs[0] if len(self.jobs) == 1 else None
         return tqdm(
             total=total,
-            initial=done,
+            initial=self.done(),
             desc=single.name if single else f"{len(self.jobs)} results",
             unit=single.item if single else "item",
             disable=not self.options.progress,
@@ -253,10 +182,10 @@ class Runner:
                 continue
             finished, _ = wait(self.futures, timeout=POLL, return_when=FIRST_COMPLETED)
             for future in finished:
-                state, chunk = self.futures.pop(future)
-                state.enter(chunk, future.result())
-                self.fresh += chunk.last - chunk.first
-                bar.update(chunk.last - chunk.first)
+                state, task = self.futures.pop(future)
+                state.enter(task, *future.result())
+                self.fresh += len(task.items)
+            bar.update(self.done() - bar.n)
 
     @staticmethod
     def delivery(fmu: Fmu, remote: bool) -> Path | bytes:
@@ -267,14 +196,15 @@ class Runner:
         """Submit chunks until the workers have enough."""
         for state in self.states.values():
             while len(self.futures) < workers.room() and self.ready(state):
-                chunk = state.next_chunk()
-                if chunk is None:
+                task = state.next_task()
+                if task is None:
                     break
                 chosen = {model: fmus[model] for model in state.job.models}
-                items, carry = state.task(chunk)
-                state.under_way.add(chunk.index)
-                future = workers.executor.submit(compute, state.job, chosen, items, carry)
-                self.futures[future] = state, chunk
+                state.under_way.add(task.chunk.index)
+                future = workers.executor.submit(
+                    compute, state.job, chosen, task.items, task.carry, task.lead
+                )
+                self.futures[future] = state, task
 
     def ready(self, state: Progress) -> bool:
         """Whether a job's chunks can be computed; starts it where what it needs is there."""

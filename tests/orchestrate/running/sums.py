@@ -84,3 +84,36 @@ class Model:
     name: str = "TwoMassImpactOscillator"
     guid: str = "{1}"
     fmi_version: str = "3.0"
+
+
+@dataclass(frozen=True)
+class Forgetful(Job):
+    """A sequence that forgets its beginning, but for items in ``stubborn`` that double what was."""
+
+    size: int = 240
+    stubborn: tuple[int, int] = (0, 0)
+    pause: float = 0.0
+    chunk: ClassVar[int] = 10
+    sequential: ClassVar[bool] = True
+    lead: ClassVar[int] = 8
+
+    def count(self) -> int:
+        return self.size
+
+    def items(self, inputs: Inputs) -> range:
+        return range(self.size)
+
+    def seam(self, table: Table) -> bytes:
+        return table["value"][-1].tobytes()
+
+    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+        time.sleep(self.pause * len(items))
+        value, values = float(carry["value"][-1]) if carry else 0.3, []
+        for item in items:
+            chaotic = self.stubborn[0] <= item < self.stubborn[1]
+            value = 3.9 * value * (1.0 - value) if chaotic else 1.0 / (item + 2.0) + 1e-9 * value
+            values.append(value)
+        return {"value": np.array(values)}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        return xr.Dataset({"value": ("number", table["value"])})

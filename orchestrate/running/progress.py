@@ -1,0 +1,218 @@
+"""How far a job is: which chunks are there, and what may be computed next.
+
+A sequential job's chunk starts from the end of the one before. Where the job forgets its beginning
+(a response that converges), a chunk may be guessed: computed before the one before is known, from
+the end of a few items ahead of it. When that one is known, the guess stands if it began on the very
+same bits, and is thrown away if not. So the result is the sequential one, whoever computed it.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from .identity import Fmu, Identity
+from .job import Chunk, Job, Table
+from .provenance import with_provenance
+from .store import Store
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+log = logging.getLogger(__name__)
+GAP = 3  # chunks that nobody has begun, from which it is worth beginning in their middle
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a worker needs for a chunk.
+
+    Attributes
+    ----------
+    chunk : Chunk
+    items : sequence
+    carry : dict of ndarray, optional
+        What it starts from.
+    lead : sequence
+        Items to compute first, from any state, where it is guessed what it starts from.
+    guess : bool
+        Whether what it starts from is not known to be true.
+    """
+
+    chunk: Chunk
+    items: Sequence[Any]
+    carry: Table | None
+    lead: Sequence[Any]
+    guess: bool
+
+
+@dataclass(frozen=True)
+class Guess:
+    """A chunk that was computed from a guessed state.
+
+    Attributes
+    ----------
+    start : bytes
+        That state.
+    table : dict of ndarray
+    """
+
+    start: bytes
+    table: Table
+
+
+class Progress:
+    """One job on its way.
+
+    Parameters
+    ----------
+    job : Job
+    store : Store
+    identity : dict
+    fmus : mapping of str to Fmu
+    """
+
+    def __init__(self, job: Job, store: Store, identity: Identity, fmus: Mapping[str, Fmu]) -> None:
+        self.job, self.store, self.identity, self.fmus = job, store, identity, fmus
+        self.chunks = job.chunks()
+        self.result = store.result()
+        self.there = set(range(len(self.chunks))) if self.complete else store.indices()
+        self.under_way: set[int] = set()
+        self.guesses: dict[int, Guess] = {}
+        self.wasted = 0  # items that were guessed in vain
+        self.inputs: Mapping[str, xr.Dataset] = {}
+        self.items: Sequence[Any] | None = None
+
+    @property
+    def complete(self) -> bool:
+        """Whether the result is there."""
+        return self.result is not None
+
+    def done(self) -> int:
+        """Items computed, guessed ones included."""
+        return sum(self.size(index) for index in {*self.there, *self.guesses})
+
+    def size(self, index: int) -> int:
+        """Items of a chunk."""
+        return self.chunks[index].last - self.chunks[index].first
+
+    def start(self, inputs: Mapping[str, xr.Dataset]) -> None:
+        """Make the items, once the needed results are there."""
+        self.inputs = inputs
+        self.items = self.job.items(inputs)
+        self.finish_if_done()
+
+    # -- what may be computed next ----------------------------------------------------------------
+
+    def next_task(self) -> Task | None:
+        """What a worker should compute now: what is certain, then what goes on, then a guess."""
+        for find in (self.certain, self.continued, self.begun_in_a_gap):
+            task = next(find(), None)
+            if task is not None:
+                return task
+        return None
+
+    def untouched(self, index: int) -> bool:
+        """Whether nobody has computed a chunk or is at it."""
+        return not (index in self.there or index in self.under_way or index in self.guesses)
+
+    def certain(self) -> Iterator[Task]:
+        """Chunks whose beginning is known."""
+        for chunk in self.chunks:
+            if self.is_certain(chunk):
+                carry = None if chunk.after is None else self.store.get(chunk.after)
+                yield Task(chunk, self.items_of(chunk), carry, (), False)
+
+    def is_certain(self, chunk: Chunk) -> bool:
+        """Whether nobody is at a chunk whose beginning is known."""
+        return self.untouched(chunk.index) and (chunk.after is None or chunk.after in self.there)
+
+    def continued(self) -> Iterator[Task]:
+        """Chunks that go on from a guessed one."""
+        for index in sorted(self.guesses):
+            following = index + 1
+            if following < len(self.chunks) and self.untouched(following):
+                chunk = self.chunks[following]
+                if chunk.after == index:
+                    carry = self.guesses[index].table
+                    yield Task(chunk, self.items_of(chunk), carry, (), True)
+
+    def begun_in_a_gap(self) -> Iterator[Task]:
+        """A chunk in the middle of the longest run of chunks that nobody has begun."""
+        first, last = max(self.gaps(), key=lambda gap: gap[1] - gap[0], default=(0, 0))
+        if self.job.lead and last - first >= GAP:
+            chunk = self.chunks[(first + last) // 2]
+            begin = self.chunks[first].first
+            lead = self.range(max(chunk.first - self.job.lead, begin), chunk.first)
+            yield Task(chunk, self.items_of(chunk), None, lead, True)
+
+    def gaps(self) -> Iterator[tuple[int, int]]:
+        """Runs of chunks that nobody has begun, as first and one past the last."""
+        first = 0
+        for chunk in self.chunks:
+            if not self.untouched(chunk.index):
+                yield first, chunk.index
+                first = chunk.index + 1
+            elif chunk.after is None:
+                yield first, chunk.index
+                first = chunk.index
+        yield first, len(self.chunks)
+
+    def items_of(self, chunk: Chunk) -> Sequence[Any]:
+        """A chunk's items."""
+        return self.range(chunk.first, chunk.last)
+
+    def range(self, first: int, last: int) -> Sequence[Any]:
+        """Some items."""
+        assert self.items is not None, "not started"
+        return self.items[first:last]
+
+    def open_tasks(self) -> int:
+        """How many workers could be busy now, about."""
+        if self.complete:
+            return 0
+        longest = max((last - first for first, last in self.gaps()), default=0)
+        certain = sum(map(self.is_certain, self.chunks))
+        return certain + (longest // GAP if self.job.lead else 0)
+
+    # -- what was computed ------------------------------------------------------------------------
+
+    def enter(self, task: Task, start: bytes, table: Table) -> None:
+        """Keep a chunk; the last one makes the result."""
+        index = task.chunk.index
+        self.under_way.discard(index)
+        if task.guess:
+            self.guesses[index] = Guess(start, table)
+        else:
+            self.keep(index, table)
+        self.settle()
+        self.finish_if_done()
+
+    def keep(self, index: int, table: Table) -> None:
+        """Keep a chunk that is certain."""
+        self.store.put(index, table)
+        self.there.add(index)
+
+    def settle(self) -> None:
+        """Take over guesses that began where the chunk before ends, throw away the others."""
+        for index in sorted(self.guesses):
+            after = self.chunks[index].after
+            if after is None or after in self.there:
+                guess = self.guesses.pop(index)
+                if after is None or self.job.seam(self.store.get(after)) == guess.start:
+                    self.keep(index, guess.table)
+                else:
+                    self.wasted += self.size(index)
+
+    def finish_if_done(self) -> None:
+        """Make the result where all chunks are there."""
+        if self.complete or len(self.there) < len(self.chunks):
+            return
+        if self.wasted:
+            log.debug("%s: %d items were guessed in vain", self.job.name, self.wasted)
+        dataset = self.job.dataset(self.store.table(), self.inputs)
+        dataset = with_provenance(dataset, self.job, self.identity, self.fmus, self.store.begun)
+        self.result = self.store.finish(dataset)
+        self.inputs, self.items = {}, None
