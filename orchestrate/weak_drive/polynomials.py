@@ -3,8 +3,16 @@
 A cubic is kept as the FMUs take it: value and three time derivatives at the step's beginning.
 """
 
+from __future__ import annotations
 
-def matched_cubic(first, last, mean, moment, h):
+from collections.abc import Sequence
+
+from .exchange import Cubic
+
+POWERS = [[i + k + 1.0 for k in range(5)] for i in range(5)]  # of s in the integral of s^i s^k
+
+
+def matched_cubic(first: float, last: float, mean: float, moment: float, h: float) -> Cubic:
     """The cubic with given ends, mean and first moment.
 
     Parameters
@@ -28,8 +36,8 @@ def matched_cubic(first, last, mean, moment, h):
     return first, b / h, 2.0 * c / (h * h), 6.0 * d / (h * h * h)
 
 
-def parabola(before, first, last, h_before, h):
-    """The quadratic through three communication points, as :func:`matched_cubic`; a line where ``h_before`` is 0."""
+def parabola(before: float, first: float, last: float, h_before: float, h: float) -> Cubic:
+    """The quadratic through three communication points; a line where ``h_before`` is 0."""
     rise = (last - first) / h
     if h_before == 0.0:
         return first, rise, 0.0, 0.0
@@ -37,30 +45,43 @@ def parabola(before, first, last, h_before, h):
     return first, rise - curve * h, 2.0 * curve, 0.0
 
 
-def end_slope(cubic, h):
+def end_value(cubic: Cubic, h: float) -> float:
+    """Value of a cubic at the step's end."""
+    f0, f1, f2, f3 = cubic
+    return f0 + h * (f1 + 0.5 * h * (f2 + h * f3 / 3.0))
+
+
+def end_slope(cubic: Cubic, h: float) -> float:
     """First derivative of a cubic at the step's end."""
     _, f1, f2, f3 = cubic
     return f1 + h * (f2 + 0.5 * h * f3)
 
 
-def work(force, velocity, acceleration, h):
-    """Integral over the step of a cubic force times the velocity that begins at ``velocity`` and has a cubic acceleration."""
-    f = (force[0], force[1] * h, force[2] * h * h / 2.0, force[3] * h * h * h / 6.0)
-    a = acceleration
-    v = (velocity, a[0] * h, a[1] * h * h / 2.0, a[2] * h * h * h / 6.0, a[3] * h * h * h * h / 24.0)
-    return h * product(f, v)
+def coefficients(cubic: Cubic, h: float) -> Cubic:
+    """Coefficients of a cubic in s = t/h."""
+    f0, f1, f2, f3 = cubic
+    return f0, f1 * h, f2 * h * h / 2.0, f3 * h * h * h / 6.0
 
 
-def product(f, g):
+def work(force: Cubic, velocity: float, acceleration: Cubic, h: float) -> float:
+    """Integral of a cubic force times a velocity, given by its start and cubic derivative."""
+    a0, a1, a2, a3 = acceleration
+    speeds = (velocity, a0 * h, a1 * h * h / 2.0, a2 * h * h * h / 6.0, a3 * h * h * h * h / 24.0)
+    return h * product(coefficients(force, h), speeds)
+
+
+def product(f: Sequence[float], g: Sequence[float]) -> float:
     """Integral over [0, 1] of the product of two polynomials in s, each as its coefficients."""
     total = 0.0
-    for i, a in enumerate(f):
-        for k, b in enumerate(g):
-            total += a * b / (i + k + 1)
+    for a, powers in zip(f, POWERS):  # noqa: B905 the table is as long as needed
+        for b, power in zip(g, powers):  # noqa: B905
+            total += a * b / power
     return total
 
 
-def quartic(ends, slopes, mean):
+def quartic(
+    ends: tuple[float, float], slopes: tuple[float, float], mean: float
+) -> tuple[float, ...]:
     """Coefficients in s of the quartic with given ends, slopes (by s) there, and mean."""
     p0, p1 = ends
     d0, d1 = slopes

@@ -1,0 +1,389 @@
+"""The coupled system under a voltage that comes and goes: each revolution of the motor is one row.
+
+The steps of a run follow each other. It is cut into chunks; each hands over the states of both FMUs
+and of the master, so an interrupted run goes on with the same bits.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..access.instance import Instance
+from ..access.models import OSCILLATOR, SHAKER
+from ..errors import InputError
+from ..running.job import Inputs, Job, Table
+from ..running.options import Running
+from ..structures.drive import Drive
+from ..structures.structure import Structure
+from . import averaged
+from .jumps import find_jumps
+from .master import Master, Scheme
+from .revolutions import COLUMNS, Revolutions
+from .schedule import Constant, Ramp, Schedule
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+MOST_STEPS = 1e9
+Variable = tuple[str, Sequence[float], dict[str, str]]
+
+
+def oscillator_start(structure: Structure) -> dict[str, float | bool]:
+    """The structure's start values in the coupled system: its own harmonic box motion is off."""
+    off = {"box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
+    return {**structure.parameters(), **off}
+
+
+@dataclass(frozen=True)
+class CoupleJob(Job):
+    """A run of the coupled system.
+
+    Attributes
+    ----------
+    structure : Structure
+    drive : Drive
+    schedule : Schedule
+    scheme : Scheme
+    speed_start : float
+        Of the motor, rad/s.
+    """
+
+    structure: Structure
+    drive: Drive
+    schedule: Schedule
+    scheme: Scheme
+    speed_start: float
+
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+    chunk: ClassVar[int] = 10_000
+    sequential: ClassVar[bool] = True
+    item: ClassVar[str] = "step"
+
+    def count(self) -> int:
+        """Number of communication steps."""
+        return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
+
+    def items(self, inputs: Inputs) -> Sequence[int]:
+        """The steps."""
+        return range(self.count())
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+        """Some steps: their complete revolutions, and all to go on from."""
+        with (
+            Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
+            Instance(fmus[SHAKER], "shaker") as shaker,
+        ):
+            run = Run(self, oscillator, shaker)
+            try:
+                if carry is not None:
+                    run.remember(carry)
+                return {**run.revolve(items), **run.memory()}
+            finally:
+                run.master.close()
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """All revolutions, and the jumps.
+
+        Raises
+        ------
+        InputError
+            Where the motor has not turned once.
+        """
+        import xarray as xr
+
+        if not len(table["time"]):
+            raise InputError(
+                f"not one revolution of the motor in {self.schedule.duration:g} s: "
+                "expected a voltage that turns it, and time"
+            )
+        found = {
+            name: ("revolution", table[name], {"units": unit, "long_name": text})
+            for name, (unit, text) in COLUMNS.items()
+        }
+        eta0 = table["voltage"] / self.drive.volts(self.structure)
+        Omega = table["speed"] / self.structure.omega
+        count = {"units": "1", "long_name": "revolution of the motor"}
+        coordinates = {
+            "revolution": ("revolution", np.arange(1, len(eta0) + 1), count),
+            "eta0": (
+                "revolution",
+                eta0,
+                {"units": "1", "long_name": "no-load speed over omega, U/(K omega)"},
+            ),
+            "Omega": ("revolution", Omega, {"units": "1", "long_name": "mean speed over omega"}),
+        }
+        dataset = xr.Dataset(
+            {**found, **self.jumps(table, eta0, Omega)}, coordinates, self.attributes(table)
+        )
+        names = {"long_name": "direction in which the speed jumps"}
+        return dataset.assign_coords(jump=("jump", ["up", "down"], names))
+
+    def jumps(self, table: Table, eta0: np.ndarray, Omega: np.ndarray) -> dict[str, Variable]:
+        """Voltages and speeds of the jumps; where bonded, those of the averaged theory too."""
+        rows = find_jumps(eta0, Omega, self.schedule.trend(table["time"]))
+
+        def at(name: str) -> list[float]:
+            return [math.nan if row is None else float(table[name][row]) for row in rows]
+
+        found: dict[str, Variable] = {
+            "jumps": (
+                "jump",
+                at("voltage"),
+                {"units": "V", "long_name": "voltage at which the speed jumps"},
+            ),
+            "jump_speed": (
+                "jump",
+                at("speed"),
+                {"units": "rad/s", "long_name": "mean speed of that revolution"},
+            ),
+        }
+        if self.structure.bonded:
+            folds = averaged.folds(self.structure, self.drive)
+            volts = self.drive.volts(self.structure)
+            theory = (
+                [folds[0].eta0 * volts, folds[-1].eta0 * volts] if folds else [math.nan, math.nan]
+            )
+            text = "voltage at which the speed jumps, by the averaged theory"
+            found["averaged_jumps"] = ("jump", theory, {"units": "V", "long_name": text})
+        return found
+
+    def attributes(self, table: Table) -> dict[str, str | float]:
+        """Title, and what the coupling has lost of the motor's work."""
+        state = "bonded" if self.structure.bonded else "delaminated"
+        motor = float(table["motor"][-1])
+        return {
+            "title": f"Weak drive, {state} structure: each revolution of the motor",
+            "missing_over_motor_work": float(table["missing"][-1]) / motor,
+            "defects_over_motor_work": float(table["defect_sizes"][-1]) / motor,
+        }
+
+
+class Run:
+    """A run under way: both instances, their master, and the revolution under way.
+
+    Parameters
+    ----------
+    job : CoupleJob
+    oscillator, shaker : Instance
+        Not yet initialised.
+    """
+
+    def __init__(self, job: CoupleJob, oscillator: Instance, shaker: Instance) -> None:
+        self.job, self.oscillator, self.shaker = job, oscillator, shaker
+        oscillator.initialize(**oscillator_start(job.structure))
+        voltage = job.schedule.voltage(0.0)
+        shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
+        self.master = Master(oscillator, shaker, job.structure, job.scheme)
+        self.revolutions = Revolutions(self.master, self.impact_count)
+
+    def impact_count(self) -> float:
+        """Impacts so far."""
+        return float(self.oscillator.get("impact_count")[0])
+
+    def revolve(self, steps: Sequence[int]) -> Table:
+        """Do some steps; columns of their complete revolutions."""
+        master, add = self.master, self.revolutions.add
+        voltage, h = self.job.schedule.voltage, self.job.scheme.h
+        rows = []
+        for i in steps:
+            master.step(voltage((i + 0.5) * h))  # constant over the step, the mean of a ramp
+            row = add()
+            if row:
+                rows.append(row)
+        table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
+        return dict(zip(COLUMNS, table.T.copy(), strict=True))
+
+    def memory(self) -> Table:
+        """All that a run goes on from, one row."""
+        states = {
+            "oscillator_state": np.frombuffer(self.oscillator.save_state(), dtype=np.uint8),
+            "shaker_state": np.frombuffer(self.shaker.save_state(), dtype=np.uint8),
+            "master_memory": np.array(self.master.memory()),
+            "revolution_memory": np.array(self.revolutions.memory()),
+        }
+        return {name: state[np.newaxis] for name, state in states.items()}
+
+    def remember(self, table: Table) -> None:
+        """Go on from what :meth:`memory` gave."""
+        self.oscillator.restore_state(table["oscillator_state"][-1].tobytes())
+        self.shaker.restore_state(table["shaker_state"][-1].tobytes())
+        self.master.remember(table["master_memory"][-1].tolist())
+        self.revolutions.remember(table["revolution_memory"][-1].tolist())
+
+
+def schedule_of(
+    structure: Structure,
+    drive: Drive,
+    voltage: float | tuple[float, float] | Schedule,
+    duration: float | None = None,
+    rate: float | None = None,
+    settle: float | None = None,
+    increment: float = 0.0,
+    back: bool = True,
+) -> Schedule:
+    """A schedule from the arguments of :func:`couple`.
+
+    Raises
+    ------
+    InputError
+    """
+    if isinstance(voltage, Schedule):
+        return voltage
+    try:
+        ends = [float(value) for value in np.ravel(voltage)]
+    except (TypeError, ValueError):
+        ends = []
+    if len(ends) not in (1, 2):
+        raise InputError(f"voltage = {voltage!r}: expected a number or (first, last), in V")
+    if (duration is None) == (len(ends) == 1):
+        raise InputError(
+            f"voltage = {voltage!r} V and duration = {duration} s: expected a number and a "
+            "duration, or (first, last) and a rate"
+        )
+    if duration is not None:
+        return Constant(ends[0], float(duration))
+    omega, volts = structure.omega, drive.volts(structure)
+    rate = 1e-4 * volts * omega if rate is None else rate
+    settle = 300.0 / omega if settle is None else settle
+    first, last = ends
+    return Ramp(first, last, float(rate), float(settle), float(increment), bool(back))
+
+
+def scheme_of(structure: Structure, step: float | None, algorithm: str, tolerance: float) -> Scheme:
+    """A scheme from the arguments of :func:`couple`.
+
+    Raises
+    ------
+    InputError
+    """
+    omega = structure.omega
+    step = 0.1 / omega if step is None else step
+    rounding = 1.0 + 1e-12
+    if not 1e-4 / rounding <= step * omega <= rounding:
+        raise InputError(f"step = {step} s: expected {1e-4 / omega:g} <= step <= {1.0 / omega:g}")
+    return Scheme(algorithm, float(step), tolerance=float(tolerance))
+
+
+def couple_job(
+    structure: Structure,
+    drive: Drive,
+    schedule: Schedule,
+    scheme: Scheme,
+    speed_start: float | None = None,
+) -> CoupleJob:
+    """The run with this schedule.
+
+    Raises
+    ------
+    InputError
+    """
+    if not drive.motor_constant > 0.0:
+        raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
+    if speed_start is None:
+        speed_start = schedule.voltage(0.0) / drive.motor_constant
+    name = "bonded" if structure.bonded else "delaminated"
+    job = CoupleJob(f"couple_{name}", structure, drive, schedule, scheme, float(speed_start))
+    steps = schedule.duration / scheme.h
+    if not steps <= MOST_STEPS:
+        raise InputError(
+            f"{steps:.2g} steps of {scheme.h:g} s in {schedule.duration:g} s: "
+            f"expected at most {MOST_STEPS:g}"
+        )
+    return job
+
+
+def couple(
+    structure: Structure,
+    drive: Drive,
+    *,
+    voltage: float | tuple[float, float] | Schedule,
+    duration: float | None = None,
+    rate: float | None = None,
+    back: bool = True,
+    increment: float = 0.0,
+    settle: float | None = None,
+    speed_start: float | None = None,
+    step: float | None = None,
+    algorithm: str = "rollback",
+    tolerance: float = 0.0,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Couple a structure with a motor of limited power, and take the voltage up and down.
+
+    Two FMUs exchange box acceleration and force, see ``docs/coupling.md``; each revolution of the
+    motor is one row of the result. Where the motor passes the resonance its speed jumps (Sommerfeld
+    effect).
+
+    Parameters
+    ----------
+    structure : Structure
+    drive : Drive
+    voltage : float, (float, float) or Schedule
+        V. A number is held for ``duration``; two are the ends of a ramp.
+    duration : float, optional
+        Of a constant voltage, s.
+    rate : float, optional
+        Of the ramp, V/s; on average where it goes in steps. By default the no-load speed changes by
+        1e-4 omega in a time 1/omega, which is 1e-4 K omega^2.
+    back : bool
+        Whether the ramp comes back to the first voltage.
+    increment : float
+        Height of steps instead of a ramp, V; 0 for a ramp.
+    settle : float, optional
+        Time at the first voltage before the ramp, s; 300/omega by default.
+    speed_start : float, optional
+        Speed of the motor at the start, rad/s; by default its no-load speed at the first voltage.
+    step : float, optional
+        Communication step, s; 0.1/omega by default.
+    algorithm : str
+        Of :data:`orchestrate.weak_drive.master.ALGORITHMS`.
+    tolerance : float
+        Halve steps whose defect is a larger part of the work exchanged in them; 0: never.
+    **running
+        ``jobs``, ``cluster``, ``progress``, ``store`` and so on, see
+        :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimension ``revolution``: ``time`` (s), ``voltage`` (V), ``speed`` (rad/s), ``amplitude``
+        and ``box_amplitude`` (m), ``box_acceleration`` (m/s2), ``impacts``, energies since the
+        start (J), and the numbers ``eta0`` = U/(K omega) and ``Omega`` = speed/omega. Dimension
+        ``jump``: ``jumps`` (V) and ``jump_speed`` (rad/s) at the jumps up and down, NaN where there
+        is none; for a bonded structure ``averaged_jumps`` too.
+
+    Raises
+    ------
+    InputError
+        Where an argument is not what is expected, or the motor has not turned once.
+
+    Notes
+    -----
+    A ramp's jump comes late, about as rate^(2/3).
+
+    Examples
+    --------
+    >>> from orchestrate import Drive, Structure, couple
+    >>> structure = Structure.from_file("quick")
+    >>> drive = Drive.from_file("quick")
+    >>> run = couple(structure, drive, voltage=1.5, duration=150.0, progress=False)
+    >>> run.sizes["revolution"] > 25, float(run.impacts[-1]) >= 1.0
+    (True, True)
+    >>> bool(abs(run.missing[-1]) < 1e-6 * run.motor[-1])
+    True
+    """
+    from ..access.exported import finder
+
+    schedule = schedule_of(structure, drive, voltage, duration, rate, settle, increment, back)
+    scheme = scheme_of(structure, step, algorithm, tolerance)
+    job = couple_job(structure, drive, schedule, scheme, speed_start)
+    from ..running.runner import answer
+
+    return answer(job, running, finder(running))

@@ -1,0 +1,150 @@
+"""The energy balance: where the motor's work has gone, and what the coupling has lost of it.
+
+The shaker's FMU keeps its own account. What the structure has lost, in dampers and impacts, follows
+from the work that the box's acceleration did on it, as it was told it, less the energy it has
+stored: the momentum P of the masses is known at both ends of a step with its rate and mean, so the
+integral of P times acceleration is.
+
+The defect of a step is the difference between the work that one side gives and the other takes. A
+small defect is necessary, not sufficient: two sides may agree on a wrong motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from ..structures.structure import Structure
+from .exchange import Cubic, OscillatorOutputs, ShakerOutputs
+from .polynomials import coefficients, end_value, product, quartic
+
+
+class Energies(NamedTuple):
+    """Where the motor's work has gone since the start, J.
+
+    Attributes
+    ----------
+    motor : float
+        Mechanical work of the motor.
+    box_damper, impact_loss, dampers : float
+        Lost in the damper of the box, in impacts, in the dampers of the masses.
+    stored : float
+        Kinetic energy, and energy of the springs.
+    missing : float
+        Motor less all others: what the coupling has lost (negative: fed in).
+    defect, defect_sizes : float
+        Sum of the steps' defects (work that the box takes less work that the masses give), and sum
+        of their sizes.
+    """
+
+    motor: float
+    box_damper: float
+    impact_loss: float
+    stored: float
+    dampers: float
+    missing: float
+    defect: float
+    defect_sizes: float
+
+
+class EnergyBalance:
+    """The accounts of a run.
+
+    Parameters
+    ----------
+    structure : Structure
+    motion : OscillatorOutputs
+    shaking : ShakerOutputs
+        Outputs of both sides at the start.
+
+    Attributes
+    ----------
+    lost : float
+        Energy lost in the structure, J.
+    defect, defect_sizes : float
+        Sum of the steps' defects, and of their sizes, J.
+    """
+
+    def __init__(
+        self, structure: Structure, motion: OscillatorOutputs, shaking: ShakerOutputs
+    ) -> None:
+        self._masses = structure.m1, structure.m2
+        self._stiffnesses = structure.k1, structure.k2
+        self.lost = self.defect = self.defect_sizes = 0.0
+        self.start = self._accounts(motion, shaking)
+
+    def relative_energy(self, motion: OscillatorOutputs) -> float:
+        """Energy of the structure, seen from the box."""
+        (m1, m2), (k1, k2) = self._masses, self._stiffnesses
+        x1, x2, v1, v2 = motion[:4]
+        return 0.5 * (m1 * v1 * v1 + m2 * v2 * v2 + k1 * x1 * x1 + k2 * x2 * x2)
+
+    def energy(self, motion: OscillatorOutputs, velocity: float) -> float:
+        """Energy of the structure in space, the box moving with ``velocity``."""
+        m1, m2 = self._masses
+        momentum = m1 * motion.v1 + m2 * motion.v2
+        return self.relative_energy(motion) + velocity * (momentum + 0.5 * (m1 + m2) * velocity)
+
+    def add(
+        self,
+        before: OscillatorOutputs,
+        after: OscillatorOutputs,
+        told: Cubic,
+        defect: float,
+        h: float,
+    ) -> None:
+        """Enter a step.
+
+        Parameters
+        ----------
+        before, after : OscillatorOutputs
+            The structure at its ends.
+        told : tuple of float
+            The box's acceleration, as the structure was told it.
+        defect : float
+            J.
+        h : float
+            Length of the step, s.
+        """
+        work = h * product(self._momentum(before, after, told, h), coefficients(told, h))
+        self.lost += self.relative_energy(before) - self.relative_energy(after) - work
+        self.defect += defect
+        self.defect_sizes += abs(defect)
+
+    def _momentum(
+        self, before: OscillatorOutputs, after: OscillatorOutputs, told: Cubic, h: float
+    ) -> tuple[float, ...]:
+        """The masses' momentum over a step, relative to the box: coefficients in t/h."""
+        m1, m2 = self._masses
+        mass = m1 + m2
+        ends = (m1 * before.v1 + m2 * before.v2, m1 * after.v1 + m2 * after.v2)
+        first = -h * (before.box_force + mass * told[0])
+        last = -h * (after.box_force + mass * end_value(told, h))
+        mean = (m1 * (after.x1 - before.x1) + m2 * (after.x2 - before.x2)) / h
+        return quartic(ends, (first, last), mean)
+
+    def _accounts(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> tuple[float, ...]:
+        """Motor, damper of the box, impacts, stored, dampers: since the instances' start."""
+        return (
+            shaking.motor_energy,
+            shaking.box_damper_energy,
+            motion.impact_energy,
+            shaking.stored_energy + self.energy(motion, shaking.box_velocity),
+            self.lost - motion.impact_energy,
+        )
+
+    def energies(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> Energies:
+        """The balance at a communication point, since it was opened."""
+        now = self._accounts(motion, shaking)
+        motor, *others = (value - start for value, start in zip(now, self.start, strict=True))
+        found = (motor, *others, motor - sum(others), self.defect, self.defect_sizes)
+        return Energies._make(found)
+
+    def memory(self) -> list[float]:
+        """The accounts, as a list of floats."""
+        return [self.lost, self.defect, self.defect_sizes, *self.start]
+
+    def remember(self, numbers: Sequence[float]) -> None:
+        """The inverse of :meth:`memory`."""
+        self.lost, self.defect, self.defect_sizes = numbers[:3]
+        self.start = tuple(numbers[3:])

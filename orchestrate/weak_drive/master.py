@@ -1,0 +1,351 @@
+"""A co-simulation master for two FMUs: the structure in its box, and the motor that shakes the box.
+
+The structure's ``box_force`` depends on its states only, the box's acceleration on the force: there
+is no algebraic loop, but what each side assumes of the other over a step decides everything.
+``ALGORITHMS`` has the schemes by name.
+
+The cubic that is exchanged has the ends, the mean and the first moment that ``box_impulse`` and
+``box_impulse_moment`` give: exact on average through impacts too, where the force jumps. With
+``matched=False`` it is a parabola through communication points instead, as schemes that only know
+values have.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ..access.channel import Channel
+from ..access.instance import Instance
+from ..errors import InputError
+from ..structures.structure import Structure
+from .energy_balance import EnergyBalance
+from .exchange import Cubic, OscillatorInputs, OscillatorOutputs, ShakerInputs, ShakerOutputs
+from .polynomials import end_slope, matched_cubic, parabola, work
+
+
+class Algorithm(NamedTuple):
+    """A way to do a communication step.
+
+    Attributes
+    ----------
+    passes : int
+        How often a step is done, one side after the other, the structure first; 0: both sides at
+        once. From 2 on the states are saved and restored.
+    terms : int
+        Of the acceleration that the structure is told in the first pass: 1 held constant, 2 a line,
+        3 a parabola, 4 a cubic.
+    text : str
+    """
+
+    passes: int
+    terms: int
+    text: str
+
+
+ALGORITHMS = {
+    "jacobi": Algorithm(0, 1, "both at once, each with the other's last value: negative damping"),
+    "jacobi-derivative": Algorithm(0, 2, "both at once, with the last value and derivative"),
+    "gauss-seidel": Algorithm(
+        1, 3, "structure first with an extrapolation, shaker with what came of it"
+    ),
+    "rollback": Algorithm(
+        2, 4, "as gauss-seidel, then back and once more with the acceleration found"
+    ),
+    "iterated": Algorithm(40, 4, "the same until nothing changes: the reference"),
+}
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """How a step is done.
+
+    Attributes
+    ----------
+    algorithm : str
+        Of ``ALGORITHMS``.
+    h : float
+        Communication step, s.
+    matched : bool
+        Exchange forces and accelerations that are exact on average; else through points only.
+    tolerance : float
+        Halve steps whose defect is larger than this part of the work exchanged in them; 0: never.
+        Needs an algorithm that goes back.
+    shortest : float
+        Of ``h``: shorter steps are not halved.
+    converged : float
+        Change of the force between two iterations, over its size, that counts as none.
+    beginning : tuple of int
+        Relative lengths of the parts of the first step, for algorithms that cannot go back: nothing
+        is known yet to extrapolate from.
+
+    Raises
+    ------
+    InputError
+    """
+
+    algorithm: str = "rollback"
+    h: float = 0.1
+    matched: bool = True
+    tolerance: float = 0.0
+    shortest: float = 1e-3
+    converged: float = 1e-14
+    beginning: tuple[int, ...] = (1, 1, 2, 4, 8)
+
+    def __post_init__(self) -> None:
+        if self.algorithm not in ALGORITHMS:
+            raise InputError(f"algorithm {self.algorithm}: expected one of {', '.join(ALGORITHMS)}")
+        if not (math.isfinite(self.h) and self.h > 0.0):
+            raise InputError(f"step {self.h}: expected a number > 0, in s")
+        if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
+            raise InputError(
+                f"tolerance {self.tolerance}: expected a number >= 0; 0 leaves steps as they are"
+            )
+        if self.tolerance and not self.goes_back:
+            raise InputError(
+                f"tolerance {self.tolerance} with algorithm {self.algorithm}, which cannot go "
+                "back: expected 0, or algorithm rollback or iterated"
+            )
+
+    @property
+    def passes(self) -> int:
+        """How often a step is done."""
+        return ALGORITHMS[self.algorithm].passes
+
+    @property
+    def goes_back(self) -> bool:
+        """Whether states are saved and restored."""
+        return self.passes > 1
+
+
+class Step(NamedTuple):
+    """A step that both sides have done: what the structure was told, and both ends of it."""
+
+    acceleration: Cubic
+    motion: OscillatorOutputs
+    shaking: ShakerOutputs
+
+
+class Master:
+    """Two initialised instances, stepped together.
+
+    Parameters
+    ----------
+    oscillator, shaker : Instance
+    structure : Structure
+    scheme : Scheme
+    start_time : float
+        Of both instances, s.
+
+    Attributes
+    ----------
+    time : float
+        s.
+    voltage : float
+        V.
+    motion : OscillatorOutputs
+    shaking : ShakerOutputs
+        Outputs of both sides at ``time``.
+    balance : EnergyBalance
+    h_before : float
+        Length of the last step, s.
+    halved : int
+        Steps that the tolerance has halved.
+    """
+
+    def __init__(
+        self,
+        oscillator: Instance,
+        shaker: Instance,
+        structure: Structure,
+        scheme: Scheme,
+        start_time: float = 0.0,
+    ) -> None:
+        self.oscillator = Channel(oscillator, OscillatorInputs._fields, OscillatorOutputs._fields)
+        self.shaker = Channel(shaker, ShakerInputs._fields, ShakerOutputs._fields)
+        self.scheme, self._algorithm = scheme, ALGORITHMS[scheme.algorithm]
+        self.time, self.halved, self.voltage = start_time, 0, math.nan
+        self.motion, self.shaking = self._motion(), self._shaking()
+        self.slope = 0.0  # of the force, at the present communication point
+        self.force_before = self.h_before = 0.0
+        self.acceleration_before = self.jerk_before = 0.0
+        self.balance = EnergyBalance(structure, self.motion, self.shaking)
+        self._do = self._one_after_the_other if scheme.passes else self._both_at_once
+
+    def step(self, voltage: float, h: float | None = None) -> None:
+        """One communication step at a constant voltage, V; of length ``h``, s, where given."""
+        h = h or self.scheme.h
+        begin = self.time
+        known = self.h_before or self.scheme.goes_back
+        parts = (1,) if known else self.scheme.beginning
+        for part in parts:
+            self._step(voltage, h * part / sum(parts))
+        self.time = begin + h
+
+    def _step(self, voltage: float, h: float) -> None:
+        """A step, or two halves of it."""
+        if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
+            self.voltage = voltage
+            self.shaking = self._look(self.motion)
+        done = self._do(h)
+        force = self.force_of(done.motion, h)
+        taken = done.shaking.box_force_work - self.shaking.box_force_work
+        defect = taken - work(force, self.shaking.box_velocity, done.acceleration, h)
+        given = done.shaking.motor_energy - self.shaking.motor_energy
+        if self._too_large(defect, abs(taken) + abs(given), h):
+            self.oscillator.restore()
+            self.shaker.restore()
+            self.halved += 1
+            self._step(voltage, 0.5 * h)
+            self._step(voltage, 0.5 * h)
+            return
+        self.slope = end_slope(force, h)
+        self.balance.add(self.motion, done.motion, done.acceleration, defect, h)
+        self._go_on(done, h)
+
+    def _too_large(self, defect: float, exchanged: float, h: float) -> bool:
+        """Whether a step with this defect is to be halved."""
+        tolerance = self.scheme.tolerance
+        long = h > self.scheme.shortest * self.scheme.h
+        return bool(tolerance) and long and abs(defect) > tolerance * exchanged
+
+    def _go_on(self, done: Step, h: float) -> None:
+        """To the step's end."""
+        # at the start the force's slope was not known, nor the jerk
+        self.jerk_before = self.shaking.box_jerk if self.h_before else done.acceleration[1]
+        self.acceleration_before = self.shaking.box_acceleration
+        self.force_before, self.h_before = self.motion.box_force, h
+        self.time += h
+        self.motion, self.shaking = done.motion, self._look(done.motion)
+
+    def _motion(self) -> OscillatorOutputs:
+        return tuple.__new__(OscillatorOutputs, self.oscillator.get())  # as _make, in half its time
+
+    def _shaking(self) -> ShakerOutputs:
+        return tuple.__new__(ShakerOutputs, self.shaker.get())
+
+    def _look(self, motion: OscillatorOutputs) -> ShakerOutputs:
+        """The shaker's outputs with the force at the present point, and its slope, as inputs."""
+        self.shaker.put(motion.box_force, self.slope, 0.0, 0.0, self.voltage)
+        return self._shaking()
+
+    # -- what each side assumes of the other --
+
+    def force_of(self, motion: OscillatorOutputs, h: float) -> Cubic:
+        """The force over a step to ``motion``: with its ends, mean and moment."""
+        mean, moment = motion.box_impulse / h, motion.box_impulse_moment / (h * h)
+        return matched_cubic(self.motion.box_force, motion.box_force, mean, moment, h)
+
+    def _told_force(self, motion: OscillatorOutputs, h: float) -> Cubic:
+        """The force over that step as the shaker is told it."""
+        if self.scheme.matched:
+            return self.force_of(motion, h)
+        return parabola(
+            self.force_before, self.motion.box_force, motion.box_force, self.h_before, h
+        )
+
+    def _told_acceleration(self, after: ShakerOutputs, h: float) -> Cubic:
+        """The acceleration over a step that the shaker has done, as the structure is told it."""
+        now = self.shaking
+        first, last = now.box_acceleration, after.box_acceleration
+        if not self.scheme.matched:
+            return parabola(self.acceleration_before, first, last, self.h_before, h)
+        mean = (after.box_velocity - now.box_velocity) / h
+        moment = mean - ((after.box_position - now.box_position) / h - now.box_velocity) / h
+        return matched_cubic(first, last, mean, moment, h)
+
+    def _extrapolated_acceleration(self) -> Cubic:
+        """From what is known at this point and the one before."""
+        value, jerk, h = self.shaking.box_acceleration, self.shaking.box_jerk, self.h_before
+        terms = self._algorithm.terms
+        if terms == 1:
+            return value, 0.0, 0.0, 0.0
+        if terms == 2 or not h:
+            return value, jerk, 0.0, 0.0
+        bend = (self.acceleration_before - value + jerk * h) / (h * h)
+        if terms == 3:
+            return value, jerk, 2.0 * bend, 0.0
+        twist = ((self.jerk_before - jerk) / h + 2.0 * bend) / h
+        return value, jerk, 2.0 * (bend + twist * h), 6.0 * twist
+
+    def _extrapolated_force(self) -> Cubic:
+        """The force where both sides go at once: held constant, or a line."""
+        force, h = self.motion.box_force, self.h_before
+        line = self._algorithm.terms > 1 and h
+        return force, (force - self.force_before) / h if line else 0.0, 0.0, 0.0
+
+    # -- the schemes --
+
+    def _both_at_once(self, h: float) -> Step:
+        """Each with what is known of the other before the step."""
+        acceleration = self._extrapolated_acceleration()
+        self.oscillator.put(*acceleration)
+        self.oscillator.step(self.time, h)
+        self.shaker.put(*self._extrapolated_force(), self.voltage)
+        self.shaker.step(self.time, h)
+        return Step(acceleration, self._motion(), self._shaking())
+
+    def _one_after_the_other(self, h: float) -> Step:
+        """Structure, then shaker; once, twice, or until the force does not change."""
+        passes = self._algorithm.passes
+        if self.scheme.goes_back:
+            self.oscillator.save()
+            self.shaker.save()
+            if not self.h_before:
+                passes = ALGORITHMS["iterated"].passes
+        acceleration, last = self._extrapolated_acceleration(), None
+        for i in range(passes):
+            if i:
+                self.oscillator.restore()
+                self.shaker.restore()
+            motion, force = self._pass(acceleration, h)
+            if i + 1 == passes or (last and self._settled(motion, last)):
+                break
+            last = motion
+            self.shaker.put(motion.box_force, end_slope(force, h), 0.0, 0.0, self.voltage)
+            acceleration = self._told_acceleration(self._shaking(), h)
+        return Step(acceleration, motion, self._shaking())
+
+    def _pass(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
+        """Both sides once over the step; the structure's end, and the force told to the shaker."""
+        self.oscillator.put(*acceleration)
+        self.oscillator.step(self.time, h)
+        motion = self._motion()
+        force = self._told_force(motion, h)
+        self.shaker.put(*force, self.voltage)
+        self.shaker.step(self.time, h)
+        return motion, force
+
+    def _settled(self, motion: OscillatorOutputs, last: OscillatorOutputs) -> bool:
+        """Whether an iteration has changed nothing but roundings."""
+        now, then = (
+            (found.box_force, found.box_impulse, found.box_impulse_moment)
+            for found in (motion, last)
+        )
+        limit = self.scheme.converged
+        return all(abs(a - b) <= limit * (abs(a) + abs(b)) for a, b in zip(now, then, strict=True))
+
+    # -- to go on elsewhere --
+
+    def memory(self) -> list[float]:
+        """What the master itself remembers: with both FMUs' states, all that a run goes on from."""
+        own = [self.time, self.voltage, self.slope, self.force_before, self.h_before]
+        own += [self.acceleration_before, self.jerk_before]
+        return [*own, *self.motion, *self.shaking, *self.balance.memory()]
+
+    def remember(self, numbers: Sequence[float]) -> None:
+        """The inverse of :meth:`memory`."""
+        self.time, self.voltage, self.slope, self.force_before, self.h_before = numbers[:5]
+        self.acceleration_before, self.jerk_before = numbers[5:7]
+        motion = 7 + len(OscillatorOutputs._fields)
+        shaking = motion + len(ShakerOutputs._fields)
+        self.motion = OscillatorOutputs(*numbers[7:motion])
+        self.shaking = ShakerOutputs(*numbers[motion:shaking])
+        self.balance.remember(numbers[shaking:])
+
+    def close(self) -> None:
+        """Free the states kept in the FMUs."""
+        self.oscillator.close()
+        self.shaker.close()

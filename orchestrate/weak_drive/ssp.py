@@ -1,0 +1,197 @@
+"""The coupled system as an SSP 1.0 package for other tools: two FMUs, connections, parameters.
+
+What all tools read alike was found by trying: parameter bindings of the components, none of the
+system; connections between components only; no connector for the voltage, which some tools would
+set to 0 where nothing is connected to it; a Boolean only where it is true, since FMPy takes any
+other for true as well.
+
+What a tool makes of it depends on its master. Most hold inputs constant over a fixed step (Jacobi,
+see :mod:`.master`): negative damping, and the step has to be very short.
+"""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+from ..access.models import OSCILLATOR, SHAKER
+from ..running.files import write_whole
+from ..structures.drive import Drive
+from ..structures.structure import Structure
+from .couple import oscillator_start
+from .schedule import check
+
+NAMESPACES = {
+    "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
+    "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
+    "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
+}
+MODELS = {"oscillator": OSCILLATOR, "shaker": SHAKER}
+INPUTS = {"oscillator": ("box_acceleration", "box_jerk"), "shaker": ("box_force",)}
+OUTPUTS = {
+    "oscillator": ("box_force", "x1", "x2", "x_rel", "impact_energy"),
+    "shaker": ("box_acceleration", "box_jerk", "box_position", "speed", "angle", "motor_energy"),
+}
+CONNECTIONS = (
+    ("oscillator", "shaker", "box_force"),
+    ("shaker", "oscillator", "box_acceleration"),
+    ("shaker", "oscillator", "box_jerk"),
+)
+Values = Mapping[str, float | bool]
+
+
+def tag(prefix: str, name: str) -> str:
+    """A qualified name."""
+    return f"{{{NAMESPACES[prefix]}}}{name}"
+
+
+def document(root: ET.Element) -> bytes:
+    """An XML document."""
+    for prefix, address in NAMESPACES.items():
+        ET.register_namespace(prefix, address)
+    ET.indent(root)
+    text: bytes = ET.tostring(root, encoding="UTF-8", xml_declaration=True)
+    return text + b"\n"
+
+
+def ssv(component: str) -> str:
+    """Where the parameters of a component are."""
+    return f"resources/{component}.ssv"
+
+
+def add_component(elements: ET.Element, name: str) -> None:
+    """A component with its connectors and its parameters."""
+    source, kind = f"resources/{MODELS[name]}.fmu", "application/x-fmu-sharedlibrary"
+    component = ET.SubElement(
+        elements, tag("ssd", "Component"), name=name, type=kind, source=source
+    )
+    connectors = ET.SubElement(component, tag("ssd", "Connectors"))
+    ports = [("input", port) for port in INPUTS[name]] + [
+        ("output", port) for port in OUTPUTS[name]
+    ]
+    for kind, port in ports:
+        connector = ET.SubElement(connectors, tag("ssd", "Connector"), name=port, kind=kind)
+        ET.SubElement(connector, tag("ssc", "Real"))
+    bindings = ET.SubElement(component, tag("ssd", "ParameterBindings"))
+    ET.SubElement(bindings, tag("ssd", "ParameterBinding"), source=ssv(name))
+
+
+def system_description(description: str, stop_time: float) -> bytes:
+    """``SystemStructure.ssd``."""
+    root = ET.Element(tag("ssd", "SystemStructureDescription"), name="WeakDrive", version="1.0")
+    system = ET.SubElement(root, tag("ssd", "System"), name="WeakDrive", description=description)
+    elements = ET.SubElement(system, tag("ssd", "Elements"))
+    for name in MODELS:
+        add_component(elements, name)
+    links = ET.SubElement(system, tag("ssd", "Connections"))
+    for start, end, port in CONNECTIONS:
+        places = {
+            "startElement": start,
+            "startConnector": port,
+            "endElement": end,
+            "endConnector": port,
+        }
+        ET.SubElement(links, tag("ssd", "Connection"), places)
+    ET.SubElement(root, tag("ssd", "DefaultExperiment"), startTime="0.0", stopTime=repr(stop_time))
+    return document(root)
+
+
+def parameter_values(name: str, values: Values) -> bytes:
+    """Parameters of a component; what is false is left to its default."""
+    root = ET.Element(tag("ssv", "ParameterSet"), version="1.0", name=name)
+    group = ET.SubElement(root, tag("ssv", "Parameters"))
+    for variable, value in values.items():
+        if value is False:
+            continue
+        parameter = ET.SubElement(group, tag("ssv", "Parameter"), name=variable)
+        if value is True:
+            ET.SubElement(parameter, tag("ssv", "Boolean"), value="true")
+        else:
+            ET.SubElement(parameter, tag("ssv", "Real"), value=repr(float(value)))
+    return document(root)
+
+
+def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
+    """A zip file, the same bytes at any time."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
+
+
+def write_ssp(
+    path: str | PathLike[str],
+    structure: Structure,
+    drive: Drive,
+    *,
+    voltage: float,
+    speed_start: float | None = None,
+    stop_time: float | None = None,
+    fmus: Sequence[str | PathLike[str]] | None = None,
+) -> Path:
+    """Write the coupled system as an SSP package, for this structure and drive.
+
+    Parameters
+    ----------
+    path : path-like
+        Such as ``weak_drive.ssp``.
+    structure : Structure
+        Bonded or delaminated, as it is; the package says which.
+    drive : Drive
+    voltage : float
+        V.
+    speed_start : float, optional
+        Of the motor, rad/s; by default its no-load speed.
+    stop_time : float, optional
+        Of the default experiment, s; 100/omega by default.
+    fmus : sequence of path-like, optional
+        Of structure and shaker; by default those of FMI 2.0, which most tools read.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    InputError
+    StoreError
+        Where the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile, zipfile
+    >>> from pathlib import Path
+    >>> from orchestrate import Drive, Structure
+    >>> from orchestrate.weak_drive.ssp import write_ssp
+    >>> structure, drive = Structure.from_file("quick"), Drive.from_file("quick")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_ssp(Path(folder) / "quick.ssp", structure, drive, voltage=1.5)
+    ...     names = zipfile.ZipFile(path).namelist()
+    >>> names[:3]
+    ['SystemStructure.ssd', 'resources/oscillator.ssv', 'resources/shaker.ssv']
+    """
+    check("voltage", voltage, "V")
+    speed = voltage / drive.motor_constant if speed_start is None else speed_start
+    check("speed_start", speed, "rad/s")
+    stop = 100.0 / structure.omega if stop_time is None else stop_time
+    check("stop_time", stop, "s", low=0.0)
+    state = "bonded (undamaged)" if structure.bonded else "delaminated"
+    starts: dict[str, Values] = {
+        "oscillator": oscillator_start(structure),
+        "shaker": {**drive.parameters(), "speed_start": speed, "voltage": voltage},
+    }
+    text = f"Motor and box with a {state} structure, at {voltage:g} V"
+    files = {"SystemStructure.ssd": system_description(text, float(stop))}
+    files |= {ssv(name): parameter_values(name, values) for name, values in starts.items()}
+    for model, fmu in zip(MODELS.values(), fmus or exported(), strict=True):
+        files[f"resources/{model}.fmu"] = Path(fmu).read_bytes()
+    return write_whole(path, lambda temporary: write_archive(temporary, files))
+
+
+def exported() -> list[Path]:
+    """The FMUs of FMI 2.0."""
+    from ..access.exported import find
+
+    return [find(model, form="fmi2").path for model in MODELS.values()]
