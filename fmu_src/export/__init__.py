@@ -1,3 +1,5 @@
-"""From a kernel and a variable table to an FMU: one file per form, one for
-``modelDescription.xml``.
+"""What makes an FMU of a kernel and a variable table: one file a form, and what the forms share.
+
+:mod:`.forms` is the face of it. Importing it needs the standard library alone: numba, ziglang,
+pythonfmu and jinja2 are looked for when a build is asked for.
 """

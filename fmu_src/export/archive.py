@@ -1,21 +1,19 @@
 """An FMU is a zip file: written so that the same contents give the same bytes."""
 
+from __future__ import annotations
+
 import hashlib
 import os
 import tempfile
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
-def fingerprint(files):
-    """Hash of named contents, 32 hexadecimal digits.
-
-    Parameters
-    ----------
-    files : dict of str to bytes
-    """
+def fingerprint(files: Mapping[str, bytes]) -> str:
+    """Hash of named contents, 32 hexadecimal digits."""
     digest = hashlib.sha256()
     for name in sorted(files):
         digest.update(f"{name}\0{len(files[name])}\0".encode())
@@ -23,46 +21,46 @@ def fingerprint(files):
     return digest.hexdigest()[:32]
 
 
-def guid_of(digest):
-    """A fingerprint in the form of a GUID."""
-    return (
-        "{" + "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:])) + "}"
-    )
+def guid_of(files: Mapping[str, bytes]) -> str:
+    """Hash of named contents in the form of a GUID."""
+    digest = fingerprint(files)
+    return f"{{{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:]}}}"
 
 
-def write_archive(path, files):
+def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
     """Write an FMU, whole or not at all.
 
     Parameters
     ----------
     path : Path
-    files : dict of str to bytes
+    files : mapping of str to bytes
         ``modelDescription.xml`` comes first, the rest in alphabetical order.
     """
-    path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    temporary = Path(name)
     try:
-        with (
-            os.fdopen(handle, "wb") as stream,
-            zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive,
-        ):
-            for name in sorted(files, key=lambda n: (n != "modelDescription.xml", n)):
-                entry = zipfile.ZipInfo(name, EPOCH)
-                entry.compress_type = zipfile.ZIP_DEFLATED
-                entry.create_system = 3
-                entry.external_attr = (0o755 if name.endswith((".so", ".dll")) else 0o644) << 16
-                archive.writestr(entry, files[name])
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
+        with os.fdopen(handle, "wb") as stream, zipfile.ZipFile(stream, "w") as archive:
+            for entry in sorted(files, key=lambda n: (n != "modelDescription.xml", n)):
+                archive.writestr(information(entry), files[entry])
+        temporary.chmod(0o644)
+        temporary.replace(path)
     except BaseException:
-        Path(temporary).unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise
 
 
-def read_folder(folder, prefix=""):
+def information(name: str) -> zipfile.ZipInfo:
+    """An entry of the archive that tells nothing of when and where it was made."""
+    entry = zipfile.ZipInfo(name, EPOCH)
+    entry.compress_type = zipfile.ZIP_DEFLATED
+    entry.create_system = 3
+    entry.external_attr = (0o755 if name.endswith((".so", ".dll")) else 0o644) << 16
+    return entry
+
+
+def read_folder(folder: Path, prefix: str = "") -> dict[str, bytes]:
     """All files below a folder, without caches, as a dict of name to bytes."""
-    folder = Path(folder)
     return {
         prefix + path.relative_to(folder).as_posix(): path.read_bytes()
         for path in sorted(folder.rglob("*"))

@@ -1,24 +1,27 @@
-"""The kernel compiled ahead of time: Numba to LLVM, LLVM to object files that need nothing but
-``memset``.
+"""The kernel compiled ahead of time: Numba to LLVM, LLVM to object files that need only ``memset``.
 
-Runs in a process of its own (``python -m fmu_src.export.compile_kernel MODEL FOLDER``), because
+Runs in a process of its own (``python -m fmu_src.export.compile_kernel MODEL TARGET``), because
 Numba reads its settings when it is imported. No fast-math, no fused multiply-add, a baseline
 processor: with the kernel's own elementary functions every number has the bits that pure Python
 gives. Only Numba's public ``inspect_llvm`` and llvmlite's binding layer are used.
 """
 
+from __future__ import annotations
+
 import functools
-import importlib
 import os
 import re
 import subprocess
 import sys
 import tempfile
 import types
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from .linking import PLATFORMS, NoCompiler
+from .errors import CannotExport, require
+from .platforms import PLATFORMS, Platform
+from .sources import ROOT, Files, load
 
 CPU = "x86-64-v2"
 SETTINGS = {
@@ -27,88 +30,91 @@ SETTINGS = {
     "NUMBA_OPT": "3",
     "NUMBA_CACHE_DIR": os.devnull,
 }
+SQRT = "declare double @llvm.sqrt.f64(double)"
 
 
 @functools.cache
-def compile_objects(model_module):
+def compile_objects(folder: str) -> Files:
     """Compile a model's kernel for every platform, in a process of its own.
 
     Parameters
     ----------
-    model_module : str
-        Module with a ``MODEL`` (:class:`..runtime.table.Model`), e.g.
-        ``"fmu_src.models.oscillator.model"``.
+    folder : str
+        The model's, below ``fmu_src/models``.
 
     Returns
     -------
     dict of str to bytes
-        Object file by platform, of :data:`.linking.PLATFORMS`.
+        Object file by platform, of :data:`.platforms.PLATFORMS`.
 
     Raises
     ------
-    NoCompiler
+    CannotExport
         Where Numba is missing, or a new version breaks this way.
     """
-    root = Path(__file__).resolve().parents[2]
-    with tempfile.TemporaryDirectory(prefix="vibroimpact-") as folder:
-        command = [sys.executable, "-m", __name__, model_module, folder]
+    require("numba", "compiles the kernel")
+    with tempfile.TemporaryDirectory(prefix="vibroimpact-") as target:
+        command = [sys.executable, "-m", __name__, folder, target]
+        settings = {**os.environ, **SETTINGS}
         done = subprocess.run(
-            command, cwd=root, env={**os.environ, **SETTINGS}, capture_output=True, text=True
+            command, cwd=ROOT.parent, env=settings, capture_output=True, text=True
         )
         if done.returncode != 0:
-            raise NoCompiler(
-                (done.stderr.strip().splitlines() or ["the compiler gave no reason"])[-1]
-            )
-        return {name: (Path(folder) / f"{name}.o").read_bytes() for name in PLATFORMS}
+            told = done.stderr.strip().splitlines()
+            raise CannotExport(told[-1] if told else "the compiler gave no reason")
+        return {name: (Path(target) / f"{name}.o").read_bytes() for name in PLATFORMS}
 
 
-def kernel_modules():
+def kernel_modules() -> list[str]:
     """Names of the kernels' modules imported so far: those the model is made of."""
-    return [name for name in sorted(sys.modules) if name.startswith("fmu_src.kernels.")]
+    kernels = f"{ROOT.name}.kernels."
+    return [name for name in sorted(sys.modules) if name.startswith(kernels)]
 
 
-def jit_kernel(names):
-    """Replace every function of imported modules by its Numba dispatcher."""
+def jit_kernel(names: Iterable[str]) -> dict[Callable[..., Any], Any]:
+    """Replace every function of imported modules by its Numba dispatcher; returns these."""
     import numba
 
-    dispatchers = {}
-    for module in map(sys.modules.__getitem__, names):
+    wanted = set(names)
+    dispatchers: dict[Callable[..., Any], Any] = {}
+    for module in map(sys.modules.__getitem__, sorted(wanted)):
         for name, value in list(vars(module).items()):
-            if isinstance(value, types.FunctionType) and value.__module__ in names:
+            if isinstance(value, types.FunctionType) and value.__module__ in wanted:
                 if value not in dispatchers:
                     dispatchers[value] = numba.njit(error_model="numpy")(value)
                 setattr(module, name, dispatchers[value])
     return dispatchers
 
 
-def entry_ir(entry, size):
-    """LLVM IR of a C function ``int (double *memory, double time)``."""
+def entry_ir(entry: Any, size: int) -> tuple[str, str]:
+    """LLVM IR of a C function ``int (double *memory, double time)``, and its name there."""
     import numba
 
-    def c_entry(pointer, time):
-        return entry(numba.carray(pointer, (size,)), time)
+    def c_entry(pointer: Any, time: Any) -> Any:
+        return entry(numba.carray(pointer, (size,)), time)  # type: ignore[attr-defined]
 
-    signature = numba.types.int32(numba.types.CPointer(numba.types.float64), numba.types.float64)
+    double = numba.types.float64
+    signature = numba.types.int32(numba.types.CPointer(double), double)  # type: ignore[no-untyped-call]
     compiled = numba.cfunc(signature, error_model="numpy")(c_entry)
     return compiled.inspect_llvm(), compiled.native_name
 
 
-def link_ir(entries):
-    """One optimised LLVM module of all entry points, everything else internal to it."""
+def with_intrinsic_sqrt(ir: str) -> str:
+    """IR that calls LLVM's square root, one processor instruction, not the C library's."""
+    ir = re.sub(r"^declare double @sqrt\(double\).*$", SQRT, ir, flags=re.M)
+    if ir.count(SQRT) > 1:
+        ir = re.sub(rf"^{re.escape(SQRT)} #.*\n", "", ir, flags=re.M)
+    return ir.replace("@sqrt(", "@llvm.sqrt.f64(")
+
+
+def link_ir(entries: Mapping[str, tuple[str, str]]) -> Any:
+    """One LLVM module of all entry points, everything else internal to it."""
     import llvmlite.binding as llvm
 
     module: Any = None
     names = {}
     for name, (ir, native_name) in entries.items():
-        ir = re.sub(
-            r"^declare double @sqrt\(double\).*$",
-            "declare double @llvm.sqrt.f64(double)",
-            ir,
-            flags=re.M,
-        )
-        if ir.count("declare double @llvm.sqrt.f64(double)") > 1:
-            ir = re.sub(r"^declare double @llvm\.sqrt\.f64\(double\) #.*\n", "", ir, flags=re.M)
-        part = llvm.parse_assembly(ir.replace("@sqrt(", "@llvm.sqrt.f64("))
+        part = llvm.parse_assembly(with_intrinsic_sqrt(ir))
         names[native_name] = name
         if module is None:
             module = part
@@ -127,34 +133,33 @@ def link_ir(entries):
     return module
 
 
-def emit_object(text, platform):
+def emit_object(text: str, platform: Platform) -> bytes:
     """Optimise for the baseline processor and emit a position-independent object."""
     import llvmlite.binding as llvm
 
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
-    text = re.sub(r"^target triple = .*$", f'target triple = "{platform.triple}"', text, flags=re.M)
-    text = re.sub(r'^(target datalayout = "e-m:)e', rf"\g<1>{platform.mangling}", text, flags=re.M)
+    target = llvm.Target.from_triple(platform.triple)
+    machine = target.create_target_machine(cpu=CPU, opt=3, reloc="pic", codemodel="default")
     module = llvm.parse_assembly(text)
-    machine = llvm.Target.from_triple(platform.triple).create_target_machine(
-        cpu=CPU, opt=3, reloc="pic", codemodel="default"
-    )
-    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
+    module.triple = platform.triple
+    module.data_layout = str(machine.target_data)
+    options = llvm.create_pipeline_tuning_options(speed_level=3)
+    builder = llvm.create_pass_builder(machine, options)
     for _ in range(2):  # the second round sees that no error path is left
         builder.getModulePassManager().run(module, builder)
-    needed = [
-        f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")
-    ]
+    declared = [function.name for function in module.functions if function.is_declaration]
+    needed = ", ".join(name for name in declared if not name.startswith("llvm."))
     if needed:
-        raise NoCompiler(
-            f"the kernel compiled by this version of Numba needs {', '.join(needed)}: allowed is nothing outside itself"
-        )
-    return machine.emit_object(module)
+        raise CannotExport(f"a kernel by this version of Numba needs {needed}: expected nothing")
+    made = machine.emit_object(module)
+    assert isinstance(made, bytes)
+    return made
 
 
-def main(model_module, folder):
+def main(folder: str, target: str) -> None:
     """Write one object file a platform; see :func:`compile_objects`."""
-    model = importlib.import_module(model_module).MODEL
+    model = load(folder)
     dispatchers = jit_kernel(kernel_modules())
     entries = {
         f"kernel_{name}": entry_ir(dispatchers[function], model.memory_size)
@@ -162,13 +167,13 @@ def main(model_module, folder):
     }
     text = str(link_ir(entries))
     for name, platform in PLATFORMS.items():
-        (Path(folder) / f"{name}.o").write_bytes(emit_object(text, platform))
+        (Path(target) / f"{name}.o").write_bytes(emit_object(text, platform))
 
 
-def failure(error):
+def failure(error: Exception) -> str:
     """One line on why the kernel could not be compiled."""
     reason = (str(error).strip().splitlines() or ["no reason given"])[0]
-    if isinstance(error, (NoCompiler, ImportError)):
+    if isinstance(error, (CannotExport, ImportError)):
         return reason
     version = getattr(sys.modules.get("numba"), "__version__", "of unknown version")
     return f"Numba {version} cannot compile the kernel: {type(error).__name__}: {reason}"

@@ -1,38 +1,40 @@
-"""``documentation/`` and ``model.png`` of an FMU: the model's page, its variable table filled in,
-its pictures and reference results.
-"""
+"""What people read in an FMU: the model's page, pictures, an icon, reference results."""
 
-from pathlib import Path
-
-import jinja2
+from __future__ import annotations
 
 from .archive import read_folder
+from .sources import ROOT, Files, load
 
 
-def documentation_files(model, folder, digest):
-    """Files of the FMU that people read.
+def documentation_files(folder: str, digest: str) -> Files:
+    """Files of ``documentation/``, and ``model.png``.
 
     Parameters
     ----------
-    model : Model
-    folder : Path
-        The model's folder: ``documentation/index.html.in`` and its pictures, ``model.png``,
-        ``reference/``.
+    folder : str
+        The model's, below ``fmu_src/models``, with ``documentation/index.html.in`` and its
+        pictures, ``model.png`` and ``reference/``.
     digest : str
-        Fingerprint of the sources.
+        Fingerprint of the sources, to be told on the page.
 
     Returns
     -------
     dict of str to bytes
     """
-    folder = Path(folder)
-    files = read_folder(folder / "documentation", "documentation/")
+    place = ROOT / "models" / folder
+    files = read_folder(place / "documentation", "documentation/")
     template = files.pop("documentation/index.html.in").decode()
+    files["documentation/index.html"] = page(template, folder, digest)
+    files.update(read_folder(place / "reference", "documentation/reference/"))
+    files["model.png"] = (place / "model.png").read_bytes()
+    return files
+
+
+def page(template: str, folder: str, digest: str) -> bytes:
+    """The model's page, its variable table filled in."""
+    import jinja2
+
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True
     )
-    page = environment.from_string(template).render(model=model, digest=digest)
-    files["documentation/index.html"] = page.encode()
-    files.update(read_folder(folder / "reference", "documentation/reference/"))
-    files["model.png"] = (folder / "model.png").read_bytes()
-    return files
+    return environment.from_string(template).render(model=load(folder), digest=digest).encode()

@@ -5,6 +5,8 @@ machine and gives the same bytes everywhere; where that is missing, the machine'
 serves its own platform.
 """
 
+from __future__ import annotations
+
 import functools
 import importlib.util
 import logging
@@ -12,130 +14,81 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 
+from .errors import EXTRA, CannotExport
+from .platforms import PLATFORMS
+
 log = logging.getLogger(__name__)
-
-
-class NoCompiler(Exception):
-    """Why no binary can be made here, as one line."""
+FLAGS = (
+    *("-shared", "-s", "-O2", "-g0", "-fvisibility=hidden", "-ffp-contract=off"),
+    *("-Wall", "-Wextra"),
+)
 
 
 @functools.cache
-def say_once(line):
+def say_once(line: str) -> None:
     """Warn, however many FMUs the line is about."""
     log.warning("%s", line)
 
 
-def say_pure_python(reason):
-    """Say, once, what is left where no binary can be made."""
-    say_once(
-        f"no binary can be made here, so there will be no native FMU, and the pythonfmu FMU runs in pure Python: {reason}"
-    )
-
-
-@dataclass(frozen=True)
-class Platform:
-    """A platform with binaries.
-
-    Attributes
-    ----------
-    triple, mangling : str
-        LLVM's target triple and symbol mangling.
-    zig_target : str
-        With the oldest C library it is to run on.
-    suffix : str
-        Of a shared library.
-    fmi2, fmi3 : str
-        Folder below ``binaries/``.
-    """
-
-    triple: str
-    mangling: str
-    zig_target: str
-    suffix: str
-    fmi2: str
-    fmi3: str
-
-
-PLATFORMS = {
-    "x86_64-linux": Platform(
-        "x86_64-unknown-linux-gnu", "e", "x86_64-linux-gnu.2.17", ".so", "linux64", "x86_64-linux"
-    ),
-    "x86_64-windows": Platform(
-        "x86_64-pc-windows-gnu", "w", "x86_64-windows-gnu", ".dll", "win64", "x86_64-windows"
-    ),
-}
-FLAGS = (
-    "-shared",
-    "-s",
-    "-O2",
-    "-fvisibility=hidden",
-    "-ffp-contract=off",
-    "-g0",
-    "-Wall",
-    "-Wextra",
-)
-
-
-def compiler(name):
+def compiler(name: str) -> list[str]:
     """Command of a C compiler for a platform.
 
     Raises
     ------
-    NoCompiler
+    CannotExport
     """
     if importlib.util.find_spec("ziglang"):
         return [sys.executable, "-m", "ziglang", "cc", "-target", PLATFORMS[name].zig_target]
     own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     if own and name == "x86_64-linux" and sys.platform == "linux":
         return [own]
-    raise NoCompiler(
-        f"no C compiler for {name}: allowed is the PyPI package ziglang, or cc, gcc or clang for the machine's own platform"
+    raise CannotExport(
+        f"no C compiler for {name}: expected {EXTRA} (ziglang), or, for the machine's own "
+        "platform, cc, gcc or clang"
     )
 
 
-def link(name, files):
-    """A shared library, as bytes.
+def link(name: str, files: Mapping[str, bytes]) -> bytes:
+    """A shared library.
 
     Parameters
     ----------
     name : str
         Platform.
-    files : dict of str to bytes
+    files : mapping of str to bytes
         Sources, headers and object files by file name.
 
-    Returns
-    -------
-    bytes
+    Raises
+    ------
+    CannotExport
+        Where there is no compiler, or it fails.
     """
-    with tempfile.TemporaryDirectory(prefix="vibroimpact-") as folder:
+    target = f"library{PLATFORMS[name].suffix}"
+    units = [file for file in files if file.endswith((".c", ".o"))]
+    command = [*compiler(name), *FLAGS, "-o", target, *units]
+    with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
+        folder = Path(scratch)
         for file, content in files.items():
-            (Path(folder) / file).write_bytes(content)
-        units = [file for file in files if file.endswith((".c", ".o"))]
-        target = f"library{PLATFORMS[name].suffix}"
-        command = [*compiler(name), *FLAGS, "-o", target, *units]
+            (folder / file).write_bytes(content)
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         if done.returncode != 0:
-            lines = (
-                [line for line in done.stderr.splitlines() if "error" in line]
-                or done.stderr.splitlines()
-                or ["no reason given"]
-            )
-            raise NoCompiler(f"the C compiler failed for {name}: {lines[0]}")
-        return (Path(folder) / target).read_bytes()
+            told = done.stderr.splitlines()
+            lines = [line for line in told if "error" in line] or told or ["no reason given"]
+            raise CannotExport(f"the C compiler failed for {name}: {lines[0]}")
+        return (folder / target).read_bytes()
 
 
-def link_all(objects, files):
-    """The same library for every platform this machine can link for; the others are left out, and
-    said to be.
+def link_all(objects: Mapping[str, bytes], files: Mapping[str, bytes]) -> dict[str, bytes]:
+    """The same library for every platform this machine can link for; what is left out is said.
 
     Parameters
     ----------
-    objects : dict of str to bytes
+    objects : mapping of str to bytes
         The compiled kernel by platform.
-    files : dict of str to bytes
+    files : mapping of str to bytes
         Sources and headers.
 
     Returns
@@ -145,17 +98,17 @@ def link_all(objects, files):
 
     Raises
     ------
-    NoCompiler
+    CannotExport
         Where there is no library at all.
     """
     made, reasons = {}, []
     for name in PLATFORMS:
         try:
             made[name] = link(name, {**files, "kernel.o": objects[name]})
-        except NoCompiler as error:
-            reasons.append(error)
+        except CannotExport as reason:
+            reasons.append(reason)
     if not made:
         raise reasons[0]
-    for reason in reasons:
-        say_once(f"the FMUs will have binaries for {', '.join(made)} alone: {reason}")
+    for left_out in reasons:
+        say_once(f"the FMUs will have binaries for {', '.join(made)} alone: {left_out}")
     return made

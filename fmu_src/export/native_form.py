@@ -1,19 +1,22 @@
-"""The native form of a model: kernel compiled ahead of time, a generic C shim over the variable
-table, nothing else in the binary.
-"""
+"""The native form: the kernel compiled ahead of time, a C shim over the variable table, no more."""
 
-import functools
-import math
+from __future__ import annotations
+
+from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
-from .archive import fingerprint, guid_of, write_archive
+from ..runtime.table import Model
+from .archive import guid_of, write_archive
 from .compile_kernel import compile_objects
+from .description_fmi2 import fmi2_xml
+from .description_fmi3 import fmi3_xml
 from .documentation import documentation_files
-from .linking import PLATFORMS, link_all
-from .model_description import fmi2_native_xml
-from .model_description3 import ARRAY_BASE, CLOCK_REFERENCE, fmi3_xml
-from .pythonfmu_form import ROOT, embedded_sources, exporters, kernel_sources
+from .errors import require
+from .linking import link_all
+from .model_header import model_header
+from .platforms import PLATFORMS
+from .sources import Files, exporters, load, model_digest, model_sources, read
 
 HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
@@ -23,140 +26,38 @@ SHIM = {
     "fmi2": ("core.h", "core.c", "fmi2.c"),
     "fmi3": ("core.h", "core.c", "fmi3.c", "fmi3_absent.c"),
 }
-XML = {"fmi2": fmi2_native_xml, "fmi3": fmi3_xml}
+XML: dict[str, Callable[[Model, str], bytes]] = {"fmi2": fmi2_xml, "fmi3": fmi3_xml}
 
 
-def c_string(text):
-    """A C string literal."""
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
-
-
-def c_number(value):
-    """A C floating-point literal, to the last bit."""
-    if math.isinf(value):
-        return "INFINITY" if value > 0 else "-INFINITY"
-    return float(value).hex()
-
-
-def c_variable(model, variable):
-    """One row of the C variable table."""
-    slots = {v.name: v.slot for v in model.variables}
-    minimum = -math.inf if variable.minimum is None else variable.minimum
-    maximum = math.inf if variable.maximum is None else variable.maximum
-    cells = [
-        c_string(variable.name),
-        c_string(variable.unit),
-        c_string(variable.range_text()),
-        variable.type.upper(),
-        str(int(variable.calculated)),
-        str(int(variable.fixed)),
-        c_number(variable.start),
-        c_number(minimum),
-        c_number(maximum),
-        str(variable.input_derivatives),
-        str(slots[variable.derivative]) if variable.derivative else "-1",
-        str(int(bool(variable.series))),
-    ]
-    return "    {" + ", ".join(cells) + "},"
-
-
-def model_header(model, token, digest):
-    """``model.h``: the variable table, sizes and messages for the shim."""
-    highest = max(model.messages)
-    inputs = [
-        f"orders 1 to {v.input_derivatives} of {v.name}"
-        for v in model.variables
-        if v.input_derivatives
-    ]
-    outputs = [v.name for v in model.variables if v.derivative]
-    slots = {v.name: v.slot for v in model.variables}
-    arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]
-    lines = [
-        "/* Generated from the variable table. */",
-        "#include <math.h>",
-        f"#define MODEL_TOKEN {c_string(token)}",
-        f"#define STATE_MAGIC {c_string('vibroimpact state ' + digest)}",
-        f"#define MEMORY_SIZE {model.memory_size}",
-        f"#define SKIP_FIRST {model.written_only[0]}",
-        f"#define SKIP_COUNT {model.written_only[1]}",
-        f"#define TIME_SLOT {model.time_slot}",
-        f"#define STOP_SLOT {model.stop_slot}",
-        f"#define VARIABLE_COUNT {len(model.variables)}u",
-        f"#define REFRESH {int(model.refresh is not None)}",
-        f"#define EVENT_CLOCK {int(model.clock is not None)}",
-        f"#define EVENT_COUNT_SLOT {slots[model.clock.counter] if model.clock else 0}",
-        f"#define CLOCK_REFERENCE {CLOCK_REFERENCE}u",
-        f"#define ARRAY_BASE {ARRAY_BASE}u",
-        f"#define ARRAY_COUNT {len(arrays)}u",
-        f"#define MESSAGE_COUNT {highest + 1}",
-        f"#define INPUT_DERIVATIVES {c_string(', '.join(inputs) or 'none')}",
-        f"#define OUTPUT_DERIVATIVES {c_string(', '.join(outputs) or 'none')}",
-        "typedef enum { REAL, INTEGER, BOOLEAN } Type;",
-        "typedef struct { const char *name, *unit, *range; Type type; int calculated, fixed; double start, minimum, maximum;",
-        "                 int input_derivatives, derivative, element; } Variable;",
-        "static const Variable VARIABLES[] = {",
-        *[c_variable(model, variable) for variable in model.variables],
-        "};",
-        "typedef struct { unsigned first, size; } Array;",
-        "static const Array ARRAYS[] = {",
-        *(arrays or ["    {0, 0},"]),
-        "};",
-        "static const char *const MESSAGES[] = {",
-        *[f"    [{code}] = {c_string(text)}," for code, text in sorted(model.messages.items())],
-        "};",
-    ]
-    return ("\n".join(lines) + "\n").encode()
-
-
-def shim_sources(version):
+def shim_sources(version: str) -> Files:
     """C sources of the shim for an FMI version."""
-    folder = ROOT / "runtime" / "native"
-    return {name: (folder / name).read_bytes() for name in SHIM[version]}
+    found = read(*(f"runtime/native/{name}" for name in SHIM[version]))
+    return {Path(name).name: content for name, content in found.items()}
 
 
-def fmi_headers(version):
+def fmi_headers(version: str) -> Files:
     """The standard's C headers, which come with FMPy."""
+    require("fmpy", "brings the C headers of the FMI standard")
     folder = resources.files("fmpy") / "c-code"
     return {name: (folder / name).read_bytes() for name in HEADERS[version]}
 
 
-def source_digest(kernel, folder):
-    """Fingerprint of kernel and model: states saved by one native form can be read by the other."""
-    return fingerprint(
-        {
-            k: v
-            for k, v in embedded_sources(kernel, folder).items()
-            if not k.startswith("runtime/slave")
-        }
-    )
+def guid(folder: str, version: str) -> str:
+    """The GUID: of the sources, and of the exporters that make the FMU from them."""
+    model = {"sources": model_digest(folder).encode(), "version": version.encode()}
+    return guid_of({**exporters("export/native_form.py"), **model})
 
 
-def guid(kernel, folder, version):
-    """The GUID (instantiation token) of the native form: of the sources, and of the exporters that
-    make the FMU from them.
-    """
-    return guid_of(
-        fingerprint(
-            {
-                **exporters(),
-                "version": version.encode(),
-                "sources": source_digest(kernel, folder).encode(),
-            }
-        )
-    )
-
-
-def export(model, kernel, folder, target, version):
+def export(folder: str, version: str, target: Path) -> Path:
     """Write ``target/NAME.fmu``.
 
     Parameters
     ----------
-    model : Model
-    kernel, folder : str
-        Packages below ``fmu_src``: the kernel's and the model's.
-    target : Path
+    folder : str
+        The model's, below ``fmu_src/models``.
     version : str
         ``"fmi2"`` or ``"fmi3"``.
+    target : Path
 
     Returns
     -------
@@ -165,28 +66,20 @@ def export(model, kernel, folder, target, version):
 
     Raises
     ------
-    NoCompiler
+    CannotExport
         Where no binary can be made.
     """
-    token, digest = guid(kernel, folder, version), source_digest(kernel, folder)
-    objects = compile_objects(f"fmu_src.models.{folder}.model")
-    sources = {
-        **shim_sources(version),
-        **fmi_headers(version),
-        "model.h": model_header(model, token, digest),
-    }
+    model, token, digest = load(folder), guid(folder, version), model_digest(folder)
+    header = {"model.h": model_header(model, token, digest)}
+    units = {**shim_sources(version), **fmi_headers(version), **header}
     files = {"modelDescription.xml": XML[version](model, token)}
-    for name, binary in link_all(objects, sources).items():
+    for name, binary in link_all(compile_objects(folder), units).items():
         platform = PLATFORMS[name]
-        files[f"binaries/{getattr(platform, version)}/{model.name}{platform.suffix}"] = binary
-    files.update(documentation_files(model, ROOT / "models" / folder, digest))
-    files.update(
-        {f"documentation/{name}": content for name, content in kernel_sources(kernel).items()}
-    )
-    path = Path(target) / f"{model.name}.fmu"
+        place = f"binaries/{platform.folders[version]}/{model.name}{platform.suffix}"
+        files[place] = binary
+    files.update(documentation_files(folder, digest))
+    kernel = {k: v for k, v in model_sources(folder).items() if k.startswith("kernels/")}
+    files.update({f"documentation/{name}": content for name, content in kernel.items()})
+    path = target / f"{model.name}.fmu"
     write_archive(path, files)
     return path
-
-
-export_fmi3 = functools.partial(export, version="fmi3")
-export_fmi2 = functools.partial(export, version="fmi2")

@@ -1,170 +1,132 @@
-"""The pythonfmu form of a model: the Python kernel inside, with its compiled form beside it where
-one can be made.
+"""The pythonfmu form: the Python kernel inside, its compiled form beside it where one can be made.
 
 Two FMUs, or an FMU and its host, share modules of the same name in one process. So everything
 embedded lies in one package under a content-hashed name, the script bears the hash too, and
-pythonfmu builds in a process of its own.
+pythonfmu builds in a process of its own (``python -m fmu_src.export.pythonfmu_form SCRIPT PACKAGE
+TARGET``).
 """
 
-import re
+from __future__ import annotations
+
 import subprocess
 import sys
 import tempfile
 import zipfile
+from importlib import metadata
 from pathlib import Path
 
-import pythonfmu
-
 from ..runtime.compiled import LIBRARIES
-from .archive import fingerprint, guid_of, read_folder, write_archive
+from ..runtime.table import Model
+from .archive import fingerprint, guid_of, write_archive
 from .compile_kernel import compile_objects
+from .description_fmi2 import PYTHON, fmi2_xml
 from .documentation import documentation_files
-from .linking import NoCompiler, link_all, say_pure_python
-from .model_description import fmi2_xml
+from .errors import EXTRA, CannotExport, require
+from .linking import link_all, say_once
+from .sources import ROOT, Files, closure, exporters, load, read
 
-ROOT = Path(__file__).resolve().parents[1]
-RUNTIME = (
-    "__init__.py",
-    "kernels/__init__.py",
-    "models/__init__.py",
-    *(f"runtime/{name}.py" for name in ("__init__", "table", "slave", "compiled")),
-)
-MODEL_FILES = ("__init__.py", "variables.py", "model.py")
-SCRIPT = '''"""The slave of {name}; the class has to be defined here, all else is in the package."""
-
-from pythonfmu.fmi2slave import Fmi2Slave
-
-from {package}.runtime.slave import Slave, keep
-from {package}.models.{folder}.model import MODEL
-
-keep(globals())  # pythonfmu runs this script, then releases its namespace, which it only borrowed
+PYTHONFMU = "0.7.0"  # the slave works around what this version does, see there
+SCRIPT = "runtime/script.py.in"
 
 
-class {name}(Slave, Fmi2Slave):
-    """{description}."""
-
-    model = MODEL
-    fingerprint = "{digest}"
-'''
-BUILD = """
-import sys
-from pythonfmu.builder import FmuBuilder
-script, package, target = sys.argv[1:]
-FmuBuilder.build_FMU(script, dest=target, project_files=[package])
-"""
-
-
-def kernel_sources(kernel):
-    """Files of a kernel, and those of other kernels that it takes (``from ..OTHER.MODULE import
-    ...``), by their path below ``fmu_src``.
-    """
-    files = read_folder(ROOT / "kernels" / kernel, f"kernels/{kernel}/")
-    text = b"\n".join(files.values()).decode()
-    for other, module in sorted(
-        set(re.findall(r"^from \.\.(\w+)\.(\w+) import ", text, flags=re.M))
-    ):
-        files.update(
-            {
-                f"kernels/{other}/{name}": (ROOT / "kernels" / other / name).read_bytes()
-                for name in ("__init__.py", f"{module}.py")
-            }
-        )
-    return files
-
-
-def embedded_sources(kernel, folder):
+def embedded_sources(folder: str) -> Files:
     """Files of the embedded package, by their path in it."""
-    files = {name: (ROOT / name).read_bytes() for name in RUNTIME}
-    files.update(
-        {
-            f"models/{folder}/{name}": (ROOT / "models" / folder / name).read_bytes()
-            for name in MODEL_FILES
-        }
-    )
-    files.update(kernel_sources(kernel))
-    return files
+    return closure(f"models/{folder}/model.py", "runtime/slave.py")
 
 
-def source_digest(kernel, folder):
-    """Fingerprint of all that decides the numbers; the GUID is made of it."""
-    sources = embedded_sources(kernel, folder)
-    return fingerprint(
-        {**sources, "pythonfmu": pythonfmu.__version__.encode(), "script": SCRIPT.encode()}
-    )
+def source_digest(folder: str) -> str:
+    """Fingerprint of all that runs in the FMU; the GUID is made of it."""
+    more = {**read(SCRIPT), "pythonfmu": PYTHONFMU.encode()}
+    return fingerprint({**embedded_sources(folder), **more})
 
 
-def exporters():
-    """Files of the exporters: a change of theirs makes another FMU too."""
-    return {**read_folder(ROOT / "export", "export/"), **read_folder(ROOT / "runtime", "runtime/")}
+def guid(folder: str) -> str:
+    """The GUID an FMU of the present sources bears; it is told without pythonfmu."""
+    sources = {"sources": source_digest(folder).encode()}
+    return guid_of({**exporters("export/pythonfmu_form.py"), **sources})
 
 
-def guid(kernel, folder):
-    """The GUID an FMU of the present sources bears."""
-    return guid_of(fingerprint({**exporters(), "sources": source_digest(kernel, folder).encode()}))
+def check_pythonfmu() -> None:
+    """See that the one version is installed that the slave is made for."""
+    require("pythonfmu", "puts the FMU together")
+    if metadata.version("pythonfmu") != PYTHONFMU:
+        found = metadata.version("pythonfmu")
+        raise CannotExport(f"pythonfmu is {found}: expected {PYTHONFMU}, as in {EXTRA}")
 
 
-def export(model, kernel, folder, target):
+def export(folder: str, target: Path) -> Path:
     """Write ``target/NAME.fmu``.
 
     Parameters
     ----------
-    model : Model
-    kernel, folder : str
-        Packages below ``fmu_src``: the kernel's and the model's.
+    folder : str
+        The model's, below ``fmu_src/models``.
     target : Path
 
     Returns
     -------
     Path
         The FMU.
+
+    Raises
+    ------
+    CannotExport
+        Where pythonfmu is missing, or is another version.
     """
-    sources = embedded_sources(kernel, folder)
-    digest = source_digest(kernel, folder)
+    check_pythonfmu()
+    model, digest = load(folder), source_digest(folder)
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
-        files = run_pythonfmu(model, folder, sources, digest, Path(scratch))
-    files["modelDescription.xml"] = fmi2_xml(model, guid(kernel, folder))
-    files.update(documentation_files(model, ROOT / "models" / folder, digest))
-    path = Path(target) / f"{model.name}.fmu"
+        script, package = write_sources(Path(scratch), folder, digest)
+        for name, library in libraries(folder, model).items():
+            (package / name).write_bytes(library)
+        files = run_pythonfmu(script, package, Path(scratch) / "built.fmu")
+    files["modelDescription.xml"] = fmi2_xml(model, guid(folder), PYTHON)
+    files.update(documentation_files(folder, digest))
+    path = target / f"{model.name}.fmu"
     write_archive(path, files)
     return path
 
 
-def run_pythonfmu(model, folder, sources, digest, scratch):
-    """Let pythonfmu put script, package and its own binaries together; returns the archive's files."""
+def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
+    """Write what pythonfmu puts together; returns script and package."""
+    model = load(folder)
     package = scratch / "source" / f"fmu_{digest[:12]}"
-    for name, content in sources.items():
+    for name, content in embedded_sources(folder).items():
         (package / name).parent.mkdir(parents=True, exist_ok=True)
         (package / name).write_bytes(content)
-    try:
-        entry = (b"#define REFRESH\n" if model.refresh else b"") + (
-            ROOT / "runtime" / "native" / "library.c"
-        ).read_bytes()
-        objects = compile_objects(f"fmu_src.models.{folder}.model")
-        libraries = link_all(objects, {"library.c": entry})
-        for platform, library in LIBRARIES.values():
-            if platform in libraries:
-                (package / library).write_bytes(libraries[platform])
-    except NoCompiler as reason:
-        say_pure_python(reason)
     script = scratch / "source" / f"{model.name}_{digest[:12]}.py"
-    text = SCRIPT.format(
-        name=model.name,
-        package=package.name,
-        folder=folder,
-        description=model.description,
-        digest=digest,
-    )
+    named = {"name": model.name, "description": model.description, "digest": digest}
+    template = (ROOT / SCRIPT).read_text(encoding="utf-8")
+    text = template.format(package=package.name, folder=folder, **named)
     script.write_text(text, encoding="utf-8")
-    built = scratch / "built.fmu"
-    command = [sys.executable, "-c", BUILD, str(script), str(package), str(built)]
-    done = subprocess.run(command, cwd=scratch, capture_output=True, text=True)
+    return script, package
+
+
+def libraries(folder: str, model: Model) -> Files:
+    """The compiled kernel by file name, a platform each; none, and said so, without a compiler."""
+    refresh = b"#define REFRESH\n" if model.refresh else b""
+    entry = refresh + (ROOT / "runtime" / "native" / "library.c").read_bytes()
+    try:
+        made = link_all(compile_objects(folder), {"library.c": entry})
+    except CannotExport as reason:
+        say_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")
+        return {}
+    return {library: made[name] for name, library in LIBRARIES.values() if name in made}
+
+
+def run_pythonfmu(script: Path, package: Path, built: Path) -> Files:
+    """Let pythonfmu put script, package and its own binaries together; returns the files."""
+    command = [sys.executable, "-m", __name__, str(script), str(package), str(built)]
+    done = subprocess.run(command, cwd=ROOT.parent, capture_output=True, text=True)
     if done.returncode != 0:
-        raise RuntimeError(
-            f"pythonfmu could not build {model.name}: {(done.stderr.strip().splitlines() or ['no reason given'])[-1]}"
-        )
+        reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+        raise RuntimeError(f"pythonfmu could not build {script.stem}: {reason}")
     with zipfile.ZipFile(built) as archive:
-        return {
-            name: archive.read(name)
-            for name in archive.namelist()
-            if not name.endswith("/") and "__pycache__" not in name
-        }
+        names = [name for name in archive.namelist() if not name.endswith("/")]
+        return {name: archive.read(name) for name in names if "__pycache__" not in name}
+
+
+if __name__ == "__main__":
+    from pythonfmu.builder import FmuBuilder
+
+    FmuBuilder.build_FMU(sys.argv[1], dest=sys.argv[3], project_files=[sys.argv[2]])

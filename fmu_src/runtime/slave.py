@@ -1,22 +1,24 @@
-"""The slave inside a pythonfmu FMU: FMI 2.0 calls onto a kernel's flat memory. Standard library
-only.
+"""The slave inside a pythonfmu FMU: FMI 2.0 calls onto a kernel's flat memory.
 
-pythonfmu 0.7.0 releases the references to class, instance and log queue whenever an exception
-leaves a slave, and once more when the instance is freed; a second call then crashes the process.
-:meth:`Slave.refuse` therefore takes one more reference to each before it raises. ``doStep`` never
-raises: it logs, and returns False. Every other call has no way but an exception to give the
-importer a status that is not OK.
+Standard library only, Python 3.9. pythonfmu 0.7.0 releases the references to class, instance and
+log queue whenever an exception leaves a slave, and once more when the instance is freed; a second
+call then crashes the process. :meth:`Slave.refuse` therefore takes one more reference to each
+before it raises. ``doStep`` never raises: it logs, and returns False. Every other call has no way
+but an exception to give the importer a status that is not OK.
 """
+
+from __future__ import annotations
 
 import ctypes
 import hashlib
 import os
 import struct
 import sys
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NoReturn
 
 from .compiled import load_compiled
-from .table import BOOLEAN, INTEGER, REAL, explain
+from .table import BOOLEAN, INTEGER, REAL, Model, Variable, explain
 
 INSTANTIATED, INITIALIZING, STEPPING, TERMINATED = 0.0, 1.0, 2.0, 3.0
 STATE_MAGIC = b"vibroimpact state "
@@ -27,50 +29,82 @@ class FmuError(Exception):
     """A user's mistake or an unfinished step, as one line."""
 
 
-def keep(thing):
+class Logger(ctypes.Structure):
+    """pythonfmu's logger, whose address a slave is given: what of it says who hears a message.
+
+    The C++ object of the library that travels in this very FMU: virtual table, a flag that the
+    importer switches logging on with, instance name (a ``std::string``), and the categories it
+    wants (a ``std::vector``: begin and end; empty for all of them).
+    """
+
+    _fields_ = (
+        ("table", ctypes.c_void_p),
+        ("on", ctypes.c_bool),
+        ("name", ctypes.c_uint64 * 4),
+        ("begin", ctypes.c_uint64),
+        ("end", ctypes.c_uint64),
+    )
+
+
+def keep(thing: Any) -> None:
     """Take one more reference to an object that pythonfmu is going to release once too often."""
     ctypes.pythonapi.Py_IncRef(ctypes.py_object(thing))
 
 
 class Slave:
-    """Mixed into pythonfmu's ``Fmi2Slave``; the subclass sets ``model`` (a :class:`.table.Model`)
-    and ``fingerprint`` (str).
+    """FMI 2.0 calls by pythonfmu's names, mixed into its ``Fmi2Slave``.
+
+    Attributes
+    ----------
+    model : Model
+    fingerprint : str
+        Of the sources; both are set by the subclass.
     """
 
-    model: Any = None
+    model: Model
     fingerprint = ""
     instance_name: str
-    log_queue: list
+    log_queue: list[Any]
     log: Any
 
-    def __init__(self, **kwargs):
-        super().__init__(**kwargs)
-        size = self.model.memory_size
-        # under its content-hashed name; its files lie with this instance, not with the first of the
-        # process
-        package = __name__.split(".")[0]
-        entries = self.model.entries
-        kernel = load_compiled(
-            os.path.join(kwargs.get("resources") or "", package), package, tuple(entries)
-        )
-        self._entries = dict(zip(entries, kernel)) if kernel else entries
-        self._array = ctypes.c_double * size if kernel else lambda *values: list(values)
-        self._memory = self._array(*([0.0] * size))
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given)
+        self._logger = int(given.get("logger") or 0)
+        self._entries: dict[str, Any] = {**self.model.entries}
+        self._array: Any = lambda *values: list(values)
+        self._choose_kernel(given.get("resources") or "")
+        self._memory = self._array(*([0.0] * self.model.memory_size))
         for variable in self.model.variables:
-            self._memory[variable.slot] = float(variable.start) if not variable.calculated else 0.0
+            self._memory[variable.slot] = 0.0 if variable.calculated else float(variable.start)
         self._phase = INSTANTIATED
         self._start_time = 0.0
         self._stale = True  # outputs do not belong to the values set yet (initialisation mode)
-        self._checked: dict = {REAL: None, INTEGER: None, BOOLEAN: None}
+        self._checked: dict[str, Any] = {REAL: None, INTEGER: None, BOOLEAN: None}
 
-    # -- failing without a crash
-    # --------------------------------------------------------------------------------------
+    def _choose_kernel(self, resources: str) -> None:
+        """Take the compiled kernel where it is there: it lies with this instance's package."""
+        package = __name__.split(".")[0]  # under its content-hashed name
+        names = tuple(self._entries)
+        kernel = load_compiled(os.path.join(resources, package), package, names)
+        if kernel:
+            self._entries = dict(zip(names, kernel))
+            self._array = ctypes.c_double * self.model.memory_size
 
-    def report(self, text):
-        """One line to the error output: importers drop log messages unless asked for, and may take
-        a discarded step for success.
+    # -- failing without a crash -------------------------------------------------------------------
+
+    def heard(self) -> bool:
+        """Whether the importer hears all that is logged."""
+        if not self._logger:
+            return False
+        logger = Logger.from_address(self._logger)
+        return bool(logger.on and logger.begin == logger.end)
+
+    def report(self, text: str) -> None:
+        """One line to the error output, where the importer does not hear what is logged.
+
+        It may take a discarded step for success.
         """
-        if os.environ.get("VIBROIMPACT_MESSAGES") == "log":  # an importer that reads the log
+        if self.heard():
             return
         try:
             sys.stderr.write(f"{self.model.name} '{self.instance_name}': {text}\n")
@@ -78,14 +112,14 @@ class Slave:
         except Exception:  # a host without an error output
             pass
 
-    def refuse(self, text):
+    def refuse(self, text: str) -> NoReturn:
         """Give the call an error status, with ``text`` as its message."""
         self.report(text)
         for kept in (type(self), self, self.log_queue):
             keep(kept)
         raise FmuError(text.replace("%", "%%"))  # the text ends up as a printf format
 
-    def complain(self, text):
+    def complain(self, text: str) -> None:
         """Log an error without raising."""
         from pythonfmu.enums import Fmi2Status
 
@@ -93,80 +127,81 @@ class Slave:
         self.log(text.replace("%", "%%"), Fmi2Status.error, "logStatusError")
 
     # -- life cycle --------------------------------------------------------------------------------
-    # -------------------
 
-    def setup_experiment(self, start_time, stop_time=None, tolerance=None):
-        """Start time of the experiment."""
+    def setup_experiment(self, start_time: float, *_: Any) -> None:
+        """Start time of the experiment; stop time and tolerance do not matter."""
         if self._phase != INSTANTIATED:
-            self.refuse("fmi2SetupExperiment: allowed is one call before initialisation")
+            self.refuse("fmi2SetupExperiment: expected one call before initialisation")
         if start_time - start_time != 0.0:
-            self.refuse(f"startTime = {start_time!r} s: allowed is every finite number")
+            self.refuse(f"startTime = {start_time!r} s: expected every finite number")
         self._start_time = start_time
 
-    def enter_initialization_mode(self):
+    def enter_initialization_mode(self) -> None:
         """Begin initialisation."""
         if self._phase != INSTANTIATED:
-            self.refuse(
-                "fmi2EnterInitializationMode: allowed is one call after instantiation or fmi2Reset"
-            )
+            self.refuse("fmi2EnterInitializationMode: expected one call on a new or reset instance")
         self._phase = INITIALIZING
 
-    def exit_initialization_mode(self):
+    def exit_initialization_mode(self) -> None:
         """Check and take over what was set."""
         if self._phase != INITIALIZING:
-            self.refuse("fmi2ExitInitializationMode: allowed is one call in initialisation mode")
+            self.refuse("fmi2ExitInitializationMode: expected one call in initialisation mode")
         self.start()
         self._phase = STEPPING
 
-    def start(self):
+    def start(self) -> None:
         """Initialise the kernel with the present values."""
         if self._stale:
             self.enter("initialize", self._start_time)
 
-    def enter(self, entry, time):
+    def enter(self, entry: str, time: float) -> None:
         """Call the kernel for outputs that belong to the values set."""
         code = self._entries[entry](self._memory, time)
         if code:
             self.refuse(explain(self.model, self._memory, code))
         self._stale = False
 
-    def catch_up(self):
+    def catch_up(self) -> None:
         """Outputs for the values set since they were computed."""
         if self._phase == INITIALIZING:
             self.start()
         elif self._phase == STEPPING and self.model.refresh:
             self.enter("refresh", self._memory[self.model.time_slot])
 
-    def terminate(self):
+    def terminate(self) -> None:
         """End of the simulation run; values can still be read."""
         self._phase = TERMINATED
 
-    def do_step(self, current_time, step_size):
-        """One communication step; False, with a logged message, where it cannot be done: the
-        instance stays where it was.
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        """One communication step.
+
+        Returns
+        -------
+        bool
+            False, with a logged message, where it cannot be done: the instance stays where it was.
         """
         try:
-            problem = self.step_problem(current_time, step_size) or self.step(
-                current_time + step_size
-            )
+            problem = self.step_problem(current_time, step_size)
+            problem = problem or self.step(current_time + step_size)
         except Exception as error:
             problem = f"doStep failed inside: {error!r}"
         if problem:
             self.complain(problem)
         return not problem
 
-    def step_problem(self, current_time, step_size):
+    def step_problem(self, current_time: float, step_size: float) -> str:
         """Why a step cannot be tried; an empty string where it can."""
         if self._phase != STEPPING:
-            return "fmi2DoStep: allowed is after initialisation and before fmi2Terminate"
+            return "fmi2DoStep: expected after initialisation and before fmi2Terminate"
         if not 0.0 <= step_size < float("inf"):
-            return f"communicationStepSize = {step_size!r} s: allowed is every finite number >= 0"
+            return f"communicationStepSize = {step_size!r} s: expected every finite number >= 0"
         reached = self._memory[self.model.time_slot]
         if not abs(current_time - reached) <= 1e-9 * (abs(reached) + abs(step_size)):
-            return f"currentCommunicationPoint = {current_time!r} s: allowed is {reached!r} s, where the last step ended"
+            text = f"currentCommunicationPoint = {current_time!r} s: expected {reached!r} s"
+            return f"{text}, where the last step ended"
         return ""
 
-    def step(self, time):
+    def step(self, time: float) -> str:
         """Advance; on failure the memory is put back and the reason returned."""
         first, count = self.model.written_only
         head, tail = self._memory[:first], self._memory[first + count :]
@@ -179,110 +214,102 @@ class Slave:
         return problem
 
     # -- values ------------------------------------------------------------------------------------
-    # -------------------
 
-    def find(self, vrs, kind):
+    def find(self, references: Sequence[int], kind: str) -> list[Variable]:
         """The variables at value references, all of one type."""
         found = []
-        for vr in vrs:
-            if not 0 <= vr < len(self.model.variables) or self.model.variables[vr].type != kind:
-                self.refuse(
-                    f"valueReference = {vr}: allowed are those of the {kind} variables in modelDescription.xml"
-                )
-            found.append(self.model.variables[vr])
+        for reference in references:
+            known = 0 <= reference < len(self.model.variables)
+            if not known or self.model.variables[reference].type != kind:
+                text = f"valueReference = {reference}: expected one of the {kind} variables"
+                self.refuse(f"{text} in modelDescription.xml")
+            found.append(self.model.variables[reference])
         return found
 
-    def read(self, vrs, kind):
+    def read(self, references: Sequence[int], kind: str) -> list[float]:
         """Values at value references."""
-        if vrs != self._checked[kind]:
-            self.find(vrs, kind)
-            self._checked[kind] = list(vrs)
+        if references != self._checked[kind]:
+            self.find(references, kind)
+            self._checked[kind] = list(references)
         if self._stale:
             self.catch_up()
-        return list(map(self._memory.__getitem__, vrs))
+        return list(map(self._memory.__getitem__, references))
 
-    def get_real(self, vrs):
+    def get_real(self, references: Sequence[int]) -> list[float]:
         """Values of Real variables."""
-        return self.read(vrs, REAL)
+        return self.read(references, REAL)
 
-    def get_integer(self, vrs):
+    def get_integer(self, references: Sequence[int]) -> list[int]:
         """Values of Integer variables."""
-        return [int(value) for value in self.read(vrs, INTEGER)]
+        return [int(value) for value in self.read(references, INTEGER)]
 
-    def get_boolean(self, vrs):
+    def get_boolean(self, references: Sequence[int]) -> list[bool]:
         """Values of Boolean variables."""
-        return [value != 0.0 for value in self.read(vrs, BOOLEAN)]
+        return [value != 0.0 for value in self.read(references, BOOLEAN)]
 
-    def get_string(self, vrs):
+    def get_string(self, references: Sequence[int]) -> list[str]:
         """There are no String variables."""
-        self.find(vrs, "String")
+        self.find(references, "String")
         return []
 
-    def write(self, vrs, values, kind):
+    def write(self, references: Sequence[int], values: Sequence[float], kind: str) -> None:
         """Set variables, all or none."""
-        found = self.find(vrs, kind)
+        found = self.find(references, kind)
         for variable, value in zip(found, values):
-            if variable.calculated:
-                self.refuse(
-                    f"{variable.name} = {value!r}: an output cannot be set, allowed are parameters and inputs"
-                )
-            if variable.fixed and self._phase > INITIALIZING:
-                self.refuse(
-                    f"{variable.name} = {value!r}: a fixed parameter, to be set before the end of initialisation"
-                )
-            problem = variable.problem(value)
+            problem = self.write_problem(variable, value)
             if problem:
                 self.refuse(problem)
-        for vr, value in zip(vrs, values):
-            self._memory[vr] = float(value)
+        for reference, value in zip(references, values):
+            self._memory[reference] = float(value)
         self._stale = True
 
-    def set_real(self, vrs, values):
+    def write_problem(self, variable: Variable, value: float) -> str:
+        """Why a variable cannot be set now, or not to that; an empty string where it can."""
+        given = f"{variable.name} = {value!r}"
+        if variable.calculated:
+            return f"{given}: an output cannot be set, expected a parameter or an input"
+        if variable.fixed and self._phase > INITIALIZING:
+            return f"{given}: a fixed parameter, to be set before the end of initialisation"
+        return variable.problem(value)
+
+    def set_real(self, references: Sequence[int], values: Sequence[float]) -> None:
         """Set Real variables."""
-        self.write(vrs, values, REAL)
+        self.write(references, values, REAL)
 
-    def set_integer(self, vrs, values):
+    def set_integer(self, references: Sequence[int], values: Sequence[int]) -> None:
         """Set Integer variables."""
-        self.write(vrs, values, INTEGER)
+        self.write(references, values, INTEGER)
 
-    def set_boolean(self, vrs, values):
+    def set_boolean(self, references: Sequence[int], values: Sequence[bool]) -> None:
         """Set Boolean variables."""
-        self.write(vrs, [1.0 if value else 0.0 for value in values], BOOLEAN)
+        self.write(references, [1.0 if value else 0.0 for value in values], BOOLEAN)
 
-    def set_string(self, vrs, values):
+    def set_string(self, references: Sequence[int], values: Sequence[str]) -> None:
         """There are no String variables."""
-        self.find(vrs, "String")
+        self.find(references, "String")
 
     # -- state -------------------------------------------------------------------------------------
-    # -------------------
 
-    def _get_fmu_state(self):
-        return self._sealed(
-            struct.pack(
-                f"<{3 + len(self._memory)}d",
-                self._phase,
-                self._start_time,
-                self._stale,
-                *self._memory,
-            )
-        )
+    def _get_fmu_state(self) -> bytes:
+        numbers = (self._phase, self._start_time, self._stale, *self._memory)
+        return self._sealed(struct.pack(f"<{len(numbers)}d", *numbers))
 
-    def _sealed(self, body):
+    def _sealed(self, body: bytes) -> bytes:
         """A saved state: what it is of, a checksum, and its numbers."""
         head = (STATE_MAGIC + self.fingerprint.encode()).ljust(STATE_HEAD - CHECKSUM, b"\0")
         return head + hashlib.sha256(head + body).digest()[:CHECKSUM] + body
 
-    def _set_fmu_state(self, state):
+    def _is_state(self, state: Any) -> bool:
+        """Whether this FMU saved it, and it is undamaged."""
         length = STATE_HEAD + 8 * (3 + len(self._memory))
-        if (
-            not isinstance(state, bytes)
-            or len(state) != length
-            or state != self._sealed(state[STATE_HEAD:])
-        ):
-            self.refuse(
-                f"FMU state: allowed are states saved by this FMU ({self.model.name}, {self.fingerprint}), and undamaged"
-            )
-        numbers = struct.unpack(f"<{(length - STATE_HEAD) // 8}d", state[STATE_HEAD:])
+        right = isinstance(state, bytes) and len(state) == length
+        return right and state == self._sealed(state[STATE_HEAD:])
+
+    def _set_fmu_state(self, state: Any) -> None:
+        if not self._is_state(state):
+            text = f"FMU state: expected a state saved by this FMU ({self.model.name}, "
+            self.refuse(f"{text}{self.fingerprint}), and undamaged")
+        numbers = struct.unpack(f"<{3 + len(self._memory)}d", state[STATE_HEAD:])
         self._phase, self._start_time, self._stale = numbers[0], numbers[1], numbers[2] != 0.0
         self._memory = self._array(*numbers[3:])
 

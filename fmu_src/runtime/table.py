@@ -1,16 +1,21 @@
-"""What a model tells the world: its variables, once, for the slave, the XML, the documentation and
-the tests.
+"""What a model tells the world, once, for the slave, the XML, the documentation and the tests.
 
-Standard library only: this file travels inside the FMU.
+Standard library only, Python 3.9: this file travels inside the FMU.
 """
 
+from __future__ import annotations
+
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
+from types import ModuleType
+from typing import Any, Callable
 
 REAL, INTEGER, BOOLEAN = "Real", "Integer", "Boolean"
 HUGE = 1e100  # squares and energies of what an importer may set stay finite
 TINY, LARGE = 1e-30, 1e30
+Entry = Callable[[Any, float], int]  # memory and time (s) -> code, 0 for success
 
 
 @dataclass(frozen=True)
@@ -28,7 +33,7 @@ class Variable:
     start : float
         Start value, for all that is not calculated.
     minimum, maximum : float or None
-        Allowed range, both included.
+        Range, both included.
     nominal : float
         Order of magnitude.
     dependencies : tuple of str
@@ -54,27 +59,27 @@ class Variable:
     initial: str = ""
     type: str = REAL
     start: float = 0.0
-    minimum: "float | None" = None
-    maximum: "float | None" = None
+    minimum: float | None = None
+    maximum: float | None = None
     nominal: float = 1.0
-    dependencies: tuple = ()
-    initial_dependencies: tuple = ()
+    dependencies: tuple[str, ...] = ()
+    initial_dependencies: tuple[str, ...] = ()
     input_derivatives: int = 0
     derivative: str = ""
     series: str = ""
     slot: int = -1
 
     @property
-    def calculated(self):
+    def calculated(self) -> bool:
         """Whether the FMU computes the variable, so that nobody can set it."""
         return self.causality in ("output", "local")
 
     @property
-    def fixed(self):
+    def fixed(self) -> bool:
         """Whether the variable can be set before the end of initialisation only."""
         return self.variability == "fixed"
 
-    def problem(self, value):
+    def problem(self, value: float) -> str:
         """Why ``value`` cannot be the variable's, as one line; an empty string where it can."""
         if self.type == BOOLEAN:
             return ""
@@ -83,10 +88,10 @@ class Variable:
         if isfinite(value) and low and high:
             return ""
         unit = f" {self.unit}" if self.unit not in ("", "1") else ""
-        return f"{self.name} = {value!r}{unit}: allowed is {self.range_text()}"
+        return f"{self.name} = {value!r}{unit}: expected {self.range_text()}"
 
-    def range_text(self):
-        """The allowed range in words."""
+    def range_text(self) -> str:
+        """The expected range in words."""
         if self.type == BOOLEAN:
             return "true or false"
         if self.minimum is None and self.maximum is None:
@@ -96,33 +101,27 @@ class Variable:
         return f"{lower}{self.name}{upper}"
 
 
-def parameter(name, unit, start, description, **more):
+def parameter(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
     """A parameter, fixed unless said otherwise."""
-    more = {"variability": "fixed", **more}
-    return Variable(name, description, "parameter", unit, initial="exact", start=start, **more)
+    given = {"variability": "fixed", "initial": "exact", **more}
+    return Variable(name, description, "parameter", unit, start=start, **given)
 
 
-def drive(name, unit, start, description, **more):
+def drive(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
     """An input."""
-    return Variable(
-        name, description, "input", unit, start=start, **{"minimum": -HUGE, "maximum": HUGE, **more}
-    )
+    given = {"minimum": -HUGE, "maximum": HUGE, **more}
+    return Variable(name, description, "input", unit, start=start, **given)
 
 
-def output(name, unit, description, known=(), **more):
+def output(
+    name: str, unit: str, description: str, known: Iterable[str] = (), **more: Any
+) -> Variable:
     """An output, calculated from the start values ``known``."""
-    return Variable(
-        name,
-        description,
-        "output",
-        unit,
-        initial="calculated",
-        initial_dependencies=tuple(known),
-        **more,
-    )
+    given = {"initial": "calculated", "initial_dependencies": tuple(known), **more}
+    return Variable(name, description, "output", unit, **given)
 
 
-def numbered(variables, memory):
+def numbered(variables: Sequence[Variable], memory: ModuleType) -> tuple[Variable, ...]:
     """The variables in their order, each with its place as its slot.
 
     Parameters
@@ -214,35 +213,44 @@ class Model:
     version: str
     author: str
     license: str
-    variables: tuple
+    variables: tuple[Variable, ...]
     memory_size: int
-    written_only: tuple
+    written_only: tuple[int, int]
     time_slot: int
     stop_slot: int
-    initialize: object
-    advance: object
-    messages: dict
+    initialize: Entry
+    advance: Entry
+    messages: Mapping[int, str]
     stop_time: float
     step_size: float
-    arrays: tuple = ()
-    clock: "Clock | None" = None
-    refresh: object = None
+    arrays: tuple[Array, ...] = ()
+    clock: Clock | None = None
+    refresh: Entry | None = None
 
     @property
-    def entries(self):
+    def entries(self) -> dict[str, Entry]:
         """The kernel's entry points by name, in the order in which compiled forms give them."""
         given = {"initialize": self.initialize, "advance": self.advance, "refresh": self.refresh}
         return {name: function for name, function in given.items() if function is not None}
 
 
-def explain(model, memory, code):
+def with_slots(messages: Mapping[int, str], memory: ModuleType) -> dict[int, str]:
+    """Messages with the slots of a kernel's memory in place of their names: ``{E}`` is ``{6}``."""
+
+    def slot(match: re.Match[str]) -> str:
+        return f"{{{getattr(memory, match.group(1))}"
+
+    return {code: re.sub(r"\{([A-Z]\w*)", slot, text) for code, text in messages.items()}
+
+
+def explain(model: Model, memory: Sequence[float], code: int) -> str:
     """What a return code of the kernel says, as one line.
 
     In a message ``{12}`` stands for the number in slot 12, ``{12:flight|contact}`` for one of the
     words, chosen by it. The native FMU fills in the same texts.
     """
 
-    def fill(match):
+    def fill(match: re.Match[str]) -> str:
         value = memory[int(match.group(1))]
         return match.group(2)[1:].split("|")[int(value)] if match.group(2) else repr(float(value))
 

@@ -102,7 +102,7 @@ def outcomes(variant, tmp_path_factory):
 
 @pytest.mark.parametrize("key", CASES)
 def test_mistake_is_refused_with_a_message(outcomes, key):
-    """A status that is not OK, and a message that names the thing, its value and what is allowed;
+    """A status that is not OK, and a message that names the thing, its value and what is expected;
     from pythonfmu as a line on stderr too.
     """
     texts = [

@@ -117,8 +117,8 @@ def test_stderr_has_the_message_where_logging_is_off(tmp_path):
     assert [status > 1 for status, _ in logged] == [True, True]
     assert [messages for _, messages in logged] == [[], []]
     first, second = done.stderr.splitlines()
-    assert "'quiet': m1 = -2.0 kg: allowed is 1e-30 <= m1 <= 1e+30" in first
-    assert "'quiet': communicationStepSize = -1.0 s: allowed is" in second
+    assert "'quiet': m1 = -2.0 kg: expected 1e-30 <= m1 <= 1e+30" in first
+    assert "'quiet': communicationStepSize = -1.0 s: expected" in second
 
 
 def test_long_step_ends(fmu, tmp_path):

@@ -48,7 +48,7 @@ def test_two_versions_in_one_process_do_not_share_code(other, tmp_path):
     assert (mine[0], foreign[0]) == (0.7, 0.25)
     assert again == mine
     assert mine[1] != foreign[1]
-    assert status[0] != 0 and "FMU state: allowed are states saved by this FMU" in status[1]
+    assert status[0] != 0 and "FMU state: expected a state saved by this FMU" in status[1]
     (first, second, third), _ = run(script, PYTHON, other, "other", cwd=tmp_path)
     assert (first, second, third) == (foreign, mine, foreign)
 
@@ -160,7 +160,7 @@ def test_hostile_instance_names(fmu, tmp_path, name):
         answer(["\n".join(refused.messages), f.reset().start().step(1.0).get("phase")])
     """
     message, phase = run(script, fmu, name, cwd=tmp_path)
-    assert "m1 = nan kg: allowed is 1e-30 <= m1 <= 1e+30" in message
+    assert "m1 = nan kg: expected 1e-30 <= m1 <= 1e+30" in message
     assert phase == [pytest.approx(0.4)]
 
 
@@ -173,7 +173,7 @@ def test_percent_signs_in_a_message_reach_the_importer(tmp_path):
     module = [m for n, m in sys.modules.items() if n.endswith("runtime.slave")] if open_fmu(PATH) else []
     table = sys.modules[module[0].__name__.replace("slave", "table")]
     real = table.Variable.problem
-    table.Variable.problem = lambda self, value: "%s%n %d 100 %: allowed is everything" if value == 7.5 else real(self, value)
+    table.Variable.problem = lambda self, value: "%s%n %d 100 %: expected everything" if value == 7.5 else real(self, value)
     texts = []
     for k in range(50):
         try:
@@ -184,7 +184,7 @@ def test_percent_signs_in_a_message_reach_the_importer(tmp_path):
     """
     texts = run(script, PYTHON, cwd=tmp_path)
     assert len(texts) == 50
-    assert all("%s%n %d 100 %: allowed is everything" in text for text in texts)
+    assert all("%s%n %d 100 %: expected everything" in text for text in texts)
 
 
 def test_discarded_step_is_noticed(tmp_path):
@@ -201,7 +201,7 @@ def test_discarded_step_is_noticed(tmp_path):
     assert times[-1] < 10.0  # the trap
     (line,) = [text for text in done.stderr.splitlines() if "box_frequency" in text]
     assert "box_frequency = 1.0 rad/s is the natural frequency of mass 1" in line
-    assert "allowed is d1 > 0" in line
+    assert "expected d1 > 0" in line
 
 
 def test_discarded_step_raises_in_the_project(fmu):
@@ -213,7 +213,7 @@ def test_discarded_step_raises_in_the_project(fmu):
         instance.set(box_frequency=1.0)
         with pytest.raises(
             FmuError,
-            match=r"box_frequency = 1.0 rad/s is the natural frequency of mass 1.*allowed is d1 > 0",
+            match=r"box_frequency = 1.0 rad/s is the natural frequency of mass 1.*expected d1 > 0",
         ):
             instance.step(1.0, 2.0)
         instance.set(box_frequency=0.4)

@@ -99,7 +99,7 @@ static void values(void) {
             unsigned pair[] = {named("box_amplitude")->reference, name->reference};
             double both[] = {0.25, bad[k]};
             REFUSED(c, fmi.SetReal(c, &name->reference, 1, &bad[k]));
-            SAYS(name->name); SAYS("allowed is"); SAYS(k < 2 ? "nan" : k == 2 ? "inf" : " = ");
+            SAYS(name->name); SAYS("expected "); SAYS(k < 2 ? "nan" : k == 2 ? "inf" : " = ");
             if (name->reference != pair[0]) REFUSED(c, fmi.SetReal(c, pair, 2, both)); /* all or none */
         }
         char *saved;

@@ -112,7 +112,7 @@ static void values(void) {
             unsigned pair[] = {*VR("box_amplitude"), name->reference};
             double both[] = {0.25, bad[k]};
             REFUSED(c, fmi.SetFloat64(c, &name->reference, 1, &bad[k], 1));
-            SAYS(name->name); SAYS("allowed is"); SAYS(k < 2 ? "nan" : k == 2 ? "inf" : " = ");
+            SAYS(name->name); SAYS("expected "); SAYS(k < 2 ? "nan" : k == 2 ? "inf" : " = ");
             if (name->reference != pair[0]) REFUSED(c, fmi.SetFloat64(c, pair, 2, both, 2)); /* all or none */
         }
         char *saved;

@@ -1,7 +1,11 @@
 """The variable table of ``MotorShaker``. Standard library only: it travels inside the FMU."""
 
+from __future__ import annotations
+
+from typing import Any
+
 from ...kernels.shaker import memory
-from ...runtime.table import LARGE, TINY, drive, numbered, output, parameter
+from ...runtime.table import LARGE, TINY, Variable, drive, numbered, output, parameter
 
 LIMIT = 1e30  # of start values and inputs: squares, sums and energies of them stay finite
 
@@ -19,22 +23,22 @@ FORCE = ("box_force", "box_force_1")
 ALL = (*BOX, *ROTOR, *(name for name in CIRCUIT if name not in ROTOR), "voltage")
 
 
-def positive(name, unit, start, description):
+def positive(name: str, unit: str, start: float, description: str) -> Variable:
     """A parameter that is not zero."""
     return parameter(name, unit, start, description, minimum=TINY, maximum=LARGE)
 
 
-def not_negative(name, unit, start, description):
+def not_negative(name: str, unit: str, start: float, description: str) -> Variable:
     """A parameter that may be zero."""
     return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE)
 
 
-def start(name, unit, description, limit=LIMIT):
+def start(name: str, unit: str, description: str, limit: float = LIMIT) -> Variable:
     """The start value of a state."""
     return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit)
 
 
-def given(name, unit, description, **more):
+def given(name: str, unit: str, description: str, **more: Any) -> Variable:
     """An input, 0 until it is set."""
     return drive(name, unit, 0.0, description, minimum=-LIMIT, maximum=LIMIT, **more)
 
@@ -73,9 +77,9 @@ INPUTS = (
     ),
     given("box_force_3", "N/s3", "Third time derivative of box_force at the beginning of the step"),
 )
-NOW = {"dependencies": ("voltage", "box_force")}
-JERK = {"dependencies": ("voltage", *FORCE)}
-ELECTRIC = {"dependencies": ("voltage",)}
+NOW: dict[str, Any] = {"dependencies": ("voltage", "box_force")}
+JERK: dict[str, Any] = {"dependencies": ("voltage", *FORCE)}
+ELECTRIC: dict[str, Any] = {"dependencies": ("voltage",)}
 OUTPUTS = (
     output(
         "box_position",

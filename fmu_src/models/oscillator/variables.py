@@ -2,6 +2,10 @@
 FMU.
 """
 
+from __future__ import annotations
+
+from typing import Any
+
 from ...kernels.oscillator import memory
 from ...runtime.table import (
     BOOLEAN,
@@ -24,16 +28,16 @@ MASS_1, MASS_2 = ("x1_start", "v1_start"), ("x2_start", "v2_start")
 ALL = MECHANICS + ("e", "gamma", "bonded") + STARTS + DRIVE + EXTRA  # after an impact at the start
 
 
-def start(name, unit, description):
+def start(name: str, unit: str, description: str) -> Variable:
     """The start value of a co-ordinate."""
     return parameter(name, unit, 0.0, description, minimum=-HUGE, maximum=HUGE)
 
 
-DISCRETE = {"variability": "discrete"}
-COUNT = {"variability": "discrete", "type": INTEGER, "minimum": 0}
+DISCRETE: dict[str, Any] = {"variability": "discrete"}
+COUNT: dict[str, Any] = {"variability": "discrete", "type": INTEGER, "minimum": 0}
 
 
-def samples(name, unit, description):
+def samples(name: str, unit: str, description: str) -> tuple[Variable, ...]:
     """A local variable for each state kept inside a step."""
     return tuple(
         Variable(
@@ -78,7 +82,8 @@ SCALARS = (
         "gamma",
         "1",
         1e-4,
-        "End of chattering: pressed together, the masses stick where the next flight would last less than gamma/omega",
+        "End of chattering: pressed together, the masses stick where the next flight would "
+        "last less than gamma/omega",
         minimum=1e-9,
         maximum=1.0,
     ),
@@ -110,7 +115,8 @@ SCALARS = (
         "box_frequency",
         "rad/s",
         0.4,
-        "Angular frequency Omega of the harmonic box motion; the phase is continuous when it changes",
+        "Angular frequency Omega of the harmonic box motion; "
+        "the phase is continuous when it changes",
         minimum=0.0,
         maximum=LARGE,
     ),
@@ -222,7 +228,8 @@ SCALARS = (
         "sample_count",
         "",
         0,
-        "States kept inside each step, at equal parts of it, the last one at its end: x1_sample and so on; 0 for none",
+        "States kept inside each step, at equal parts of it, the last one at its end: "
+        "x1_sample and so on; 0 for none",
         type=INTEGER,
         variability="tunable",
         minimum=0,

@@ -42,9 +42,9 @@ Status refuse(Instance *instance, const char *call, const char *reason) {
 bool in_phase(Instance *instance, const char *call, int phases) {
     static const char *const names[] = {"instantiated", "initialization mode", "step mode", "event mode", "stopped after an error", "terminated"};
     if (instance->state.phase & phases) return true;
-    char text[TEXT] = "not allowed when ";
+    char text[TEXT] = "called when ";
     for (int i = 0; i < 6; i++) if (instance->state.phase == 1 << i) append(text, names[i]);
-    append(text, "; allowed when ");
+    append(text, ": expected when ");
     const char *separator = "";
     for (int i = 0; i < 6; i++) if (phases & 1 << i) { append(text, separator); append(text, names[i]); separator = ", "; }
     refuse(instance, call, text);
@@ -67,7 +67,7 @@ Instance *instance_new(const char *name, const char *token, Report report, void 
     instance->name = copy(name ? name : "");
     if (!instance->name) { free(instance); return NULL; }
     if (!token || strcmp(token, MODEL_TOKEN) != 0) {
-        refuse(instance, "instantiate", "the GUID is not that of this FMU: allowed is " MODEL_TOKEN);
+        refuse(instance, "instantiate", "the GUID is not that of this FMU: expected " MODEL_TOKEN);
         instance_free(instance);
         return NULL;
     }
@@ -145,7 +145,7 @@ Status enter_initialization(Instance *instance, const char *call, double start_t
     if (!isfinite(start_time)) {
         char text[TEXT] = "startTime = ";
         append_number(text, start_time);
-        append(text, " s: allowed is every finite number");
+        append(text, " s: expected every finite number");
         return refuse(instance, call, text);
     }
     instance->state.start_time = start_time;
@@ -167,14 +167,14 @@ Status step(Instance *instance, const char *call, double current, double size) {
     if (!(size >= 0) || isinf(size)) {
         append(text, "communicationStepSize = ");
         append_number(text, size);
-        append(text, " s: allowed is every finite number >= 0");
+        append(text, " s: expected every finite number >= 0");
         return refuse(instance, call, text);
     }
     double reached = state->memory[TIME_SLOT];
     if (!(fabs(current - reached) <= 1e-9 * (fabs(reached) + size))) {
         append(text, "currentCommunicationPoint = ");
         append_number(text, current);
-        append(text, " s: allowed is ");
+        append(text, " s: expected ");
         append_number(text, reached);
         append(text, " s, where the last step ended");
         return refuse(instance, call, text);
@@ -200,7 +200,7 @@ Status step(Instance *instance, const char *call, double current, double size) {
 const Variable *find(Instance *instance, const char *call, unsigned reference, Type type) {
     if (reference < VARIABLE_COUNT && VARIABLES[reference].type == type) return &VARIABLES[reference];
     char text[TEXT];
-    snprintf(text, sizeof text, "valueReference = %u: allowed are those of this type in modelDescription.xml", reference);
+    snprintf(text, sizeof text, "valueReference = %u: expected one of this type in modelDescription.xml", reference);
     refuse(instance, call, text);
     return NULL;
 }
@@ -211,7 +211,7 @@ static bool in_range(const Variable *variable, double value) {
 
 Status may_set(Instance *instance, const char *call, const Variable *variable, double value) {
     const char *reason = NULL;
-    if (variable->calculated) reason = ": an output cannot be set, allowed are parameters and inputs";
+    if (variable->calculated) reason = ": an output cannot be set, expected a parameter or an input";
     else if (variable->fixed && !(instance->state.phase & (INSTANTIATED | INITIALIZING)))
         reason = ": a fixed parameter, to be set before the end of initialisation";
     else if (in_range(variable, value)) return OK;
@@ -224,7 +224,7 @@ Status may_set(Instance *instance, const char *call, const Variable *variable, d
         return refuse(instance, call, text);
     }
     if (variable->unit[0] && strcmp(variable->unit, "1") != 0) { append(text, " "); append(text, variable->unit); }
-    append(text, ": allowed is ");
+    append(text, ": expected ");
     append(text, variable->range);
     return refuse(instance, call, text);
 }

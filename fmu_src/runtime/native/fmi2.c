@@ -163,7 +163,7 @@ fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
     if (!c) return fmi2Error;
     if (!state || !bytes) return refuse2(c, "fmi2SerializeFMUstate", "a null pointer");
-    if (size < STATE_BYTES) return refuse2(c, "fmi2SerializeFMUstate", "size: allowed is what fmi2SerializedFMUstateSize gives");
+    if (size < STATE_BYTES) return refuse2(c, "fmi2SerializeFMUstate", "size: expected what fmi2SerializedFMUstateSize gives");
     state_to_bytes(state, bytes);
     return fmi2OK;
 }
@@ -172,7 +172,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     if (!c) return fmi2Error;
     if (!bytes || !to) return refuse2(c, "fmi2DeSerializeFMUstate", "a null pointer");
     State read;
-    if (!state_from_bytes(&read, bytes, size)) return refuse2(c, "fmi2DeSerializeFMUstate", "allowed are states saved by this FMU (" STATE_MAGIC ")");
+    if (!state_from_bytes(&read, bytes, size)) return refuse2(c, "fmi2DeSerializeFMUstate", "expected a state saved by this FMU (" STATE_MAGIC ")");
     if (!*to) *to = malloc(sizeof(State));
     if (!*to) return refuse2(c, "fmi2DeSerializeFMUstate", "out of memory");
     if (read.phase == EVENT) read.phase = STEPPING;  /* saved by an FMI 3.0 FMU: there is no event mode here */
@@ -201,7 +201,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
             const Variable *input = find(instance, call, refs[i], REAL);
             if (!input) return fmi2Error;
             if (!input->input_derivatives || orders[i] < 1 || orders[i] > input->input_derivatives)
-                return refuse2(instance, call, "allowed are " INPUT_DERIVATIVES);
+                return refuse2(instance, call, "expected " INPUT_DERIVATIVES);
             const Variable *derivative = input + orders[i];  /* the derivatives of an input follow it in the table */
             if (write) instance->state.memory[refs[i] + (unsigned)orders[i]] = values[i];
             else if (may_set(instance, call, derivative, values[i]) != OK) return fmi2Error;
@@ -219,7 +219,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     for (size_t i = 0; i < count; i++) {
         const Variable *output = find(instance, call, refs[i], REAL);
         if (!output) return fmi2Error;
-        if (output->derivative < 0 || orders[i] != 1) return refuse2(instance, call, "allowed are first derivatives of " OUTPUT_DERIVATIVES);
+        if (output->derivative < 0 || orders[i] != 1) return refuse2(instance, call, "expected first derivatives of " OUTPUT_DERIVATIVES);
         values[i] = instance->state.memory[output->derivative];
     }
     return fmi2OK;
@@ -243,7 +243,7 @@ fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
     Instance *instance = c;
     if (!instance) return fmi2Error;
-    if (kind != fmi2LastSuccessfulTime || !value) return refuse2(instance, "fmi2GetRealStatus", "allowed is fmi2LastSuccessfulTime");
+    if (kind != fmi2LastSuccessfulTime || !value) return refuse2(instance, "fmi2GetRealStatus", "expected fmi2LastSuccessfulTime");
     *value = instance->state.memory[TIME_SLOT];
     return fmi2OK;
 }
@@ -256,7 +256,7 @@ fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value) {
     if (!c) return fmi2Error;
-    if (kind != fmi2Terminated || !value) return refuse2(c, "fmi2GetBooleanStatus", "allowed is fmi2Terminated");
+    if (kind != fmi2Terminated || !value) return refuse2(c, "fmi2GetBooleanStatus", "expected fmi2Terminated");
     *value = fmi2False;
     return fmi2OK;
 }

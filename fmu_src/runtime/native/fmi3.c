@@ -69,7 +69,7 @@ static fmi3Status change(Instance *instance, const char *call, int from, Phase t
 
 fmi3Status fmi3EnterEventMode(fmi3Instance c) {
     Instance *instance = c;
-    if (instance && !instance->event_mode) return refuse3(instance, "fmi3EnterEventMode", "allowed when instantiated with eventModeUsed");
+    if (instance && !instance->event_mode) return refuse3(instance, "fmi3EnterEventMode", "expected an instance made with eventModeUsed");
     return change(instance, "fmi3EnterEventMode", STEPPING, EVENT);
 }
 
@@ -98,7 +98,7 @@ static size_t stretch(Instance *instance, const char *call, fmi3ValueReference r
     }
     if (!find(instance, call, reference, REAL)) return 0;
     if (!VARIABLES[reference].element) return 1;
-    refuse(instance, call, "valueReference: allowed is that of the array, not of an element");
+    refuse(instance, call, "valueReference: expected that of the array, not of an element");
     return 0;
 }
 
@@ -121,7 +121,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
     static const char *const call = "fmi3SetFloat64";
     Instance *instance = c;
     if (!instance || !in_phase(instance, call, SETTABLE) || missing(instance, call, count, refs, values)) return fmi3Error;
-    if (value_count != count) return refuse3(instance, call, "nValues: allowed is one for each value reference, arrays cannot be set");
+    if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference, arrays cannot be set");
     for (size_t i = 0; i < count; i++) {
         const Variable *variable = find(instance, call, refs[i], REAL);
         if (!variable || may_set(instance, call, variable, values[i]) != OK) return fmi3Error;
@@ -136,7 +136,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
         static const char *const call = "fmi3Get" #NAME;                                                                                         \
         Instance *instance = c;                                                                                                                  \
         if (!instance || !in_phase(instance, call, READABLE) || missing(instance, call, count, refs, values)) return fmi3Error;                   \
-        if (value_count != count) return refuse3(instance, call, "nValues: allowed is one for each value reference");                            \
+        if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference");                            \
         if (refresh(instance) != OK) return fmi3Error;                                                                                           \
         for (size_t i = 0; i < count; i++) {                                                                                                     \
             if (!find(instance, call, refs[i], KIND)) return fmi3Error;                                                                          \
@@ -149,7 +149,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
         static const char *const call = "fmi3Set" #NAME;                                                                                         \
         Instance *instance = c;                                                                                                                  \
         if (!instance || !in_phase(instance, call, SETTABLE) || missing(instance, call, count, refs, values)) return fmi3Error;                   \
-        if (value_count != count) return refuse3(instance, call, "nValues: allowed is one for each value reference");                            \
+        if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference");                            \
         for (size_t i = 0; i < count; i++) {                                                                                                     \
             const Variable *variable = find(instance, call, refs[i], KIND);                                                                      \
             if (!variable || may_set(instance, call, variable, TO_MEMORY) != OK) return fmi3Error;                                               \
@@ -167,7 +167,7 @@ fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference refs[], size_t 
     Instance *instance = c;
     if (!instance || !in_phase(instance, call, EVENT) || missing(instance, call, count, refs, values)) return fmi3Error;
     for (size_t i = 0; i < count; i++) {
-        if (!EVENT_CLOCK || refs[i] != CLOCK_REFERENCE) return refuse3(instance, call, "valueReference: allowed is that of the clock in modelDescription.xml");
+        if (!EVENT_CLOCK || refs[i] != CLOCK_REFERENCE) return refuse3(instance, call, "valueReference: expected that of the clock in modelDescription.xml");
         values[i] = instance->state.clock ? fmi3ClockActive : fmi3ClockInactive;
     }
     return fmi3OK;
@@ -223,7 +223,7 @@ fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
     if (!c || !state || !bytes) return refuse3(c, "fmi3SerializeFMUState", "a null pointer");
-    if (size < STATE_BYTES) return refuse3(c, "fmi3SerializeFMUState", "size: allowed is what fmi3SerializedFMUStateSize gives");
+    if (size < STATE_BYTES) return refuse3(c, "fmi3SerializeFMUState", "size: expected what fmi3SerializedFMUStateSize gives");
     state_to_bytes(state, (char *)bytes);
     return fmi3OK;
 }
@@ -231,7 +231,7 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte by
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *to) {
     if (!c || !bytes || !to) return refuse3(c, "fmi3DeserializeFMUState", "a null pointer");
     State read;
-    if (!state_from_bytes(&read, (const char *)bytes, size)) return refuse3(c, "fmi3DeserializeFMUState", "allowed are states saved by this FMU (" STATE_MAGIC ")");
+    if (!state_from_bytes(&read, (const char *)bytes, size)) return refuse3(c, "fmi3DeserializeFMUState", "expected a state saved by this FMU (" STATE_MAGIC ")");
     if (!*to) *to = malloc(sizeof(State));
     if (!*to) return refuse3(c, "fmi3DeserializeFMUState", "out of memory");
     memcpy(*to, &read, sizeof read);
@@ -244,12 +244,12 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference ref
     Instance *instance = c;
     if (!instance || !in_phase(instance, call, READABLE) || missing(instance, call, count, refs, values) || missing(instance, call, count, orders, values))
         return fmi3Error;
-    if (value_count != count) return refuse3(instance, call, "nValues: allowed is one for each value reference");
+    if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference");
     if (refresh(instance) != OK) return fmi3Error;
     for (size_t i = 0; i < count; i++) {
         const Variable *output = find(instance, call, refs[i], REAL);
         if (!output) return fmi3Error;
-        if (output->derivative < 0 || orders[i] != 1) return refuse3(instance, call, "allowed are first derivatives of " OUTPUT_DERIVATIVES);
+        if (output->derivative < 0 || orders[i] != 1) return refuse3(instance, call, "expected first derivatives of " OUTPUT_DERIVATIVES);
         values[i] = instance->state.memory[output->derivative];
     }
     return fmi3OK;

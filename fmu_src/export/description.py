@@ -1,0 +1,133 @@
+"""What ``modelDescription.xml`` has in common in FMI 2.0 and 3.0."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree as ET
+
+from ..runtime.table import BOOLEAN, INTEGER, REAL, Model, Variable
+
+UNITS = {  # SI exponents
+    "kg": {"kg": 1},
+    "N/m": {"kg": 1, "s": -2},
+    "N.s/m": {"kg": 1, "s": -1},
+    "1": {},
+    "m": {"m": 1},
+    "m/s": {"m": 1, "s": -1},
+    "m/s2": {"m": 1, "s": -2},
+    "m/s3": {"m": 1, "s": -3},
+    "m/s4": {"m": 1, "s": -4},
+    "m/s5": {"m": 1, "s": -5},
+    "rad": {"rad": 1},
+    "rad/s": {"rad": 1, "s": -1},
+    "s": {"s": 1},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "N.s": {"kg": 1, "m": 1, "s": -1},
+    "N.s2": {"kg": 1, "m": 1},
+    "N/s": {"kg": 1, "m": 1, "s": -3},
+    "N/s2": {"kg": 1, "m": 1, "s": -4},
+    "N/s3": {"kg": 1, "m": 1, "s": -5},
+    "N.m": {"kg": 1, "m": 2, "s": -2},
+    "J": {"kg": 1, "m": 2, "s": -2},
+    "W": {"kg": 1, "m": 2, "s": -3},
+    "kg.m2": {"kg": 1, "m": 2},
+    "A": {"A": 1},
+    "V": {"kg": 1, "m": 2, "s": -3, "A": -1},
+    "Ohm": {"kg": 1, "m": 2, "s": -3, "A": -2},
+    "H": {"kg": 1, "m": 2, "s": -2, "A": -2},
+    "N.m/A": {"kg": 1, "m": 2, "s": -2, "A": -1},
+}
+LOG_CATEGORIES = {
+    "logStatusError": "Errors: what was wrong, its value and what is expected",
+    "logAll": "All messages",
+}
+
+
+def number(value: float) -> str:
+    """A float as XML writes it, to the last bit."""
+    return repr(float(value))
+
+
+def root(model: Model, **attributes: str) -> ET.Element:
+    """The root element.
+
+    Parameters
+    ----------
+    model : Model
+    **attributes : str
+        Those that the FMI versions do not share.
+    """
+    shared = {
+        "modelName": model.name,
+        "description": model.description,
+        "author": model.author,
+        "version": model.version,
+        "license": model.license,
+        "generationTool": f"vibroimpact {model.version}",
+        "variableNamingConvention": "flat",
+    }
+    return ET.Element("fmiModelDescription", {**attributes, **shared})
+
+
+def add_frame(parent: ET.Element, model: Model) -> ET.Element:
+    """Units, log categories and the default experiment; returns the element for the variables."""
+    add_units(parent, model)
+    categories = ET.SubElement(parent, "LogCategories")
+    for name, explanation in LOG_CATEGORIES.items():
+        ET.SubElement(categories, "Category", name=name, description=explanation)
+    stop, step = number(model.stop_time), number(model.step_size)
+    ET.SubElement(parent, "DefaultExperiment", startTime="0.0", stopTime=stop, stepSize=step)
+    return ET.SubElement(parent, "ModelVariables")
+
+
+def add_units(parent: ET.Element, model: Model) -> None:
+    """Definitions of the units in use."""
+    definitions = ET.SubElement(parent, "UnitDefinitions")
+    used = {variable.unit for variable in model.variables} | {"s"}  # of time
+    for name, exponents in UNITS.items():
+        if name in used:
+            unit = ET.SubElement(definitions, "Unit", name=name)
+            base = {key: str(value) for key, value in exponents.items()}
+            ET.SubElement(unit, "BaseUnit", base)
+
+
+def attributes(variable: Variable, reference: int) -> dict[str, str]:
+    """Attributes every variable has."""
+    found = {
+        "name": variable.name,
+        "valueReference": str(reference),
+        "description": variable.description,
+        "causality": variable.causality,
+        "variability": variable.variability,
+    }
+    return {**found, "initial": variable.initial} if variable.initial else found
+
+
+def add_values(typed: ET.Element, variable: Variable) -> None:
+    """Unit, range, nominal and start value."""
+    limits = {"min": variable.minimum, "max": variable.maximum}
+    given = {key: value for key, value in limits.items() if value is not None}
+    if variable.type == REAL:
+        typed.set("unit", variable.unit)
+        for key, value in given.items():
+            typed.set(key, number(value))
+        typed.set("nominal", number(variable.nominal))
+    if variable.type == INTEGER:
+        for key, value in given.items():
+            typed.set(key, str(int(value)))
+    if not variable.calculated:
+        typed.set("start", start_text(variable))
+
+
+def start_text(variable: Variable) -> str:
+    """A start value as XML writes it."""
+    if variable.type == BOOLEAN:
+        return str(bool(variable.start)).lower()
+    return number(variable.start) if variable.type == REAL else str(int(variable.start))
+
+
+def text(element: ET.Element) -> bytes:
+    """The file."""
+    ET.indent(element)
+    whole = ET.tostring(element, encoding="UTF-8", xml_declaration=True)
+    assert isinstance(whole, bytes)
+    return whole + b"\n"

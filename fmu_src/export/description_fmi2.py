@@ -1,0 +1,68 @@
+"""``modelDescription.xml`` of FMI 2.0 from a variable table."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree as ET
+
+from ..runtime.table import Model, Variable
+from . import description
+
+PYTHON = {
+    "needsExecutionTool": "true",
+    "canHandleVariableCommunicationStepSize": "true",
+    "canNotUseMemoryManagementFunctions": "true",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
+}
+NATIVE = {
+    "canHandleVariableCommunicationStepSize": "true",
+    "canInterpolateInputs": "true",
+    "maxOutputDerivativeOrder": "1",
+    "canNotUseMemoryManagementFunctions": "true",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
+}
+
+
+def fmi2_xml(model: Model, guid: str, capabilities: dict[str, str] = NATIVE) -> bytes:
+    """The model description, as bytes that depend on nothing but the arguments.
+
+    Parameters
+    ----------
+    model : Model
+    guid : str
+    capabilities : dict of str to str
+        Of the co-simulation.
+    """
+    root = description.root(model, fmiVersion="2.0", guid=guid, numberOfEventIndicators="0")
+    ET.SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **capabilities})
+    variables = description.add_frame(root, model)
+    for variable in model.variables:
+        add_variable(variables, variable)
+    add_structure(root, model)
+    return description.text(root)
+
+
+def add_variable(parent: ET.Element, variable: Variable) -> None:
+    """One ScalarVariable."""
+    attributes = description.attributes(variable, variable.slot)
+    scalar = ET.SubElement(parent, "ScalarVariable", attributes)
+    description.add_values(ET.SubElement(scalar, variable.type), variable)
+
+
+def add_structure(root: ET.Element, model: Model) -> None:
+    """Dependencies: outputs belong to the last communication point, so few depend on an input."""
+    structure = ET.SubElement(root, "ModelStructure")
+    index = {variable.name: str(i + 1) for i, variable in enumerate(model.variables)}
+    outputs = ET.SubElement(structure, "Outputs")
+    unknowns = ET.SubElement(structure, "InitialUnknowns")
+    for variable in model.variables:
+        if variable.causality == "output":
+            for parent, names in (
+                (outputs, variable.dependencies),
+                (unknowns, variable.initial_dependencies),
+            ):
+                known = sorted(int(index[name]) for name in names)
+                dependencies = " ".join(map(str, known))
+                place = index[variable.name]
+                ET.SubElement(parent, "Unknown", index=place, dependencies=dependencies)

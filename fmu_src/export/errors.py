@@ -1,0 +1,29 @@
+"""Why an FMU cannot be made here."""
+
+from __future__ import annotations
+
+import importlib.util
+
+EXTRA = 'pip install "vibroimpact[build]"'
+
+
+class CannotExport(Exception):
+    """Why an FMU cannot be made here, as one line."""
+
+
+def require(package: str, what: str) -> None:
+    """See that a package is installed.
+
+    Parameters
+    ----------
+    package : str
+        Of the extra ``build``.
+    what : str
+        What it is needed for, in a few words.
+
+    Raises
+    ------
+    CannotExport
+    """
+    if importlib.util.find_spec(package) is None:
+        raise CannotExport(f"{package}, which {what}, is not installed: expected {EXTRA}")

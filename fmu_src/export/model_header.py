@@ -1,0 +1,115 @@
+"""``model.h``: the variable table, sizes and messages of a model, for the C shim."""
+
+from __future__ import annotations
+
+import math
+
+from ..runtime.table import Model, Variable
+from .description_fmi3 import ARRAY_BASE, CLOCK_REFERENCE
+
+TYPES = """\
+typedef enum { REAL, INTEGER, BOOLEAN } Type;
+typedef struct {
+    const char *name, *unit, *range;
+    Type type;
+    int calculated, fixed;
+    double start, minimum, maximum;
+    int input_derivatives, derivative, element;
+} Variable;
+typedef struct { unsigned first, size; } Array;"""
+
+
+def c_string(text: str) -> str:
+    """A C string literal."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+
+
+def c_number(value: float) -> str:
+    """A C floating-point literal, to the last bit."""
+    if math.isinf(value):
+        return "INFINITY" if value > 0 else "-INFINITY"
+    return float(value).hex()
+
+
+def c_variable(variable: Variable, slots: dict[str, int]) -> str:
+    """One row of the C variable table."""
+    minimum = -math.inf if variable.minimum is None else variable.minimum
+    maximum = math.inf if variable.maximum is None else variable.maximum
+    cells = [
+        c_string(variable.name),
+        c_string(variable.unit),
+        c_string(variable.range_text()),
+        variable.type.upper(),
+        str(int(variable.calculated)),
+        str(int(variable.fixed)),
+        c_number(variable.start),
+        c_number(minimum),
+        c_number(maximum),
+        str(variable.input_derivatives),
+        str(slots[variable.derivative]) if variable.derivative else "-1",
+        str(int(bool(variable.series))),
+    ]
+    return "    {" + ", ".join(cells) + "},"
+
+
+def definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
+    """What the shim knows of the model by name."""
+    inputs = [
+        f"orders 1 to {v.input_derivatives} of {v.name}"
+        for v in model.variables
+        if v.input_derivatives
+    ]
+    outputs = [variable.name for variable in model.variables if variable.derivative]
+    return {
+        "MEMORY_SIZE": str(model.memory_size),
+        "SKIP_FIRST": str(model.written_only[0]),
+        "SKIP_COUNT": str(model.written_only[1]),
+        "TIME_SLOT": str(model.time_slot),
+        "STOP_SLOT": str(model.stop_slot),
+        "VARIABLE_COUNT": f"{len(model.variables)}u",
+        "REFRESH": str(int(model.refresh is not None)),
+        "EVENT_CLOCK": str(int(model.clock is not None)),
+        "EVENT_COUNT_SLOT": str(slots[model.clock.counter] if model.clock else 0),
+        "CLOCK_REFERENCE": f"{CLOCK_REFERENCE}u",
+        "ARRAY_BASE": f"{ARRAY_BASE}u",
+        "ARRAY_COUNT": f"{len(model.arrays)}u",
+        "MESSAGE_COUNT": str(max(model.messages) + 1),
+        "INPUT_DERIVATIVES": c_string(", ".join(inputs) or "none"),
+        "OUTPUT_DERIVATIVES": c_string(", ".join(outputs) or "none"),
+    }
+
+
+def model_header(model: Model, token: str, digest: str) -> bytes:
+    """The file.
+
+    Parameters
+    ----------
+    model : Model
+    token : str
+        GUID or instantiation token.
+    digest : str
+        Fingerprint of the model: saved states bear it.
+    """
+    slots = {variable.name: variable.slot for variable in model.variables}
+    known = {
+        "MODEL_TOKEN": c_string(token),
+        "STATE_MAGIC": c_string(f"vibroimpact state {digest}"),
+        **definitions(model, slots),
+    }
+    arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]
+    lines = [
+        "/* Generated from the variable table. */",
+        "#include <math.h>",
+        *(f"#define {name} {value}" for name, value in known.items()),
+        TYPES,
+        "static const Variable VARIABLES[] = {",
+        *(c_variable(variable, slots) for variable in model.variables),
+        "};",
+        "static const Array ARRAYS[] = {",
+        *(arrays or ["    {0, 0},"]),
+        "};",
+        "static const char *const MESSAGES[] = {",
+        *(f"    [{code}] = {c_string(text)}," for code, text in sorted(model.messages.items())),
+        "};",
+    ]
+    return ("\n".join(lines) + "\n").encode()

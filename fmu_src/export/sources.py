@@ -1,0 +1,89 @@
+"""Which source files an FMU is made of: what a module imports, read from its syntax tree."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+
+from ..runtime.table import Model
+from .archive import fingerprint, read_folder
+
+ROOT = Path(__file__).resolve().parents[1]
+Files = dict[str, bytes]  # contents by name
+
+
+def load(folder: str) -> Model:
+    """The model in a folder below ``fmu_src/models``."""
+    model = import_module(f"{ROOT.name}.models.{folder}.model").MODEL
+    assert isinstance(model, Model)
+    return model
+
+
+def read(*names: str) -> Files:
+    """Files below ``fmu_src``, by name."""
+    return {name: (ROOT / name).read_bytes() for name in names}
+
+
+def closure(*names: str) -> Files:
+    """Modules and all that they import from ``fmu_src``, the packages they lie in included.
+
+    Parameters
+    ----------
+    *names : str
+        Files below ``fmu_src``.
+
+    Returns
+    -------
+    dict of str to bytes
+        Contents by file below ``fmu_src``.
+    """
+    found: Files = {}
+    waiting = list(names)
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found.update(read(name))
+            waiting += imported(name, found[name])
+    return found
+
+
+def imported(name: str, source: bytes) -> Iterator[str]:
+    """Files below ``fmu_src`` that run when a module is imported, itself left out."""
+    folder = Path(name).parent
+    yield from ((place / "__init__.py").as_posix() for place in (folder, *folder.parents))
+    for node in ast.walk(ast.parse(source, name)):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            base = folder.joinpath(*[".."] * (node.level - 1), *(node.module or "").split("."))
+            for alias in node.names:
+                yield module_file(base / alias.name) or module_file(base) or missing(name, node)
+
+
+def module_file(path: Path) -> str:
+    """The file of a module or package below ``fmu_src``; an empty string where there is none."""
+    place = (ROOT / path).resolve()
+    for file in (place.with_suffix(".py"), place / "__init__.py"):
+        if file.is_file():
+            return file.relative_to(ROOT).as_posix()
+    return ""
+
+
+def missing(name: str, node: ast.ImportFrom) -> str:
+    """Refuse an import that leads nowhere."""
+    raise FileNotFoundError(f"{name}, line {node.lineno}: {ast.unparse(node)} leads to no file")
+
+
+def model_sources(folder: str) -> Files:
+    """Variable table, texts and kernel of a model: all that decides its numbers."""
+    return closure(f"models/{folder}/model.py")
+
+
+def model_digest(folder: str) -> str:
+    """Fingerprint of a model; states saved by one native form can be read by the other."""
+    return fingerprint(model_sources(folder))
+
+
+def exporters(name: str) -> Files:
+    """Files of an exporter: a change of theirs makes another FMU too."""
+    return {**closure(name), **read_folder(ROOT / "runtime" / "native", "runtime/native/")}

@@ -1,0 +1,23 @@
+"""What the return codes of the kernel say. Standard library only: it travels inside the FMU."""
+
+from ...kernels.shaker import memory as at
+from ...runtime.table import with_slots
+
+MESSAGES = with_slots(
+    {
+        at.UNFINISHED: "the step to time = {TARGET} s cannot finish: {WORK} evaluations (at most "
+        "{WORK_LIMIT}) reached only {REPORT} s; a time constant is too short for such a step: "
+        "armature_inductance = {ARMATURE_INDUCTANCE} H over "
+        "armature_resistance = {ARMATURE_RESISTANCE} Ohm (expected 0 H, or more), "
+        "rotor_inertia = {ROTOR_INERTIA} kg.m2 with motor_constant = {MOTOR_CONSTANT} N.m/A, "
+        "or box_damping = {BOX_DAMPING} N.s/m with box_mass = {BOX_MASS} kg",
+        at.NOT_FINITE: "the motion leaves the range of floating-point numbers in the step to "
+        "time = {TARGET} s: voltage = {VOLTAGE} V, box_force = {BOX_FORCE} N, "
+        "speed = {SPEED} rad/s; expected values that keep it finite",
+        at.INERTIA: "rotor_inertia = {ROTOR_INERTIA} kg.m2 with "
+        "unbalance_mass = {UNBALANCE_MASS} kg, unbalance_radius = {UNBALANCE_RADIUS} m and "
+        "box_mass = {BOX_MASS} kg: expected rotor_inertia >= {REPORT} kg.m2, "
+        "a little more than (unbalance_mass unbalance_radius)^2 / box_mass",
+    },
+    at,
+)

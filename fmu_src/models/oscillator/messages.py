@@ -1,0 +1,37 @@
+"""What the return codes of the kernel say. Standard library only: it travels inside the FMU."""
+
+from ...kernels.oscillator import memory as at
+from ...runtime.table import with_slots
+
+RESONANCE = (
+    "box_frequency = {BOX_FREQUENCY} rad/s is the natural frequency of MASS ({REPORT} rad/s), "
+    "which has no damping: expected DAMPING > 0 or a box_frequency that differs by more than 1e-6 "
+    "of it"
+)
+
+
+def resonance(mass: str, damping: str) -> str:
+    """Text for a driven oscillator without damping."""
+    return RESONANCE.replace("MASS", mass).replace("DAMPING", damping)
+
+
+MESSAGES = with_slots(
+    {
+        at.UNFINISHED: "the step to time = {TARGET} s cannot finish: {WORK} evaluations (at most "
+        "{WORK_LIMIT}) reached only {REPORT} s, in "
+        "{MODE:flight|permanent contact|bonded motion} after {IMPACT_COUNT} impacts; "
+        "e = {E} and gamma = {GAMMA} decide how many impacts chattering has",
+        at.RESONANCE_1: resonance("mass 1", "d1"),
+        at.RESONANCE_2: resonance("mass 2", "d2"),
+        at.RESONANCE_3: resonance("both masses together", "d1 + d2"),
+        at.NOT_FINITE: "the motion leaves the range of floating-point numbers in the step to "
+        "time = {TARGET} s: box_amplitude = {BOX_AMPLITUDE} m, "
+        "box_frequency = {BOX_FREQUENCY} rad/s, box_acceleration = {BOX_ACCELERATION} m/s2; "
+        "expected values that keep it finite",
+        at.START_OVERLAP: "x2_start = {X2_START} m: expected x2_start >= x1_start = {X1_START} m",
+        at.START_BONDED: "bonded = true with x2_start = {X2_START} m, v2_start = {V2_START} m/s: "
+        "expected x2_start = x1_start = {X1_START} m and "
+        "v2_start = v1_start = {V1_START} m/s",
+    },
+    at,
+)
