@@ -91,10 +91,14 @@ def read(source: str | PathLike[str], structure: Structure | None = None) -> dic
     path = resolve(source)
     tables = parse(path)
     for name, values in tables.items():
+        if name in SECTIONS and not isinstance(values, dict):
+            raise InputError(f"{path}: {name} = {values!r}: expected a section [{name}]")
+        if not isinstance(values, dict):
+            places = ", ".join(f"[{section}]" for section in SECTIONS)
+            text = f"{name} = {values!r}: outside of a section; expected it below one of {places}"
+            raise InputError(f"{path}: {text}")
         if name not in SECTIONS:
             raise InputError(f"{path}: {name}: no section; {one_of(name, SECTIONS)}")
-        if not isinstance(values, dict):
-            raise InputError(f"{path}: {name} = {values!r}: expected a section [{name}]")
     sections = {name: Section(path, name, values) for name, values in tables.items()}
     found: dict[str, Described] = {}
     if "structure" in sections:

@@ -163,7 +163,7 @@ def made_of(given: Mapping[str, float], make: Callable[[], Described]) -> Descri
         return make()
     except InputError as error:
         numbers_given = ", ".join(f"{name} = {value!r}" for name, value in given.items())
-        raise InputError(f"{numbers_given}: it makes {error}") from None
+        raise InputError(f"{numbers_given}: they make {error}") from None
 
 
 def recover(guess: float, forward: Callable[[float], float], target: float) -> float:

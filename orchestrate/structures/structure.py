@@ -124,20 +124,19 @@ class Structure:
         >>> Structure.nondimensional(D=0.02, mu=0.5).parameters()["d2"]
         0.02
         """
-        given = {"D1": D if D1 is None else D1, "D2": D if D2 is None else D2}
-        scale = {"mu": mu, "kappa": kappa, "omega": omega}
-        values = {name: NUMBERS[name].check(value) for name, value in {**scale, **given}.items()}
+        given = {"mu": mu, "kappa": kappa, "D": D, "D1": D1, "D2": D2, "omega": omega}
+        v = {name: NUMBERS[name].check(x) for name, x in given.items() if x is not None}
         m1 = STRUCTURE["m1"].check(m1)
-        k1 = m1 * values["omega"] ** 2
+        k1 = m1 * v["omega"] ** 2
         return made_of(
-            {"m1": m1, **values},
+            {"m1": m1, **v},
             lambda: cls(
                 m1=m1,
-                m2=values["mu"] * m1,
+                m2=v["mu"] * m1,
                 k1=k1,
-                k2=values["kappa"] * k1,
-                d1=damping(values["D1"], values["omega"], m1),
-                d2=damping(values["D2"], values["omega"], m1) * values["mu"],
+                k2=v["kappa"] * k1,
+                d1=damping(v.get("D1", v["D"]), v["omega"], m1),
+                d2=damping(v.get("D2", v["D"]), v["omega"], m1) * v["mu"],
                 e=e,
                 gamma=gamma,
                 bonded=bonded,

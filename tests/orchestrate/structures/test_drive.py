@@ -1,0 +1,96 @@
+"""Motor and box: both ways, the units they give, refusals."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from orchestrate.errors import InputError
+from orchestrate.structures import Drive, Structure
+from orchestrate.structures.ranges import DRIVE
+
+from .strategies import DRIVES, SMALL, STRUCTURES
+
+GIVEN = st.fixed_dictionaries(
+    {"beta": SMALL, "epsilon": SMALL, "b": SMALL, "Omega_b": SMALL, "D_b": SMALL}
+)
+
+
+def numbers_of(drive, structure):
+    by_structure = {
+        name: getattr(drive, name)(structure) for name in ("beta", "b", "Omega_b", "D_b")
+    }
+    return {"epsilon": drive.epsilon, **by_structure}
+
+
+@given(GIVEN, STRUCTURES, SMALL)
+def test_numbers_to_si_and_back(numbers, structure, length):
+    drive = Drive.nondimensional(**numbers, structure=structure, length=length)
+    found = numbers_of(drive, structure)
+    for name, value in numbers.items():
+        assert math.isclose(found[name], value, rel_tol=1e-12), name
+    assert math.isclose(drive.length, length, rel_tol=1e-12)
+
+
+@given(DRIVES, STRUCTURES)
+def test_si_to_numbers_and_back(drive, structure):
+    scale = {"length": drive.length, "motor_constant": drive.motor_constant}
+    try:
+        back = Drive.nondimensional(**numbers_of(drive, structure), **scale, structure=structure)
+    except InputError:  # the unbalance on a longer arm leaves the range
+        return
+    for name in DRIVE:
+        if name not in ("unbalance_mass", "unbalance_radius", "armature_inductance"):
+            assert math.isclose(getattr(back, name), getattr(drive, name), rel_tol=1e-11), name
+    product = back.unbalance_mass * back.unbalance_radius
+    assert math.isclose(product, drive.unbalance_mass * drive.unbalance_radius, rel_tol=1e-11)
+
+
+def test_the_formulas():
+    structure = Structure(m1=2.0, k1=8.0)
+    drive = Drive(
+        box_mass=4.0,
+        box_stiffness=16.0,
+        box_damping=0.8,
+        unbalance_mass=0.5,
+        unbalance_radius=0.2,
+        rotor_inertia=0.01,
+        motor_constant=0.3,
+        armature_resistance=6.0,
+    )
+    assert drive.beta(structure) == 0.5
+    assert drive.length == pytest.approx(0.025, rel=1e-15)
+    assert drive.epsilon == pytest.approx(0.1**2 / (0.01 * 4.0), rel=1e-14)
+    assert drive.b(structure) == pytest.approx(0.09 / 6.0 / (0.01 * 2.0), rel=1e-14)
+    assert drive.Omega_b(structure) == 1.0
+    assert drive.D_b(structure) == pytest.approx(0.05, rel=1e-14)
+    assert drive.volts(structure) == 0.6
+    assert drive.energy(structure) == pytest.approx(4.0 * (2.0 * 0.025) ** 2, rel=1e-14)
+
+
+@given(DRIVES)
+def test_repr_can_be_evaluated(drive):
+    assert eval(repr(drive)) == drive
+    assert drive.parameters() == {name: getattr(drive, name) for name in DRIVE}
+
+
+@pytest.mark.parametrize("name", DRIVE)
+def test_ranges_are_the_fmu_s(name):
+    drive, quantity = Drive.from_file("beam"), DRIVE[name]
+    assert getattr(drive.replace(**{name: quantity.maximum}), name) == quantity.maximum
+    for value in (-1.0, 2.0 * quantity.maximum, math.nan, "1"):
+        with pytest.raises(InputError, match=f"^{name} = .*: expected .*{name}"):
+            drive.replace(**{name: value})
+
+
+def test_a_number_out_of_range():
+    numbers = {"epsilon": 0.001, "b": 0.02, "Omega_b": 0.1, "D_b": 0.005}
+    with pytest.raises(InputError, match="^beta = 0.0: expected 1e-30 <= beta"):
+        Drive.nondimensional(beta=0.0, **numbers, structure=Structure())
+    with pytest.raises(
+        InputError, match=r"^beta = 1e-30, epsilon.* make rotor_inertia = 9.99.*: expected"
+    ):
+        Drive.nondimensional(beta=1e-30, **numbers, structure=Structure())

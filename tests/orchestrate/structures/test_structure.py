@@ -1,0 +1,231 @@
+"""A structure in SI units and by the paper's numbers: both ways, scaled, changed, refused."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import pickle
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+
+from orchestrate.errors import InputError
+from orchestrate.structures import PARAMETERS, Structure
+from orchestrate.structures.ranges import NUMBERS as RANGES
+from orchestrate.structures.ranges import STRUCTURE
+
+from .strategies import NUMBERS, SCALE, SMALL, STRUCTURES
+
+
+def near(value, expected):
+    return math.isclose(value, expected, rel_tol=1e-12)
+
+
+@given(STRUCTURES)
+def test_si_to_numbers_and_back(structure):
+    numbers = {name: structure.get(name) for name in ("mu", "kappa", "D1", "D2", "e", "gamma")}
+    scale = {"m1": structure.m1, "omega": structure.omega, "bonded": structure.bonded}
+    back = Structure.nondimensional(**numbers, **scale)
+    for name in STRUCTURE:
+        assert near(getattr(back, name), getattr(structure, name)), name
+    assert back.bonded == structure.bonded
+
+
+@given(NUMBERS, SCALE, SCALE)
+def test_numbers_to_si_and_back_at_any_scale(numbers, m1, omega):
+    structure = Structure.nondimensional(**numbers, m1=m1, omega=omega)
+    for name, value in numbers.items():
+        assert near(structure.get(name), value), name
+    assert structure.m1 == m1 and near(structure.omega, omega)
+
+
+@given(st.sampled_from([0.005, 0.02, 0.05, 0.013, 0.3]), st.integers(1, 40))
+def test_a_number_comes_back_as_it_was_written(damping, tenths):
+    structure = Structure.nondimensional(D=damping, mu=tenths / 10, kappa=tenths / 10)
+    found = (structure.D1, structure.D2, structure.mu, structure.kappa)
+    assert found == (damping, damping, tenths / 10, tenths / 10)
+
+
+def test_the_operations_of_the_paper_s_sweeps():
+    """To the last bit what sweeps by the paper's numbers have always given to the FMU."""
+    structure = Structure.nondimensional(e=0.3, D=0.013, mu=0.7, kappa=1.3)
+    expected = {"m1": 1.0, "m2": 0.7, "k1": 1.0, "k2": 1.3, "d1": 2.0 * 0.013}
+    rest = {"d2": 2.0 * 0.013 * 0.7, "e": 0.3, "gamma": 1e-4, "bonded": False}
+    assert structure.parameters() == {**expected, **rest}
+
+
+def test_the_formulas_of_the_paper():
+    structure = Structure(m1=2.0, m2=3.0, k1=8.0, k2=10.0, d1=0.4, d2=0.9)
+    assert (structure.omega, structure.mu, structure.kappa) == (2.0, 1.5, 1.25)
+    assert near(structure.D1, 0.4 / (2.0 * 2.0 * 2.0))
+    assert near(structure.D2, 0.9 / (2.0 * 2.0 * 3.0))
+    assert near(structure.D3, 1.3 / (2.0 * 2.0 * 5.0))
+    omegas = [math.sqrt(k / m) / 2.0 for k, m in ((8.0, 2.0), (10.0, 3.0), (18.0, 5.0))]
+    found = [structure.omega_1, structure.omega_2, structure.omega_3]
+    assert all(map(near, found, omegas))
+
+
+def test_the_default_is_the_paper_s():
+    assert Structure() == Structure.nondimensional()
+    assert (Structure().D1, Structure().kappa, Structure().e) == (0.005, 1.2, 0.7)
+
+
+def test_overdamped_structures_are_described():
+    assert Structure.nondimensional(D=3.0).D1 == 3.0
+
+
+def test_frozen_hashable_picklable():
+    structure = Structure(e=0.3)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        structure.e = 0.5
+    assert {structure: 1}[Structure(e=0.3)] == 1
+    assert pickle.loads(pickle.dumps(structure)) == structure
+
+
+@given(STRUCTURES)
+def test_repr_can_be_evaluated(structure):
+    assert eval(repr(structure)) == structure
+
+
+def test_numbers_of_arrays_are_plain():
+    data = xr.DataArray([0.25, 0.5])
+    for value in (np.float64(0.5), np.float32(0.5), np.array(0.5), data[1]):
+        structure = Structure(e=value, bonded=np.True_)
+        assert type(structure.e) is float and structure.bonded is True
+        assert "np." not in repr(structure)
+    assert type(Structure(m1=2).m1) is float
+
+
+def test_bonded_and_back():
+    assert Structure().as_bonded().bonded and not Structure().bonded
+    assert Structure().as_bonded().as_delaminated() == Structure()
+
+
+@given(NUMBERS, st.sampled_from(["mu", "kappa", "D1", "D2"]), SMALL)
+def test_replacing_a_number_changes_that_number_alone(numbers, name, value):
+    before = Structure.nondimensional(**numbers)
+    after = before.replace(**{name: value})
+    for other in ("mu", "kappa", "D1", "D2", "e", "gamma", "omega", "m1"):
+        expected = value if other == name else before.get(other)
+        assert near(after.get(other), expected), other
+
+
+def test_replacing_is_building_anew():
+    """A sweep over a number asks for the same bits as structures made one by one."""
+    base = Structure.nondimensional(D=0.013, mu=0.7, kappa=1.3)
+    for mu in (0.3, 0.9, 1.7):
+        assert base.replace(mu=mu) == Structure.nondimensional(D=0.013, mu=mu, kappa=1.3)
+    for damping in (0.0, 0.02, 0.05):
+        assert base.replace(D=damping) == Structure.nondimensional(D=damping, mu=0.7, kappa=1.3)
+
+
+def test_replacing_omega_keeps_the_ratios():
+    after = Structure(m1=2.0).replace(omega=75.0)
+    assert (after.m1, after.k1, after.omega) == (2.0, 11250.0, 75.0)
+    for name in ("mu", "kappa", "D1", "D2"):
+        assert near(after.get(name), Structure(m1=2.0).get(name)), name
+
+
+def test_replacing_si_values_changes_nothing_else():
+    before = Structure()
+    after = before.replace(m2=2.0, bonded=True)
+    changed = {
+        f.name
+        for f in dataclasses.fields(before)
+        if getattr(before, f.name) != getattr(after, f.name)
+    }
+    assert changed == {"m2", "bonded"}
+
+
+def test_replacing_both_kinds_takes_si_first():
+    after = Structure().replace(m1=2.0, mu=1.5, d2=0.5)
+    assert (after.m1, after.m2, after.d2, after.k1) == (2.0, 3.0, 0.5, 1.0)
+
+
+def test_get_knows_what_replace_knows():
+    for name in PARAMETERS:
+        assert isinstance(Structure().get(name), float)
+        assert near(Structure().replace(**{name: 0.5}).get(name), 0.5)
+
+
+@pytest.mark.parametrize(
+    ("structure", "label"),
+    [
+        (Structure(), "e0.7_D0.005"),
+        (Structure(bonded=True), "e0.7_D0.005_bonded"),
+        (Structure.nondimensional(e=0.3, D=0.05), "e0.3_D0.05"),
+        (Structure.nondimensional(mu=0.5, kappa=2.0), "e0.7_D0.005_mu0.5_kappa2"),
+        (Structure(gamma=1e-6), "e0.7_D0.005_gamma1e-06"),
+        (Structure.nondimensional(D1=0.1, D2=0.2, e=1.0), "e1_D0.1-0.2"),
+        (Structure.from_file("beam"), "e0.7_m1.5-1.5_k8437.5-10125_d1.125-1.125"),
+    ],
+)
+def test_labels(structure, label):
+    assert structure.label() == label
+
+
+@given(STRUCTURES, STRUCTURES)
+def test_labels_of_different_structures_differ(one, other):
+    assert (one.label() == other.label()) == (one == other)
+
+
+@pytest.mark.parametrize("name", STRUCTURE)
+def test_ranges_are_the_fmu_s(name):
+    quantity = STRUCTURE[name]
+    for value in (quantity.minimum, quantity.maximum):
+        assert getattr(Structure(**{name: value}), name) == value
+    below, above = np.nextafter(quantity.minimum, -1.0), np.nextafter(quantity.maximum, math.inf)
+    for value in (below, above, math.nan, math.inf, -math.inf, 10**400):
+        with pytest.raises(InputError, match=f"^{name} = .*expected .* <= {name} <= "):
+            Structure(**{name: value})
+
+
+@pytest.mark.parametrize("value", ["0.5", None, True, 1j, [0.5], np.array([0.5, 0.6])])
+def test_what_is_no_number(value):
+    with pytest.raises(InputError, match="^e = .*: expected a number, 0 <= e <= 1"):
+        Structure(e=value)
+
+
+@pytest.mark.parametrize("value", ["yes", 1, None])
+def test_bonded_is_true_or_false(value):
+    with pytest.raises(InputError, match="^bonded = .*: expected true or false"):
+        Structure(bonded=value)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: Structure.nondimensional(mu=0.0), ["mu = 0.0: expected 1e-30 <= mu"]),
+        (lambda: Structure.nondimensional(D=-1.0), ["D = -1.0: expected 0 <= D "]),
+        (lambda: Structure.nondimensional(D2="a"), ["D2 = 'a': expected a number"]),
+        (
+            lambda: Structure.nondimensional(mu=1e20, D=1e11),
+            ["mu = 1e+20", "D = 1", "d2 = 2e+31 N.s/m: expected 0 <= d2 <= 1e+30"],
+        ),
+        (lambda: Structure().replace(omega=1e20), ["omega = 1e+20", "k1 = 1e+40"]),
+        (lambda: Structure().replace(kapa=2.0), ["kapa: no parameter", "did you mean kappa?"]),
+        (lambda: Structure().replace(mu=1.0, m2=2.0), ["mu and m2: expected one of them"]),
+        (lambda: Structure().replace(D=1.0, D1=2.0), ["D and D1: expected one of them"]),
+        (lambda: Structure().replace(e=2.0), ["e = 2.0: expected 0 <= e <= 1"]),
+        (lambda: Structure().get("gama"), ["gama: no parameter", "did you mean gamma?"]),
+        (lambda: Structure(d1=0.3).get("D"), ["D: D1 = 0.15 and D2 = 0.005; expected D1 or D2"]),
+    ],
+)
+def test_refusals_are_one_line(call, words):
+    with pytest.raises(InputError) as error:
+        call()
+    text = str(error.value)
+    assert all(word in text for word in words), text
+    assert "\n" not in text
+
+
+def test_an_input_error_is_a_value_error():
+    with pytest.raises(ValueError, match="e = 2"):
+        Structure(e=2)
+
+
+def test_ranges_of_ratios_are_wide():
+    assert RANGES["mu"].minimum == STRUCTURE["m2"].minimum
