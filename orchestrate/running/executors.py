@@ -18,6 +18,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -152,8 +153,8 @@ class Deaf(Executor):
         self._pool = pool
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Hand out a call; processes that are started for it inherit that they ignore Ctrl-C."""
-        with ignoring_interrupts():
+        """Hand out a call; processes that are started for it inherit that Ctrl-C is held back."""
+        with interrupts_held():
             future: Future[Any] = self._pool.submit(fn, *args, **kwargs)
             return future
 
@@ -163,16 +164,17 @@ class Deaf(Executor):
 
 
 @contextmanager
-def ignoring_interrupts() -> Iterator[None]:
-    """Ignore Ctrl-C for a moment, where this thread may say so."""
-    if threading.current_thread() is not threading.main_thread():
+def interrupts_held() -> Iterator[None]:
+    """Hold Ctrl-C back for a moment; what is started meanwhile holds it back for good."""
+    if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    resource_tracker.ensure_running()  # or it is started meanwhile, and lets Ctrl-C through again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def attend(parent: int) -> None:
