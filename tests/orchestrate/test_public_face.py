@@ -1,0 +1,177 @@
+"""The public face as users call it: every function, own SI parameters, scripts and notebooks."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate import Drive, InputError, Structure
+
+ROOT = Path(__file__).resolve().parents[2]
+FUNCTIONS = (
+    *("simulate", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
+    *("impact_statistics", "couple"),
+)
+HEAVY = ("xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "pandas", "numba", "loky", "tqdm")
+OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)  # 79 rad/s
+NEAR = 1.05 * OWN.omega
+
+
+def motor() -> Drive:
+    """A motor and a box of the size of ``OWN``."""
+    return Drive.nondimensional(
+        beta=0.25, epsilon=1e-3, b=0.02, Omega_b=0.1, D_b=0.005, structure=OWN
+    )
+
+
+def questions() -> dict[str, xr.Dataset]:
+    """Each function, asked something small in SI."""
+    box = {"frequency": NEAR, "amplitude": 1e-3}
+    short = {"transient": 20, "samples": 8}
+    many = np.linspace(0.9, 1.1, 3) * OWN.omega
+    at_two = {"frequency": many[:2], "amplitude": 1e-3}
+    volts = motor().volts(OWN)
+    return {
+        "simulate": orchestrate.simulate(OWN, **box, periods=3, points=20),
+        "sweep": orchestrate.sweep(OWN, frequency=many, amplitude=1e-3, **short),
+        "sweep both": orchestrate.sweep(
+            OWN, frequency=many, amplitude=1e-3, direction="both", **short
+        ),
+        "sweep over": orchestrate.sweep(OWN, over="k2", values=[6000.0, 8000.0], **box, **short),
+        "map": orchestrate.map(OWN, frequency=many, amplitude=1e-3, e=[0.3, 0.7], transient=20),
+        "map exponent": orchestrate.map(
+            OWN, **box, kappa=[1.2, 1.5], e=[0.3, 0.7], transient=20, exponent=True
+        ),
+        "lyapunov": orchestrate.lyapunov(OWN, **at_two, transient=20, periods=100),
+        "attractors": orchestrate.attractors(OWN, **at_two, starts=4, seed=1, transient=20),
+        "basin": orchestrate.basin(
+            OWN, **box, x=("x_rel", 0.0, 1e-3, 3), y=("v_rel", -0.1, 0.1, 2), transient=20
+        ),
+        "spectra": orchestrate.spectra(OWN, **box, periods=4, points=64, transient=20),
+        "impact_statistics": orchestrate.impact_statistics(OWN, **box, transient=20, periods=20),
+        "couple": orchestrate.couple(
+            OWN, motor(), voltage=(1.2 * volts, 1.25 * volts), rate=1e-3 * volts * OWN.omega
+        ),
+    }
+
+
+@pytest.fixture(scope="module")
+def answers(exported) -> dict[str, xr.Dataset]:
+    """The answers to ``questions``."""
+    return questions()
+
+
+def test_every_name_is_there():
+    assert set(FUNCTIONS) <= set(orchestrate.__all__) <= set(dir(orchestrate))
+    assert all(callable(getattr(orchestrate, name)) for name in FUNCTIONS)
+    with pytest.raises(AttributeError, match="no_such_name"):
+        orchestrate.no_such_name  # noqa: B018
+
+
+def test_importing_it_loads_nothing_heavy():
+    script = "import sys, json, orchestrate; print(json.dumps(sorted(sys.modules)))"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    assert not set(HEAVY) & set(json.loads(done.stdout))
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_each_has_a_documented_example(name):
+    text = getattr(orchestrate, name).__doc__
+    for part in ("Parameters\n", "Returns\n", "Examples\n", ">>> "):
+        assert part in text, part
+
+
+def test_units_and_long_names_are_on_everything(answers):
+    bare = [
+        f"{question}: {name}.{attribute}"
+        for question, data in answers.items()
+        for name, variable in data.variables.items()
+        for attribute in ("units", "long_name")
+        if attribute not in variable.attrs
+        and not (attribute == "units" and variable.dtype.kind in "SUOb")
+    ]
+    assert bare == []
+
+
+def test_attributes_say_where_it_comes_from(answers):
+    for question, data in answers.items():
+        assert {"title", "call", "history", "source", "Conventions", "identity"} <= set(data.attrs)
+        assert any(name.startswith("fmu_guid") for name in data.attrs), question
+        assert data.attrs["m2"] == OWN.m2 or "k2" in data.dims, question
+        assert max(len(str(value)) for value in data.attrs.values()) < 4000, question
+
+
+def test_every_answer_can_be_written_and_read(answers, tmp_path):
+    for question, data in answers.items():
+        path = tmp_path / f"{question}.nc"
+        data.to_netcdf(path)
+        assert xr.load_dataset(path).equals(data), question
+
+
+def test_dimensions_are_those_that_were_asked_for(answers):
+    assert answers["simulate"].sizes["time"] == 61
+    assert answers["sweep"].xi_rel.dims == ("frequency", "sample")
+    assert answers["sweep both"].xi_rel.dims == ("direction", "frequency", "sample")
+    assert answers["sweep over"].xi_rel.dims == ("k2", "sample")
+    assert answers["map"].multiplicity.dims == ("frequency", "e")
+    assert answers["map exponent"].exponent.dims == ("kappa", "e")
+    assert answers["lyapunov"].exponent.dims == ("frequency",)
+    assert answers["basin"].attractor_of.shape == (2, 3)
+    assert answers["couple"].speed.dims == ("revolution",)
+
+
+def test_asking_changes_nothing_around_it(exported):
+    import matplotlib
+
+    before = dict(os.environ), matplotlib.get_backend(), dict(matplotlib.rcParams)
+    orchestrate.simulate(OWN, frequency=NEAR, amplitude=1e-3, periods=1, points=4)
+    assert (dict(os.environ), matplotlib.get_backend(), dict(matplotlib.rcParams)) == before
+
+
+def test_the_scale_of_a_structure_does_not_matter(exported):
+    unit = Structure.nondimensional(
+        mu=OWN.mu, kappa=OWN.kappa, D1=OWN.D1, D2=OWN.D2, e=OWN.e, gamma=OWN.gamma
+    )
+    asked = {"eta": [0.7, 1.9], "transient": 50, "samples": 10}
+    own, of_unit = orchestrate.sweep(OWN, **asked), orchestrate.sweep(unit, **asked)
+    assert np.allclose(own.xi_rel_max, of_unit.xi_rel_max, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong", "text"),
+    [
+        ("sweep", {}, "eta"),
+        ("sweep", {"eta": 1.0, "frequency": 1.0, "amplitude": 1.0}, "eta"),
+        ("sweep", {"frequency": 1.0}, "amplitude"),
+        ("sweep", {"eta": [1.0, np.nan]}, "nan"),
+        ("sweep", {"eta": -1.0}, r"-1\.0"),
+        ("sweep", {"eta": 1.0, "direction": "left"}, "left"),
+        ("sweep", {"eta": 1.0, "samples": 0}, "samples = 0"),
+        ("sweep", {"eta": 1.0, "over": "mass", "values": [1.0]}, "mass"),
+        ("sweep", {"eta": 1.0, "over": "e", "values": [1.5]}, r"1\.5"),
+        ("simulate", {"eta": 1.0, "periods": 0}, "periods = 0"),
+        ("simulate", {"eta": 1.0, "start": (1.0, 0.0, 0.0, 0.0)}, "x2"),
+        ("map", {"eta": [1.0, 2.0]}, "two"),
+        ("map", {"eta": [1.0, 2.0], "color": [1.0, 2.0]}, "color"),
+        ("lyapunov", {"eta": 1.0, "periods": 2}, "periods"),
+        ("attractors", {"eta": 1.0, "starts": 0}, "starts = 0"),
+        ("basin", {"eta": 1.0, "x": ("x_rel", 0, 1, 3), "y": ("x_rel", 0, 1, 3)}, "x_rel"),
+        ("basin", {"eta": 1.0, "x": ("z", 0, 1, 3), "y": ("x_rel", 0, 1, 3)}, "z"),
+        ("spectra", {"eta": 1.0, "points": 1}, "points = 1"),
+    ],
+)
+def test_wrong_questions_are_one_line(exported, name, wrong, text):
+    with pytest.raises(InputError, match=text) as caught:
+        getattr(orchestrate, name)(OWN, **wrong)
+    assert "\n" not in str(caught.value)
+    assert "expected" in str(caught.value)
