@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import xarray as xr
 
 SYMBOLS = {
@@ -27,6 +29,15 @@ SYMBOLS = {
 def symbol(name: str) -> str:
     """A parameter's name for an axis; what has no symbol keeps its name."""
     return SYMBOLS.get(name, name.replace("_", " "))
+
+
+def parameters_text(values: Mapping[str, float]) -> str:
+    """Parameters with their values, for a title."""
+    parts = []
+    for name, value in values.items():
+        letter, _, unit = symbol(name).partition(" in ")
+        parts.append(f"{letter} = {value:g} {unit}".rstrip())
+    return ", ".join(parts)
 
 
 def kind_of(multiplicity: int) -> str:

@@ -1,170 +1,163 @@
-"""Figure 2 and the Sommerfeld effect: speed against voltage, amplitude and impacts against speed, and where the motor's power goes."""
+"""Figure 2, the Sommerfeld effect: speed, amplitude, impacts, and where the motor's power goes."""
 
-import matplotlib
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402 - after the backend was chosen
-
-from .files import write  # noqa: E402
+from .style import in_our_look, panels
 
 COLOURS = {"bonded": "C0", "delaminated": "C3"}
-SINKS = (
-    ("dampers", "dampers of the masses"),
-    ("box_damper", "damper of the box"),
-    ("impact_loss", "impacts"),
-)
-WINDOW = 10  # revolutions a power is averaged over
+BACK = "C1"  # impacts on the way back
+SINKS = {
+    "dampers": "dampers of the masses",
+    "box_damper": "damper of the box",
+    "impact_loss": "impacts",
+}
+WINDOW = 10  # revolutions that powers and impacts are averaged over
+AROUND = 500.0  # time shown before and after a jump, in 1/omega
+THEORY = "averaged theory, bonded"
 
 
-def draw(datasets, theory, path):
-    """Draw runs of one parameter set.
+@in_our_look
+def draw(runs: Mapping[str, xr.Dataset], theory: xr.Dataset | None = None) -> Figure:
+    """Draw runs of one drive.
 
     Parameters
     ----------
-    datasets : list of xarray.Dataset
-        Of :func:`orchestrate.driveresult.dataset`.
-    theory : dict of ndarray, or None
-        Omega, eta0 and amplitude of the averaged theory, bonded.
-    path : Path
-        PNG file; written whole or not at all.
+    runs : mapping of xarray.Dataset
+        ``"bonded"`` and ``"delaminated"``, or one of them; of :func:`orchestrate.couple`.
+    theory : xarray.Dataset, optional
+        ``voltage``, ``speed`` and ``amplitude`` of the averaged theory, over ``speed``.
     """
-    figure, axes = plt.subplots(3, 2, figsize=(13, 13), layout="constrained")
-    for data in datasets:
-        colour, label = COLOURS[data.structure], data.structure
-        there = data.time.values <= data.turn_time
-        for part, style in ((there, "-"), (~there, "--")):
-            name = f"{label}, {'there' if style == '-' else 'back'}"
-            axes[0, 0].plot(
-                data.eta0[part], data.Omega[part], style, color=colour, lw=1.2, label=name
-            )
-            axes[0, 1].plot(
-                data.Omega[part], data.amplitude[part], style, color=colour, lw=1.2, label=name
-            )
-            if label == "delaminated":
-                impacts(axes[1, 0], data, part, style, name)
-        mark_jumps(axes[0, 0], data, colour)
-        histories(axes[2], data, colour)
-    if theory:
-        axes[0, 0].plot(
-            theory["eta0"], theory["Omega"], "k:", lw=1.0, label="averaged theory, bonded"
-        )
-        axes[0, 1].plot(
-            theory["Omega"], theory["amplitude"], "k:", lw=1.0, label="averaged theory, bonded"
-        )
-    powers(axes[1, 1], datasets[-1])
+    figure, axes = panels(3, 2, (13, 13))
+    for name, data in runs.items():
+        for part, style, way in ways(data):
+            line = {"color": COLOURS[name], "linewidth": 1.2, "label": f"{name}, {way}"}
+            axes[0].plot(data.voltage[part], data.speed[part], style, **line)
+            axes[1].plot(data.speed[part], data.amplitude[part], style, **line)
+            if name == "delaminated":
+                draw_impacts(axes[2], data.isel(revolution=part), way)
+        mark_jumps(axes[0], data, COLOURS[name])
+    for panel, jump in zip(axes[4:], ("up", "down"), strict=True):
+        draw_histories(panel, runs, jump)
+    if theory is not None:
+        dotted = {"linewidth": 1.0, "label": THEORY}
+        axes[0].plot(theory.voltage, theory.speed, "k:", **dotted)
+        axes[1].plot(theory.speed, theory.amplitude, "k:", **dotted)
+    name = list(runs)[-1]
+    draw_powers(axes[3], runs[name], name)
     label_axes(axes)
-    limits(axes[0], datasets)
-    save(figure, path)
+    limit_axes(axes, list(runs.values()))
+    return figure
 
 
-def impacts(axes, data, part, style, name):
+def ways(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
+    """Revolutions on the way there and on the way back, with a line style and a name for each."""
+    voltage = data.voltage.values
+    turn = int(np.argmax(np.abs(voltage - voltage[0])))
+    there, back = np.arange(0, turn + 1), np.arange(turn + 1, len(voltage))
+    if turn == 0:  # a constant voltage
+        there, back = np.arange(len(voltage)), np.arange(0)
+    found = [(there, "-", "there"), (back, "--", "back")]
+    return [way for way in found if way[0].size]
+
+
+def mean_of(values: np.ndarray) -> np.ndarray:
+    """The running mean."""
+    return np.convolve(values, np.full(WINDOW, 1.0 / WINDOW), "valid")
+
+
+def draw_impacts(axes: Axes, data: xr.Dataset, way: str) -> None:
     """Impacts of each revolution, and their running mean."""
-    speed, count = data.Omega.values[part], data.impacts.values[part]
-    colour = "C3" if style == "-" else "C1"
-    axes.plot(speed, count, ".", ms=2.0, color=colour, alpha=0.3)
+    speed, count = data.speed.values, data.impacts.values
+    colour, style = (COLOURS["delaminated"], "-") if way == "there" else (BACK, "--")
+    axes.plot(speed, count, ".", markersize=2.0, color=colour, alpha=0.3)
     if len(count) > WINDOW:
-        mean = np.convolve(count, np.full(WINDOW, 1.0 / WINDOW), "valid")
-        axes.plot(
-            np.convolve(speed, np.full(WINDOW, 1.0 / WINDOW), "valid"),
-            mean,
-            style,
-            color=colour,
-            lw=1.2,
-            label=f"{name}, mean of {WINDOW}",
-        )
+        label = f"delaminated, {way}, mean of {WINDOW}"
+        line = {"color": colour, "linewidth": 1.2, "label": label}
+        axes.plot(mean_of(speed), mean_of(count), style, **line)
     axes.set_yscale("log")
 
 
-def mark_jumps(axes, data, colour):
-    """The breaks, with their values."""
-    for name, place in (("jump_up", 0.06), ("jump_down", 0.94)):
-        value = data.attrs[name]
+def mark_jumps(axes: Axes, data: xr.Dataset, colour: str) -> None:
+    """The voltages at which the speed jumps, with their values."""
+    for jump, place in (("up", 0.06), ("down", 0.94)):
+        value = float(data.jumps.sel(jump=jump))
         if np.isfinite(value):
-            axes.axvline(value, color=colour, lw=0.6, alpha=0.6)
-            axes.text(
-                value,
-                place,
-                f" {value:.4f}",
-                color=colour,
-                transform=axes.get_xaxis_transform(),
-                fontsize=8,
-                rotation=90,
-            )
+            axes.axvline(value, color=colour, linewidth=0.6, alpha=0.6)
+            where = {"transform": axes.get_xaxis_transform(), "rotation": 90, "fontsize": 8}
+            side = {"verticalalignment": "bottom" if jump == "up" else "top"}
+            axes.text(value, place, f" {value:.4f}", color=colour, **where, **side)
 
 
-def histories(axes, data, colour):
-    """Speed and amplitude over time around the jumps."""
-    time, eta0 = data.time.values, data.eta0.values
-    for panel, name in zip(axes, ("jump_up", "jump_down"), strict=True):
-        value = data.attrs[name]
-        rising = (name == "jump_up") == (data.eta0_last > data.eta0_first)
-        there = time <= data.turn_time if rising else time > data.turn_time
-        if not np.isfinite(value) or not there.any():
+def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str) -> None:
+    """Speed, and amplitude on an axis of its own, over time around a jump."""
+    amplitudes = axes.twinx()
+    amplitudes.grid(False)
+    for name, data in runs.items():
+        voltage, speed = (float(data[of].sel(jump=jump)) for of in ("jumps", "jump_speed"))
+        if not np.isfinite(voltage):
             continue
-        at = time[there][np.argmin(np.abs(eta0[there] - value))]
-        near = np.abs(time - at) < 500.0
-        panel.plot(
-            time[near] - at,
-            data.Omega.values[near],
-            color=colour,
-            label=f"{data.structure}: $\\Omega$",
-        )
-        panel.plot(
-            time[near] - at,
-            data.amplitude.values[near] / 10.0,
-            color=colour,
-            lw=0.8,
-            ls="--",
-            label=f"{data.structure}: amplitude/10",
-        )
+        away = np.abs(data.voltage.values - voltage) + np.abs(data.speed.values - speed)
+        row = int(np.argmin(away))
+        span = AROUND * float(data.Omega[row] / data.speed[row])
+        time = data.time.values - float(data.time[row])
+        near = np.abs(time) < span
+        line = {"color": COLOURS[name]}
+        axes.plot(time[near], data.speed.values[near], **line, label=f"{name}: speed")
+        line |= {"linewidth": 0.8, "linestyle": "--", "label": f"{name}: amplitude"}
+        amplitudes.plot(time[near], data.amplitude.values[near], **line)
+        axes.plot([], [], **line)
+    amplitudes.set_ylabel("amplitude of $x_1$ in m")
+    axes.set(xlabel=f"time from the jump {jump} in s", ylabel="mean speed in rad/s")
 
 
-def powers(axes, data):
-    """Mean power of motor and sinks against the speed, one way."""
-    time = data.time.values
-    there = np.flatnonzero(time <= data.turn_time)[::WINDOW]
+def draw_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
+    """Mean power of the motor and where it goes, against the speed, one way."""
+    there = ways(data)[0][0][::WINDOW]
     if len(there) < 3:
         return
-    span = np.diff(time[there])
-    speed = 0.5 * (data.Omega.values[there][1:] + data.Omega.values[there][:-1])
-    axes.plot(speed, np.diff(data.motor.values[there]) / span, "k", lw=1.5, label="motor")
-    for name, label in SINKS:
-        axes.plot(speed, np.diff(data[name].values[there]) / span, lw=1.0, label=label)
-    axes.plot(speed, np.diff(data.stored.values[there]) / span, color="0.7", lw=0.8, label="stored")
-    axes.set_title(f"power, {data.structure}, there", loc="left", fontsize=10)
+    span = np.diff(data.time.values[there])
+    ends = data.speed.values[there]
+    speed = 0.5 * (ends[1:] + ends[:-1])
+
+    def power(account: str) -> np.ndarray:
+        return np.diff(data[account].values[there]) / span
+
+    axes.plot(speed, power("motor"), "k", linewidth=1.5, label="motor")
+    for account, label in SINKS.items():
+        axes.plot(speed, power(account), linewidth=1.0, label=label)
+    axes.plot(speed, power("stored"), color="0.7", linewidth=0.8, label="stored")
+    axes.set_title(f"power, {name}, there")
 
 
-def label_axes(axes):
+def label_axes(axes: Sequence[Axes]) -> None:
     """Names of what is drawn."""
-    names = (
-        (r"voltage $\eta_0$", r"mean speed $\Omega$"),
-        (r"mean speed $\Omega$", r"amplitude of $x_1$ in $S/M_t$"),
-        (r"mean speed $\Omega$", "impacts in a revolution"),
-        (r"mean speed $\Omega$", "power"),
-        ("time from the jump up", ""),
-        ("time from the jump down", ""),
-    )
-    for panel, (x, y) in zip(axes.flat, names, strict=True):
-        panel.set_xlabel(x)
-        panel.set_ylabel(y)
-        panel.grid(True, alpha=0.3)
+    speed = "mean speed in rad/s"
+    axes[0].set(xlabel="voltage in V", ylabel=speed)
+    axes[1].set(xlabel=speed, ylabel="amplitude of $x_1$ in m")
+    axes[2].set(xlabel=speed, ylabel="impacts in a revolution")
+    axes[3].set(xlabel=speed, ylabel="power in W")
+    for index, panel in enumerate(axes):
         if panel.get_legend_handles_labels()[0]:
-            panel.legend(fontsize=7)
+            place = "center right" if index >= 4 else "best"  # two scales confuse "best"
+            panel.legend(fontsize=7, loc=place)
 
 
-def limits(axes, datasets):
-    """Ranges of the computed runs: the theory goes on."""
-    for panel, name in zip(axes, ("eta0", "Omega"), strict=True):
-        low, high = (f([f(data[name].values[5:]) for data in datasets]) for f in (min, max))
-        panel.set_xlim(low, high + 1e-3)
+def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:
+    """Ranges of the computed runs, their first revolutions left out: the theory goes on."""
+
+    def ends(name: str) -> tuple[float, float]:
+        values = np.concatenate([data[name].values[5:] for data in runs])
+        return (values.min(), values.max()) if values.size else (0.0, 1.0)
+
+    for panel, name in zip(axes[:2], ("voltage", "speed"), strict=True):
+        low, high = ends(name)
+        panel.set_xlim(low, high + 1e-3 * max(high - low, 1e-9))
     axes[0].set_ylim(*axes[1].get_xlim())
-    axes[1].set_ylim(0.0, 1.05 * max(data.amplitude.values[5:].max() for data in datasets))
-
-
-def save(figure, path):
-    """A picture, whole or not at all."""
-    try:
-        write(figure, path, dpi=130, format="png")
-    finally:
-        plt.close(figure)
+    axes[1].set_ylim(0.0, 1.05 * ends("amplitude")[1])

@@ -1,0 +1,110 @@
+"""The command line: each command asks one question of the public API and says what came out.
+
+A command's module has ``add_parser``, which declares its options, and ``run``, which carries it
+out; :mod:`.options` has what commands share.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..errors import InputError, StaleError, VibroimpactError
+from ..version import __version__
+from . import build, couple, paper, simulate, spectra, sweep
+from .options import Commands, sets_text
+
+COMMANDS = (build, simulate, sweep, spectra, couple, paper)
+SUCCESS, FAILURE, MISTAKE, INTERRUPTED = 0, 1, 2, 130
+EXAMPLES = """examples:
+  {program} build
+  {program} sweep
+  {program} sweep --set e=0.3 --eta 0.9:1.1:0.001
+  {program} COMMAND --help
+
+sets of parameters that come with the package, for --structure and --drive:
+{sets}"""
+
+
+def program_name() -> str:
+    """How the command line was called."""
+    called = Path(sys.argv[0]).name if sys.argv and sys.argv[0] else ""
+    return "vibroimpact" if called.startswith("vibroimpact") else "python -m orchestrate"
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """The command line's parser, one subparser a command."""
+    program = program_name()
+    parser = argparse.ArgumentParser(
+        prog=program,
+        description="Ask a vibro-impacting structure, through its FMUs: what its response is, "
+        "where it is irregular, what a motor does to it.",
+        epilog=EXAMPLES.format(program=program, sets=sets_text()),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=__version__)
+    debug = "show where in the program an error came from"
+    parser.add_argument("--debug", action="store_true", help=debug)
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    for command in COMMANDS:
+        command.add_parser(Commands(commands, program))
+    return parser
+
+
+def with_negative_values(arguments: Sequence[str]) -> list[str]:
+    """``--eta -1:2:0.5`` as ``--eta=-1:2:0.5``, which argparse would take for an option."""
+    joined: list[str] = []
+    for text in arguments:
+        waiting = joined and joined[-1].startswith("--") and "=" not in joined[-1]
+        if waiting and re.match(r"-[\d.]", text):
+            joined[-1] += f"={text}"
+        else:
+            joined.append(text)
+    return joined
+
+
+def set_up_logging() -> None:
+    """What the library has to say, on the error output: a line a message."""
+    logging.basicConfig(format="%(message)s")
+    logging.getLogger(__package__.partition(".")[0]).setLevel(logging.INFO)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        By default those of the process.
+
+    Returns
+    -------
+    int
+        Exit code: 0 success, 1 a failure, 2 a user's mistake, 130 interrupted.
+    """
+    set_up_logging()
+    chosen = make_parser().parse_args(
+        with_negative_values(sys.argv[1:] if arguments is None else arguments)
+    )
+    try:
+        chosen.run(chosen)
+        return SUCCESS
+    except KeyboardInterrupt:
+        tell("interrupted: nothing computed is lost, the same command goes on from here")
+        return INTERRUPTED
+    except (VibroimpactError, RuntimeError, OSError) as error:
+        if chosen.debug:
+            raise
+        hint = " (--force or --keep-stale)" if isinstance(error, StaleError) else ""
+        tell(f"error: {error}{hint}")
+        return MISTAKE if isinstance(error, InputError) else FAILURE
+
+
+def tell(line: str) -> None:
+    """A line on the error output."""
+    print(line, file=sys.stderr)

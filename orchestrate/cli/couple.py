@@ -1,0 +1,249 @@
+"""``couple``: the weak drive; without options the set ``quick``, bonded and delaminated."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from .options import (
+    Commands,
+    add_running,
+    add_set,
+    changes_of,
+    check_output,
+    draw_if_missing,
+    ends_of,
+    running_of,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..structures import Drive, Structure
+    from ..weak_drive.couple import CoupleJob
+
+USUAL = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 5e-6)}  # ends of eta0, and rate
+RATE = 1e-4
+LIMIT = 1e-6  # of the motor's work: where more is missed, a warning
+EXAMPLES = """  {program} couple                               quick: up and down, bonded and delaminated
+  {program} couple --drive beam                  a delaminated beam on a small motor
+  {program} couple --eta0 1.4:1.62 --rate 1e-5   a slower ramp over less
+  {program} couple --drive beam --voltage 5.6:7.2
+  {program} couple --increment 0.005             in steps of the voltage, each with time to settle
+  {program} couple --ssp weak_drive.ssp          the coupled system as a package for other tools
+eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1).
+Interrupted, the same command goes on where it was. A finished result is left as it is."""
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "the weak drive: structure and motor coupled, the voltage up and down (Figure 2)"
+    parser = commands.add("couple", run, text, EXAMPLES)
+    option = parser.add_argument_group("structure, motor and box").add_argument
+    option(
+        "--drive",
+        default="quick",
+        metavar="FILE",
+        help="TOML file with [motor], [box] and [structure], or a set: quick, beam (default: "
+        "%(default)s)",
+    )
+    option("--structure", metavar="FILE", help="another [structure] than that of --drive")
+    add_set(parser, "a parameter of the structure, or of motor and box in SI; may be repeated")
+    option("--only", choices=("bonded", "delaminated"), help="one of both (default: both)")
+    add_schedule(parser)
+    add_running(parser, fmu=False)
+    parser.add_argument("--oscillator", type=Path, metavar="FILE", help="own FMU of the structure")
+    parser.add_argument("--shaker", type=Path, metavar="FILE", help="own FMU of the motor")
+    parser.add_argument(
+        "--ssp", type=Path, metavar="FILE", help="write the coupled system for other tools instead"
+    )
+
+
+def add_schedule(parser: argparse.ArgumentParser) -> None:
+    """The voltage over time, and how it is computed."""
+    option = parser.add_argument_group("voltage over time").add_argument
+    option(
+        "--eta0",
+        metavar="FIRST:LAST",
+        help="voltage as no-load speed over omega (default: "
+        + ", ".join(f"{ends} for {name}" for name, (ends, _) in USUAL.items())
+        + ")",
+    )
+    option("--voltage", metavar="FIRST:LAST", help="the same in V")
+    option(
+        "--rate",
+        type=float,
+        help="change of eta0 in a time 1/omega (default: "
+        + ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
+        + f", else {RATE:g})",
+    )
+    option(
+        "--increment",
+        type=float,
+        default=0.0,
+        help="change eta0 in steps of this height, at the same mean rate (default: a ramp)",
+    )
+    option(
+        "--settle",
+        type=float,
+        default=300.0,
+        help="time at the first voltage, in 1/omega (default: %(default)s)",
+    )
+    option("--one-way", action="store_true", help="do not come back")
+    option(
+        "--step",
+        type=float,
+        default=0.1,
+        help="communication step, in 1/omega (default: %(default)s)",
+    )
+    option(
+        "--tolerance",
+        type=float,
+        default=0.0,
+        help="halve steps with a larger defect, over the work exchanged in them (default: never)",
+    )
+    option("--algorithm", default="rollback", help="master, see the manual (default: %(default)s)")
+
+
+def described(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
+    """Structure and drive, with what is set of either."""
+    from dataclasses import fields
+
+    from ..structures import Drive, Structure
+
+    drive = Drive.from_file(arguments.drive)
+    structure = Structure.from_file(arguments.structure or arguments.drive)
+    changes = changes_of(arguments.set)
+    own = {field.name for field in fields(Drive)}
+    of_drive = {name: value for name, value in changes.items() if name in own}
+    of_structure = {name: value for name, value in changes.items() if name not in own}
+    return structure.replace(**of_structure), drive.replace(**of_drive)
+
+
+def ends_in_volts(arguments: argparse.Namespace, volts: float) -> tuple[float, float]:
+    """Both ends of the voltage, V.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+    volts : float
+        Voltage at eta0 = 1.
+    """
+    if arguments.eta0 and arguments.voltage:
+        raise InputError("--eta0 and --voltage: expected one of them")
+    if arguments.voltage:
+        return ends_of("--voltage", arguments.voltage)
+    if arguments.eta0 is None and arguments.drive not in USUAL:
+        raise InputError(f"--drive {arguments.drive}: expected --eta0 or --voltage with it")
+    first, last = ends_of("--eta0", arguments.eta0 or USUAL[arguments.drive][0])
+    return first * volts, last * volts
+
+
+def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> list[CoupleJob]:
+    """The runs, bonded first."""
+    from ..weak_drive.couple import couple_job, schedule_of, scheme_of
+
+    omega, volts = structure.omega, drive.volts(structure)
+    rate = USUAL.get(arguments.drive, ("", RATE))[1] if arguments.rate is None else arguments.rate
+    schedule = schedule_of(
+        structure,
+        drive,
+        ends_in_volts(arguments, volts),
+        rate=rate * volts * omega,
+        settle=arguments.settle / omega,
+        increment=arguments.increment * volts,
+        back=not arguments.one_way,
+    )
+    scheme = scheme_of(structure, arguments.step / omega, arguments.algorithm, arguments.tolerance)
+    states = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
+    chosen = [arguments.only] if arguments.only else list(states)
+    drive_name = Path(arguments.drive).stem
+    return [
+        replace(
+            couple_job(states[state], drive, schedule, scheme),
+            name=f"couple_{drive_name}_{state}",
+        )
+        for state in chosen
+    ]
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    from ..access import OSCILLATOR, SHAKER, finder
+    from ..running.options import RunOptions
+    from ..running.runner import answer_all
+    from ..running.store import load
+
+    structure, drive = described(arguments)
+    jobs = jobs_of(arguments, structure, drive)
+    if arguments.ssp:
+        print(write_package(arguments, drive, jobs[-1]))
+        return
+    given = {OSCILLATOR: arguments.oscillator, SHAKER: arguments.shaker}
+    own = {model: path for model, path in given.items() if path is not None}
+    running = {**running_of(arguments), "fmu": own}
+    check_output(arguments.output)
+    fresh = any(not (arguments.output / f"{job.name}.nc").exists() for job in jobs)
+    paths = answer_all(jobs, arguments.output, RunOptions.of(running), finder(running))
+    results = {job.name.rpartition("_")[2]: load(paths[job.name]) for job in jobs}
+    picture = arguments.output / f"{jobs[0].name.rpartition('_')[0]}.png"
+    draw_if_missing(
+        picture, fresh or arguments.force, lambda: picture_of(results, structure, drive)
+    )
+    for name, data in results.items():
+        report(name, data)
+    for path in (*paths.values(), picture):
+        print(path)
+
+
+def write_package(arguments: argparse.Namespace, drive: Drive, job: CoupleJob) -> Path:
+    """The coupled system as an SSP file, by default with the FMI 2.0 FMUs that most tools read."""
+    from ..access import find
+    from ..weak_drive.ssp import write_ssp
+
+    given = (arguments.oscillator, arguments.shaker)
+    fmus = [
+        find(model, "fmi2", arguments.build_folder, own).path
+        for model, own in zip(job.models, given, strict=True)
+    ]
+    start = {"voltage": job.schedule.voltage(0.0), "speed_start": job.speed_start}
+    return write_ssp(arguments.ssp, job.structure, drive, **start, fmus=fmus)
+
+
+def picture_of(results: dict[str, xr.Dataset], structure: Structure, drive: Drive) -> Any:
+    """All runs and the averaged theory."""
+    import numpy as np
+    import xarray as xr
+
+    from ..figures.weak_drive import draw
+    from ..weak_drive import averaged
+
+    Omega = np.linspace(0.3, 3.0, 20001)
+    volts = averaged.no_load_speed(structure, drive, Omega) * drive.volts(structure)
+    amplitude = averaged.amplitude(structure, drive, Omega) * drive.length
+    along = {"voltage": ("speed", volts), "amplitude": ("speed", amplitude)}
+    return draw(results, xr.Dataset(along, {"speed": Omega * structure.omega}))
+
+
+def report(name: str, data: xr.Dataset) -> None:
+    """What was found, in a few lines."""
+    found = []
+    for jump in ("up", "down"):
+        volts = float(data.jumps.sel(jump=jump))
+        eta0 = volts * float(data.eta0[0] / data.voltage[0])
+        there = f"at {volts:.4f} V (eta0 = {eta0:.4f})"
+        found.append(f"jump {jump} {there if math.isfinite(volts) else 'none'}")
+    print(f"{name}: {data.sizes['revolution']} revolutions; {'; '.join(found)}")
+    missing, defects = (
+        float(data.attrs[key]) for key in ("missing_over_motor_work", "defects_over_motor_work")
+    )
+    print(
+        f"  of the motor's work {missing:.1e} is missing, the steps' defects are {defects:.1e} "
+        "(small ones alone do not prove accuracy)"
+    )
+    if max(abs(missing), defects) > LIMIT:
+        print(f"  warning: that is more than {LIMIT:g}; take a shorter --step")

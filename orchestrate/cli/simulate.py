@@ -1,0 +1,5 @@
+"""``simulate``: time histories."""
+
+
+def add_parser(commands):
+    pass

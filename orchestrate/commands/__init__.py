@@ -1,1 +1,0 @@
-"""One module a command: ``add_parser`` declares its options, ``run`` carries it out."""

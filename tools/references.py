@@ -1,0 +1,131 @@
+"""Reference runs of the models as FMI's cross-check has them: inputs that jump, and the answers."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+from orchestrate.access import Instance
+
+MODELS = Path(__file__).resolve().parents[1] / "fmu_src" / "models"
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A model's reference run.
+
+    Attributes
+    ----------
+    model, folder : str
+        Model name, and its folder below ``fmu_src/models``.
+    inputs, outputs : tuple of str
+    input_at : callable
+        Inputs from a time on.
+    jumps : tuple of float
+        Communication points at which they change, s.
+    step, stop : float
+        s.
+    """
+
+    model: str
+    folder: str
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    input_at: Callable[[float], tuple[float, ...]]
+    jumps: tuple[float, ...]
+    step: float
+    stop: float
+
+    def times(self) -> list[float]:
+        """Communication points, with exact halves of tenths."""
+        return [round(i * self.step, 10) for i in range(round(self.stop / self.step) + 1)]
+
+
+def oscillator_inputs(time: float) -> tuple[float, ...]:
+    """The frequency jumps at 30 s, a constant acceleration sets in at 45 s."""
+    return 1.0, 0.4 if time < 30.0 else 0.8, 0.0 if time < 45.0 else 0.05
+
+
+def shaker_inputs(time: float) -> tuple[float, ...]:
+    """The voltage jumps at 3 s, a force sets in at 4 s."""
+    return 3.0 if time < 3.0 else 8.0, 0.0 if time < 4.0 else 20.0
+
+
+OSCILLATOR = Reference(
+    model="TwoMassImpactOscillator",
+    folder="oscillator",
+    inputs=("box_amplitude", "box_frequency", "box_acceleration"),
+    outputs=(
+        *("x1", "x2", "v1", "v2", "x_rel"),
+        *("box_force", "contact_force", "phase", "impact_energy"),
+    ),
+    input_at=oscillator_inputs,
+    jumps=(30.0, 45.0),
+    step=0.05,
+    stop=60.0,
+)
+SHAKER = Reference(
+    model="MotorShaker",
+    folder="motor_shaker",
+    inputs=("voltage", "box_force"),
+    outputs=(
+        *("box_position", "box_velocity", "angle", "speed", "motor_torque"),
+        *("motor_energy", "box_damper_energy", "stored_energy"),
+    ),
+    input_at=shaker_inputs,
+    jumps=(3.0, 4.0),
+    step=0.005,
+    stop=5.0,
+)
+REFERENCES = (OSCILLATOR, SHAKER)
+
+
+def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:
+    """Time and outputs of the reference run through an FMU, one row a communication point."""
+    times = reference.times()
+
+    def inputs(time: float) -> dict[str, float]:
+        return dict(zip(reference.inputs, reference.input_at(time), strict=True))
+
+    with Instance(fmu) as instance:
+        instance.initialize(0.0, **inputs(0.0))
+        rows = [[times[0], *instance.get(*reference.outputs)]]
+        for time, target in itertools.pairwise(times):
+            instance.set(**inputs(time))
+            instance.step(time, target)
+            rows.append([target, *instance.get(*reference.outputs)])
+    return rows
+
+
+def write_reference(reference: Reference, rows: Sequence[Sequence[float]]) -> None:
+    """Write the three files of a cross-check reference: results, inputs, options."""
+    folder = MODELS / reference.folder / "reference"
+    folder.mkdir(exist_ok=True)
+    write_csv(folder / f"{reference.model}_ref.csv", ["time", *reference.outputs], rows)
+    times = sorted([0.0, *reference.jumps, *reference.jumps, reference.stop])
+    before = [time if i % 2 == 0 else math.nextafter(time, 0.0) for i, time in enumerate(times)]
+    pairs = zip(times, before, strict=True)
+    inputs = [[time, *reference.input_at(value)] for time, value in pairs]
+    write_csv(folder / f"{reference.model}_in.csv", ["time", *reference.inputs], inputs)
+    options = {
+        "StartTime": 0.0,
+        "StopTime": reference.stop,
+        "StepSize": reference.step,
+        "RelTol": 0.0,
+        "OutputIntervalLength": reference.step,
+    }
+    lines = "".join(f"{key}, {value}\n" for key, value in options.items())
+    (folder / f"{reference.model}_ref.opt").write_text(lines)
+
+
+def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[float]]) -> None:
+    """Write a CSV file with numbers to the last bit."""
+    with path.open("w", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(header)
+        writer.writerows([[repr(float(value)) for value in row] for row in rows])
