@@ -1,0 +1,102 @@
+"""Accelerations from the state by (6), in permanent contact those of both masses as one.
+
+In space a mass feels springs, dampers and the other mass; relative to the box minus the box's
+acceleration, ``a Omega^2 sin(phase)``, comes to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..structures import Structure
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+class Rates(NamedTuple):
+    """Stiffness and damping over mass, 1/s2 and 1/s: of mass 1, of mass 2, of both as one.
+
+    Attributes
+    ----------
+    stiffness, damping : ndarray, shape (3, n)
+        A column a structure; of shape (2, ...) where it is what each mass feels.
+    """
+
+    stiffness: Floats
+    damping: Floats
+
+    @classmethod
+    def of(cls, structures: Iterable[Structure]) -> Rates:
+        """Those of n structures."""
+        rows = [(s.m1, s.m2, s.k1, s.k2, s.d1, s.d2) for s in structures]
+        m1, m2, k1, k2, d1, d2 = np.array(rows).T
+        both = m1 + m2
+        stiffness = [k1 / m1, k2 / m2, (k1 + k2) / both]
+        damping = [d1 / m1, d2 / m2, (d1 + d2) / both]
+        return cls(np.array(stiffness), np.array(damping))
+
+    def felt(self, touching: Flags) -> Rates:
+        """What each mass feels: its own rates, or those of both where they touch.
+
+        Parameters
+        ----------
+        touching : ndarray of bool, shape (n, ...)
+        """
+
+        def chosen(rates: Floats) -> Floats:
+            columns = rates.reshape(*rates.shape, *(1,) * (touching.ndim - 1))
+            return np.where(touching, columns[2:], columns[:2])
+
+        return Rates(chosen(self.stiffness), chosen(self.damping))
+
+    def pull(self, x: Floats, v: Floats) -> Floats:
+        """``-(k x + d v)/m`` of each mass, from rates that it feels; shape (2, ...)."""
+        found: Floats = -(self.stiffness * x + self.damping * v)
+        return found
+
+
+def in_touch(states: Floats) -> Flags:
+    """Whether states are of permanent contact: there the FMU gives both masses the same numbers.
+
+    Parameters
+    ----------
+    states : ndarray, shape (..., 4)
+        x1, x2, v1, v2.
+    """
+    found: Flags = (states[..., 0] == states[..., 1]) & (states[..., 2] == states[..., 3])
+    return found
+
+
+def absolute_accelerations(
+    states: Floats, structure: Structure, touching: Flags | None = None
+) -> Floats:
+    """Accelerations in space, what an accelerometer on a mass reads between impacts.
+
+    Parameters
+    ----------
+    states : ndarray, shape (n, 4)
+        x1, x2 in m and v1, v2 in m/s, relative to the box.
+    structure : Structure
+    touching : ndarray of bool, shape (n,), optional
+        Whether there is permanent contact; by default as :func:`in_touch` finds it.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        m/s2; in permanent contact, and of a bonded structure, with the contact force.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> absolute_accelerations(np.array([[-1.0, 1.0, 0.0, 0.0]]), Structure(d1=0.0, d2=0.0))
+    array([[ 1. , -1.2]])
+    """
+    together = in_touch(states) if touching is None else touching
+    felt = Rates.of([structure]).felt(together[None])
+    columns = states.T[:, None, :]
+    return felt.pull(columns[:2], columns[2:])[:, 0].T

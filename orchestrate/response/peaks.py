@@ -1,0 +1,272 @@
+"""Amplitudes and peak accelerations of both masses, from states sampled over a response's periods.
+
+Between two samples without an impact, displacement and velocity, acceleration and its rate are
+known at both ends by the equations of motion: the extremum between them is one of a cubic. An
+interval with an impact is cut in two there: it is where the cubic of the gap vanishes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..access import Instance, sampled
+from .equations import Flags, Floats, Rates, in_touch
+from .questions import Point
+from .respond import Response
+
+POINTS = 200  # states over the periods looked at: as many as the FMU keeps in a step
+PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max")
+Rows = NDArray[np.intp]
+
+
+class Motion(NamedTuple):
+    """A motion at some times, in the order of ``PEAKS`` along the first axis.
+
+    Attributes
+    ----------
+    value, slope : ndarray, shape (4, ...)
+        Displacements of both masses and their accelerations in space; their time derivatives.
+    bend : ndarray, shape (4, ...)
+        Accelerations of both masses relative to the box, and their time derivatives.
+    """
+
+    value: Floats
+    slope: Floats
+    bend: Floats
+
+    @classmethod
+    def of(cls, states: Floats, felt: Rates, drive: tuple[Floats, Floats]) -> Motion:
+        """By the equations of motion.
+
+        Parameters
+        ----------
+        states : ndarray, shape (4, ...)
+            x1, x2, v1, v2.
+        felt : Rates
+        drive : (ndarray, ndarray)
+            Minus the box's acceleration, and its time derivative.
+        """
+        x, v = states[:2], states[2:]
+        absolute = felt.pull(x, v)
+        relative = absolute + drive[0]
+        rate = felt.pull(v, relative)
+        value, slope = np.concatenate([x, absolute]), np.concatenate([v, rate])
+        return cls(value, slope, np.concatenate([relative, rate + drive[1]]))
+
+    def part(self, index: tuple[Any, ...]) -> Motion:
+        """At some of the times."""
+        return self.each(lambda array: array[(slice(None), *index)])
+
+    def each(self, change: Callable[[Floats], Floats]) -> Motion:
+        """The same of each array."""
+        return Motion(change(self.value), change(self.slope), change(self.bend))
+
+
+class Drive(NamedTuple):
+    """The box's motion, a row a point: frequency, and amplitude of its acceleration."""
+
+    frequency: Floats
+    amplitude: Floats
+
+    def at(self, angle: Floats) -> tuple[Floats, Floats]:
+        """Minus the box's acceleration at a phase, and its time derivative."""
+        return self.amplitude * np.sin(angle), self.amplitude * self.frequency * np.cos(angle)
+
+
+def periods_of(response: Response, most: int) -> int:
+    """Periods looked at: those it repeats after, ``most`` at most; half of them if it does not."""
+    return min(response.multiplicity, most) or (most + 1) // 2
+
+
+def orbit(instance: Instance, point: Point, response: Response, first: int, periods: int) -> Floats:
+    """States over some periods from phase 0 on.
+
+    Parameters
+    ----------
+    instance : Instance
+        At the last sample of ``response``.
+    point : Point
+    response : Response
+    first : int
+        Number of periods since the start.
+    periods : int
+
+    Returns
+    -------
+    ndarray, shape (POINTS + 1, 4)
+    """
+    period = point.excitation.period
+    instance.set(x_rel_max_on=False)
+    states = sampled(instance, first * period, (first + periods) * period, POINTS)
+    return np.concatenate([response.samples[-1:], states])
+
+
+def peaks(
+    points: Sequence[Point], periods: Sequence[int], states: Floats, jump: float = 1e-3
+) -> dict[str, Floats]:
+    """Largest displacements and accelerations of both masses.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        n of them.
+    periods : sequence of int
+        That the states of each span.
+    states : ndarray, shape (n, k + 1, 4)
+        At equal times, the first at phase 0 and the last at the end of the periods.
+    jump : float
+        Part of the largest velocity: where velocities differ by more than the accelerations
+        tell, there is an impact.
+
+    Returns
+    -------
+    dict of ndarray, shape (n,)
+        ``x1_max``, ``x2_max``: largest distances from the box's middle, m; ``a1_max``, ``a2_max``:
+        largest accelerations in space, m/s2, impulses left out.
+
+    Notes
+    -----
+    With 200 samples over p periods, displacements are exact to about ``1e-7 p^4`` and accelerations
+    to about ``1e-6 p^4`` of themselves; of several impacts in one interval only the first is
+    seen, which then costs up to ``pi p/200``.
+    """
+    count = states.shape[1] - 1
+    rates = Rates.of(point.structure for point in points)
+    speed = np.array([[point.excitation.frequency] for point in points])
+    drive = Drive(speed, np.array([[p.excitation.amplitude] for p in points]) * speed**2)
+    angle = 2.0 * np.pi * np.outer(periods, np.arange(count + 1)) / count
+    width = angle[:, 1:2] / speed
+    touching = in_touch(states)
+    columns = np.ascontiguousarray(np.moveaxis(states, -1, 0))
+    motion = Motion.of(columns, rates.felt(touching), drive.at(angle))
+    left, right = (motion.part((slice(None), side)) for side in (np.s_[:-1], np.s_[1:]))
+    smooth = without_impact(left, right, width, jump * np.abs(columns[2:]).max(axis=(0, 2)))
+    largest = np.abs(motion.value).max(axis=2)
+    raise_by_crests(largest, np.broadcast_to(smooth, left.value.shape), left, right, width)
+    index = np.nonzero(~smooth & ~touching[:, :-1])
+    sides = left.part(index), right.part(index)
+    cut = Cut(index[0], *sides, width[index[0], 0], angle[index]).that_may_raise(largest)
+    if len(cut.row):
+        raise_at_impacts(largest, cut, points, rates, drive)
+    return dict(zip(PEAKS, largest, strict=True))
+
+
+def without_impact(left: Motion, right: Motion, width: Floats, jump: Floats) -> Flags:
+    """Whether velocities differ by the integral of the acceleration alone, shape (n, k)."""
+    change = 0.5 * width * (left.bend[:2] + right.bend[:2])
+    change += width * width / 12.0 * (left.bend[2:] - right.bend[2:])
+    found = np.abs(right.slope[:2] - left.slope[:2] - change) <= jump[:, None]
+    both: Flags = np.logical_and(found[0], found[1])
+    return both
+
+
+def crests(left: Motion, right: Motion, width: Floats) -> Floats:
+    """Extrema between two points of cubics with their values and slopes, whose signs differ."""
+    rise, start, end = right.value - left.value, left.slope * width, right.slope * width
+    b, c = 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise
+    # the slope is start + 2 b u + 3 c u^2, with one root in (0, 1)
+    q = -(b + np.copysign(np.sqrt(np.maximum(b * b - 3.0 * c * start, 0.0)), b))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        one, other = q / (3.0 * c), start / q
+    u = np.where((one >= 0.0) & (one <= 1.0), one, other)
+    found: Floats = left.value + u * (start + u * (b + u * c))
+    return found
+
+
+def raise_by_crests(
+    largest: Floats, among: Flags, left: Motion, right: Motion, width: Floats
+) -> None:
+    """Take extrema between the ends of intervals into account.
+
+    Parameters
+    ----------
+    largest : ndarray, shape (4, n)
+    among : ndarray of bool, shape (4, n, k)
+        Intervals to look at.
+    left, right : Motion
+        At their ends, shape (4, n, k).
+    width : ndarray, shape (n, 1)
+    """
+    turns = np.nonzero(among & (left.slope * right.slope < 0.0))
+    ends = [side.each(lambda array: array[turns]) for side in (left, right)]
+    np.maximum.at(largest, turns[:2], np.abs(crests(ends[0], ends[1], width[turns[1], 0])))
+
+
+class Cut(NamedTuple):
+    """Intervals with an impact: rows of their points, both ends, length, phase at the left one."""
+
+    row: Rows
+    left: Motion
+    right: Motion
+    width: Floats
+    angle: Floats
+
+    def part(self, some: Flags) -> Cut:
+        """Some of them."""
+        row, left, right, width, angle = self
+        ends = left.part((some,)), right.part((some,))
+        return Cut(row[some], *ends, width[some], angle[some])
+
+    def that_may_raise(self, largest: Floats) -> Cut:
+        """Those in which something larger may be found: most cannot reach so far."""
+        _, left, right, width, _ = self
+        reach = np.maximum(np.abs(left.value), np.abs(right.value))
+        reach += width * (np.abs(left.slope) + np.abs(right.slope))
+        return self.part(np.any(reach > largest[:, self.row], axis=0))
+
+
+def raise_at_impacts(
+    largest: Floats, cut: Cut, points: Sequence[Point], rates: Rates, drive: Drive
+) -> None:
+    """Take both sides of impacts into account, and extrema between them and the samples."""
+    time = first_touch(cut)
+    some = np.isfinite(time)
+    cut, time = cut.part(some), time[some]
+    felt = Rates(*(part[:2, cut.row] for part in rates))
+    drive = Drive(drive.frequency[cut.row, 0], drive.amplitude[cut.row, 0])
+    forcing = drive.at(cut.angle + drive.frequency * time)
+    before = ahead(cut.left, time)
+    after = bounced(before, [points[row] for row in cut.row])
+    ends = [Motion.of(states, felt, forcing) for states in (before, after)]
+    found = np.maximum(np.abs(ends[0].value), np.abs(ends[1].value))
+    everywhere = np.ones((*found.shape, 1), dtype=bool)
+    for left, right, width in ((cut.left, ends[0], time), (ends[1], cut.right, cut.width - time)):
+        sides = [side.each(lambda array: array[..., None]) for side in (left, right)]
+        raise_by_crests(found, everywhere, sides[0], sides[1], width[:, None])
+    for channel, values in enumerate(found):
+        np.maximum.at(largest[channel], cut.row, values)
+
+
+def ahead(motion: Motion, time: Floats) -> Floats:
+    """States x1, x2, v1, v2 a time later, by the Taylor series up to the third derivative."""
+    x, v, a, j = motion.value[:2], motion.slope[:2], motion.bend[:2], motion.bend[2:]
+    moved = x + time * (v + time * (a / 2.0 + time * j / 6.0))
+    return np.concatenate([moved, v + time * (a + time * j / 2.0)])
+
+
+def first_touch(cut: Cut) -> Floats:
+    """Time from the left end to where the gap vanishes; NaN where it does not in the interval."""
+    from scipy.optimize.elementwise import find_root
+
+    taylor = (cut.left.value[:2], cut.left.slope[:2], cut.left.bend[:2], cut.left.bend[2:])
+    gaps = tuple(part[1] - part[0] for part in taylor)
+
+    def gap(s: Floats, *g: Floats) -> Floats:
+        return g[0] + s * (g[1] + s * (g[2] / 2.0 + s * g[3] / 6.0))
+
+    found = find_root(gap, (np.zeros_like(cut.width), cut.width), args=gaps)
+    return np.where(found.success & (gaps[0] > 0.0), found.x, np.nan)
+
+
+def bounced(before: Floats, points: Sequence[Point]) -> Floats:
+    """States after impacts, by (15) with ``(1+e)/(1+mu)`` in its second line; shape (4, n)."""
+    e, m1, m2 = np.array([(p.structure.e, p.structure.m1, p.structure.m2) for p in points]).T
+    impulse = (1.0 + e) * m1 * m2 / (m1 + m2) * (before[2] - before[3])
+    after = before.copy()
+    after[2] -= impulse / m1
+    after[3] += impulse / m2
+    return after

@@ -1,0 +1,139 @@
+"""One settled response: stroboscopic samples, impacts, the largest gap, and where it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import STATE, Instance, begin
+from ..structures import Excitation, Structure
+from .multiplicity import multiplicity
+from .questions import Point
+
+SERIES = tuple(f"{name}_sample" for name in STATE)
+
+
+@dataclass(frozen=True)
+class Response:
+    """The response to one excitation, in m and m/s.
+
+    Attributes
+    ----------
+    samples : ndarray, shape (n_samples, 4)
+        x1, x2, v1, v2 at the excitation's phase 0 of successive periods.
+    x_rel_max : float
+        Largest gap in them, exact between the samples too.
+    impacts_per_period : float
+        Mean over the samples' periods.
+    permanent_contact : bool
+        Whether any occurred in them.
+    multiplicity : int
+        Least n such that the state repeats after n periods; 0: none.
+    """
+
+    samples: NDArray[np.float64]
+    x_rel_max: float
+    impacts_per_period: float
+    permanent_contact: bool
+    multiplicity: int
+
+    @property
+    def end(self) -> tuple[float, ...]:
+        """The state at the last sample."""
+        return tuple(self.samples[-1].tolist())
+
+
+def respond(
+    instance: Instance,
+    structure: Structure,
+    excitation: Excitation,
+    start: ArrayLike,
+    transient: int,
+    samples: int,
+    tolerance: float,
+) -> Response:
+    """The response after a transient, from a state at phase 0.
+
+    Parameters
+    ----------
+    instance : Instance
+        Of ``TwoMassImpactOscillator``; afterwards it stands at the last sample.
+    structure : Structure
+    excitation : Excitation
+    start : array_like of 4 floats
+        x1, x2 in m, v1, v2 in m/s.
+    transient, samples : int
+        Periods dropped, and stroboscopic samples kept after them.
+    tolerance : float
+        Of :func:`.multiplicity.multiplicity`.
+
+    Returns
+    -------
+    Response
+    """
+    period = excitation.period
+    begin(instance, structure, excitation, start)
+    if transient:
+        instance.step(0.0, transient * period)
+    impacts, contacts, touching = instance.get("impact_count", "contact_count", "in_contact")
+    instance.set(x_rel_max_on=True)
+    states, peak = sample(instance, period, transient, samples)
+    impacts_after, contacts_after = instance.get("impact_count", "contact_count")
+    return Response(
+        samples=states,
+        x_rel_max=peak,
+        impacts_per_period=(impacts_after - impacts) / samples,
+        permanent_contact=bool(touching) or contacts_after > contacts,
+        multiplicity=multiplicity(states, tolerance),
+    )
+
+
+def sample(
+    instance: Instance, period: float, transient: int, samples: int
+) -> tuple[NDArray[np.float64], float]:
+    """Stroboscopic samples after the transient, inside as few steps as the FMU has room for.
+
+    Returns
+    -------
+    states : ndarray, shape (samples, 4)
+    peak : float
+        Largest gap on the way.
+    """
+    room = len(instance.read(*SERIES)) // len(SERIES)
+    states, peak = np.empty((samples, len(SERIES))), 0.0
+    for done in range(0, samples, room):
+        count = min(room, samples - done)
+        first = transient + done
+        instance.set(sample_count=count)
+        instance.step(first * period, (first + count) * period)
+        states[done : done + count] = instance.read(*SERIES).reshape(len(SERIES), room)[:, :count].T
+        peak = max(peak, *instance.get("x_rel_max"))
+    return states, peak
+
+
+def follow(
+    instance: Instance,
+    points: Iterable[Point],
+    start: ArrayLike,
+    transient: int,
+    samples: int,
+    tolerance: float,
+) -> Iterator[Response]:
+    """Responses one after the other, each from the end of the last.
+
+    Parameters
+    ----------
+    instance : Instance
+    points : iterable of Point
+    start : array_like of 4 floats
+        Of the first one.
+    transient, samples, tolerance
+        As in :func:`respond`.
+    """
+    for structure, excitation in points:
+        response = respond(instance, structure, excitation, start, transient, samples, tolerance)
+        yield response
+        start = response.end

@@ -1,0 +1,248 @@
+"""A motion in time, with its impacts: one pass through the FMU's event mode."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import OSCILLATOR, REST, EventInstance, Impacts, begin, finder
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Excitation, Structure
+from .equations import absolute_accelerations
+from .labels import Variable, variable, yes_or_no
+from .questions import Point, Question, one_point, state, whole
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+OUTPUTS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force", "phase")
+IN_SPACE = "in space, what an accelerometer on it reads between impacts"
+IN_TIME = {  # units, long name
+    "x1": ("m", "displacement of mass 1 relative to the box"),
+    "x2": ("m", "displacement of mass 2 relative to the box"),
+    "v1": ("m/s", "velocity of mass 1 relative to the box"),
+    "v2": ("m/s", "velocity of mass 2 relative to the box"),
+    "a1": ("m/s2", "acceleration of mass 1 relative to the box between impacts"),
+    "a2": ("m/s2", "acceleration of mass 2 relative to the box between impacts"),
+    "a1_abs": ("m/s2", f"acceleration of mass 1 {IN_SPACE}"),
+    "a2_abs": ("m/s2", f"acceleration of mass 2 {IN_SPACE}"),
+    "box_acceleration": ("m/s2", "acceleration of the box"),
+    "x_rel": ("m", "gap x2 - x1"),
+    "v_rel": ("m/s", "velocity of the gap"),
+    "contact_force": ("N", "compressive force between the masses in permanent contact (18)"),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class SimulateJob(Question):
+    """A motion in time.
+
+    Attributes
+    ----------
+    excitation : Excitation
+    periods, transient : int
+        Periods kept, and dropped before them.
+    points : int
+        Points a period.
+    start : tuple of float
+        x1, x2 in m, v1, v2 in m/s.
+    """
+
+    excitation: Excitation
+    periods: int = 20
+    transient: int = 0
+    points: int = 200
+    start: tuple[float, ...] = REST
+    asked: ClassVar[str] = "simulate"
+
+    def count(self) -> int:
+        """One motion."""
+        return 1
+
+    def items(self, inputs: Inputs) -> Sequence[Point]:
+        """What moves."""
+        return [Point(self.structure, self.excitation)]
+
+    def grid(self) -> NDArray[np.float64]:
+        """Communication points, s."""
+        numbers = np.arange(self.periods * self.points + 1)
+        return (self.transient + numbers / self.points) * self.excitation.period
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+        """The motion."""
+        grid = self.grid()
+        with EventInstance(fmus[OSCILLATOR]) as instance:
+            begin(instance, *items[0], self.start)
+            instance.advance(0.0, float(grid[0]))
+            rows, touching, impacts = recorded(instance, grid)
+        found = dict(zip(OUTPUTS, rows.T, strict=True))
+        found["in_contact"] = touching
+        closing, sticks = impacts.closing, impacts.sticks
+        found |= {"impact_time": impacts.time, "impact_velocity": closing, "sticks": sticks}
+        return {**found, **self.accelerations(rows, touching)}
+
+    def accelerations(
+        self, rows: NDArray[np.float64], touching: NDArray[np.bool_]
+    ) -> dict[str, NDArray[np.float64]]:
+        """Of both masses and of the box, by the equations of motion."""
+        excitation, phase = self.excitation, rows[:, OUTPUTS.index("phase")]
+        box = -excitation.amplitude * excitation.frequency**2 * np.sin(phase)
+        one, two = absolute_accelerations(rows[:, :4], self.structure, touching).T
+        return {
+            "box_acceleration": box,
+            **{"a1_abs": one, "a2_abs": two},
+            **{"a1": one - box, "a2": two - box},
+        }
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """The motion in time, and its impacts."""
+        import xarray as xr
+
+        contact = "whether the masses are in permanent contact"
+        return xr.Dataset(
+            {
+                **{name: variable("time", table[name], *IN_TIME[name]) for name in IN_TIME},
+                "in_contact": yes_or_no("time", table["in_contact"], contact),
+                **self.impacts(table),
+            },
+            self.coordinates(),
+            {"title": f"Motion in time: {self.structure.label()}"},
+        )
+
+    def impacts(self, table: Table) -> dict[str, Variable]:
+        """The impacts of the time kept."""
+        m1, m2, closing = self.structure.m1, self.structure.m2, table["impact_velocity"]
+        restitution = np.where(table["sticks"], 0.0, self.structure.e)
+        impulse = (1.0 + restitution) * m1 * m2 / (m1 + m2) * closing
+        text = "whether permanent contact follows the impact (17)"
+        return {
+            "impact_time": variable("impact", table["impact_time"], "s", "time of the impact"),
+            "impact_velocity": variable("impact", closing, "m/s", "closing speed before it"),
+            "impulse": variable("impact", impulse, "N.s", "impulse on each mass (15)"),
+            "sticks": yes_or_no("impact", table["sticks"], text),
+        }
+
+    def coordinates(self) -> dict[str, Variable]:
+        """Time in seconds, in units of 1/omega, and in periods."""
+        time = self.grid()
+        tau, turns = self.structure.omega * time, time / self.excitation.period
+        return {
+            "time": variable("time", time, "s", "time from the start"),
+            "tau": variable("time", tau, "1", "time in units of 1/omega (4)"),
+            "periods_done": variable("time", turns, "1", "time in excitation periods"),
+        }
+
+
+def recorded(
+    instance: EventInstance, grid: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_], Impacts]:
+    """A motion at communication points, and its impacts between them.
+
+    Parameters
+    ----------
+    instance : EventInstance
+        At the first point.
+    grid : ndarray, shape (n,)
+        s.
+
+    Returns
+    -------
+    rows : ndarray, shape (n, 8)
+        In the order of ``OUTPUTS``.
+    touching : ndarray of bool, shape (n,)
+    impacts : Impacts
+    """
+    touch = instance.flag("in_contact")
+    rows, touching = np.empty((len(grid), len(OUTPUTS))), np.empty(len(grid), dtype=bool)
+    rows[0], touching[0] = instance.read(*OUTPUTS), touch()
+    parts = []
+    for index in range(1, len(grid)):
+        parts.append(instance.impacts(float(grid[index - 1]), float(grid[index])))
+        rows[index], touching[index] = instance.read(*OUTPUTS), touch()
+    names = ("time", "state", "closing", "sticks")
+    joined = [np.concatenate([getattr(part, name) for part in parts]) for name in names]
+    return rows, touching, Impacts(*joined)
+
+
+def simulate(
+    structure: Structure,
+    *,
+    eta: float | None = None,
+    frequency: float | None = None,
+    amplitude: float | None = None,
+    periods: int = 20,
+    transient: int = 0,
+    points: int = 200,
+    start: ArrayLike | None = None,
+    phase: float = 0.0,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """A motion in time, with its impacts.
+
+    Parameters
+    ----------
+    structure : Structure
+        Delaminated or bonded.
+    eta : float, optional
+        Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m, so that xi of (3) is x in m.
+    frequency, amplitude : float, optional
+        The physical form instead: rad/s and m.
+    periods, transient : int
+        Excitation periods kept, and dropped before them.
+    points : int
+        Communication points a period.
+    start : array_like of 4 floats, optional
+        x1, x2 in m, v1, v2 in m/s at time 0, relative to the box; at rest by default.
+    phase : float
+        Phase of the box's motion ``a sin(Omega t + phase)`` at time 0, rad.
+    **running
+        ``store``, ``progress`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time`` in s, ``periods*points + 1`` points from the first kept one on: ``x1``,
+        ``x2``, ``v1``, ``v2``, ``x_rel``, ``v_rel`` relative to the box; ``a1``, ``a2``, the
+        velocities' derivatives between impacts; ``a1_abs``, ``a2_abs``, accelerations in space; ``box_acceleration``;
+        ``contact_force`` in N and ``in_contact``. Over ``impact``: ``impact_time`` in s,
+        ``impact_velocity``, the closing speed in m/s, ``impulse`` in N s, and ``sticks``.
+
+    Raises
+    ------
+    InputError
+        Where the question is not whole, or a number is out of its range.
+
+    Notes
+    -----
+    States, impacts and the contact force come from the FMU; accelerations follow from the states by
+    (6), in permanent contact with the contact force (18). An impulse (15) is no part of them. Where
+    an impact begins permanent contact, its impulse is that of a plastic one.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.response.simulate import simulate
+    >>> motion = simulate(Structure.nondimensional(), eta=0.4, transient=50, periods=2)
+    >>> motion.sizes["time"], motion.sizes["impact"], int(motion.sticks.sum())
+    (401, 60, 2)
+    """
+    chosen, excitation = one_point(structure, eta, frequency, amplitude)
+    job = SimulateJob(
+        name=f"motion_{structure.label()}",
+        structure=chosen,
+        excitation=excitation.replace(phase=phase),
+        periods=whole("periods", periods, 1),
+        transient=whole("transient", transient, 0),
+        points=whole("points", points, 1),
+        start=state("start", start, structure),
+    )
+    return answer(job, running, finder(running))

@@ -1,0 +1,230 @@
+"""Amplitude spectra of accelerations in space, impulses included, bonded beside delaminated.
+
+An impulse is no part of sampled accelerations, whatever the rate. It is in the displacement, which
+is continuous and has a kink there: the spectrum of the acceleration as a distribution is the square
+of the frequency times that of the displacement.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import OSCILLATOR, REST, Instance, begin, finder, sampled
+from ..errors import InputError
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Structure
+from .equations import absolute_accelerations
+from .labels import variable
+from .questions import Point, SeriesQuestion, asked_along, positive, whole
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+KINDS = ("bonded", "delaminated", "sampled")
+Floats = NDArray[np.float64]
+
+
+def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floats]:
+    """Amplitude spectrum through a Hann window: a sine of amplitude A shows as A.
+
+    Parameters
+    ----------
+    signal : array_like, shape (..., n)
+        At equal times; its mean is left in.
+    interval : float
+        Time between them, s.
+
+    Returns
+    -------
+    frequency : ndarray, shape (n//2 + 1,)
+        Of the lines, rad/s.
+    amplitude : ndarray, shape (..., n//2 + 1)
+        Exact for sines with a whole number of periods in the span, whose neighbouring lines then
+        show half of it.
+
+    Examples
+    --------
+    >>> time = np.arange(256) / 256
+    >>> frequency, amplitude = amplitude_spectrum(3.0 * np.sin(10.0 * np.pi * time), 1.0 / 256)
+    >>> frequency[5] / np.pi, amplitude[4:7].round(6)
+    (10.0, array([1.5, 3. , 1.5]))
+    """
+    from scipy.signal import periodogram
+
+    turns, power = periodogram(
+        np.asarray(signal, dtype=float),
+        fs=1.0 / interval,
+        window="hann",
+        detrend=False,
+        scaling="spectrum",
+    )
+    both_sides = np.full(len(turns), 2.0)  # a line stands for two of the two-sided spectrum,
+    both_sides[0] = 1.0  # but for the mean
+    return 2.0 * np.pi * turns, np.sqrt(both_sides * power)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpectraJob(SeriesQuestion):
+    """Spectra of settled responses.
+
+    Attributes
+    ----------
+    periods, points : int
+        Excitation periods in the span, and states a period.
+    transient : int
+        Periods dropped before.
+    highest : float
+        Highest line, as a multiple of the excitation frequency.
+    """
+
+    periods: int = 64
+    points: int = 1024
+    transient: int = 2000
+    highest: float = 40.0
+    asked: ClassVar[str] = "spectra"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.highest > self.points / 2:
+            raise InputError(
+                f"highest = {self.highest:g}: expected at most points/2 = {self.points / 2:g}"
+            )
+
+    def items(self, inputs: Inputs) -> Sequence[Point]:
+        """Structure and excitation of each."""
+        return self.series.points
+
+    def orders(self) -> Floats:
+        """Lines as multiples of the excitation frequency."""
+        orders = np.arange(self.periods * self.points // 2 + 1) / self.periods
+        return orders[orders <= self.highest]
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+        """Bonded, delaminated, and delaminated without its impulses."""
+        found = []
+        with Instance(fmus[OSCILLATOR]) as instance:
+            for structure, excitation in items:
+                glued = self.spectrum(instance, Point(structure.as_bonded(), excitation))
+                free = self.spectrum(instance, Point(structure.as_delaminated(), excitation))
+                found.append([glued[0], *free])
+        return {"acceleration": np.array(found)}
+
+    def spectrum(self, instance: Instance, point: Point) -> tuple[Floats, Floats]:
+        """Of both masses, shape (2, lines): with impulses, and of the acceleration between them."""
+        span, count = point.excitation.period, self.periods * self.points
+        first, last = self.transient * span, (self.transient + self.periods) * span
+        begin(instance, *point, REST)
+        if self.transient:
+            instance.step(0.0, first)
+        states = sampled(instance, first, last, count)
+        turns = np.arange(1, count + 1) / self.points
+        box = point.excitation.amplitude * np.sin(2.0 * np.pi * turns)
+        accelerations = absolute_accelerations(states, point.structure)
+        shown, interval = len(self.orders()), span / self.points
+        frequency, displaced = amplitude_spectrum(states[:, :2].T + box, interval)
+        _, between = amplitude_spectrum(accelerations.T, interval)
+        return (frequency**2 * displaced)[:, :shown], between[:, :shown]
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Amplitudes over the lines."""
+        import xarray as xr
+
+        along, orders = self.series.name, self.orders()
+        speeds = np.array([point.excitation.frequency for point in self.series.points])
+        text = "amplitude of the acceleration in space"
+        kinds = "bonded and delaminated with impulses; delaminated as sampled between impulses"
+        variables = {
+            "acceleration": variable(
+                (along, "kind", "mass", "order"), table["acceleration"], "m/s2", text
+            )
+        }
+        coordinates = {
+            **self.series.coordinates(),
+            "kind": variable("kind", np.array(KINDS), "1", kinds),
+            "mass": variable("mass", np.array([1, 2]), "1", "mass"),
+            "order": variable("order", orders, "1", "multiple of the excitation frequency"),
+            "line": variable(
+                (along, "order"), np.outer(speeds, orders), "rad/s", "frequency of the line"
+            ),
+        }
+        title = f"Spectra, bonded and delaminated: {self.structure.label()}"
+        return xr.Dataset(variables, coordinates, {"title": title})
+
+
+def spectra(
+    structure: Structure,
+    *,
+    eta: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: ArrayLike | None = None,
+    periods: int = 64,
+    points: int = 1024,
+    transient: int = 2000,
+    highest: float = 40.0,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Amplitude spectra of the masses' accelerations in space, bonded beside delaminated.
+
+    Parameters
+    ----------
+    structure : Structure
+        Whether it is bonded does not matter: both kinds are answered.
+    eta : array_like, optional
+        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m.
+    frequency, amplitude : array_like, optional
+        The physical form instead: rad/s and m, one amplitude or one for each frequency.
+    periods, points : int
+        Excitation periods in the span, which make the lines' distance, and states a period.
+    transient : int
+        Periods dropped before, from rest.
+    highest : float
+        Highest line, as a multiple of the excitation frequency.
+    **running
+        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``acceleration``, amplitudes in m/s2, over the excitation, ``kind``, ``mass`` (1, 2) and
+        ``order``, multiples of the excitation frequency; ``line`` has the frequencies in rad/s.
+        Kinds: ``bonded`` and ``delaminated`` with the impacts' impulses; ``sampled``: delaminated
+        without them, as a sampled accelerometer shows it.
+
+    Raises
+    ------
+    InputError
+        Where the question is not whole, or a number is out of its range.
+
+    Notes
+    -----
+    The paper's Figure 3. With impulses: the square of the frequency times the spectrum of the
+    displacement in space, through a Hann window; states sampled ``points`` times a period fold
+    what lies above half that rate, which for a kink falls with the square of the frequency.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.response.spectra import spectra
+    >>> found = spectra(Structure(), eta=1.047, transient=300, periods=8, points=256)
+    >>> found.acceleration.sel(mass=1, order=20.0)[0].values.round(1)
+    array([0. , 9.3, 0. ])
+    """
+    job = SpectraJob(
+        name=f"spectra_{structure.label()}",
+        **asked_along(structure, eta, frequency, amplitude),
+        periods=whole("periods", periods, 1),
+        points=whole("points", points, 2),
+        transient=whole("transient", transient, 0),
+        highest=positive("highest", highest),
+    )
+    return answer(job, running, finder(running))

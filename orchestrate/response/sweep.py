@@ -1,0 +1,279 @@
+"""Responses along a parameter, each from the end of the last: orbit diagrams (section 3.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import OSCILLATOR, REST, Instance, finder
+from ..errors import InputError
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Structure
+from .labels import Dims, Variable, nondimensional_state, variable, yes_or_no
+from .peaks import PEAKS, orbit, peaks, periods_of
+from .questions import Point, SeriesQuestion, asked_along, positive, state, whole
+from .respond import follow
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+Direction = Literal["up", "down", "both", "given"]
+DIRECTIONS = ("up", "down", "both", "given")
+NUMBERS = {  # one a response: units, long name
+    "xi_rel_max": ("1", "largest gap over the sampled periods, between samples too"),
+    "impacts_per_period": ("1", "impacts per excitation period, mean over the samples"),
+    "x1_max": ("m", "largest distance of mass 1 from the box's middle"),
+    "x2_max": ("m", "largest distance of mass 2 from the box's middle"),
+    "xi1_max": ("1", "largest distance of mass 1 from the box's middle over a eta^2"),
+    "xi2_max": ("1", "largest distance of mass 2 from the box's middle over a eta^2"),
+    "a1_max": ("m/s2", "largest acceleration of mass 1 in space between impacts"),
+    "a2_max": ("m/s2", "largest acceleration of mass 2 in space between impacts"),
+}
+MULTIPLICITY = "least n such that the state repeats after n periods within the tolerance; 0: none"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweepJob(SeriesQuestion):
+    """A sweep.
+
+    Attributes
+    ----------
+    direction : str
+        Of ``DIRECTIONS``.
+    transient, samples : int
+        Periods dropped, and stroboscopic samples kept after them, at each value.
+    tolerance : float
+        Of :func:`.multiplicity.multiplicity`.
+    start : tuple of float
+        State that the first value starts from: x1, x2 in m, v1, v2 in m/s.
+    peak_periods : int
+        Periods over which amplitudes and accelerations are looked for, at most.
+    """
+
+    direction: Direction = "up"
+    transient: int = 500
+    samples: int = 200
+    tolerance: float = 1e-2
+    start: tuple[float, ...] = REST
+    peak_periods: int = 8
+    asked: ClassVar[str] = "sweep"
+    chunk: ClassVar[int] = 200
+    sequential: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.direction not in DIRECTIONS:
+            expected = ", ".join(DIRECTIONS)
+            raise InputError(f"direction = {self.direction!r}: expected one of {expected}")
+        values, name = self.series.values, self.series.name
+        if self.direction != "given" and len(set(values)) < len(values):
+            twice = next(value for value in values if values.count(value) > 1)
+            raise InputError(
+                f"{name}: {twice!r} twice; expected each value once, or direction='given'"
+            )
+
+    def orders(self) -> list[NDArray[np.intp]]:
+        """Indices of the values in the order in which they are computed, for each direction."""
+        up = np.argsort(self.series.values, kind="stable")
+        known = {"up": [up], "down": [up[::-1]], "both": [up, up[::-1]]}
+        return known.get(self.direction) or [np.arange(len(up))]
+
+    def lanes(self) -> int:
+        """Up and down know nothing of each other."""
+        return len(self.orders())
+
+    def count(self) -> int:
+        """Number of responses."""
+        return self.lanes() * super().count()
+
+    def items(self, inputs: Inputs) -> Sequence[Point]:
+        """Structure and excitation of each response."""
+        points = self.series.points
+        return [points[index] for order in self.orders() for index in order]
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+        """Some responses, from the end of the last."""
+        start = self.start if carry is None else carry["end"][-1]
+        settings = self.transient, self.samples, self.tolerance
+        responses, orbits, spans = [], [], []
+        with Instance(fmus[OSCILLATOR]) as instance:
+            for point, response in zip(
+                items, follow(instance, items, start, *settings), strict=True
+            ):
+                spans.append(periods_of(response, self.peak_periods))
+                first = self.transient + self.samples
+                orbits.append(orbit(instance, point, response, first, spans[-1]))
+                responses.append(response)
+        samples = np.array([response.samples for response in responses])
+        return {
+            "gap": samples[:, :, 1] - samples[:, :, 0],
+            "end": samples[:, -1],
+            **{
+                name: np.array([getattr(response, name) for response in responses])
+                for name in (
+                    *("x_rel_max", "impacts_per_period"),
+                    *("permanent_contact", "multiplicity"),
+                )
+            },
+            **peaks(items, spans, np.array(orbits)),
+        }
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Everything over the parameter, in the order of its values."""
+        import xarray as xr
+
+        found = {name: self.in_order(values) for name, values in table.items()}
+        return xr.Dataset(self.variables(found), self.coordinates(), {"title": self.title()})
+
+    def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
+        """Rows as the values were given, with a first axis where there are both directions."""
+        orders = self.orders()
+        rows = values.reshape(len(orders), -1, *values.shape[1:])
+        found = np.empty_like(rows)
+        for index, order in enumerate(orders):
+            found[index, order] = rows[index]
+        return found if self.direction == "both" else found[0]
+
+    def variables(self, table: Table) -> dict[str, Variable]:
+        """What was computed, in the paper's units too."""
+        along: Dims = (self.series.name,)
+        if self.direction == "both":
+            along = ("direction", self.series.name)
+        scales = self.series.scales()
+        length = scales[:, 0]
+        numbers = {
+            "xi_rel_max": table["x_rel_max"] / length,
+            "impacts_per_period": table["impacts_per_period"],
+            **{name: table[name] for name in PEAKS},
+            **{f"xi{i}_max": table[f"x{i}_max"] / length for i in (1, 2)},
+        }
+        gaps, ends = table["gap"] / length[:, None], table["end"] / scales
+        contact = "whether permanent contact occurs in the sampled periods"
+        text = "state at the last sample, where the next value starts from"
+        return {
+            "xi_rel": variable(
+                (*along, "sample"), gaps, "1", "stroboscopic samples of the gap xi_2 - xi_1 (21)"
+            ),
+            **{name: variable(along, numbers[name], *NUMBERS[name]) for name in NUMBERS},
+            "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
+            "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
+            "end_state": variable((*along, "coordinate"), ends, "1", text),
+        }
+
+    def coordinates(self) -> dict[str, Variable]:
+        """The parameter, the excitation along it, periods and names."""
+        numbers = np.arange(self.transient + 1, self.transient + self.samples + 1)
+        found = {
+            **self.series.coordinates(),
+            **nondimensional_state(),
+            "sample": variable("sample", numbers, "1", "excitation period n of the sample"),
+        }
+        if self.direction == "both":
+            text = "order in which the values were computed"
+            found["direction"] = variable("direction", np.array(["up", "down"]), "1", text)
+        return found
+
+    def title(self) -> str:
+        """What it is, for people."""
+        return f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
+
+
+def sweep(
+    structure: Structure,
+    *,
+    eta: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: ArrayLike | None = None,
+    over: str | None = None,
+    values: ArrayLike | None = None,
+    direction: Direction = "up",
+    transient: int = 500,
+    samples: int = 200,
+    tolerance: float = 1e-2,
+    start: ArrayLike | None = None,
+    peak_periods: int = 8,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Responses along a parameter, each started from the end of the last.
+
+    Parameters
+    ----------
+    structure : Structure
+    eta : array_like, optional
+        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m, so that xi of (3) is x in m.
+    frequency, amplitude : array_like, optional
+        The physical form instead: rad/s and m, one amplitude or one for each frequency.
+    over : str, optional
+        Parameter that takes ``values``, such as ``"e"``, ``"D"``, ``"k2"``, ``"amplitude"``; by
+        default what is given as a list.
+    values : array_like, optional
+    direction : {"up", "down", "both", "given"}
+        Order in which the values are computed; the result keeps the order in which they were
+        given. ``"both"`` computes them upwards and downwards and adds a dimension ``direction``.
+    transient, samples : int
+        Periods dropped, and stroboscopic samples kept after them, at each value.
+    tolerance : float
+        Relative deviation within which a state counts as repeated.
+    start : array_like of 4 floats, optional
+        State that the first value starts from, at phase 0: x1, x2 in m, v1, v2 in m/s; at rest
+        by default.
+    peak_periods : int
+        Amplitudes and accelerations are looked for over the periods after which the response
+        repeats, at most so many; over half as many where it does not repeat.
+    **running
+        ``jobs``, ``cluster``, ``progress``, ``store`` and others, see
+        :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the parameter, and ``sample`` and ``direction``: ``xi_rel``, stroboscopic samples of
+        the gap over a eta^2 (21); ``xi_rel_max``; ``impacts_per_period``; ``multiplicity`` in
+        excitation periods, 0 where the response does not repeat; ``permanent_contact``;
+        ``end_state``, the non-dimensional state at the last sample; largest distances of both
+        masses from the box's middle, ``x1_max`` and ``x2_max`` in m, ``xi1_max`` and ``xi2_max``
+        over a eta^2; and ``a1_max``, ``a2_max``, the largest accelerations in space in m/s2,
+        which an accelerometer on a mass reads between impacts.
+
+    Raises
+    ------
+    InputError
+        Where the question is not whole, or a number is out of its range.
+
+    Notes
+    -----
+    The paper's section 3.1 and Figures 6, 10 and 11. Samples, impacts and the largest gap come
+    from the FMU and are exact to rounding; for amplitudes and accelerations see
+    :func:`orchestrate.response.peaks.peaks`.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.response.sweep import sweep
+    >>> found = sweep(Structure.nondimensional(), eta=[1.046, 1.047], transient=100, samples=40)
+    >>> found.xi_rel_max.values.round(2)
+    array([21.4 , 21.51])
+    >>> found = sweep(Structure(), over="e", values=[0.3, 0.7], eta=0.4, transient=50)
+    >>> found.impacts_per_period.values
+    array([11., 30.])
+    """
+    job = SweepJob(
+        name=f"sweep_{structure.label()}_{direction}",
+        **asked_along(structure, eta, frequency, amplitude, over, values),
+        direction=direction,
+        transient=whole("transient", transient, 0),
+        samples=whole("samples", samples, 1),
+        tolerance=positive("tolerance", tolerance),
+        start=state("start", start, structure),
+        peak_periods=whole("peak_periods", peak_periods, 1),
+    )
+    return answer(job, running, finder(running))
