@@ -1,0 +1,25 @@
+"""FMUs that differ from ours in their description."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+
+def altered_fmu(source: Path, target: Path, **changes: tuple[str, str]) -> Path:
+    """Copy an FMU with attributes of its description replaced.
+
+    Examples
+    --------
+    ``altered_fmu(a, b, modelName=("Old", "New"))``
+    """
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
+        for name in old.namelist():
+            content = old.read(name)
+            if name == "modelDescription.xml":
+                for attribute, (before, after) in changes.items():
+                    replaced = f'{attribute}="{before}"'.encode()
+                    assert replaced in content
+                    content = content.replace(replaced, f'{attribute}="{after}"'.encode())
+            new.writestr(name, content)
+    return target
