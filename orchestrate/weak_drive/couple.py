@@ -25,7 +25,7 @@ from . import averaged
 from .jumps import find_jumps
 from .master import Master, Scheme
 from .revolutions import COLUMNS, Revolutions
-from .schedule import Constant, Ramp, Schedule
+from .schedule import Constant, Ramp, Schedule, check
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -284,10 +284,9 @@ def couple_job(
     ------
     InputError
     """
-    if not drive.motor_constant > 0.0:
-        raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
     if speed_start is None:
         speed_start = schedule.voltage(0.0) / drive.motor_constant
+    check("speed_start", speed_start, "rad/s")
     name = "bonded" if structure.bonded else "delaminated"
     job = CoupleJob(f"couple_{name}", structure, drive, schedule, scheme, float(speed_start))
     steps = schedule.duration / scheme.h
@@ -380,10 +379,11 @@ def couple(
     True
     """
     from ..access.exported import finder
+    from ..running.runner import answer
 
+    if not drive.motor_constant > 0.0:
+        raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
     schedule = schedule_of(structure, drive, voltage, duration, rate, settle, increment, back)
     scheme = scheme_of(structure, step, algorithm, tolerance)
     job = couple_job(structure, drive, schedule, scheme, speed_start)
-    from ..running.runner import answer
-
     return answer(job, running, finder(running))

@@ -40,6 +40,7 @@ CONNECTIONS = (
     ("shaker", "oscillator", "box_acceleration"),
     ("shaker", "oscillator", "box_jerk"),
 )
+SET = "initialValues"  # some tools apply sets by their name: the same for both components
 Values = Mapping[str, float | bool]
 
 
@@ -99,9 +100,9 @@ def system_description(description: str, stop_time: float) -> bytes:
     return document(root)
 
 
-def parameter_values(name: str, values: Values) -> bytes:
+def parameter_values(values: Values) -> bytes:
     """Parameters of a component; what is false is left to its default."""
-    root = ET.Element(tag("ssv", "ParameterSet"), version="1.0", name=name)
+    root = ET.Element(tag("ssv", "ParameterSet"), version="1.0", name=SET)
     group = ET.SubElement(root, tag("ssv", "Parameters"))
     for variable, value in values.items():
         if value is False:
@@ -184,7 +185,7 @@ def write_ssp(
     }
     text = f"Motor and box with a {state} structure, at {voltage:g} V"
     files = {"SystemStructure.ssd": system_description(text, float(stop))}
-    files |= {ssv(name): parameter_values(name, values) for name, values in starts.items()}
+    files |= {ssv(name): parameter_values(values) for name, values in starts.items()}
     for model, fmu in zip(MODELS.values(), fmus or exported(), strict=True):
         files[f"resources/{model}.fmu"] = Path(fmu).read_bytes()
     return write_whole(path, lambda temporary: write_archive(temporary, files))

@@ -1,0 +1,85 @@
+"""Structures with their drives, and co-simulations of both FMUs from given states."""
+
+import contextlib
+from typing import NamedTuple
+
+import numpy as np
+
+from orchestrate import Drive, Structure
+from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.weak_drive.couple import oscillator_start
+from orchestrate.weak_drive.master import Master, Scheme
+
+GRID = 0.2  # of the comparisons
+ORDER = ("x1", "v1", "x2", "v2", "box_position", "box_velocity", "angle", "speed")
+STARTS = ("x1_start", "v1_start", "x2_start", "v2_start")
+SHAKER_STARTS = ("position_start", "velocity_start", "angle_start", "speed_start", "current_start")
+
+
+class System(NamedTuple):
+    """A structure and what shakes it."""
+
+    structure: Structure
+    drive: Drive
+
+    def as_bonded(self):
+        return self._replace(structure=self.structure.as_bonded())
+
+    def with_structure(self, **changes):
+        return self._replace(structure=self.structure.replace(**changes))
+
+    def with_lag(self, tau):
+        """The inductance whose electric time constant L/R_a is ``tau``."""
+        inductance = tau * self.drive.armature_resistance
+        return self._replace(drive=self.drive.replace(armature_inductance=inductance))
+
+
+QUICK, BEAM = (
+    System(Structure.from_file(name), Drive.from_file(name)) for name in ("quick", "beam")
+)
+
+
+def rest(speed=0.0):
+    """Everything at rest but the rotor."""
+    return [0.0] * 7 + [speed, 0.0]
+
+
+@contextlib.contextmanager
+def master(system, scheme, state, form="fmi3"):
+    """A master from a state as :mod:`.monolithic` has it."""
+    oscillator, shaker = (find(model, form).path for model in (OSCILLATOR, SHAKER))
+    starts = dict(zip(STARTS, state[:4], strict=True))
+    shaker_starts = dict(zip(SHAKER_STARTS, state[4:], strict=True))
+    with Instance(oscillator) as one, Instance(shaker) as other:
+        one.initialize(**oscillator_start(system.structure), **starts)
+        other.initialize(**system.drive.parameters(), **shaker_starts)
+        made = Master(one, other, system.structure, scheme)
+        yield made
+        made.close()
+
+
+def state_of(m):
+    """State of a master, in the order of :func:`master`."""
+    values = {**m.motion._asdict(), **m.shaking._asdict()}
+    return [*(values[name] for name in ORDER), *m.shaker.instance.get("motor_current")]
+
+
+def settled(system, voltage, speed, time=600.0):
+    """A state of the settled motion, in flight unless bonded, with the angle in the first turn."""
+    with master(system, Scheme("rollback", 0.2), rest(speed)) as m:
+        while m.time < time or (m.motion.x1 == m.motion.x2 and not system.structure.bonded):
+            m.step(voltage)
+        state = state_of(m)
+    return [*state[:6], state[6] % (2.0 * np.pi), *state[7:]]
+
+
+def history(system, scheme, voltage, state, time, form="fmi3"):
+    """States on the grid, shape (points, 9), and the energies at the end."""
+    every = max(1, round(GRID / scheme.h))
+    with master(system, scheme, state, form) as m:
+        rows = [state]
+        for k in range(round(time / scheme.h)):
+            m.step(voltage)
+            if (k + 1) % every == 0:
+                rows.append(state_of(m))
+        return np.array(rows), m.balance.energies(m.motion, m.shaking)

@@ -1,0 +1,113 @@
+"""Structure, box and motor as one system of equations, solved by scipy with events.
+
+This is what the co-simulation has to agree with. A state is x1, v1, x2, v2, y, y', phi, phi' and
+the motor's current.
+"""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+TOLERANCE = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-13}
+
+
+class Monolith:
+    """The whole system.
+
+    Parameters
+    ----------
+    structure : Structure
+    drive : Drive
+    voltage : float
+    """
+
+    def __init__(self, structure, drive, voltage):
+        self.o, self.s, self.voltage = structure, drive, voltage
+        self.unbalance = drive.unbalance_mass * drive.unbalance_radius
+
+    def pulls(self, state):
+        """Forces of the springs and dampers on the box."""
+        x1, v1, x2, v2 = state[:4]
+        o = self.o
+        return o.k1 * x1 + o.d1 * v1, o.k2 * x2 + o.d2 * v2
+
+    def electric(self, w, i):
+        """Torque of the motor, and the rate of its current."""
+        s = self.s
+        drop = self.voltage - s.motor_constant * w
+        if s.armature_inductance > 0.0:
+            rate = (drop - s.armature_resistance * i) / s.armature_inductance
+            return s.motor_constant * i, rate
+        return s.motor_constant * drop / s.armature_resistance, 0.0
+
+    def rates(self, state, together):
+        """Right-hand side in flight, or in contact."""
+        _, v1, _, v2, y, v, phi, w, i = state
+        s, o = self.s, self.o
+        p1, p2 = self.pulls(state)
+        torque, current_rate = self.electric(w, i)
+        c = self.unbalance * np.cos(phi)
+        p = self.unbalance * w * w * np.sin(phi) - s.box_damping * v - s.box_stiffness * y + p1 + p2
+        determinant = s.box_mass * s.rotor_inertia - c * c
+        a = (s.rotor_inertia * p - c * torque) / determinant
+        turn = (s.box_mass * torque - c * p) / determinant
+        if together:
+            a1 = a2 = -(p1 + p2) / (o.m1 + o.m2) - a
+        else:
+            a1, a2 = -p1 / o.m1 - a, -p2 / o.m2 - a
+        return np.array([v1, a1, v2, a2, v, a, w, turn, current_rate])
+
+    def parting(self, state):
+        """Acceleration of the gap, were the masses free: negative where they are pressed."""
+        p1, p2 = self.pulls(state)
+        return p1 / self.o.m1 - p2 / self.o.m2
+
+    def strike(self, state):
+        """State after an impact, and whether the masses stick."""
+        o, (x1, v1, x2, v2), after = self.o, state[:4], list(state)
+        both = o.m1 + o.m2
+        common, rebound = (o.m1 * v1 + o.m2 * v2) / both, o.e * (v1 - v2)
+        after[0] = after[2] = (o.m1 * x1 + o.m2 * x2) / both
+        after[1] = after[3] = common
+        pressed = self.parting(after)
+        sticks = pressed < 0.0 and 2.0 * rebound < o.gamma * np.sqrt(o.m1 / o.k1) * -pressed
+        if not sticks:
+            after[1] = common - rebound * o.m2 / both
+            after[3] = common + rebound * o.m1 / both
+        return np.array(after), sticks
+
+    def solve(self, state, times):
+        """States at ``times`` from ``state`` at the first of them, and the number of impacts.
+
+        It begins in flight or, where the gap is 0, in contact.
+        """
+        together, impacts, now = self.o.bonded or state[2] == state[0], 0, times[0]
+        rows, state = [np.array(state)], np.array(state)
+        while now < times[-1]:
+            found = self.phase(now, state, times, together)
+            rows += list(found.y.T)
+            if not (found.t_events and found.t_events[0].size):
+                break
+            now, state = found.t_events[0][0], found.y_events[0][0]
+            if together:
+                together, state = False, state.copy()
+                state[2] += 1e-15
+            else:
+                impacts += 1
+                state, together = self.strike(state)
+        return np.array(rows), impacts
+
+    def phase(self, now, state, times, together):
+        """Flight or contact up to its end."""
+
+        def end(t, z):
+            return self.parting(z) if together else z[2] - z[0]
+
+        end.terminal, end.direction = True, 1.0 if together else -1.0
+        return solve_ivp(
+            lambda t, z: self.rates(z, together),
+            (now, times[-1]),
+            state,
+            t_eval=times[times > now],
+            events=None if self.o.bonded else end,
+            **TOLERANCE,
+        )

@@ -1,0 +1,33 @@
+"""The averaged theory: known folds, zeros of the slope, and no folds where there are none."""
+
+import numpy as np
+import pytest
+
+from orchestrate.weak_drive import averaged
+
+from .coupled import BEAM, QUICK
+
+
+def test_folds():
+    up, down = averaged.folds(*QUICK)
+    assert up.eta0 == pytest.approx(1.58306, abs=5e-6)
+    assert up.Omega == pytest.approx(1.3089, abs=1e-3)
+    assert down.eta0 == pytest.approx(1.4357, abs=1e-4)
+    assert averaged.amplitude(*QUICK, 1.3089) == pytest.approx(19.99, abs=0.05)
+    assert averaged.folds(*BEAM)[0].eta0 == pytest.approx(1.5419, abs=2e-4)
+
+
+@pytest.mark.parametrize("changes", [{}, {"D1": 0.01, "D2": 0.03}, {"mu": 2.0, "kappa": 2.4}])
+def test_folds_are_extrema_of_the_voltage(changes):
+    system = QUICK.with_structure(**changes)
+    found = averaged.folds(*system)
+    Omega = np.linspace(0.5, 3.0, 200_001)
+    eta0 = averaged.no_load_speed(*system, Omega)
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(eta0))))
+    assert [fold.Omega for fold in found] == pytest.approx(Omega[turns + 1], abs=2e-5)
+    assert [fold.eta0 for fold in found] == pytest.approx(eta0[turns + 1], abs=1e-8)
+
+
+def test_a_strong_motor_has_no_folds():
+    strong = QUICK.drive.replace(armature_resistance=1e-3 * QUICK.drive.armature_resistance)
+    assert averaged.folds(QUICK.structure, strong) == []

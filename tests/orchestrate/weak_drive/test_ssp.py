@@ -1,0 +1,98 @@
+"""The SSP package in other tools: read, run, and wrong by what their fixed step explains."""
+
+import json
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+from fmpy.ssp.ssd import read_ssd, read_ssv
+
+from orchestrate.errors import InputError, StoreError
+from orchestrate.weak_drive.master import Scheme
+from orchestrate.weak_drive.ssp import write_ssp
+
+from .coupled import QUICK, master, rest
+
+VOLTAGE, SPEED, TIME = 1.5, 1.25, 20.0
+TOOLS = ("fmpy", "ecospy", "libcosimpy")
+STEPS = (0.01, 0.005)
+
+
+def write(folder, system, name="drive.ssp"):
+    return write_ssp(folder / name, *system, voltage=VOLTAGE, speed_start=SPEED)
+
+
+def run(tool, path, step):
+    """x1, x2 and the speed at TIME, as a tool finds them."""
+    program = Path(__file__).with_name("run_ssp.py")
+    line = [sys.executable, program, tool, path, repr(step), str(round(TIME / step))]
+    done = subprocess.run([*map(str, line)], capture_output=True, text=True, timeout=120)
+    if done.returncode == 3:
+        pytest.skip(f"{tool} cannot be used here: {done.stderr.strip()}")
+    assert done.returncode == 0, done.stderr[-2000:]
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+def truth(system):
+    """The same by our own master."""
+    with master(system, Scheme("iterated", 0.1), rest(SPEED)) as m:
+        for _ in range(round(TIME / 0.1)):
+            m.step(VOLTAGE)
+        return [m.motion.x1, m.motion.x2, m.shaking.speed]
+
+
+@pytest.fixture(scope="module", params=["bonded", "delaminated"])
+def case(request, tmp_path_factory):
+    """A package, and what is true of it."""
+    system = QUICK.as_bonded() if request.param == "bonded" else QUICK
+    return write(tmp_path_factory.mktemp("ssp"), system), truth(system)
+
+
+@pytest.mark.parametrize("tool", TOOLS)
+def test_tools(case, tool):
+    """Each error is of first order in the step: structure, motor and start are as written."""
+    path, expected = case
+    errors = [
+        [abs(a - b) for a, b in zip(run(tool, path, step), expected, strict=True)] for step in STEPS
+    ]
+    for coarse, fine, value in zip(*errors, expected, strict=True):
+        assert coarse < 8.0 * STEPS[0] * value
+        assert 1.6 < coarse / fine < 2.5
+    assert errors[1][0] > 0.01 * expected[0]  # far too large a step for a tool that holds inputs
+
+
+def test_package(case, tmp_path):
+    """What all tools read: bindings of components, connections between components, no other."""
+    path, _ = case
+    system = read_ssd(str(path)).system
+    assert {element.name: element.source for element in system.elements} == {
+        "oscillator": "resources/TwoMassImpactOscillator.fmu",
+        "shaker": "resources/MotorShaker.fmu",
+    }
+    assert not system.connectors
+    assert not system.parameterBindings
+    assert all(link.startElement and link.endElement for link in system.connections)
+    for element in system.elements:
+        for binding in element.parameterBindings:
+            values = {p.name: p for p in read_ssv(str(path), binding.source).parameters}
+            assert all(p.value == "true" for p in values.values() if p.type == "Boolean")
+    assert float(values["voltage"].value) == VOLTAGE
+
+
+def test_it_says_which_structure_it_is_for(tmp_path):
+    for system, word in ((QUICK, "delaminated"), (QUICK.as_bonded(), "bonded")):
+        path = write(tmp_path, system, f"{word}.ssp")
+        description = zipfile.ZipFile(path).read("SystemStructure.ssd").decode()
+        assert word in read_ssd(str(path)).system.description
+        assert ("delaminated" in description) == (word == "delaminated")
+        assert path.read_bytes() == write(tmp_path, system, "again.ssp").read_bytes()
+
+
+def test_mistakes(tmp_path):
+    with pytest.raises(InputError, match="voltage = nan V: expected a finite number"):
+        write_ssp(tmp_path / "x.ssp", *QUICK, voltage=float("nan"))
+    with pytest.raises(StoreError, match="nowhere"):
+        write(tmp_path / "nowhere", QUICK)
+    assert not list(tmp_path.iterdir())
