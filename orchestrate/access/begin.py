@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import InputError
 from ..structures import Excitation, Structure
 from .events import STATE
 from .instance import Instance
@@ -33,13 +34,31 @@ def begin(
     **values
         Further start values and inputs, by the FMU's names. ``x_rel_max`` is off unless asked for
         here (``x_rel_max_on=True``).
+
+    Raises
+    ------
+    InputError
+        Where ``start`` has another length, or the FMU lacks a variable.
+    FmuError
+        Where the FMU refuses a value; masses that overlap among them.
     """
-    state = dict(zip(STARTS, map(float, np.asarray(start)), strict=True))
+    state = dict(zip(STARTS, four_numbers(start), strict=True))
     given = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}
     instance.reset()
     instance.initialize(**{**given, **values})
     if instance.EVENTS:
         instance.call("enterStepMode")
+
+
+def four_numbers(start: ArrayLike) -> list[float]:
+    """A start as plain floats."""
+    try:
+        state = np.asarray(start, dtype=float)
+    except (TypeError, ValueError):
+        state = np.empty(0)
+    if state.shape != (len(STARTS),):
+        raise InputError(f"start = {start!r}: expected 4 numbers, x1, x2, v1, v2")
+    return [float(value) for value in state]
 
 
 def sampled(instance: Instance, time: float, target: float, count: int) -> NDArray[np.float64]:

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from ..errors import InputError
@@ -108,7 +107,7 @@ def read_description(path: Path) -> Description:
             name=found.modelName,
             guid=str(found.guid),
             fmi_version=found.fmiVersion,
-            variables=MappingProxyType({v.name: v for v in found.modelVariables}),
+            variables={v.name: v for v in found.modelVariables},
             needs_tool=bool(slave and slave.needsExecutionTool),
             identifier=slave.modelIdentifier if slave else "",
             digest=digest,

@@ -183,6 +183,8 @@ def find(
     places = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     reasons: list[CannotExport] = []
     for wanted in dict.fromkeys((form, WITHOUT_COMPILER)):
+        if wanted != form:
+            say_once(f"no {form} FMU here, {wanted} serves instead, without events: {reasons[0]}")
         for place in places:
             if up_to_date(wanted, model, place):
                 return describe(place / wanted / f"{model}.fmu", model)
@@ -192,6 +194,12 @@ def find(
             reasons.append(reason)
     text = f"FMU {model}: there is none of the present sources, and none can be made here"
     raise InputError(f"{text}: {reasons[0]}, or an FMU of your own")
+
+
+@functools.cache
+def say_once(line: str) -> None:
+    """Warn, however many questions it concerns."""
+    log.warning("%s", line)
 
 
 def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import FmuError, InputError
+from ..errors import FmuError, InputError, VibroimpactError
 from .description import describe
 from .unpacked import unpacked
 
@@ -38,6 +38,8 @@ class Instance:
     ------
     InputError
         Where there is no FMU, or none for this machine.
+    StoreError
+        Where it cannot be unpacked.
 
     Notes
     -----
@@ -69,7 +71,7 @@ class Instance:
                 "instanceName": name,
             }
             (self._make3 if self.is_fmi3 else self._make2)(identity)
-        except (FmuError, InputError):
+        except VibroimpactError:
             raise
         except Exception as error:
             reason = f"FMU {path}: cannot be loaded ({error})"

@@ -17,7 +17,7 @@ import tempfile
 import threading
 from pathlib import Path
 
-from ..errors import InputError
+from ..errors import InputError, StoreError
 from ..running.files import alive
 from .description import Description
 
@@ -33,16 +33,27 @@ def unpacked(description: Description) -> Path:
     ------
     InputError
         Where the file is not the one described any more.
+    StoreError
+        Where there is no room for it.
     """
     with _lock:
-        folder = process_folder() / description.digest[:32]
-        if not folder.is_dir():
-            data = description.path.read_bytes()
-            if hashlib.sha256(data).hexdigest() != description.digest:
-                text = f"FMU {description.path}: it has changed since it was read"
-                raise InputError(f"{text}; expected a file that stays")
-            unpack(data, folder)
+        try:
+            folder = process_folder() / description.digest[:32]
+            if not folder.is_dir():
+                unpack(described_bytes(description), folder)
+        except OSError as error:
+            text = f"{tempfile.gettempdir()}: FMU cannot be unpacked ({error.strerror or error})"
+            raise StoreError(f"{text}; expected a folder with room for it") from None
         return folder
+
+
+def described_bytes(description: Description) -> bytes:
+    """The FMU file, which has to be the one that was described."""
+    data = description.path.read_bytes()
+    if hashlib.sha256(data).hexdigest() != description.digest:
+        text = f"FMU {description.path}: it has changed since it was read"
+        raise InputError(f"{text}; expected a file that stays")
+    return data
 
 
 def unpack(data: bytes, folder: Path) -> None:

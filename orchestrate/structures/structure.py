@@ -263,10 +263,10 @@ class Structure:
         fixed = dataclasses.replace(self, **changes)
         if not ratios:
             return fixed
-        new = {k: v for k, v in fixed.by_ratios(ratios).items() if k not in changes}
+        new = {k: v for k, v in fixed._by_ratios(ratios).items() if k not in changes}
         return made_of(ratios, lambda: dataclasses.replace(fixed, **new))
 
-    def by_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
+    def _by_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
         """The SI values that change where the paper's numbers ``ratios`` are set."""
         both = {"D1": ratios["D"], "D2": ratios["D"]} if "D" in ratios else {}
         given = {**ratios, **both}

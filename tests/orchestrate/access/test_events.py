@@ -98,6 +98,12 @@ def test_begin_sets_all(any_fmu):
         assert instance.get("bonded", "x_rel_max_on", "x2") == [True, True, 0.0]
 
 
+@pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), 0.0, [[0.0] * 4], "rest", ["a"] * 4])
+def test_a_start_has_four_numbers(events, start):
+    with pytest.raises(InputError, match=r"start = .*: expected 4 numbers, x1, x2, v1, v2"):
+        begin(events, STRUCTURE, CHAOS, start)
+
+
 @pytest.mark.parametrize("count", [1, 7, 300])
 def test_samples_are_the_states_at_equal_parts(any_fmu, count):
     with Instance(any_fmu) as instance:

@@ -134,9 +134,12 @@ def test_a_build_folder_given_is_the_only_place(maker, places, real, tmp_path):
     assert find(OSCILLATOR, folder=tmp_path / "mine").path.parents[1] == tmp_path / "mine"
 
 
-def test_without_a_compiler_the_python_form_serves(maker, places):
+def test_without_a_compiler_the_python_form_serves(maker, places, caplog):
+    exported.say_once.cache_clear()
     maker.without.update({"fmi2", "fmi3"})
-    assert find(OSCILLATOR).path == places[0] / "fmi2-python" / f"{OSCILLATOR}.fmu"
+    for _ in range(2):
+        assert find(OSCILLATOR).path == places[0] / "fmi2-python" / f"{OSCILLATOR}.fmu"
+    assert caplog.text.count("no fmi3 FMU here, fmi2-python serves instead") == 1
 
 
 def test_where_nothing_can_be_made_one_line_says_why(maker, places):

@@ -11,7 +11,7 @@ import pytest
 
 from orchestrate.access import Instance, describe
 from orchestrate.access.unpacked import PREFIX, process_folder, unpacked
-from orchestrate.errors import InputError
+from orchestrate.errors import InputError, StoreError
 
 from .altered import altered_fmu
 
@@ -109,6 +109,8 @@ def test_what_cannot_be_unpacked_leaves_nothing(any_fmu, tmp_path, monkeypatch):
     monkeypatch.setattr(fmpy, "extract", full)
     fmu = altered_fmu(any_fmu, tmp_path / "mine.fmu", version=("0.1.0", "0.1.3"))
     before = set(process_folder().iterdir())
-    with pytest.raises(InputError, match=r"cannot be loaded .*No space left"):
+    with pytest.raises(
+        StoreError, match=r"cannot be unpacked \(No space left on device\); expected"
+    ):
         Instance(fmu)
     assert set(process_folder().iterdir()) == before
