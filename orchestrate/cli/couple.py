@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 USUAL = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 5e-6)}  # ends of eta0, and rate
 RATE = 1e-4
 LIMIT = 1e-6  # of the motor's work: where more is missed, a warning
-EXAMPLES = """  {program} couple                               quick: up and down, bonded and delaminated
+EXAMPLES = """\
+  {program} couple                               quick: bonded, delaminated, up and down
   {program} couple --drive beam                  a delaminated beam on a small motor
   {program} couple --eta0 1.4:1.62 --rate 1e-5   a slower ramp over less
   {program} couple --drive beam --voltage 5.6:7.2

@@ -221,42 +221,38 @@ def ends_of(option: str, text: str) -> tuple[float, float]:
 # -- running --------------------------------------------------------------------------------------
 
 
-def add_running(parser: argparse.ArgumentParser, output: str = "results", fmu: bool = True) -> None:
-    """``--output``, ``--force`` and how it is computed; ``--fmu`` where one FMU computes it."""
+def add_running(
+    parser: argparse.ArgumentParser,
+    output: Path | None = Path("results"),
+    shown: str = "results",
+    fmu: bool = True,
+) -> None:
+    """Where results go, and how they are computed.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+    output : Path, optional
+        Default of ``--output``.
+    shown : str
+        The same, for people.
+    fmu : bool
+        Whether one FMU computes it all.
+    """
     option = parser.add_argument_group("results and running").add_argument
-    folder = Path(output)
-    option(
-        "--output",
-        type=Path,
-        default=folder,
-        metavar="FOLDER",
-        help=f"folder of the results (default: {output})",
-    )
+    text = f"folder of the results (default: {shown})"
+    option("--output", type=Path, default=output, metavar="FOLDER", help=text)
     option("--force", action="store_true", help="compute anew what is there already")
-    option(
-        "--keep-stale",
-        action="store_true",
-        help="take results that older code or another FMU has made",
-    )
+    stale = "take results that older code or another FMU has made"
+    option("--keep-stale", action="store_true", help=stale)
     option("--jobs", type=int, metavar="N", help="processes at once (default: all cores)")
-    option(
-        "--cluster",
-        metavar="ADDRESS",
-        help="compute on the workers of a Dask scheduler, such as tcp://host:8786",
-    )
+    cluster = "compute on the workers of a Dask scheduler, such as tcp://host:8786"
+    option("--cluster", metavar="ADDRESS", help=cluster)
     if fmu:
-        option(
-            "--fmu",
-            type=Path,
-            metavar="FILE",
-            help="own FMU (default: the one of the present sources)",
-        )
-    option(
-        "--build-folder",
-        type=Path,
-        metavar="FOLDER",
-        help="where FMUs are looked for and exported to",
-    )
+        own = "own FMU (default: the one of the present sources)"
+        option("--fmu", type=Path, metavar="FILE", help=own)
+    place = "where FMUs are looked for and exported to"
+    option("--build-folder", type=Path, metavar="FOLDER", help=place)
 
 
 def running_of(arguments: argparse.Namespace, store: Path | None = None) -> Running:

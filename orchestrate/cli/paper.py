@@ -1,5 +1,67 @@
-"""``simulate``: time histories."""
+"""``paper``: every figure and every number of the paper, and a report."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from .options import Commands, add_running, check_output, running_of
+
+EXAMPLES = """\
+  {program} paper                     all at the paper's resolution, into results/paper/
+  {program} paper --quick             on fewer periods and points, in a minute or two
+  {program} paper --figures 5,7       some of it
+  {program} paper --cluster tcp://HOST:8786      on the workers of a running Dask scheduler
+Interrupted, the same command goes on where it was. Finished data is left as it is."""
 
 
-def add_parser(commands):
-    pass
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "the whole paper through the FMU: figures, claims, report"
+    parser = commands.add("paper", run, text, EXAMPLES)
+    option = parser.add_argument_group("question").add_argument
+    option(
+        "--figures",
+        metavar="NAME,...",
+        help="some of it: 5 to 12, claims, lyapunov, attractors, basin, maps, spectra (default: "
+        "all)",
+    )
+    option(
+        "--quick",
+        action="store_true",
+        help="reduced resolution: the same frequencies, fewer periods, starts and map points",
+    )
+    add_running(parser, output=None, shown="results/paper, with --quick results/paper-quick")
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    from ..paper.reproduce import reproduce
+    from ..paper.resolution import FULL, QUICK
+
+    folder = Path("results") / ("paper-quick" if arguments.quick else "paper")
+    output = arguments.output or folder
+    check_output(output)
+    figures = None if arguments.figures is None else arguments.figures.split(",")
+    resolution = QUICK if arguments.quick else FULL
+    outcome = reproduce(output, resolution, figures, running_of(arguments))
+    tell(outcome.found)
+    for picture in outcome.pictures.values():
+        print(picture)
+    print(outcome.report)
+
+
+def tell(found: Mapping[str, Any]) -> None:
+    """Claims and answers, a line each."""
+    for row in found["claims"]:
+        said, printed = row["text"], row["printed"]
+        verdict = f"{row['section']:4} {row['verdict']:7}"
+        print(f"{verdict} {said}: paper {printed}, found {row['found']}")
+    for row in found["regions"]:
+        shares = f"chaotic {row['chaotic']:5} neutral {row['neutral']:5}"
+        where = f"{row['case']:18} {row['region']:13} {row['verdict']:16}"
+        print(f"{where} {shares} largest {row['largest']}")
+    for sentence in found["answers"]:
+        print(sentence)

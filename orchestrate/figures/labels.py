@@ -17,6 +17,7 @@ SYMBOLS = {
     "gamma": r"$\gamma$",
     "omega": r"$\omega$ in rad/s",
     "frequency": r"$\Omega$ in rad/s",
+    "amplitude": "$a$ in m",
     "m1": "$m_1$ in kg",
     "m2": "$m_2$ in kg",
     "k1": "$k_1$ in N/m",

@@ -16,24 +16,27 @@ LINES = {  # by kind, in the order of drawing: colour, width, label
 
 
 @in_our_look
-def draw(data: xr.Dataset) -> Figure:
+def draw(data: xr.Dataset, mass: int = 1) -> Figure:
     """One panel a frequency.
 
     Parameters
     ----------
     data : xarray.Dataset
         Of :func:`orchestrate.spectra`.
+    mass : int
+        1 or 2.
     """
-    count = data.sizes["eta"]
+    along = data.acceleration.dims[0]
+    count = data.sizes[along]
     figure, axes = panels(count, 1, (11, 3.0 * count), sharex=True)
     for index, plane in enumerate(axes):
-        part = data.isel(eta=index)
-        top = float(part.amplitude.max())
+        part = data.acceleration.sel(mass=mass).isel({along: index})
+        top = float(part.max())
         for kind, (colour, width, label) in LINES.items():
-            amplitude = part.amplitude.sel(kind=kind)
+            amplitude = part.sel(kind=kind)
             plane.semilogy(data.order, amplitude, color=colour, linewidth=width, label=label)
         title = rf"$\eta = {float(part.eta):.3f}$"
-        plane.set(title=title, ylabel="amplitude", ylim=(FLOOR * top, 2.0 * top))
+        plane.set(title=title, ylabel="amplitude in m/s$^2$", ylim=(FLOOR * top, 2.0 * top))
     axes[0].legend()
     axes[-1].set_xlabel(r"multiples of $\eta$")
     axes[-1].set_xlim(0, float(data.order.max()))

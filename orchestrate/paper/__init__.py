@@ -1,1 +1,1 @@
-"""The paper's results as jobs, and the table of its claims: numbers only, no pictures and no command line."""
+"""The paper: a client of the public questions, its pictures, and a table of its claims."""

@@ -1,55 +1,90 @@
-"""How far the limits of permanent contact depend on gamma (17): short sweeps past them with gammas over four decades."""
+"""How far the limits of permanent contact depend on gamma (17): short sweeps past them."""
 
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray
 
-from ..fmu import Instance
-from ..jobs import Job
-from ..sweep import Plan, respond
-from ..trace import REST
-from .resolution import CASES
+from ..access import OSCILLATOR, REST, Instance
+from ..response.labels import variable
+from ..response.questions import Point
+from ..response.respond import follow
+from ..running.job import Inputs, Job, Table
+from ..structures import Excitation, Structure
+from .cases import CASES
 
-GAMMAS = (1e-5, 1e-4, 1e-3, 1e-2, 5e-2)
+if TYPE_CHECKING:
+    import xarray as xr
+
 RANGES = {"elastic": (0.400, 0.445), "damped": (0.450, 0.500), "plastic": (0.930, 0.985)}
-STEP, TRANSIENT, SAMPLES = 0.001, 250, 40
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class GammaJob(Job):
-    """The last frequency with permanent contact, for each case and gamma."""
+    """The last frequency with permanent contact, for each structure and gamma.
 
-    CHUNK: ClassVar[int] = 1
+    Attributes
+    ----------
+    structures : tuple of Structure
+    ranges : tuple of (float, float)
+        Of eta, for each of them.
+    gammas : tuple of float
+    step : float
+        Of eta.
+    transient, samples : int
+        Periods dropped and kept at each frequency.
+    """
 
-    def count(self):
+    structures: tuple[Structure, ...] = tuple(CASES.values())
+    ranges: tuple[tuple[float, float], ...] = tuple(RANGES[name] for name in CASES)
+    gammas: tuple[float, ...] = (1e-5, 1e-4, 1e-3, 1e-2, 5e-2)
+    step: float = 0.001
+    transient: int = 250
+    samples: int = 40
+
+    def count(self) -> int:
         """Number of short sweeps."""
-        return len(CASES) * len(GAMMAS)
+        return len(self.structures) * len(self.gammas)
 
-    def items(self, inputs):
-        """Case and gamma of each."""
-        return [(name, gamma) for name in CASES for gamma in GAMMAS]
+    def items(self, inputs: Inputs) -> list[tuple[Structure, tuple[float, float]]]:
+        """Structure and range of each."""
+        return [
+            (structure.replace(gamma=gamma), ends)
+            for structure, ends in zip(self.structures, self.ranges, strict=True)
+            for gamma in self.gammas
+        ]
 
-    def work(self, fmu, items, carry):
+    def work(
+        self,
+        fmus: Mapping[str, Path],
+        items: Sequence[tuple[Structure, tuple[float, float]]],
+        carry: Table | None,
+    ) -> Table:
         """One short sweep."""
-        ((name, gamma),) = items
-        case, start, last = replace(CASES[name], gamma=gamma), REST, np.nan
-        low, high = RANGES[name]
-        with Instance(fmu) as instance:
-            for eta in np.round(np.arange(low, high, STEP), 9):
-                response = respond(instance, Plan(case, (), TRANSIENT, SAMPLES, 1e-2, ""), float(eta), start)
-                start = response.end
-                last = float(eta) if response.permanent_contact else last
+        ((structure, ends),) = items
+        etas = np.round(np.arange(*ends, self.step), 9)
+        points = [Point(structure, Excitation.nondimensional(float(e), structure)) for e in etas]
+        settings = self.transient, self.samples, 1e-2
+        last = np.nan
+        with Instance(fmus[OSCILLATOR]) as instance:
+            responses = follow(instance, points, REST, *settings)
+            for eta, response in zip(etas, responses, strict=True):
+                last = eta if response.permanent_contact else last
         return {"last": np.array([last])}
 
-    def dataset(self, table, inputs):
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """The limits over case and gamma."""
-        text = {"units": "1", "long_name": "last eta with permanent contact on a short up-sweep from rest"}
-        last = ("case", "gamma"), table["last"].reshape(len(CASES), len(GAMMAS)), text
-        return xarray.Dataset({"last_contact": last}, {"case": list(CASES), "gamma": list(GAMMAS)}, {"title": "Limits of permanent contact"})
+        import xarray as xr
 
-
-def gamma_job(guid):
-    """The job."""
-    return GammaJob("gamma", guid)
+        text = "last eta with permanent contact on a short up-sweep from rest"
+        last = table["last"].reshape(len(self.structures), len(self.gammas))
+        coordinates = {
+            "case": variable("case", list(CASES), "1", "the paper's structure"),
+            "gamma": variable("gamma", np.array(self.gammas), "1", "end of chattering (17)"),
+        }
+        variables = {"last_contact": variable(("case", "gamma"), last, "1", text)}
+        return xr.Dataset(variables, coordinates, {"title": "Limits of permanent contact"})

@@ -1,50 +1,63 @@
-"""The report: one HTML page that needs no network, with the claims, and each picture with its caption and how it was computed."""
+"""The report: one HTML page that needs no network, with the claims and each picture."""
+
+from __future__ import annotations
 
 import base64
-from importlib import import_module
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 import jinja2
 
-from .. import __version__
-from ..store import write_whole
+from ..running.files import write_whole
+from ..version import __version__
+from .captions import CAPTIONS
 from .claims.claim import WORDS
+from .plan import Part
 
 
-def write(output, parts, pictures, content):
+def write(
+    output: Path, pictures: Mapping[str, Path], parts: Mapping[str, Part], content: dict[str, Any]
+) -> Path:
     """Write ``report.html``.
 
     Parameters
     ----------
     output : Path
-    parts : list of Part
-        Those with a picture, in their order.
-    pictures : list of Path
-        PNG files.
+        The folder.
+    pictures : mapping of Path
+        PNG files by the names of their parts, in the order of the page.
+    parts : mapping of Part
+        By name.
     content : dict
-        ``resolution``, ``fmu`` and, where it was computed, ``claims``.
+        ``resolution``, ``fmu`` and ``claims``, ``regions`` and ``answers``, empty where they were
+        not asked for.
 
     Returns
     -------
     Path
     """
-    environment = jinja2.Environment(loader=jinja2.PackageLoader("orchestrate.paper"), autoescape=True, undefined=jinja2.StrictUndefined)
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("orchestrate.paper"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+    )
     claims = content["claims"]
     counts = {verdict: sum(row["verdict"] == verdict for row in claims) for verdict in WORDS}
-    figures = [entry(part, picture) for part, picture in zip(parts, pictures, strict=True)]
-    text = environment.get_template("report.html.j2").render(figures=figures, counts=counts, words=WORDS, version=__version__, **content)
-    path = output / "report.html"
-    write_whole(path, text.encode())
-    return path
+    figures = [entry(parts[name], picture) for name, picture in pictures.items()]
+    shown = {"figures": figures, "counts": counts, "words": WORDS, "version": __version__}
+    page = environment.get_template("report.html.j2").render(**shown, **content)
+    return write_whole(output / "report.html", lambda place: place.write_bytes(page.encode()))
 
 
-def entry(part, picture):
+def entry(part: Part, picture: Path) -> dict[str, Any]:
     """What the page shows of a part."""
-    module = import_module(f"orchestrate.figures.{part.module}")
+    caption = CAPTIONS[part.name]
     return {
-        "anchor": part.module,
-        "title": getattr(module, "TITLE", f"Figure {part.name}"),
-        "caption": module.CAPTION,
-        "method": module.METHOD,
+        "anchor": picture.stem,
+        "title": caption.title,
+        "caption": caption.text,
+        "method": caption.method,
         "picture": base64.b64encode(picture.read_bytes()).decode(),
         "data": [f"{name}.nc" for name in part.jobs],
     }

@@ -1,13 +1,10 @@
-"""How finely the paper is computed: in full as printed, or reduced for a quick look and for CI."""
+"""How finely the paper is computed: in full as printed, or reduced for a quick look."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-
-from ..sweep import Case
-
-ELASTIC, DAMPED, PLASTIC = Case(0.7, 0.005), Case(0.7, 0.05), Case(0.3, 0.005)  # sections 3, 4.1 and 4.2
-CASES = {"elastic": ELASTIC, "damped": DAMPED, "plastic": PLASTIC}
 
 
 @dataclass(frozen=True)
@@ -55,14 +52,15 @@ class Resolution:
     map_settle: int = 300
     map_keep: int = 60
 
-    def attractor_etas(self):
-        """Frequencies at which coexisting attractors are looked for: finely up to 1.4, coarsely beyond."""
-        step = self.attractor_step
-        return tuple(float(eta) for eta in np.round(np.concatenate([np.arange(0.44, 1.4, step), np.arange(1.4, 8.0, 10 * step)]), 6))
-
-    def etas(self):
+    def etas(self) -> tuple[float, ...]:
         """The paper's 0.1 <= eta <= 8.0 by 0.001, upwards."""
         return tuple(float(eta) for eta in np.arange(100, 8001) / 1000.0)
+
+    def attractor_etas(self) -> tuple[float, ...]:
+        """Frequencies of the random starts: finely up to 1.4, coarsely beyond."""
+        step = self.attractor_step
+        etas = np.concatenate([np.arange(0.44, 1.4, step), np.arange(1.4, 8.0, 10 * step)])
+        return tuple(float(eta) for eta in np.round(etas, 6))
 
 
 FULL = Resolution()

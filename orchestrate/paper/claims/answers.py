@@ -1,22 +1,36 @@
-"""What the paper could not ask: chaos region by region with its uncertainty, where a delamination shows best, what coexists, what is heard."""
+"""What the paper could not ask: chaos by region, where a delamination shows, what coexists."""
 
-import numpy as np
+from __future__ import annotations
 
-from ...lyapunov import SIGMAS
-from ..maps import RANGES
-from ..resolution import CASES
+from collections.abc import Mapping
+
+import xarray as xr
+
+from ...dynamics.lyapunov import SIGMAS
+from ..cases import MAPS
+from ..cases import CASES
 from .results import Results, between, shares
 
-REGIONS = ((0.43, 0.89), (0.9, 1.06), (1.07, 1.37), (1.37, 2.61), (2.61, 3.77), (3.77, 4.72), (4.72, 5.75), (5.75, 6.76), (6.76, 7.96))
+REGIONS = (
+    (0.43, 0.89),
+    (0.9, 1.06),
+    (1.07, 1.37),
+    (1.37, 2.61),
+    (2.61, 3.77),
+    (3.77, 4.72),
+    (4.72, 5.75),
+    (5.75, 6.76),
+    (6.76, 7.96),
+)
 LEAST = 0.01  # share of chaotic or neutral responses from which a region is called so
 
 
-def regions(datasets):
+def regions(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
     """The verdict on each region of each case, as a list of dicts of text.
 
     Parameters
     ----------
-    datasets : dict of xarray.Dataset
+    datasets : mapping of xarray.Dataset
         By name.
     """
     results, rows = Results(datasets), []
@@ -24,27 +38,47 @@ def regions(datasets):
         for low, high in REGIONS:
             chaotic, neutral, top, error, eta = shares(results.exponent(name), low, high)
             count = between(results.exponent(name), low, high).sizes["eta"]
-            verdict = "chaotic in part" if chaotic > LEAST else "neutral in part" if neutral > LEAST else "periodic"
-            numbers = {"chaotic": f"{100 * chaotic:.0f} %", "neutral": f"{100 * neutral:.0f} %", "count": str(count)}
+            verdict = (
+                "chaotic in part"
+                if chaotic > LEAST
+                else "neutral in part"
+                if neutral > LEAST
+                else "periodic"
+            )
+            numbers = {
+                "chaotic": f"{100 * chaotic:.0f} %",
+                "neutral": f"{100 * neutral:.0f} %",
+                "count": str(count),
+            }
             largest = f"{top:.4f} ± {SIGMAS * error:.4f} at {eta:.3f}"
             rows.append(
-                {"case": f"e = {case.e:g}, D = {case.D:g}", "region": f"{low:g} to {high:g}", **numbers, "largest": largest, "verdict": verdict}
+                {
+                    "case": f"e = {case.e:g}, D = {case.get('D'):g}",
+                    "region": f"{low:g} to {high:g}",
+                    **numbers,
+                    "largest": largest,
+                    "verdict": verdict,
+                }
             )
     return rows
 
 
-def sentences(datasets):
+def sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
     """The other answers, a sentence each.
 
     Parameters
     ----------
-    datasets : dict of xarray.Dataset
+    datasets : mapping of xarray.Dataset
         By name.
     """
-    return [*(strongest(datasets[f"map_{parameter}"], parameter) for parameter in RANGES), coexisting(datasets["basin"]), heard(datasets["spectra"])]
+    return [
+        *(strongest(datasets[f"map_{parameter}"], parameter) for parameter in MAPS),
+        coexisting(datasets["basin"]),
+        heard(datasets["spectra"]),
+    ]
 
 
-def strongest(data, parameter):
+def strongest(data: xr.Dataset, parameter: str) -> str:
     """Where the largest impulse of a map is, and how far it stays within half of that."""
     impulses = data.impulse_max
     best = impulses.where(impulses == impulses.max(), drop=True)
@@ -52,13 +86,15 @@ def strongest(data, parameter):
     etas = data.eta.values[near.values]
     eta, value = float(best.eta[0]), float(best[parameter][0])
     return (
-        f"Over (eta, {parameter}) the largest impulse is {float(impulses.max()):.3g} m_1 omega a eta^2, at eta = {eta:.2f}, {parameter} = "
+        f"Over (eta, {parameter}) the largest impulse is {float(impulses.max()):.3g} m_1 omega a "
+        f"eta^2, at eta = {eta:.2f}, {parameter} = "
         f"{value:.3g}; "
-        f"more than half of it is reached for some {parameter} from eta = {etas.min():.2f} to {etas.max():.2f}."
+        f"more than half of it is reached for some {parameter} from eta = {etas.min():.2f} to "
+        f"{etas.max():.2f}."
     )
 
 
-def coexisting(data):
+def coexisting(data: xr.Dataset) -> str:
     """What the basin picture holds."""
     kinds = []
     for k in range(min(4, data.sizes["attractor"])):
@@ -66,16 +102,23 @@ def coexisting(data):
         kind = f"{n if n > 1 else ''}T-periodic" if n else "not periodic"
         impacts, share = float(data.impacts_per_period[k]), 100 * float(data.share[k])
         kinds.append(f"{kind} with {impacts:.2f} impacts per T from {share:.1f} %")
-    return f"At eta = {data.attrs['eta']:.3f} a plane of {data.attractor_of.size} starts leads to: {'; '.join(kinds)}."
-
-
-def heard(data):
-    """How much of the delaminated structure's acceleration lies above the excitation's frequency."""
-    shown = data.isel(eta=0)
-    above = shown.where(shown.order > 1.5, drop=True)
-    first = float(shown.amplitude.sel(kind="delaminated").max())
-    bonded, delaminated, sampled = (float(np.abs(above.amplitude.sel(kind=kind)).max()) / first for kind in ("bonded", "delaminated", "sampled"))
     return (
-        f"At eta = {float(shown.eta):.3f} the largest line above the excitation's frequency is {delaminated:.3f} of the largest of all in the "
-        f"delaminated structure's acceleration ({sampled:.3f} in sampled accelerations, which lack the impulses), {bonded:.1e} in the bonded one's."
+        f"At eta = {data.attrs['eta']:.3f} a plane of {data.label.size} starts leads to: "
+        f"{'; '.join(kinds)}."
+    )
+
+
+def heard(data: xr.Dataset) -> str:
+    """How much of the delaminated structure's acceleration lies above the excitation."""
+    shown = data.acceleration.sel(mass=1).isel(eta=0)
+    above = shown.where(shown.order > 1.5, drop=True)
+    first = float(shown.sel(kind="delaminated").max())
+    bonded, delaminated, sampled = (
+        float(above.sel(kind=kind).max()) / first for kind in ("bonded", "delaminated", "sampled")
+    )
+    return (
+        f"At eta = {float(shown.eta):.3f} the largest line above the excitation's frequency is "
+        f"{delaminated:.3f} of the largest of all in the "
+        f"delaminated structure's acceleration ({sampled:.3f} in sampled accelerations, which lack "
+        f"the impulses), {bonded:.1e} in the bonded one's."
     )

@@ -1,10 +1,36 @@
-"""What claims are checked against: the computed datasets by case, and what is read off them more than once."""
+"""What claims are checked against: the datasets by case, and what is read off them repeatedly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
-from ...lyapunov import CHAOTIC, QUASI_PERIODIC
-from ..resolution import CASES
+from ...dynamics.lyapunov import CHAOTIC, NEUTRAL
+from ..cases import CASES
 from ..windows import runs
+
+Edges = tuple[float, float]  # two neighbouring frequencies
+
+
+class Shares(NamedTuple):
+    """Responses between two frequencies.
+
+    Attributes
+    ----------
+    chaotic, neutral : float
+        Their shares.
+    exponent, error, eta : float
+        The largest exponent, its standard error, and where it is.
+    """
+
+    chaotic: float
+    neutral: float
+    exponent: float
+    error: float
+    eta: float
 
 
 class Results:
@@ -12,58 +38,60 @@ class Results:
 
     Parameters
     ----------
-    datasets : dict of xarray.Dataset
+    datasets : mapping of xarray.Dataset
         By name.
     """
 
-    def __init__(self, datasets):
+    def __init__(self, datasets: Mapping[str, xr.Dataset]) -> None:
         self._datasets = datasets
 
-    def get(self, name):
+    def get(self, name: str) -> xr.Dataset:
         """A dataset by name."""
         return self._datasets[name]
 
-    def of(self, kind, case, ending=""):
+    def of(self, kind: str, case: str, ending: str = "") -> xr.Dataset:
         """A dataset of one of the three cases, over eta upwards."""
         data = self._datasets[f"{kind}_{CASES[case].label()}{ending}"]
         return data.sortby("eta") if "eta" in data.dims else data
 
-    def up(self, case):
+    def up(self, case: str) -> xr.Dataset:
         """The sweep upwards."""
         return self.of("orbit", case, "_up")
 
-    def down(self, case):
+    def down(self, case: str) -> xr.Dataset:
         """The sweep downwards."""
         return self.of("orbit", case, "_down")
 
-    def steady(self, case):
+    def steady(self, case: str) -> xr.Dataset:
         """The up-sweep's responses, impact by impact."""
         return self.of("steady", case, "_up")
 
-    def exponent(self, case):
+    def exponent(self, case: str) -> xr.Dataset:
         """Largest Lyapunov exponents along the up-sweep."""
         return self.of("exponent", case)
 
 
-def between(data, low, high):
+def between(data: xr.Dataset, low: float, high: float) -> xr.Dataset:
     """The part of a dataset with low <= eta <= high."""
     return data.sel(eta=slice(low - 1e-9, high + 1e-9))
 
 
-def impacts_in_response(data):
-    """Impacts in a response period, rounded; 0 where the response is not periodic or its impacts do not repeat."""
+def impacts_in_response(data: xr.Dataset) -> np.ndarray:
+    """Impacts in a response period; 0 where the state or the number of impacts does not repeat."""
     n = data.multiplicity.values
     count = n * data.impacts_per_period.values
     slack = 1.5 * n / data.sizes["sample"]
-    return np.where((n > 0) & (np.abs(count - np.round(count)) <= slack), np.round(count), 0).astype(int)
+    return np.where(
+        (n > 0) & (np.abs(count - np.round(count)) <= slack), np.round(count), 0
+    ).astype(int)
 
 
-def kind(data, n, impacts):
+def kind(data: xr.Dataset, n: int, impacts: int) -> np.ndarray:
     """Where responses have period nT and so many impacts in it."""
     return (data.multiplicity.values == n) & (impacts_in_response(data) == impacts)
 
 
-def upper_edge(data, flags, inside):
+def upper_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
     """The last eta of the run of true flags that holds ``inside``, and the next one."""
     etas = data.eta.values
     index = int(np.abs(etas - inside).argmin())
@@ -73,7 +101,7 @@ def upper_edge(data, flags, inside):
     return float("nan"), float("nan")
 
 
-def lower_edge(data, flags, inside):
+def lower_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
     """The eta before the run of true flags that holds ``inside``, and its first one."""
     etas = data.eta.values
     index = int(np.abs(etas - inside).argmin())
@@ -83,7 +111,7 @@ def lower_edge(data, flags, inside):
     return float("nan"), float("nan")
 
 
-def longest_edges(data, flags):
+def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
     """Lower and upper edge of the longest run of true flags, as two pairs."""
     first, last = max(runs(flags), key=lambda run: run[1] - run[0])
     etas = data.eta.values
@@ -91,9 +119,14 @@ def longest_edges(data, flags):
     return lower, (float(etas[last]), float(etas[min(last + 1, len(etas) - 1)]))
 
 
-def shares(exponents, low, high):
-    """Shares of chaotic and of neutral responses between two frequencies, the largest exponent and its standard error."""
+def shares(exponents: xr.Dataset, low: float, high: float) -> Shares:
+    """Chaotic and neutral responses between two frequencies, and the largest exponent."""
     part = between(exponents, low, high)
     verdicts, top = part.verdict.values, int(part.exponent.values.argmax())
-    chaotic, neutral = np.mean(verdicts == CHAOTIC), np.mean(verdicts == QUASI_PERIODIC)
-    return chaotic, neutral, float(part.exponent[top]), float(part.error[top]), float(part.eta[top])
+    return Shares(
+        chaotic=np.mean(verdicts == CHAOTIC),
+        neutral=np.mean(verdicts == NEUTRAL),
+        exponent=float(part.exponent[top]),
+        error=float(part.standard_error[top]),
+        eta=float(part.eta[top]),
+    )

@@ -1,63 +1,114 @@
-"""Claims of section 5: amplitudes and impulses at the main peak, compared between the three cases as numbers."""
+"""Claims of section 5: amplitudes and impulses at the main peak, compared between the cases."""
+
+from __future__ import annotations
 
 import numpy as np
 
-from ..maps import impulse
-from ..resolution import CASES
-from .claim import Claim, Finding, holds
+from ..cases import CASES
+from .claim import NO, YES, Claim, Finding, holds
+from .results import Results
 
 SAME_ORDER = 10.0**0.5  # two numbers within such a factor are of the same order
 
 
-def largest(results, case):
-    """Largest impulse over m1 omega a eta^2 at the peak of a case, and the sum of impulses in one T."""
+def largest(results: Results, case: str) -> tuple[float, float]:
+    """Largest impulse over m1 omega a eta^2 at a case's peak, and the sum of those in one T."""
     eta = float(results.up(case).xi_rel_max.idxmax())
     row = results.steady(case).sel(eta=eta, method="nearest")
-    return impulse(CASES[case], float(row.closing_max)), impulse(CASES[case], float(row.closing_sum))
+    structure = CASES[case]
+    factor = (1.0 + structure.e) * structure.mu / (1.0 + structure.mu)  # (15)
+    return factor * float(row.closing_max), factor * float(row.closing_sum)
 
 
-def amplitude(results, index):
+def amplitude(results: Results, index: int) -> float:
     """Largest displacement of either mass in Figure 12."""
     data = results.get("figure12")
     return float(np.abs(data.state.values[data.panel_of.values == index][:, :2]).max())
 
 
-def both_at_peak(results):
+def both_at_peak(results: Results) -> Finding:
     """Whether displacement and impulse are largest at the same place."""
     text, parts = [], []
     for case in CASES:
-        gap, speed = float(results.up(case).xi_rel_max.idxmax()), float(results.steady(case).closing_max.idxmax())
+        gap, speed = (
+            float(results.up(case).xi_rel_max.idxmax()),
+            float(results.steady(case).closing_max.idxmax()),
+        )
         text.append(f"{case}: largest gap at {gap:.3f}, largest impulse at {speed:.3f}")
         parts.append(abs(gap - speed) <= 0.01)
     return holds(parts, "; ".join(text))
 
 
-def damping_lowers(results):
+def damping_lowers(results: Results) -> Finding:
     """Impulses and amplitudes of (b) over those of (a)."""
     (a, a_sum), (b, b_sum) = largest(results, "elastic"), largest(results, "damped")
     ratio = amplitude(results, 1) / amplitude(results, 0)
-    text = f"largest impulse {b:.3g} against {a:.3g}: ratio {b / a:.3f}; sum over T {b_sum / a_sum:.3f}; amplitude {ratio:.3f}"
+    text = (
+        f"largest impulse {b:.3g} against {a:.3g}: ratio {b / a:.3f}; sum over T "
+        f"{b_sum / a_sum:.3f}; amplitude {ratio:.3f}"
+    )
     return holds([b / a < 1 / SAME_ORDER, ratio < 1 / SAME_ORDER], text)
 
 
-def restitution_minor(results):
+def restitution_minor(results: Results) -> Finding:
     """Impulses of (c) over those of (a)."""
     (a, a_sum), (c, c_sum) = largest(results, "elastic"), largest(results, "plastic")
     ratio = amplitude(results, 2) / amplitude(results, 0)
-    text = f"largest impulse {c:.3g} against {a:.3g}: ratio {c / a:.3f}; sum over T {c_sum / a_sum:.3f}; amplitude {ratio:.3f}"
+    text = (
+        f"largest impulse {c:.3g} against {a:.3g}: ratio {c / a:.3f}; sum over T "
+        f"{c_sum / a_sum:.3f}; amplitude {ratio:.3f}"
+    )
     return holds([1 / SAME_ORDER < c / a < SAME_ORDER], text)
 
 
-def two_impacts_each(results):
+def two_impacts_each(results: Results) -> Finding:
     """Impacts in one T at the peaks."""
-    counts = [float(results.steady(case).impacts.sel(eta=float(results.up(case).xi_rel_max.idxmax()), method="nearest")) for case in CASES]
-    return Finding(", ".join(f"{count:.0f}" for count in counts), "yes" if all(abs(count - 2.0) < 0.02 for count in counts) else "no")
+    counts = [
+        float(
+            results.steady(case).impacts.sel(
+                eta=float(results.up(case).xi_rel_max.idxmax()), method="nearest"
+            )
+        )
+        for case in CASES
+    ]
+    return Finding(
+        ", ".join(f"{count:.0f}" for count in counts),
+        YES if all(abs(count - 2.0) < 0.02 for count in counts) else NO,
+    )
 
 
 HOW = "impact by impact at each up-sweep's peak; impulse (1+e) mu/(1+mu) times the closing velocity"
 CLAIMS = (
-    Claim("5", "amplitudes and impulses are both largest at the main resonance peak", "same place", HOW, "0.01 in eta", both_at_peak),
-    Claim("5", "T-periodic motion with two impacts at all three peaks (Figure 12)", "two", HOW, "-", two_impacts_each),
-    Claim("5", "large damping: amplitudes and impulses low, Figure 12(b) against (a)", "low", HOW, "a factor of 10^0.5", damping_lowers),
-    Claim("5", "low restitution: impulses of the same order, Figure 12(c) against (a)", "same order", HOW, "a factor of 10^0.5", restitution_minor),
+    Claim(
+        "5",
+        "amplitudes and impulses are both largest at the main resonance peak",
+        "same place",
+        HOW,
+        "0.01 in eta",
+        both_at_peak,
+    ),
+    Claim(
+        "5",
+        "T-periodic motion with two impacts at all three peaks (Figure 12)",
+        "two",
+        HOW,
+        "-",
+        two_impacts_each,
+    ),
+    Claim(
+        "5",
+        "large damping: amplitudes and impulses low, Figure 12(b) against (a)",
+        "low",
+        HOW,
+        "a factor of 10^0.5",
+        damping_lowers,
+    ),
+    Claim(
+        "5",
+        "low restitution: impulses of the same order, Figure 12(c) against (a)",
+        "same order",
+        HOW,
+        "a factor of 10^0.5",
+        restitution_minor,
+    ),
 )

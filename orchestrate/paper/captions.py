@@ -1,0 +1,129 @@
+"""What the report says about each picture: its title, its caption, and how it was computed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Caption:
+    """The words beside a picture.
+
+    Attributes
+    ----------
+    title, text, method : str
+        ``method`` says how it was computed.
+    """
+
+    title: str
+    text: str
+    method: str
+
+
+ARTEFACT = (
+    "Where an impact falls on the sampling phase itself, samples show either side of it, and a "
+    "periodic response may count as another kind."
+)
+ORBIT = (
+    "One sequential sweep upwards, 0.1 <= eta <= 8.0 by 0.001, each frequency started from the end "
+    "of the last, stroboscopic samples taken inside the FMU's steps after the periods dropped."
+)
+CURVES = (
+    "Each started from the up-sweep's response; states sampled inside the FMU and both sides of "
+    "each impact, after the periods dropped."
+)
+
+
+def orbit(number: int, e: float, D: float) -> Caption:
+    """The words of an orbit diagram."""
+    text = (
+        f"Bifurcation diagram for e = {e:g}, D = {D:g}: stroboscopic samples of the gap, and below "
+        "them the impacts per excitation period."
+    )
+    return Caption(f"Figure {number}", text, ORBIT)
+
+
+CAPTIONS = {
+    "5": Caption(
+        "Figure 5",
+        "Phase curves for eta = 0.4, e = 0.7, D = 0.005: (a) motion of both masses, (b) relative "
+        "motion.",
+        "Started from the up-sweep's response at eta = 0.4; one period, states sampled inside the "
+        "FMU and both sides of each impact.",
+    ),
+    "6": orbit(6, 0.7, 0.005),
+    "7": Caption(
+        "Figure 7",
+        "Multiplicity of periodic responses at the relative resonance peaks of the windows T, 2T, "
+        "3T and 4T; the excitation below.",
+        "A window nT is the longest run of the up-sweep with period nT and one impact in it; its "
+        "relative peak is the largest local maximum of the largest xi_Rel inside it. The last "
+        "window goes on beyond eta = 8.0: the sweep is continued upwards until its peak is passed.",
+    ),
+    "8": Caption(
+        "Figure 8",
+        "Typical phase curves in the first irregular region 0.43 < eta < 1.37; T, nT: periodic.",
+        CURVES,
+    ),
+    "9": Caption(
+        "Figure 9",
+        "Typical phase curves in the second irregular region 2.61 < eta < 3.77; T, nT: periodic.",
+        CURVES,
+    ),
+    "10": orbit(10, 0.7, 0.05),
+    "11": orbit(11, 0.3, 0.005),
+    "12": Caption(
+        "Figure 12",
+        "Phase curves of both masses at the main resonance peak: (a) close to elastic impact, low "
+        "internal damping; (b) close to elastic impact, significant internal damping; (c) close to "
+        "plastic impact, low internal damping. Solid: mass 1, dotted: mass 2; a jump is an impact.",
+        "The peak of each up-sweep's largest xi_Rel is found, and its response followed for one "
+        "more period.",
+    ),
+    "lyapunov": Caption(
+        "Largest Lyapunov exponent",
+        "Largest Lyapunov exponent per unit of tau along the up-sweeps (e, D) = (0.7, 0.005), "
+        "(0.7, 0.05), (0.3, 0.005), bars of three standard errors. Red: chaotic; blue: neutral, "
+        "that is quasi-periodic or not decided; black: periodic.",
+        "Exact solutions of the variational equations between the impacts that the FMU reports, "
+        "and saltation matrices at them; chattering's end projects the deviation on the common "
+        "motion. Validated in the tests against differences of neighbouring runs of the FMU, and "
+        "against -D without impacts. The standard error is that of seven batches.",
+    ),
+    "attractors": Caption(
+        "Coexisting attractors",
+        "Random starts, e = 0.7, D = 0.005. Above: largest xi_Rel of each attractor found, its "
+        "size the share of starts that lead to it; black: periodic, red: not periodic. Below: "
+        "number of attractors; where responses are irregular the number depends on the "
+        "clustering's threshold.",
+        "At each frequency random starts in a box three times the up-sweep's largest gap, followed "
+        "for at least 300 eta periods and sampled; responses are clustered by multiplicity, "
+        "impacts per period, largest gap, mean and deviation of the samples (2 % for periodic "
+        f"ones, 25 % for others). {ARTEFACT}",
+    ),
+    "basin": Caption(
+        "Basins of attraction",
+        "Which attractor a start leads to: gap and gap velocity at phase 0, mass 1 at rest in its "
+        "middle; e = 0.7, D = 0.005. The frequency is the one of 1.07-1.37 at which random starts "
+        "share themselves most evenly between two periodic attractors.",
+        "Each point is a start of the FMU, followed until settled and told apart as in the random "
+        "starts.",
+    ),
+    "maps": Caption(
+        "Parameter maps",
+        "Impacts per period, multiplicity, largest xi_Rel and largest impulse (over m_1 omega a "
+        "eta^2) over frequency and restitution, damping, and detuning kappa = k_2/k_1; the other "
+        "parameters are those of Figure 6. A delamination shows best where the impulse is largest.",
+        "Each point starts from rest and is followed until settled; impulses are those of single "
+        f"impacts, which the FMU reports at their times. {ARTEFACT}",
+    ),
+    "spectra": Caption(
+        "Spectra (the paper's Figure 3)",
+        "Amplitude spectra of the absolute acceleration of mass 1, bonded (blue) and delaminated "
+        "(black), at the resonance peak and at two other frequencies; e = 0.7, D = 0.005. Red: "
+        "what sampled accelerations show, without the impacts' impulses.",
+        "64 settled periods, 1024 states each sampled inside the FMU; the acceleration's spectrum "
+        "is omega^2 times that of the absolute displacement, which holds the impulses as kinks. A "
+        "Hann window.",
+    ),
+}

@@ -1,0 +1,21 @@
+"""The paper's three structures, and the ranges of the maps around the first of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..structures import Structure
+
+CASES = {
+    "elastic": Structure.nondimensional(e=0.7, D=0.005),  # section 3
+    "damped": Structure.nondimensional(e=0.7, D=0.05),  # section 4.1
+    "plastic": Structure.nondimensional(e=0.3, D=0.005),  # section 4.2
+}
+MAPS = {"e": (0.05, 0.95), "D": (0.005, 0.15), "kappa": (1.02, 2.0)}  # D in equal ratios
+MAP_ETAS = (0.4, 2.2)
+
+
+def map_values(parameter: str, count: int) -> np.ndarray:
+    """Values of a parameter along the side of its map."""
+    low, high = MAPS[parameter]
+    return (np.geomspace if parameter == "D" else np.linspace)(low, high, count)

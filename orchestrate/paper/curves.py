@@ -1,0 +1,211 @@
+"""The curves of Figures 5, 7, 8, 9 and 12: responses of the up-sweeps, followed further."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..access import OSCILLATOR, Instance
+from ..response.curves import KINDS, trace
+from ..response.labels import flags, variable
+from ..response.questions import Point
+from ..response.resonance import follow_to_peak
+from ..running.job import Inputs, Job, Table
+from ..structures import Excitation, Structure
+from .windows import relative_peak, window
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+COORDINATES = ("xi_1", "xi_2", "xi_1'", "xi_2'")
+NUMBERS = ("e", "D", "eta", "multiplicity")  # of a panel
+
+
+@dataclass(frozen=True)
+class Panel:
+    """What one curve shows.
+
+    Attributes
+    ----------
+    structure : Structure
+    eta : float
+    start : tuple of float
+        State at phase 0 that the motion starts from.
+    multiplicity : int
+        Found in the sweep, 0 where irregular.
+    """
+
+    structure: Structure
+    eta: float
+    start: tuple[float, ...]
+    multiplicity: int
+
+    @property
+    def point(self) -> Point:
+        """Structure and excitation."""
+        excitation = Excitation.nondimensional(self.eta, self.structure)
+        return Point(self.structure, excitation)
+
+    def numbers(self) -> list[float]:
+        """In the order of ``NUMBERS``."""
+        return [self.structure.e, self.structure.get("D"), self.eta, self.multiplicity]
+
+
+def panel_at(sweep: xr.Dataset, structure: Structure, eta: float) -> Panel:
+    """A sweep's response at one of its frequencies, found to within half a step."""
+    row = sweep.sel(eta=eta, method="nearest")
+    start = tuple(map(float, row.end_state.values))
+    return Panel(structure, float(row.eta), start, int(row.multiplicity))
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurvesJob(Job):
+    """Curves of one figure, a panel each; subclasses say which responses they show.
+
+    Attributes
+    ----------
+    sweeps : tuple of str
+        Names of the upward sweeps whose responses they start from.
+    structures : tuple of Structure
+        Of these sweeps.
+    skip, keep : int
+        Periods dropped and kept.
+    points : int
+        States a period, beside both sides of each impact.
+    """
+
+    sweeps: tuple[str, ...]
+    structures: tuple[Structure, ...]
+    skip: int
+    keep: int
+    points: int
+    item: ClassVar[str] = "curve"
+
+    def needs(self) -> tuple[str, ...]:
+        """The sweeps."""
+        return self.sweeps
+
+    @abstractmethod
+    def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
+        """The responses."""
+
+    def settled(self, fmu: Path, panel: Panel) -> Panel:
+        """The response that a panel shows, in a worker."""
+        return panel
+
+    def items(self, inputs: Inputs) -> list[tuple[int, Panel]]:
+        """The panels with their numbers."""
+        return list(enumerate(self.panels([inputs[name] for name in self.sweeps])))
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[tuple[int, Panel]], carry: Table | None
+    ) -> Table:
+        """One panel."""
+        ((index, panel),) = items
+        panel = self.settled(fmus[OSCILLATOR], panel)
+        settings = self.skip, self.keep, self.points
+        curve = trace(fmus[OSCILLATOR], panel.point, panel.start, *settings)
+        return {
+            "tau": curve.tau,
+            "state": curve.state.astype(np.float32),
+            "kind": curve.kind,
+            "panel": np.full(len(curve.tau), index, dtype=np.int16),
+            "about": np.array([panel.numbers()]),
+        }
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Points one after the other, with their panels."""
+        import xarray as xr
+
+        time = "non-dimensional time from the first period shown"
+        state = ("point", "coordinate"), table["state"], "1", "non-dimensional state"
+        e, D, eta, multiplicity = table["about"].T
+        text = "multiplicity of the sweep's response; 0: irregular"
+        variables = {
+            "tau": variable("point", table["tau"], "1", time),
+            "state": variable(*state),
+            "kind": flags("point", table["kind"], "state of the motion (1)", KINDS),
+            "panel_of": variable("point", table["panel"], "1", "panel of the point"),
+            "e": variable("panel", e, "1", "coefficient of restitution"),
+            "D": variable("panel", D, "1", "damping ratio of both masses (8)"),
+            "eta": variable("panel", eta, "1", "frequency ratio Omega/omega"),
+            "multiplicity": variable("panel", multiplicity.astype("i4"), "1", text),
+        }
+        names = variable("coordinate", np.array(COORDINATES), "1", "co-ordinate of the state")
+        return xr.Dataset(variables, {"coordinate": names}, {"title": self.name})
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurvesAtFrequencies(CurvesJob):
+    """Figures 5, 8 and 9: the first sweep's responses at given frequencies.
+
+    Attributes
+    ----------
+    etas : tuple of float
+    """
+
+    etas: tuple[float, ...]
+
+    def count(self) -> int:
+        """Number of frequencies."""
+        return len(self.etas)
+
+    def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
+        """The responses nearest to them."""
+        return [panel_at(sweeps[0], self.structures[0], eta) for eta in self.etas]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurvesAtPeaks(CurvesJob):
+    """Figure 12: each sweep's response at its largest gap."""
+
+    def count(self) -> int:
+        """Number of sweeps."""
+        return len(self.sweeps)
+
+    def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
+        """The response at each sweep's main peak."""
+        return [
+            panel_at(sweep, structure, float(sweep.xi_rel_max.idxmax()))
+            for sweep, structure in zip(sweeps, self.structures, strict=True)
+        ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurvesInWindows(CurvesJob):
+    """Figure 7: the relative resonance peaks of the windows T, 2T, ... with one impact.
+
+    Attributes
+    ----------
+    windows : int
+    """
+
+    windows: int = 4
+
+    def count(self) -> int:
+        """Number of windows."""
+        return self.windows
+
+    def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
+        """The peaks; where a window has none, its last response with the multiplicity -n."""
+        sweep, structure, found = sweeps[0], self.structures[0], []
+        for n in range(1, self.windows + 1):
+            peak = relative_peak(sweep, n)
+            last = (window(sweep, n) or (0.0, float(sweep.eta.max())))[1]
+            panel = panel_at(sweep, structure, last if peak is None else peak)
+            found.append(panel if peak is not None else replace(panel, multiplicity=-n))
+        return found
+
+    def settled(self, fmu: Path, panel: Panel) -> Panel:
+        """A panel without a peak is followed upwards to one beyond the sweep."""
+        n = -panel.multiplicity
+        if n <= 0:
+            return panel
+        with Instance(fmu) as instance:
+            peak = follow_to_peak(instance, panel.structure, panel.eta, panel.start, n)
+        return replace(panel, eta=peak.eta, start=peak.state, multiplicity=n)

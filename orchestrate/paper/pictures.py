@@ -1,0 +1,116 @@
+"""Each part's picture, drawn from the files of its results."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..running.executors import Processes, at_work
+from ..running.store import load
+from .cases import CASES
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from .plan import Part
+
+ORBITS = {"6": "elastic", "10": "damped", "11": "plastic"}  # figures that are sweeps
+FORMATS = ("png", "pdf")
+
+
+def title(case: str) -> str:
+    """Restitution and damping of one of the paper's structures."""
+    from ..figures.labels import parameters_text
+
+    structure = CASES[case]
+    return parameters_text({"e": structure.e, "D": structure.get("D")})
+
+
+def orbit(name: str, data: xr.Dataset) -> Figure:
+    """Figures 6, 10 and 11."""
+    from ..figures import orbit_diagram
+
+    return orbit_diagram.draw(data, title(ORBITS[name]))
+
+
+def curves(name: str, data: xr.Dataset) -> Figure:
+    """Figures 5, 7, 8, 9 and 12."""
+    from ..figures import phase_curves, phase_grid, time_histories
+
+    draw = {
+        "5": phase_curves.draw_states,
+        "7": time_histories.draw,
+        "12": phase_curves.draw_masses,
+    }
+    return draw.get(name, phase_grid.draw)(data)
+
+
+def exponents(name: str, *data: xr.Dataset) -> Figure:
+    """Exponents of the three cases."""
+    from ..figures import lyapunov
+
+    return lyapunov.draw(*data, titles=tuple(map(title, CASES)))
+
+
+def attractors(name: str, data: xr.Dataset) -> Figure:
+    """Coexisting attractors."""
+    from ..figures import attractors as figure
+
+    return figure.draw(data)
+
+
+def basin(name: str, data: xr.Dataset) -> Figure:
+    """The plane of starts."""
+    from ..figures import basin as figure
+    from ..figures.style import XI_REL, XI_REL_RATE
+
+    eta = float(data.attrs["eta"])
+    return figure.draw(data, rf"$\eta = {eta:.3f}$", (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
+
+
+def maps(name: str, *data: xr.Dataset) -> Figure:
+    """The three maps."""
+    from ..figures import maps as figure
+
+    return figure.draw(*data)
+
+
+def spectra(name: str, data: xr.Dataset) -> Figure:
+    """Spectra at three frequencies."""
+    from ..figures import spectra as figure
+
+    return figure.draw(data)
+
+
+DRAW: Mapping[str, Callable[..., Figure]] = {
+    **dict.fromkeys(ORBITS, orbit),
+    **dict.fromkeys(("5", "7", "8", "9", "12"), curves),
+    "lyapunov": exponents,
+    "attractors": attractors,
+    "basin": basin,
+    "maps": maps,
+    "spectra": spectra,
+}
+
+
+def draw_part(part: Part, output: Path) -> Path:
+    """Draw a part from its data files; returns the path of its PNG."""
+    from ..figures.files import save
+
+    figure = DRAW[part.name](part.name, *[load(output / f"{job}.nc") for job in part.jobs])
+    return save(figure, output / part.picture, FORMATS)[0]
+
+
+def draw_all(parts: Sequence[Part], output: Path, processes: int) -> dict[str, Path]:
+    """Draw parts side by side; the paths of their PNG files, by the parts' names."""
+    if min(len(parts), processes) < 2:
+        return {part.name: draw_part(part, output) for part in parts}
+    with at_work(Processes(processes)) as workers, warnings.catch_warnings():
+        restarted = "A worker was restarted"  # loky: a picture took memory, which is no leak
+        warnings.filterwarnings("ignore", message=restarted)
+        submit = workers.executor.submit
+        futures = {part.name: submit(draw_part, part, output) for part in parts}
+        return {name: future.result() for name, future in futures.items()}

@@ -1,0 +1,87 @@
+"""The paper computed anew: results, pictures, claims and a report, in one folder."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..access import OSCILLATOR, finder
+from ..running.files import write_whole
+from ..running.options import RunOptions
+from ..running.runner import answer_all
+from ..running.store import load
+from . import claims, plan, report
+from .claims import answers
+from .pictures import draw_all
+from .resolution import Resolution
+
+NOTHING: Mapping[str, Any] = {"claims": [], "regions": [], "answers": []}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What has come of it.
+
+    Attributes
+    ----------
+    found : mapping
+        ``claims`` and ``regions``, lists of texts by name, and ``answers``, sentences; empty where
+        they were not asked for.
+    pictures : mapping of Path
+        PNG files by the names of their parts.
+    report : Path
+    """
+
+    found: Mapping[str, Any]
+    pictures: Mapping[str, Path]
+    report: Path
+
+
+def reproduce(
+    output: Path,
+    resolution: Resolution,
+    figures: Sequence[str] | None,
+    running: Mapping[str, object],
+) -> Outcome:
+    """Compute the paper or some parts of it; what is there already stays.
+
+    Parameters
+    ----------
+    output : Path
+        Folder of the results.
+    resolution : Resolution
+    figures : sequence of str, optional
+        Names of parts, see :func:`.plan.make`; all by default.
+    running : mapping
+        Keywords of :class:`orchestrate.running.options.Running` but ``store``.
+
+    Returns
+    -------
+    Outcome
+    """
+    whole = plan.make(resolution)
+    parts = whole.choose(figures)
+    options, find = RunOptions.of(running), finder(running)
+    answer_all(whole.needed(parts), output, options, find)
+    drawn = [part for part in parts if part.picture]
+    pictures = draw_all(drawn, output, options.processes)
+    asked = [part for part in parts if not part.picture]
+    found = check_claims(output, asked[0].jobs) if asked else NOTHING
+    content = {"resolution": resolution, "fmu": find(OSCILLATOR), **found}
+    return Outcome(found, pictures, report.write(output, pictures, whole.parts, content))
+
+
+def check_claims(output: Path, names: Sequence[str]) -> dict[str, Any]:
+    """The claims, and what goes beyond them, kept beside the report as JSON too."""
+    data = {name: load(output / f"{name}.nc") for name in names}
+    found = {
+        "claims": claims.table(data),
+        "regions": answers.regions(data),
+        "answers": answers.sentences(data),
+    }
+    text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
+    write_whole(output / "claims.json", lambda place: place.write_text(text, encoding="utf-8"))
+    return found
