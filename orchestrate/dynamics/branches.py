@@ -1,0 +1,344 @@
+"""Orbits followed along a parameter, through folds, stable and unstable, with the bifurcations on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..access import OSCILLATOR, EventInstance, finder
+from ..errors import InputError
+from ..response.labels import Variable, flags, variable
+from ..response.questions import Question, numbers, whole
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Structure
+from .bifurcations import KINDS, Look
+from .branch_walk import Leg, Pace, backwards, follow, leaving
+from .continuation import NoConvergenceError
+from .families import ACCELERATION, Setting, check_names
+from .impact_sequence import Sequence as ImpactSequence
+from .orbit_records import OrbitRecord, coordinates, table_of, variables
+from .orbit_search import solve, verdict
+from .orbits import FirstGuess, finite, from_result, orbit, told
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+TOLD = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual")
+NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_closing")
+KEPT = (*TOLD, *NODES)  # of what is told of orbits, also of those at bifurcations
+BIFURCATION = "bifurcation"
+
+
+@dataclass(frozen=True, kw_only=True)
+class BranchJob(Question):
+    """A branch.
+
+    Attributes
+    ----------
+    setting : Setting
+        The parameter that varies and its limits.
+    start : FirstGuess
+        Nodes of the orbit that it begins with.
+    period : int
+    value : float
+        Of the parameter there.
+    switch : int
+        Kind of the bifurcation at which the branch leaves; -1: the branch through the start, both ways.
+    longest : float
+        Longest step.
+    most : int
+        Points in one direction.
+    """
+
+    setting: Setting
+    start: FirstGuess
+    period: int
+    value: float
+    switch: int
+    longest: float
+    most: int
+    asked: ClassVar[str] = "branch"
+
+    def count(self) -> int:
+        """One branch."""
+        return 1
+
+    def items(self, inputs: Inputs) -> Sequence[int]:
+        """Its number."""
+        return [0]
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+        """Follow it."""
+        with EventInstance(fmus[OSCILLATOR]) as instance:
+            legs = followed(instance, self)
+            return table(instance, self.setting, legs)
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Everything along the branch."""
+        import xarray as xr
+
+        setting, (name,) = self.setting, self.setting.over
+        along = {key: table[key] for key in table if not key.startswith(BIFURCATION)}
+        found = {**variables(setting, along, "point"), **coordinates(setting, along, "point")}
+        ends = [str(text) for text in table["bifurcation_ends"]]
+        periods = along["zero"].shape[1]
+        title = f"Branch of orbits of {periods} periods along {name}: {self.structure.label()}"
+        attributes = {"title": title, "over": name, "first_end": ends[0], "last_end": ends[1]}
+        dataset = xr.Dataset({**found, **at_bifurcations(setting, table)}, attrs=attributes)
+        return dataset.set_coords([key for key in coordinates(setting, along, "point")])
+
+
+def followed(instance: EventInstance, job: BranchJob) -> list[Leg]:
+    """The branch in both directions; in one, where it leaves another.
+
+    Raises
+    ------
+    InputError
+        Where there is no orbit at its start.
+    """
+    guess = job.start.sequence(job.period), np.array(job.start.nodes).reshape(-1, 4)
+    pace = Pace(job.longest, job.most)
+    try:
+        family, root = solve(job.setting, guess, np.array([job.value]))
+        start = Look(family, root)
+        if job.switch >= 0:
+            return [follow(instance, leaving(job.switch, start), pace)]
+    except NoConvergenceError as reason:
+        expected = "expected an orbit of this structure"
+        raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
+    return [follow(instance, look, pace) for look in (backwards(start), start)]
+
+
+def table(instance: EventInstance, setting: Setting, legs: list[Leg]) -> Table:
+    """Arrays along the branch, and those of its bifurcations, in the order along it."""
+    looks, events = list(legs[-1].looks), list(legs[-1].events)
+    ends = [legs[0].end if len(legs) > 1 else "start", legs[-1].end]
+    if len(legs) > 1:
+        looks = [*reversed(legs[0].looks[1:]), *looks]
+        events = [*reversed(legs[0].events), *events]
+    found = table_of([record(instance, setting, look) for look in looks])
+    at = table_of([record(instance, setting, look) for _, look in events]) if events else {}
+    return {
+        **found,
+        **{f"{BIFURCATION}_{name}": values for name, values in at.items()},
+        "bifurcation_kind": np.array([kind for kind, _ in events], dtype=int),
+        "bifurcation_ends": np.array(ends),
+    }
+
+
+def record(instance: EventInstance, setting: Setting, look: Look) -> OrbitRecord:
+    """An orbit on the branch, verified."""
+    unknowns = look.root.unknowns
+    word = verdict(instance, setting, unknowns[look.family.size :], look.ring)
+    return OrbitRecord.of(look.family, unknowns, look.root.residual, word)
+
+
+def at_bifurcations(setting: Setting, table: Table) -> dict[str, Variable]:
+    """What is told of the bifurcations."""
+    (name,) = setting.over
+    kinds = flags(BIFURCATION, table["bifurcation_kind"], "kind of bifurcation", KINDS)
+    found = {"bifurcation_kind": kinds}
+    if not len(table["bifurcation_kind"]):
+        found["bifurcation_value"] = variable(BIFURCATION, np.zeros(0), "1", name)
+        return found
+    rows = {
+        key.removeprefix(f"{BIFURCATION}_"): values
+        for key, values in table.items()
+        if key.startswith(BIFURCATION)
+    }
+    parameters = coordinates(setting, rows, BIFURCATION)
+    found["bifurcation_value"] = parameters[name]
+    for key, (dims, values, attributes) in variables(setting, rows, BIFURCATION).items():
+        if key in KEPT:
+            each = (dims,) if isinstance(dims, str) else dims
+            own = tuple(f"{BIFURCATION}_node" if dim == "node" else dim for dim in each)
+            found[f"{BIFURCATION}_{key}"] = own, values, attributes
+    return found
+
+
+def branch(
+    structure: Structure,
+    *,
+    start: xr.Dataset | None = None,
+    over: str = "eta",
+    limits: ArrayLike,
+    switch: int | None = None,
+    eta: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: ArrayLike | None = None,
+    period: int = 1,
+    box_acceleration: float = 0.0,
+    longest: float = 0.03,
+    most: int = 1000,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """The branch of periodic orbits through one of them, along a parameter.
+
+    Parameters
+    ----------
+    structure : Structure
+    start : xarray.Dataset, optional
+        An orbit of :func:`orchestrate.orbit`, a point of a branch, or with ``switch`` a branch. By
+        default the orbit that :func:`orchestrate.orbit` finds at the excitation given, or at the lower limit.
+    over : str
+        The parameter: ``"eta"``, ``"frequency"``, ``"amplitude"``, ``"box_acceleration"`` or any of
+        a structure, such as ``"e"``, ``"D"``, ``"mu"``, ``"kappa"``.
+    limits : array_like of 2 floats
+        Between which it is followed, both included.
+    switch : int, optional
+        Number of a bifurcation of ``start``: the branch that leaves there is followed, at a period
+        doubling that of the double period, at a grazing that with one impact more or less.
+    eta, frequency, amplitude : float, optional
+        The excitation, where it does not vary; by default that of ``start``.
+    period : int
+        Excitation periods of the orbit, without ``start``.
+    box_acceleration : float
+        Constant acceleration of the box beside the harmonic one, m/s2.
+    longest : float
+        Longest step along the branch: about the limits' span, and phases in rad, are measured in 1.
+    most : int
+        Points in one direction.
+    **running
+        ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``point``: the parameter, and all that :func:`orchestrate.orbit` tells. Along
+        ``bifurcation``: ``bifurcation_kind`` and ``bifurcation_value``, the orbit there, and its
+        multipliers. ``first_end`` and ``last_end`` among the attributes say why it ends.
+
+    Raises
+    ------
+    InputError
+        Where the question is not whole, or no orbit is found to begin with.
+
+    Notes
+    -----
+    Pseudo-arclength continuation of the equations of
+    :mod:`orchestrate.dynamics.impact_sequence`. Bifurcations are located by Brent's method to rounding.
+    A branch ends where the sequence of impacts does: where an impact or a flight grazes, or where
+    permanent contact is lost or begins. Impacts of a chattering that come and go by (17) are
+    followed.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.dynamics.branches import branch
+    >>> found = branch(Structure.nondimensional(), eta=2.5, limits=(2.4, 2.8))
+    >>> found.bifurcation_value.values.round(8)
+    array([2.64796105, 2.7855415 ])
+    """
+    check_names((over,))
+    low_high = checked_limits(over, limits)
+    given = excitation_of(start, over, told(eta, frequency, amplitude), low_high)
+    if start is None:
+        start, value = first_orbit(
+            structure, over, low_high, given, period, box_acceleration, running
+        )
+    else:
+        value = start_value(start, over, switch, structure)
+    nodes, kind = begin_of(start, switch)
+    if not low_high[0] <= value <= low_high[1]:
+        raise InputError(f"limits = {low_high!r}: {over} = {value!r} at the start; expected it inside")
+    fixed = tuple((name, number) for name, number in given if name != over)
+    setting = Setting(structure, fixed, (over,), (low_high,), finite(ACCELERATION, box_acceleration))
+    setting.form(np.array([value]))
+    job = BranchJob(
+        name=f"branch_{structure.label()}_{over}",
+        structure=structure,
+        setting=setting,
+        start=nodes,
+        period=start.sizes["sample"],
+        value=value,
+        switch=kind,
+        longest=finite("longest", longest),
+        most=whole("most", most, 1),
+    )
+    return answer(job, running, finder(running))
+
+
+def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
+    """The limits, if they are two numbers in order."""
+    found = numbers(over, limits)
+    if not isinstance(found, tuple) or len(found) != 2 or not found[0] < found[1]:
+        raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
+    return found[0], found[1]
+
+
+def excitation_of(
+    start: xr.Dataset | None,
+    over: str,
+    given: tuple[tuple[str, float], ...],
+    limits: tuple[float, float],
+) -> tuple[tuple[str, float], ...]:
+    """The excitation's numbers, with the one that varies where it starts."""
+    names = [name for name, _ in given]
+    if start is not None and not given:
+        wanted = ("frequency", "amplitude") if over in ("frequency", "amplitude") else ("eta",)
+        return tuple((name, float(start[name].values.flat[0])) for name in wanted)
+    if over in ("eta", "frequency", "amplitude") and over not in names:
+        return (*given, (over, limits[0]))
+    return given
+
+
+def first_orbit(
+    structure: Structure,
+    over: str,
+    limits: tuple[float, float],
+    given: tuple[tuple[str, float], ...],
+    period: int,
+    box_acceleration: float,
+    running: Mapping[str, Any],
+) -> tuple[xr.Dataset, float]:
+    """The orbit that a branch begins with where the user names none, and the parameter there."""
+    excitation = dict(given)
+    quiet = {name: value for name, value in running.items() if name in ("fmu", "build_folder")}
+    value = excitation[over] if over in excitation else limits[0]
+    if over == ACCELERATION:
+        value = box_acceleration
+    elif over not in excitation:
+        own = structure.get(over)
+        value = own if limits[0] <= own <= limits[1] else limits[0]
+        structure = structure.replace(**{over: value})
+    found = orbit(
+        structure, period=period, box_acceleration=box_acceleration, **excitation, **quiet
+    )
+    return found, value
+
+
+def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Structure) -> float:
+    """The parameter's value at the start."""
+    if switch is not None:
+        return float(start["bifurcation_value"].values[number_of(start, switch)])
+    if over in start.coords:
+        return float(start[over])
+    if over == ACCELERATION:
+        return 0.0
+    return structure.get(over)
+
+
+def number_of(start: xr.Dataset, switch: int) -> int:
+    """A bifurcation's number, if there is one."""
+    count = start.sizes.get(BIFURCATION, 0)
+    if not count:
+        raise InputError(f"switch = {switch!r}: start has no bifurcations; expected a branch")
+    return whole("switch", switch, 0, count - 1)
+
+
+def begin_of(start: xr.Dataset, switch: int | None) -> tuple[FirstGuess, int]:
+    """Nodes of the orbit that a branch begins with, and the kind of bifurcation to leave by."""
+    if switch is None:
+        return from_result(start), -1
+    found = start.isel({BIFURCATION: number_of(start, switch)})
+    nodes = {name: found[f"{BIFURCATION}_{name}"].values for name in NODES}
+    return from_result(nodes), int(found["bifurcation_kind"])

@@ -1,0 +1,173 @@
+"""The closed form between impacts: both masses free, or both as one, (6) with (10), (11) and (18).
+
+All in the paper's units: displacements over a eta^2, time as tau, the excitation by its phase.
+A state is (xi_1, xi_2, xi_1', xi_2'). Oscillators 1 and 2 are the masses, 3 is both as one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..structures import Excitation, Structure
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """The numbers that the motion between impacts is made of.
+
+    Attributes
+    ----------
+    eta, mu, e, gamma : float
+        Frequency ratio, mass ratio (2), restitution (15), end of chattering (17).
+    damping, stiffness : ndarray, shape (3,)
+        D_i (8) and omega_i^2 (7).
+    cosine, sine : ndarray, shape (3,)
+        a_i and b_i of (11).
+    offset : ndarray, shape (3,)
+        Displacement by a constant acceleration of the box.
+    force_v, force_x : float
+        Coefficients of the contact force f (18).
+    """
+
+    eta: float
+    mu: float
+    e: float
+    gamma: float
+    damping: Floats
+    stiffness: Floats
+    cosine: Floats
+    sine: Floats
+    offset: Floats
+    force_v: float
+    force_x: float
+
+    @classmethod
+    def of(
+        cls, structure: Structure, excitation: Excitation, box_acceleration: float = 0.0
+    ) -> ClosedForm:
+        """The numbers of a structure under an excitation.
+
+        Parameters
+        ----------
+        structure : Structure
+        excitation : Excitation
+        box_acceleration : float
+            Constant acceleration of the box beside the harmonic one, m/s2.
+        """
+        omega, m1, m2 = structure.omega, structure.m1, structure.m2
+        both, springs = m1 + m2, structure.k1 + structure.k2
+        unit = omega * omega
+        eta = excitation.frequency / omega
+        dampers = np.array([structure.d1 / m1, structure.d2 / m2, (structure.d1 + structure.d2) / both])
+        damping = dampers / (2.0 * omega)
+        stiffness = np.array([structure.k1 / m1, structure.k2 / m2, springs / both]) / unit
+        stiffness[0] = 1.0
+        detuning, loss = stiffness - eta * eta, 2.0 * damping * eta
+        reach = detuning**2 + loss**2
+        push = -box_acceleration / (excitation.amplitude * excitation.frequency**2)
+        return cls(
+            eta=eta,
+            mu=m2 / m1,
+            e=structure.e,
+            gamma=structure.gamma,
+            damping=damping,
+            stiffness=stiffness,
+            cosine=-loss / reach,
+            sine=detuning / reach,
+            offset=push / stiffness,
+            force_v=float(2.0 * (damping[0] - damping[1])),
+            force_x=float(stiffness[0] - stiffness[1]),
+        )
+
+    @property
+    def fastest(self) -> float:
+        """The fastest oscillation in a motion, over omega."""
+        swinging = np.sqrt(np.maximum(self.stiffness - self.damping**2, 0.0))
+        return float(max(self.eta, swinging.max()))
+
+    def basis(self, i: int, time: Floats) -> tuple[Floats, Floats]:
+        """``e^{-D t} cos(nu t)`` and ``e^{-D t} sin(nu t)/nu`` of oscillator ``i``, and what they become overdamped."""
+        damping, square = self.damping[i], self.stiffness[i]
+        nu_squared = square - damping * damping
+        if abs(nu_squared) <= 1e-14 * square:  # critical
+            decay = np.exp(-damping * time)
+            return decay, time * decay
+        nu = np.sqrt(abs(nu_squared))
+        if nu_squared > 0.0:
+            decay = np.exp(-damping * time)
+            return decay * np.cos(nu * time), decay * np.sin(nu * time) / nu
+        slow, fast = np.exp(-square / (damping + nu) * time), np.exp(-(damping + nu) * time)
+        return 0.5 * (slow + fast), 0.5 * (slow - fast) / nu
+
+    def oscillator(self, i: int, time: Floats) -> Floats:
+        """Flow matrices of oscillator ``i`` without excitation, the free part of (10).
+
+        Parameters
+        ----------
+        i : int
+        time : ndarray, shape (n,)
+
+        Returns
+        -------
+        ndarray, shape (n, 2, 2)
+        """
+        cosine, sine = self.basis(i, time)
+        found = np.empty((len(time), 2, 2))
+        found[:, 0, 0] = cosine + self.damping[i] * sine
+        found[:, 0, 1] = sine
+        found[:, 1, 0] = -self.stiffness[i] * sine
+        found[:, 1, 1] = cosine - self.damping[i] * sine
+        return found
+
+    def flight(self, time: Floats) -> Floats:
+        """Flow matrices with both masses free, shape (n, 4, 4)."""
+        found = np.zeros((len(time), 4, 4))
+        found[:, 0::2, 0::2] = self.oscillator(0, time)
+        found[:, 1::2, 1::2] = self.oscillator(1, time)
+        return found
+
+    def contact(self, time: Floats) -> Floats:
+        """Flow matrices with both masses as one, shape (n, 4, 4); of states on the boundary."""
+        common = self.oscillator(2, time)
+        found = np.zeros((len(time), 4, 4))
+        found[:, 0::2, 0::2] = common
+        found[:, 1::2, 1::2] = common
+        return found
+
+    def steady(self, phase: Floats, contact: NDArray[np.bool_] | bool = False) -> Floats:
+        """The forced response, the harmonic part of (10).
+
+        Parameters
+        ----------
+        phase : ndarray, shape (n,)
+            Of the excitation, rad.
+        contact : ndarray of bool, shape (n,), or bool
+            Where both masses are one.
+
+        Returns
+        -------
+        ndarray, shape (n, 4)
+        """
+        which = np.where(np.reshape(contact, (-1, 1)), 2, np.array([[0, 1]]))
+        cosine, sine = np.cos(phase)[:, None], np.sin(phase)[:, None]
+        a, b = self.cosine[which], self.sine[which]
+        position = a * cosine + b * sine + self.offset[which]
+        return np.concatenate([position, self.eta * (b * cosine - a * sine)], axis=1)
+
+    def field(
+        self, state: Floats, phase: Floats, contact: NDArray[np.bool_] | bool = False
+    ) -> Floats:
+        """The derivative of states by tau: the right-hand side of (6), shape (n, 4)."""
+        which = np.where(np.reshape(contact, (-1, 1)), 2, np.array([[0, 1]]))
+        drive = np.sin(phase)[:, None] + self.offset[0] * self.stiffness[0]
+        rate = drive - 2.0 * self.damping[which] * state[:, 2:] - self.stiffness[which] * state[:, :2]
+        return np.concatenate([state[:, 2:], rate], axis=1)
+
+    def force(self, position: Floats, velocity: Floats) -> Floats:
+        """The contact force f (18): negative where the masses are pressed together."""
+        return self.force_v * velocity + self.force_x * position

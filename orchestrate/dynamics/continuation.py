@@ -1,0 +1,226 @@
+"""Curves of roots followed by their arclength, whatever the equations are.
+
+A curve is what n equations leave of n + 1 unknowns. It is followed by Keller's pseudo-arclength
+method: a step along the tangent, then Newton's method in the plane across it. It goes round folds,
+where no unknown serves as the curve's parameter. (Packages for continuation in Python look for
+branch points of smooth systems themselves; what ends a branch here are impacts, so this small
+engine only follows, and leaves it to the caller to look.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ..errors import InputError
+from .closed_form import Floats
+
+
+DENSE = 40  # equations up to which they are solved as if no coefficient were zero
+NEARLY = 1e-8  # a step that shrinks no more from here on is rounding
+ROUNDED = 0.05
+
+
+class NoConvergenceError(Exception):
+    """Newton's method found no root near where it was sent."""
+
+
+class Curve(Protocol):
+    """n equations in n + 1 unknowns."""
+
+    scale: Floats  # sizes of the unknowns, shape (n + 1,)
+
+    def residual(self, unknowns: Floats) -> Floats:
+        """What is left of the equations, shape (n,)."""
+
+    def jacobian(self, unknowns: Floats) -> Floats:
+        """Its derivative, shape (n, n + 1)."""
+
+
+@dataclass(frozen=True)
+class Root:
+    """A point of a curve.
+
+    Attributes
+    ----------
+    unknowns : ndarray, shape (n + 1,)
+    tangent : ndarray, shape (n + 1,)
+        Of length 1, in unknowns over their scale.
+    residual : float
+        Largest absolute value of what is left of the equations.
+    iterations : int
+    """
+
+    unknowns: Floats
+    tangent: Floats
+    residual: float
+    iterations: int
+
+
+def corrected(
+    curve: Curve,
+    guess: Floats,
+    across: Floats,
+    *,
+    tolerance: float = 1e-11,
+    most: int = 8,
+    furthest: float = 0.5,
+) -> Root:
+    """The root near a guess, in the plane across a direction.
+
+    Parameters
+    ----------
+    curve : Curve
+    guess : ndarray, shape (n + 1,)
+    across : ndarray, shape (n + 1,)
+        Direction in unknowns over their scale; the root differs from the guess across it alone. A unit
+        vector holds an unknown fixed.
+    tolerance : float
+        Largest last step, in unknowns over their scale; the error after it is its square.
+    most : int
+        Iterations.
+    furthest : float
+        Longest way from the guess, in unknowns over their scale.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where there is none.
+    """
+    unknowns, scale = guess.copy(), curve.scale
+    way, length = np.zeros_like(guess), np.inf
+    for iteration in range(1, most + 1):
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                matrix = np.vstack([curve.jacobian(unknowns) * scale, across])
+                left = np.append(curve.residual(unknowns), across @ way)
+                step = solved(matrix, left)
+        except (np.linalg.LinAlgError, InputError) as error:
+            raise NoConvergenceError(str(error)) from None
+        way = way - step
+        unknowns = guess + scale * way
+        before, length = length, float(np.abs(step).max())
+        if not length < np.inf or float(np.abs(way).max()) > furthest:
+            raise NoConvergenceError("Newton's method went too far")
+        if length <= tolerance or before * ROUNDED <= length <= before <= NEARLY:
+            return finished(curve, unknowns, across, iteration)
+    raise NoConvergenceError(f"no root after {most} iterations")
+
+
+def finished(curve: Curve, unknowns: Floats, along: Floats, iterations: int) -> Root:
+    """A root with its tangent, on the side of a direction."""
+    try:
+        matrix = curve.jacobian(unknowns) * curve.scale
+        left = float(np.abs(curve.residual(unknowns)).max(initial=0.0))
+    except InputError as error:
+        raise NoConvergenceError(str(error)) from None
+    return Root(unknowns, null_vector(matrix, along), left, iterations)
+
+
+def solved(matrix: Floats, right: Floats) -> Floats:
+    """The solution of linear equations; of many, most of whose coefficients are zero.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        Where the matrix is singular.
+    """
+    if len(right) <= DENSE:
+        return np.linalg.solve(matrix, right)
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import splu
+
+    if not np.isfinite(matrix).all():
+        raise np.linalg.LinAlgError("not finite")
+    try:
+        found: Floats = splu(csc_array(matrix)).solve(right)
+    except RuntimeError as error:
+        raise np.linalg.LinAlgError(str(error)) from None
+    return found
+
+
+def null_vector(matrix: Floats, along: Floats) -> Floats:
+    """The direction that a matrix of shape (n, n + 1) maps to zero, of length 1, on the side of another."""
+    last = np.zeros(len(along))
+    last[-1] = 1.0
+    try:
+        found = solved(np.vstack([matrix, along]), last)
+    except np.linalg.LinAlgError:  # it is across: a fold, where a parameter was held
+        found = np.linalg.svd(matrix)[2][-1]
+    tangent: Floats = found / np.linalg.norm(found)
+    return tangent
+
+
+def held(curve: Curve, unknown: int) -> Floats:
+    """The direction to correct across where an unknown is to stay as it is."""
+    found = np.zeros_like(curve.scale)
+    found[unknown] = 1.0
+    return found
+
+
+@dataclass
+class Walk:
+    """A walk along a curve, with steps as long as the curve is straight.
+
+    Attributes
+    ----------
+    curve : Curve
+    root : Root
+        Where it stands; the walk goes on along the tangent.
+    step : float
+        Length of the next step, in unknowns over their scale.
+    longest, shortest : float
+        Steps allowed.
+    sharpest : float
+        Cosine of the largest angle between successive tangents.
+    """
+
+    curve: Curve
+    root: Root
+    step: float
+    longest: float
+    shortest: float = 1e-7
+    sharpest: float = 0.97
+
+    def at(self, length: float) -> Root:
+        """The root a length along the tangent from where the walk stands."""
+        root = self.root
+        guess = root.unknowns + length * root.tangent * self.curve.scale
+        return corrected(self.curve, guess, root.tangent)
+
+    def ahead(self, acceptable: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
+        """The next root, and the length of the step to it; shortened until it is straight and acceptable.
+
+        Raises
+        ------
+        NoConvergenceError
+            Where no step is short enough.
+        """
+        length = self.step
+        while length >= self.shortest:
+            try:
+                found = self.at(length)
+            except NoConvergenceError:
+                length *= 0.35
+                continue
+            cosine = float(found.tangent @ self.root.tangent)
+            if cosine >= self.sharpest and acceptable(found):
+                easy = cosine > 0.993 and found.iterations <= 4
+                self.step = min(self.longest, length * (1.6 if easy else 1.0))
+                return found, length
+            length *= 0.5
+        raise NoConvergenceError("no step is short enough")
+
+    def land(self, unknown: int, value: float) -> Root:
+        """The root near here at which an unknown has a value."""
+        rate = self.root.tangent[unknown] * self.curve.scale[unknown]
+        length = (value - self.root.unknowns[unknown]) / rate
+        guess = self.root.unknowns + length * self.root.tangent * self.curve.scale
+        guess[unknown] = value
+        found = corrected(self.curve, guess, held(self.curve, unknown))
+        if found.tangent @ self.root.tangent < 0.0:
+            return Root(found.unknowns, -found.tangent, found.residual, found.iterations)
+        return found

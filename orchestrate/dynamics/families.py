@@ -1,0 +1,136 @@
+"""Orbits of one sequence over parameters: the equations whose roots they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import InputError
+from ..response.questions import ASKED, Point, point
+from ..structures import PARAMETERS, Structure
+from ..structures.ranges import one_of
+from .closed_form import ClosedForm, Floats
+from .impact_sequence import Ring, Sequence
+
+ACCELERATION = "box_acceleration"
+SMALLEST = 1e-3  # scale of displacements and velocities over a eta^2
+RELATIVE_STEP = 1e-6  # of a parameter, for differences
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A structure, its excitation, and the parameters that vary.
+
+    Attributes
+    ----------
+    structure : Structure
+    excitation : tuple of (str, float)
+        ``eta``, or ``frequency`` and ``amplitude``.
+    over : tuple of str
+        Names of the parameters that vary.
+    limits : tuple of (float, float)
+        Between which.
+    box_acceleration : float
+        Constant acceleration of the box beside the harmonic one, m/s2.
+    """
+
+    structure: Structure
+    excitation: tuple[tuple[str, float], ...]
+    over: tuple[str, ...]
+    limits: tuple[tuple[float, float], ...]
+    box_acceleration: float = 0.0
+
+    def point(self, values: Floats) -> Point:
+        """The structure under its excitation at values of the parameters."""
+        given = {**dict(self.excitation), **dict(zip(self.over, map(float, values), strict=True))}
+        given.pop(ACCELERATION, None)
+        return point(self.structure, given)
+
+    def acceleration(self, values: Floats) -> float:
+        """The box's constant acceleration there."""
+        given = dict(zip(self.over, map(float, values), strict=True))
+        return given.get(ACCELERATION, self.box_acceleration)
+
+    def form(self, values: Floats) -> ClosedForm:
+        """The closed form there."""
+        found = self.point(values)
+        return ClosedForm.of(found.structure, found.excitation, self.acceleration(values))
+
+
+def check_names(over: tuple[str, ...]) -> None:
+    """Whether these are parameters that can vary.
+
+    Raises
+    ------
+    InputError
+    """
+    known = (*ASKED, *PARAMETERS, ACCELERATION)
+    for name in over:
+        if name not in known:
+            raise InputError(f"over = {name!r}: no parameter; {one_of(name, known)}")
+
+
+@dataclass
+class Family:
+    """The orbits of a sequence over parameters: unknowns are those of the nodes, then the parameters.
+
+    Attributes
+    ----------
+    setting : Setting
+    sequence : Sequence
+    scale : ndarray
+        Sizes of the unknowns.
+    """
+
+    setting: Setting
+    sequence: Sequence
+    scale: Floats = field(default_factory=lambda: np.zeros(0))
+
+    @classmethod
+    def near(cls, setting: Setting, sequence: Sequence, nodes: Floats) -> Family:
+        """With scales from the nodes of one of its orbits; as many as there are, they count as one."""
+        size = max(float(np.abs(nodes[:, 1:]).max(initial=0.0)), SMALLEST)
+        spans = [high - low for low, high in setting.limits]
+        return cls(setting, sequence, np.append(node_scales(size, len(nodes)), spans))
+
+    @property
+    def size(self) -> int:
+        """Number of the nodes' unknowns."""
+        return 4 * len(self.sequence.kinds)
+
+    def ring(self, unknowns: Floats) -> Ring:
+        """The orbit's nodes and equations."""
+        nodes, values = unknowns[: self.size], unknowns[self.size :]
+        return Ring(self.sequence, self.setting.form(values), nodes.reshape(-1, 4))
+
+    def residual(self, unknowns: Floats) -> Floats:
+        """What is left of the equations."""
+        return self.ring(unknowns).residual()
+
+    def jacobian(self, unknowns: Floats) -> Floats:
+        """Its derivative: exact by the nodes, by differences by the parameters."""
+        columns = [
+            difference(self.residual, unknowns, self.size + i, *limits)[:, None]
+            for i, limits in enumerate(self.setting.limits)
+        ]
+        return np.hstack([self.ring(unknowns).jacobian().real, *columns])
+
+
+def node_scales(size: float, count: int) -> Floats:
+    """Scales of the unknowns of some nodes, in a motion of some size."""
+    return np.tile([1.0, size, size, size], count) * np.sqrt(max(count, 1))
+
+
+def difference(function, unknowns: Floats, which: int, low: float, high: float) -> Floats:  # type: ignore[no-untyped-def]
+    """Derivative of a function by one unknown, by a central difference inside limits."""
+    value = unknowns[which]
+    step = RELATIVE_STEP * max(abs(value), 1e-3 * (high - low))
+    ends = []
+    for place in (value - step, value + step):
+        moved = unknowns.copy()
+        moved[which] = min(max(place, min(low, value)), max(high, value))
+        ends.append((function(moved), moved[which]))
+    (before, first), (after, last) = ends
+    found: Floats = (after - before) / (last - first)
+    return found

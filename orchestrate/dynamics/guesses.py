@@ -1,0 +1,136 @@
+"""Where Newton's method begins: sequences of impacts that the FMU runs through, and close returns of a response."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..access import EventInstance, Impacts, begin
+from ..response.questions import Point
+from .closed_form import ClosedForm, Floats
+from .families import ACCELERATION
+from .impact_sequence import CLOSING, IMPACT, PHASE, RELEASE, STICK, TURN, Ring, Sequence
+from .turning_points import in_order
+
+LOOKS = 64  # at the contact force, in a period of the fastest oscillation
+Guess = tuple[Sequence, Floats]
+
+
+def from_state(
+    instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
+) -> Guess:
+    """The sequence that the FMU runs through from a state at phase 0.
+
+    Parameters
+    ----------
+    instance : EventInstance
+    point : Point
+    form : ClosedForm
+        Of the same structure and excitation.
+    state : ndarray, shape (4,)
+        x1, x2 in m, v1, v2 in m/s.
+    periods : int
+    """
+    start(instance, point, form, state)
+    found = instance.impacts(0.0, periods * point.excitation.period)
+    return from_impacts(found, point, form, periods)
+
+
+def start(instance: EventInstance, point: Point, form: ClosedForm, state: Floats) -> None:
+    """Begin at a state at phase 0."""
+    constant = -float(form.offset[0] * form.stiffness[0])
+    push = constant * point.excitation.amplitude * point.excitation.frequency**2
+    begin(instance, *point, state, **({ACCELERATION: push} if push else {}))
+
+
+def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
+    """The nodes of impacts, with the releases between them."""
+    state, mu = impacts.state / point.scale, form.mu
+    phase = point.excitation.frequency * impacts.time
+    velocity = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
+    nodes = np.stack([phase, state[:, 0], velocity, impacts.closing / point.speed], axis=1)
+    following = np.append(phase[1:], phase[:1] + TURN * periods)
+    kinds: list[int] = []
+    rows: list[Floats] = []
+    for node, sticks, until in zip(nodes, impacts.sticks, following, strict=True):
+        released = release(form, node, float(until)) if sticks else None
+        kinds.append(IMPACT if released is None else STICK)
+        rows.append(node)
+        if released is not None:
+            kinds.append(RELEASE)
+            rows.append(released)
+    ordered, first = in_order(np.array(rows).reshape(-1, 4), periods)
+    return Sequence(periods, tuple(kinds[first:] + kinds[:first])), ordered
+
+
+def release(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
+    """The node where permanent contact ends (19), before a phase; none where it does not."""
+    begun, position, velocity, _ = stick
+    duration = (until - begun) / form.eta
+    count = LOOKS + int(LOOKS * duration * form.fastest / TURN)
+    time = np.linspace(0.0, duration, count)
+    phase = begun + form.eta * time
+    free = np.array([position, position, velocity, velocity]) - form.steady(phase[:1], True)[0]
+    state = form.contact(time) @ free + form.steady(phase, True)
+    force = form.force(state[:, 0], state[:, 2])
+    opens = np.flatnonzero((force[1:] >= 0.0) & (force[:-1] < 0.0))
+    if not len(opens):
+        return None
+    i = opens[0]
+    part = force[i] / (force[i] - force[i + 1])
+    row = state[i] + part * (state[i + 1] - state[i])
+    return np.array([phase[i] + part * (phase[i + 1] - phase[i]), row[0], row[2], 0.0])
+
+
+def from_phases(form: ClosedForm, sequence: Sequence, phases: Floats) -> Guess:
+    """Nodes at given phases: the rest of the equations are linear, and are met as well as can be."""
+    nodes = np.zeros((len(phases), 4))
+    nodes[:, PHASE] = phases
+    ring = Ring(sequence, form, nodes)
+    others = np.arange(4 * len(phases)) % 4 != PHASE
+    found = np.linalg.lstsq(ring.jacobian().real[:, others], -ring.residual(), rcond=None)[0]
+    nodes[:, PHASE + 1 :] = found.reshape(-1, CLOSING)
+    return sequence, nodes
+
+
+def close_returns(
+    instance: EventInstance, point: Point, form: ClosedForm, periods: int, transient: int, most: int
+) -> Iterator[tuple[Floats, float]]:
+    """States of the response from rest that come back after some periods, the closest first.
+
+    Parameters
+    ----------
+    instance : EventInstance
+    point, form
+        What responds.
+    periods : int
+        After which they come back.
+    transient, most : int
+        Periods dropped, and looked at.
+
+    Yields
+    ------
+    state : ndarray, shape (4,)
+        x1, x2 in m, v1, v2 in m/s.
+    distance : float
+        Largest deviation of a co-ordinate, over its largest absolute value.
+    """
+    period = point.excitation.period
+    start(instance, point, form, np.zeros(4))
+    instance.advance(0.0, transient * period)
+    states = strobed(instance, point, transient, most)
+    scale = np.maximum(np.abs(states).max(axis=0), 1e-300)
+    distance = (np.abs(states[periods:] - states[:-periods]) / scale).max(axis=1)
+    for i in np.argsort(distance, kind="stable"):
+        yield states[i], float(distance[i])
+
+
+def strobed(instance: EventInstance, point: Point, first: int, count: int) -> Floats:
+    """States at phase 0 of successive periods, shape (count, 4)."""
+    period = point.excitation.period
+    states = np.empty((count, 4))
+    for i in range(count):
+        instance.advance((first + i) * period, (first + i + 1) * period)
+        states[i] = instance.read("x1", "x2", "v1", "v2")
+    return states

@@ -1,0 +1,241 @@
+"""What is told of periodic orbits: one row an orbit, for a single one and along a branch alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence as Rows
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..response.labels import Variable, flags, nondimensional_state, variable, yes_or_no
+from ..running.job import Table
+from .closed_form import Floats
+from .families import ACCELERATION, Family, Setting
+from .impact_sequence import CLOSING, PHASE, POSITION, RELEASE, VELOCITY
+from .orbit_search import Verdict
+from .turning_points import Amplitudes, in_order, nearest, phase_zero, turning_points
+
+KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
+PARTS = np.array(["real", "imaginary"])
+
+
+@dataclass(frozen=True)
+class OrbitRecord:
+    """One orbit.
+
+    Attributes
+    ----------
+    values : ndarray, shape (p,)
+        Of the parameters that vary.
+    kinds : ndarray of int, shape (k,)
+    nodes : ndarray, shape (k, 4)
+        From phase 0 on.
+    zero : ndarray, shape (periods, 4)
+        States at phase 0.
+    multipliers : ndarray of complex, shape (4,)
+    product : float
+        Of the multipliers, as dampers and impacts dictate it.
+    amplitudes : Amplitudes
+    clearance : float
+        Smallest gap at which the masses turn away from each other without an impact.
+    residual : float
+    verdict : Verdict
+    """
+
+    values: Floats
+    kinds: Floats
+    nodes: Floats
+    zero: Floats
+    multipliers: Floats
+    product: float
+    amplitudes: Amplitudes
+    clearance: float
+    residual: float
+    verdict: Verdict
+
+    @classmethod
+    def of(
+        cls, family: Family, unknowns: Floats, residual: float, verdict: Verdict
+    ) -> OrbitRecord:
+        """All about a root."""
+        ring = family.ring(unknowns)
+        turns = turning_points(ring)
+        nodes, first = in_order(ring.nodes, ring.sequence.periods)
+        multipliers = ring.multipliers()
+        return cls(
+            values=unknowns[family.size :],
+            kinds=np.roll(np.array(ring.sequence.kinds, dtype=int), -first),
+            nodes=nodes,
+            zero=phase_zero(ring),
+            multipliers=np.stack([multipliers.real, multipliers.imag], axis=1),
+            product=ring.dictated(),
+            amplitudes=Amplitudes.of(ring, turns),
+            clearance=nearest(ring, turns)[0],
+            residual=residual,
+            verdict=verdict,
+        )
+
+
+def padded(rows: Rows[Floats], fill: float) -> Floats:
+    """Arrays of different lengths as one, the shorter ones filled up."""
+    most = max(len(row) for row in rows)
+    found = np.full((len(rows), most, *rows[0].shape[1:]), fill)
+    for index, row in enumerate(rows):
+        found[index, : len(row)] = row
+    return found
+
+
+def table_of(records: Rows[OrbitRecord]) -> Table:
+    """Arrays with one row an orbit."""
+    return {
+        "values": np.array([r.values for r in records]),
+        "kinds": padded([r.kinds for r in records], -1).astype(int),
+        "nodes": padded([r.nodes for r in records], np.nan),
+        "zero": np.array([r.zero for r in records]),
+        "multipliers": np.array([r.multipliers for r in records]),
+        "product": np.array([r.product for r in records]),
+        "amplitudes": np.array(
+            [(r.amplitudes.xi_1, r.amplitudes.xi_2, r.amplitudes.gap) for r in records]
+        ),
+        "clearance": np.array([r.clearance for r in records]),
+        "residual": np.array([r.residual for r in records]),
+        "same": np.array([r.verdict.same for r in records]),
+        "away": np.array([r.verdict.away for r in records]),
+    }
+
+
+def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
+    """Parameters along the rows, and the names of what has several parts."""
+    from ..response.labels import parameter
+
+    points = [setting.point(values) for values in table["values"]]
+    excitations = [point.excitation for point in points]
+    along = {
+        "eta": [point.excitation.eta(point.structure) for point in points],
+        "frequency": [excitation.frequency for excitation in excitations],
+        "amplitude": [excitation.amplitude for excitation in excitations],
+    }
+    along.update(
+        {n: table["values"][:, i] for i, n in enumerate(setting.over) if n != ACCELERATION}
+    )
+    found = {name: parameter(name, row, values) for name, values in along.items()}
+    if ACCELERATION in setting.over:
+        found[ACCELERATION] = variable(
+            row,
+            table["values"][:, setting.over.index(ACCELERATION)],
+            "m/s2",
+            "constant acceleration of the box beside the harmonic one",
+        )
+    periods = np.arange(table["zero"].shape[1])
+    return {
+        **found,
+        **nondimensional_state(),
+        "part": variable("part", PARTS, "1", "of a complex number"),
+        "sample": variable("sample", periods, "1", "excitation period of the orbit"),
+    }
+
+
+def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
+    """All that is told of the orbits."""
+    points = [setting.point(values) for values in table["values"]]
+    scale = np.array([point.scale for point in points])
+    frequency = np.array([point.excitation.frequency for point in points])
+    omega = np.array([point.structure.omega for point in points])
+    eta, zero, nodes = frequency / omega, table["zero"], table["nodes"]
+    size = np.hypot(*np.moveaxis(table["multipliers"], -1, 0))
+    periods = zero.shape[1]
+    with np.errstate(divide="ignore"):
+        exponent = np.log(size[:, 0]) / (periods * 2.0 * np.pi / eta)
+    happens = table["kinds"] >= 0
+    impacts = happens & (table["kinds"] != RELEASE)
+    ages = nodes[:, :, PHASE] / frequency[:, None]
+    speeds = nodes[:, :, CLOSING] * scale[:, 2:3]
+    return {
+        "state": variable(
+            (row, "sample", "coordinate"),
+            zero * scale[:, None],
+            "SI",
+            "states at phase 0: x1, x2 in m, v1, v2 in m/s",
+        ),
+        "xi": variable((row, "sample", "coordinate"), zero, "1", "states at phase 0 (3)"),
+        "xi_rel": variable(
+            (row, "sample"), zero[:, :, 1] - zero[:, :, 0], "1", "gap at phase 0 (21)"
+        ),
+        "impact_time": variable(
+            (row, "node"), np.where(impacts, ages, np.nan), "s", "impacts after the first phase 0"
+        ),
+        "impact_velocity": variable(
+            (row, "node"), np.where(impacts, speeds, np.nan), "m/s", "their closing speeds"
+        ),
+        "multipliers": variable(
+            (row, "multiplier", "part"),
+            table["multipliers"],
+            "1",
+            "Floquet multipliers, the largest first",
+        ),
+        "multiplier_product": variable(
+            row, table["product"], "1", "their product as dampers and impacts dictate it"
+        ),
+        "stable": yes_or_no(row, size[:, 0] < 1.0, "whether all multipliers lie in the unit circle"),
+        "exponent": variable(
+            row, exponent, "1", "largest Lyapunov exponent, per unit of tau, from the multipliers"
+        ),
+        "permanent_contact": yes_or_no(
+            row, (table["kinds"] == RELEASE).any(axis=1), "whether permanent contact occurs"
+        ),
+        "impacts_per_period": variable(
+            row, impacts.sum(axis=1) / periods, "1", "impacts per excitation period"
+        ),
+        **sizes(table, row),
+        **checks(table, row),
+        **node_variables(table, row),
+    }
+
+
+def sizes(table: Table, row: str) -> dict[str, Variable]:
+    """How large an orbit is."""
+    texts = {
+        "xi1_max": "largest distance of mass 1 from the box's middle over a eta^2",
+        "xi2_max": "largest distance of mass 2 from the box's middle over a eta^2",
+        "xi_rel_max": "largest gap over a eta^2",
+    }
+    found = {
+        name: variable(row, table["amplitudes"][:, i], "1", text)
+        for i, (name, text) in enumerate(texts.items())
+    }
+    text = "smallest gap at which the masses turn away from each other without an impact"
+    found["clearance"] = variable(row, table["clearance"], "1", f"{text}; infinite: none")
+    return found
+
+
+def checks(table: Table, row: str) -> dict[str, Variable]:
+    """How well an orbit is known."""
+    return {
+        "residual": variable(
+            row, table["residual"], "1", "what Newton's method leaves of the equations"
+        ),
+        "fmu_same_impacts": yes_or_no(
+            row, table["same"], "whether the FMU runs through the same impacts and contacts"
+        ),
+        "fmu_return": variable(
+            row, table["away"], "1", "how far from its first state the FMU returns, over a eta^2"
+        ),
+    }
+
+
+def node_variables(table: Table, row: str) -> dict[str, Variable]:
+    """The orbit's nodes: what Newton's method solves for, and another one may begin with."""
+    nodes = table["nodes"]
+    along = (row, "node")
+    text = "closing speed before the impact over omega a eta^2"
+    return {
+        "node_kind": flags(along, table["kinds"], "what happens", KINDS),
+        "node_phase": variable(along, nodes[:, :, PHASE], "rad", "phase of the box, where it happens"),
+        "node_position": variable(
+            along, nodes[:, :, POSITION], "1", "displacement of both masses there over a eta^2"
+        ),
+        "node_velocity": variable(
+            along, nodes[:, :, VELOCITY], "1", "velocity of their centre over omega a eta^2"
+        ),
+        "node_closing": variable(along, nodes[:, :, CLOSING], "1", text),
+    }

@@ -1,0 +1,310 @@
+"""One periodic orbit, stable or not: its impacts, its Floquet multipliers, and that the FMU runs through it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..access import OSCILLATOR, EventInstance, finder
+from ..errors import InputError
+from ..response.questions import Question, numbers, one_point, whole
+from ..response.questions import state as checked_state
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Structure
+from .closed_form import Floats
+from .continuation import NoConvergenceError
+from .families import Setting
+from .guesses import Guess, close_returns, from_phases, from_state
+from .impact_sequence import IMPACT
+from .impact_sequence import Sequence as ImpactSequence
+from .orbit_records import OrbitRecord, coordinates, table_of, variables
+from .orbit_search import first_motion, single_impacts, verdict
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+MOST_PERIODS = 1000
+NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
+SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
+
+
+@dataclass(frozen=True)
+class FirstGuess:
+    """What a user knows of an orbit, as plain numbers.
+
+    Attributes
+    ----------
+    state : tuple of float
+        x1, x2 in m, v1, v2 in m/s at phase 0; empty where not given.
+    kinds : tuple of int
+        Of the nodes.
+    nodes : tuple of tuple of float
+        Phase, position, velocity, closing speed of each; or phases alone.
+    """
+
+    state: tuple[float, ...] = ()
+    kinds: tuple[int, ...] = ()
+    nodes: tuple[tuple[float, ...], ...] = ()
+
+    def sequence(self, periods: int) -> ImpactSequence:
+        """The sequence of its nodes."""
+        return ImpactSequence(periods, self.kinds)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrbitJob(Question):
+    """An orbit.
+
+    Attributes
+    ----------
+    excitation : tuple of (str, float)
+        As the user told it.
+    box_acceleration : float
+        m/s2.
+    period : int
+        Excitation periods after which the orbit closes.
+    guess : FirstGuess, optional
+    transient, search : int
+        Periods of the response from rest that are dropped, and searched for close returns.
+    tries : int
+        Close returns that Newton's method begins with, at most.
+    """
+
+    excitation: tuple[tuple[str, float], ...]
+    box_acceleration: float
+    period: int
+    guess: FirstGuess | None
+    transient: int
+    search: int
+    tries: int
+    asked: ClassVar[str] = "orbit"
+
+    @property
+    def setting(self) -> Setting:
+        """The question, with its first excitation number as the one that could vary."""
+        name, value = self.excitation[0]
+        limits = ((value * SPREAD[0], value * SPREAD[1]),)
+        return Setting(self.structure, self.excitation, (name,), limits, self.box_acceleration)
+
+    def count(self) -> int:
+        """One orbit."""
+        return 1
+
+    def items(self, inputs: Inputs) -> Sequence[int]:
+        """The orbit's number."""
+        return [0]
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+        """Find it."""
+        with EventInstance(fmus[OSCILLATOR]) as instance:
+            return table_of([found(instance, self)])
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """The orbit, labelled."""
+        import xarray as xr
+
+        setting = self.setting
+        title = f"Periodic orbit of {self.period} periods: {self.structure.label()}"
+        whole_table = xr.Dataset(
+            variables(setting, table, "point"), coordinates(setting, table, "point"), {"title": title}
+        )
+        return whole_table.isel(point=0)
+
+
+def found(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
+    """The orbit that is asked for.
+
+    Raises
+    ------
+    InputError
+        Where none is found.
+    """
+    setting = job.setting
+    values = np.array([job.excitation[0][1]])
+    try:
+        family, root, _ = first_motion(setting, guesses(instance, job, setting, values), values)
+    except NoConvergenceError as reason:
+        expected = "another guess" if job.guess else "another period, or a guess"
+        raise InputError(
+            f"period = {job.period}: no orbit found ({reason}); expected {expected}"
+        ) from None
+    ring = family.ring(root.unknowns)
+    word = verdict(instance, setting, values, ring)
+    return OrbitRecord.of(family, root.unknowns, root.residual, word)
+
+
+def guesses(
+    instance: EventInstance, job: OrbitJob, setting: Setting, values: Floats
+) -> Iterator[Guess]:
+    """The user's guess; or close returns of the response, then single impacts."""
+    point, form, guess = setting.point(values), setting.form(values), job.guess
+    if guess is not None and guess.state:
+        yield from_state(instance, point, form, np.array(guess.state), job.period)
+    elif guess is not None:
+        nodes, sequence = np.array(guess.nodes), guess.sequence(job.period)
+        full = nodes.shape[1:] == (4,)
+        yield (sequence, nodes) if full else from_phases(form, sequence, nodes[:, 0])
+    else:
+        returns = close_returns(instance, point, form, job.period, job.transient, job.search)
+        for state, _ in islice(list(returns), job.tries):
+            yield from_state(instance, point, form, state, job.period)
+        yield from single_impacts(form, job.period)
+
+
+def first_guess(given: Any, structure: Structure, frequency: float, period: int) -> FirstGuess | None:
+    """A user's guess in one of its forms.
+
+    Raises
+    ------
+    InputError
+        Where it is none of them.
+    """
+    expected = "expected a state, impact times, or a result of orbit or branch"
+    if given is None:
+        return None
+    if not isinstance(given, Mapping):
+        return FirstGuess(state=checked_state("guess", given, structure))
+    if "node_kind" in given:
+        return from_result(given)
+    if "impact_time" not in given:
+        raise InputError(f"guess: without impact_time; {expected}")
+    times = np.sort(np.asarray(numbers("impact_time", given["impact_time"]), dtype=float).ravel())
+    phases = frequency * times
+    if not (0.0 <= phases[0] and phases[-1] - phases[0] < 2.0 * np.pi * period):
+        raise InputError(f"impact_time = {times.tolist()}: expected times within {period} periods")
+    rows = tuple((float(phase),) for phase in phases)
+    return FirstGuess(kinds=(IMPACT,) * len(rows), nodes=rows)
+
+
+def from_result(given: Mapping[Any, Any]) -> FirstGuess:
+    """The nodes of an orbit that was found before.
+
+    Raises
+    ------
+    InputError
+        Where it holds several.
+    """
+    kinds = np.asarray(given["node_kind"])
+    if kinds.ndim != 1:
+        raise InputError("guess: several orbits; expected one, such as branch.isel(point=0)")
+    there = kinds >= 0
+    columns = [np.asarray(given[name])[there] for name in NODE]
+    rows = tuple(tuple(map(float, row)) for row in np.stack(columns, axis=1))
+    return FirstGuess(kinds=tuple(map(int, kinds[there])), nodes=rows)
+
+
+def told(
+    eta: ArrayLike | None, frequency: ArrayLike | None, amplitude: ArrayLike | None
+) -> tuple[tuple[str, float], ...]:
+    """An excitation as plain numbers."""
+    given = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
+    return tuple((name, float(np.asarray(v))) for name, v in given.items() if v is not None)
+
+
+def orbit(
+    structure: Structure,
+    *,
+    eta: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: ArrayLike | None = None,
+    period: int = 1,
+    guess: ArrayLike | Mapping[Any, Any] | None = None,
+    box_acceleration: float = 0.0,
+    transient: int = 500,
+    search: int = 200,
+    tries: int = 20,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """A periodic orbit by Newton's method, stable or unstable.
+
+    Parameters
+    ----------
+    structure : Structure
+    eta : float, optional
+        Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m, so that xi of (3) is x in m.
+    frequency, amplitude : float, optional
+        The physical form instead: rad/s and m.
+    period : int
+        Excitation periods after which the orbit closes.
+    guess : array_like of 4 floats, or mapping, optional
+        What Newton's method begins with: a state x1, x2 in m, v1, v2 in m/s at phase 0, from which
+        the FMU tells the impacts; or a mapping with ``impact_time``, times of all impacts in s; or
+        an orbit found before, at another parameter. By default the closest returns of the response
+        from rest, then orbits with a single impact.
+    box_acceleration : float
+        Constant acceleration of the box beside the harmonic one, m/s2: it opens or closes the gap.
+    transient, search, tries : int
+        Periods of the response that are dropped and looked at for close returns, and how many of
+        these are tried, where there is no guess.
+    **running
+        ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``state`` (SI) and ``xi`` at each phase 0; ``impact_time`` and ``impact_velocity``;
+        ``multipliers``, with real and imaginary parts; ``stable``; ``exponent``, the largest Lyapunov
+        exponent that follows; ``permanent_contact``; amplitudes ``xi1_max``, ``xi2_max``,
+        ``xi_rel_max``; ``residual`` of Newton's method; ``fmu_same_impacts`` and ``fmu_return``, how
+        the FMU runs through it; and its nodes, what Newton's method
+        solved for: ``node_kind``, ``node_phase`` and so on.
+
+    Raises
+    ------
+    InputError
+        Where the question is not whole, or no orbit is found.
+
+    Notes
+    -----
+    See :mod:`orchestrate.dynamics.impact_sequence` for the equations. Where chattering ends in permanent
+    contact the deviation of the gap dies there: two multipliers are zero. The other two tell the
+    stability; the sequence of the last impacts is that of the structure's ``gamma``.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.dynamics.orbits import orbit
+    >>> found = orbit(Structure.nondimensional(), eta=3.0)
+    >>> found.impact_time.values.round(6), bool(found.stable)
+    (array([0.479077]), False)
+    >>> found.multipliers.sel(part="real").values.round(4)
+    array([-3.5182, -0.8115, -0.8115, -0.1347])
+    """
+    given = one_point(structure, eta, frequency, amplitude)
+    count = whole("period", period, 1, MOST_PERIODS)
+    job = OrbitJob(
+        name=f"orbit_{structure.label()}_{count}T",
+        structure=structure,
+        excitation=told(eta, frequency, amplitude),
+        box_acceleration=finite("box_acceleration", box_acceleration),
+        period=count,
+        guess=first_guess(guess, structure, given.excitation.frequency, count),
+        transient=whole("transient", transient, 0),
+        search=whole("search", search, count + 1),
+        tries=whole("tries", tries, 1),
+    )
+    return answer(job, running, finder(running))
+
+
+def finite(name: str, given: ArrayLike) -> float:
+    """One finite number.
+
+    Raises
+    ------
+    InputError
+        Where it is none.
+    """
+    value = numbers(name, given)
+    if not isinstance(value, float):
+        raise InputError(f"{name} = {given!r}: expected one number")
+    return value

@@ -1,0 +1,161 @@
+"""Where displacements and gap turn inside an orbit's flights: amplitudes, and how near it comes to one more impact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .closed_form import Floats
+from .impact_sequence import PHASE, Ring
+
+XI_1, XI_2, GAP = range(3)  # quantities that turn, as weights of the two masses
+WEIGHTS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]])
+LOOKS = 24  # at the motion, in a period of its fastest oscillation
+FEWEST = 8  # and in a segment
+REFINEMENTS = 6
+
+
+@dataclass(frozen=True)
+class TurningPoints:
+    """Instants at which a displacement or the gap has an extremum inside a segment.
+
+    Attributes
+    ----------
+    segment, quantity : ndarray of int, shape (n,)
+    phase, value, curvature : ndarray, shape (n,)
+        Phase in rad; value and second derivative of the quantity by tau.
+    """
+
+    segment: NDArray[np.int_]
+    quantity: NDArray[np.int_]
+    phase: Floats
+    value: Floats
+    curvature: Floats
+
+
+def looks(ring: Ring) -> tuple[NDArray[np.int_], Floats]:
+    """Segments and phases at which to look at a motion, in order; the ends of segments left out."""
+    counts = FEWEST + np.ceil(
+        LOOKS * np.abs(ring.durations) * ring.form.fastest / (2.0 * np.pi)
+    ).astype(int)
+    segment = np.repeat(np.arange(len(counts)), counts)
+    place = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    part = (place + 0.5) / counts[segment]
+    return segment, ring.begins[segment] + part * (ring.ends - ring.begins)[segment]
+
+
+def turning_points(ring: Ring) -> TurningPoints:
+    """All turning points of both displacements and, in flight, of the gap."""
+    segment, phase = looks(ring)
+    rates = ring.states(segment, phase)[:, 2:] @ WEIGHTS.T
+    same = segment[1:] == segment[:-1]
+    turned = (np.sign(rates[1:]) != np.sign(rates[:-1])) & same[:, None]
+    turned[:, GAP] &= ~ring.contact[segment[1:]]
+    which, quantity = np.nonzero(turned)
+    low, high, segment = phase[which], phase[which + 1], segment[which]
+    first, last = rates[which, quantity], rates[which + 1, quantity]
+    found = low + (high - low) * first / (first - last)
+    for _ in range(REFINEMENTS):
+        rate, curvature, _ = measured(ring, segment, quantity, found)
+        step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
+        found = np.clip(found - ring.form.eta * step, low, high)
+    _, curvature, value = measured(ring, segment, quantity, found)
+    return TurningPoints(segment, quantity, found, value, curvature)
+
+
+def measured(
+    ring: Ring, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """First and second derivative by tau, and value, of quantities inside segments."""
+    state = ring.states(segment, phase)
+    field = ring.form.field(state, phase, ring.contact[segment])
+    weights = WEIGHTS[quantity]
+    rate, curvature = (weights * field[:, :2]).sum(axis=1), (weights * field[:, 2:]).sum(axis=1)
+    return rate, curvature, (weights * state[:, :2]).sum(axis=1)
+
+
+@dataclass(frozen=True)
+class Amplitudes:
+    """The largest values over an orbit, in units of a eta^2.
+
+    Attributes
+    ----------
+    xi_1, xi_2 : float
+        Largest absolute displacement of each mass.
+    gap : float
+        Largest gap.
+    """
+
+    xi_1: float
+    xi_2: float
+    gap: float
+
+    @classmethod
+    def of(cls, ring: Ring, turns: TurningPoints) -> Amplitudes:
+        """From the turning points; a displacement may also be largest at an impact."""
+        ends = np.abs(ring.arrivals[:, :2]).max(axis=0)
+        inside = [np.abs(turns.value[turns.quantity == which]) for which in range(3)]
+        largest = [max(values, default=0.0) for values in inside]
+        return cls(max(ends[0], largest[0]), max(ends[1], largest[1]), float(largest[GAP]))
+
+
+def nearest(ring: Ring, turns: TurningPoints) -> tuple[float, int, float]:
+    """The flight that comes nearest to one more impact.
+
+    Returns
+    -------
+    gap : float
+        The smallest gap at which a flight turns away again; infinite where none does. Negative:
+        the masses would have gone through each other.
+    segment : int
+    phase : float
+    """
+    which = np.flatnonzero((turns.quantity == GAP) & (turns.curvature > 0.0))
+    if not len(which):
+        return np.inf, -1, 0.0
+    lowest = which[turns.value[which].argmin()]
+    return float(turns.value[lowest]), int(turns.segment[lowest]), float(turns.phase[lowest])
+
+
+def weakest_force(ring: Ring) -> float:
+    """How near permanent contact comes to an earlier release: its smallest -f (18) at which f turns.
+
+    Infinite where there is no contact, or f has no turning point there that comes near to zero.
+    """
+    if not ring.contact.any():
+        return np.inf
+    segment, phase = looks(ring)
+    inside = ring.contact[segment]
+    segment, phase = segment[inside], phase[inside]
+    state = ring.states(segment, phase)
+    pressed = -ring.form.force(state[:, 0], state[:, 2])
+    middle = (segment[2:] == segment[:-2]) & (pressed[1:-1] < pressed[2:])
+    dips = np.flatnonzero(middle & (pressed[1:-1] <= pressed[:-2])) + 1
+    if not len(dips):
+        return np.inf
+    left, lowest, right = pressed[dips - 1], pressed[dips], pressed[dips + 1]
+    bend = left - 2.0 * lowest + right
+    return float((lowest - (right - left) ** 2 / (8.0 * np.where(bend > 0.0, bend, np.inf))).min())
+
+
+def phase_zero(ring: Ring) -> Floats:
+    """States at the phases that are multiples of 2 pi, in their order in time, shape (periods, 4)."""
+    turn, periods = 2.0 * np.pi, ring.sequence.periods
+    wanted = turn * np.arange(periods)
+    begin = ring.begins[0]
+    shifted = begin + np.mod(wanted - begin, turn * periods)
+    segment = np.searchsorted(ring.begins, shifted, side="right") - 1
+    return ring.states(segment, shifted)
+
+
+def in_order(nodes: Floats, periods: int) -> tuple[Floats, int]:
+    """Nodes from phase 0 on, with the number of the one that is first now."""
+    turn = 2.0 * np.pi * periods
+    phase = np.mod(nodes[:, PHASE], turn)
+    first = int(phase.argmin()) if len(nodes) else 0
+    found = np.roll(nodes, -first, axis=0)
+    if len(nodes):
+        found[:, PHASE] = np.roll(phase, -first)
+    return found, first
