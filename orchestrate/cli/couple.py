@@ -4,21 +4,14 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import (
-    Commands,
-    add_running,
-    add_set,
-    changes_of,
-    check_output,
-    draw_if_missing,
-    ends_of,
-    running_of,
-)
+from .drives import add_drive, described, own_fmus
+from .options import Commands, add_running, check_output, draw_if_missing, ends_of, running_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,24 +37,13 @@ def add_parser(commands: Commands) -> None:
     """Declare the command."""
     text = "the weak drive: structure and motor coupled, the voltage up and down (Figure 2)"
     parser = commands.add("couple", run, text, EXAMPLES)
-    option = parser.add_argument_group("structure, motor and box").add_argument
-    option(
-        "--drive",
-        default="quick",
-        metavar="FILE",
-        help="TOML file with [motor], [box] and [structure], or a set: quick, beam (default: "
-        "%(default)s)",
-    )
-    option("--structure", metavar="FILE", help="another [structure] than that of --drive")
-    add_set(parser, "a parameter of the structure, or of motor and box in SI; may be repeated")
-    option("--only", choices=("bonded", "delaminated"), help="one of both (default: both)")
+    add_drive(parser)
+    only = "one of both (default: both)"
+    parser.add_argument("--only", choices=("bonded", "delaminated"), help=only)
     add_schedule(parser)
-    add_running(parser, fmu=False)
-    parser.add_argument("--oscillator", type=Path, metavar="FILE", help="own FMU of the structure")
-    parser.add_argument("--shaker", type=Path, metavar="FILE", help="own FMU of the motor")
-    parser.add_argument(
-        "--ssp", type=Path, metavar="FILE", help="write the coupled system for other tools instead"
-    )
+    add_running(parser, several=True)
+    package = "write the coupled system for other tools instead"
+    parser.add_argument("--ssp", type=Path, metavar="FILE", help=package)
 
 
 def add_schedule(parser: argparse.ArgumentParser) -> None:
@@ -108,21 +90,6 @@ def add_schedule(parser: argparse.ArgumentParser) -> None:
         help="halve steps with a larger defect, over the work exchanged in them (default: never)",
     )
     option("--algorithm", default="rollback", help="master, see the manual (default: %(default)s)")
-
-
-def described(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
-    """Structure and drive, with what is set of either."""
-    from dataclasses import fields
-
-    from ..structures import Drive, Structure
-
-    drive = Drive.from_file(arguments.drive)
-    structure = Structure.from_file(arguments.structure or arguments.drive)
-    changes = changes_of(arguments.set)
-    own = {field.name for field in fields(Drive)}
-    of_drive = {name: value for name, value in changes.items() if name in own}
-    of_structure = {name: value for name, value in changes.items() if name not in own}
-    return structure.replace(**of_structure), drive.replace(**of_drive)
 
 
 def ends_in_volts(arguments: argparse.Namespace, volts: float) -> tuple[float, float]:
@@ -174,26 +141,25 @@ def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -
 
 def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
-    from ..access import OSCILLATOR, SHAKER, finder
+    from ..access import finder
     from ..running.options import RunOptions
     from ..running.runner import answer_all
     from ..running.store import load
 
     structure, drive = described(arguments)
     jobs = jobs_of(arguments, structure, drive)
+    running = {**running_of(arguments), "fmu": own_fmus(arguments.fmu)}
     if arguments.ssp:
-        print(write_package(arguments, drive, jobs[-1]))
+        print(write_package(arguments, drive, jobs[-1], running["fmu"]))
         return
-    given = {OSCILLATOR: arguments.oscillator, SHAKER: arguments.shaker}
-    own = {model: path for model, path in given.items() if path is not None}
-    running = {**running_of(arguments), "fmu": own}
     check_output(arguments.output)
     fresh = any(not (arguments.output / f"{job.name}.nc").exists() for job in jobs)
     paths = answer_all(jobs, arguments.output, RunOptions.of(running), finder(running))
     results = {job.name.rpartition("_")[2]: load(paths[job.name]) for job in jobs}
-    picture = arguments.output / f"{jobs[0].name.rpartition('_')[0]}.png"
-    draw_if_missing(
-        picture, fresh or arguments.force, lambda: picture_of(results, structure, drive)
+    picture = draw_if_missing(
+        arguments.output / f"couple_{Path(arguments.drive).stem}.png",
+        fresh or arguments.force,
+        lambda: picture_of(results, structure, drive),
     )
     for name, data in results.items():
         report(name, data)
@@ -201,18 +167,19 @@ def run(arguments: argparse.Namespace) -> None:
         print(path)
 
 
-def write_package(arguments: argparse.Namespace, drive: Drive, job: CoupleJob) -> Path:
+def write_package(
+    arguments: argparse.Namespace, drive: Drive, job: CoupleJob, own: Mapping[str, Path]
+) -> Path:
     """The coupled system as an SSP file, by default with the FMI 2.0 FMUs that most tools read."""
     from ..access import find
     from ..weak_drive.ssp import write_ssp
 
-    given = (arguments.oscillator, arguments.shaker)
-    fmus = [
-        find(model, "fmi2", arguments.build_folder, own).path
-        for model, own in zip(job.models, given, strict=True)
-    ]
-    start = {"voltage": job.schedule.voltage(0.0), "speed_start": job.speed_start}
-    return write_ssp(arguments.ssp, job.structure, drive, **start, fmus=fmus)
+    folder = arguments.build_folder
+    fmus = [find(model, "fmi2", folder, own.get(model)).path for model in job.models]
+    voltage, speed = job.schedule.voltage(0.0), job.speed_start
+    return write_ssp(
+        arguments.ssp, job.structure, drive, voltage=voltage, speed_start=speed, fmus=fmus
+    )
 
 
 def picture_of(results: dict[str, xr.Dataset], structure: Structure, drive: Drive) -> Any:

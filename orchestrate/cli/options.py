@@ -225,7 +225,7 @@ def add_running(
     parser: argparse.ArgumentParser,
     output: Path | None = Path("results"),
     shown: str = "results",
-    fmu: bool = True,
+    several: bool = False,
 ) -> None:
     """Where results go, and how they are computed.
 
@@ -236,8 +236,8 @@ def add_running(
         Default of ``--output``.
     shown : str
         The same, for people.
-    fmu : bool
-        Whether one FMU computes it all.
+    several : bool
+        Whether FMUs of several models compute it.
     """
     option = parser.add_argument_group("results and running").add_argument
     text = f"folder of the results (default: {shown})"
@@ -248,9 +248,9 @@ def add_running(
     option("--jobs", type=int, metavar="N", help="processes at once (default: all cores)")
     cluster = "compute on the workers of a Dask scheduler, such as tcp://host:8786"
     option("--cluster", metavar="ADDRESS", help=cluster)
-    if fmu:
-        own = "own FMU (default: the one of the present sources)"
-        option("--fmu", type=Path, metavar="FILE", help=own)
+    own = "own FMU (default: the one of the present sources)"
+    more = {"action": "append"} if several else {}
+    option("--fmu", type=Path, metavar="FILE", help=own + "; may be repeated" * several, **more)
     place = "where FMUs are looked for and exported to"
     option("--build-folder", type=Path, metavar="FOLDER", help=place)
 
@@ -262,7 +262,7 @@ def running_of(arguments: argparse.Namespace, store: Path | None = None) -> Runn
         "cluster": arguments.cluster,
         "force": arguments.force,
         "keep_stale": arguments.keep_stale,
-        "fmu": getattr(arguments, "fmu", None),
+        "fmu": arguments.fmu,
         "build_folder": arguments.build_folder,
     }
     if store is not None:

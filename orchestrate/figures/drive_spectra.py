@@ -1,49 +1,36 @@
 """Figure 3: acceleration spectra at resonance, semi-logarithmic, undamaged above delaminated."""
 
-import matplotlib
-import numpy as np
+from __future__ import annotations
 
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402 - after the backend was chosen
+import xarray as xr
+from matplotlib.figure import Figure
 
-from .weak_drive import COLOURS, save  # noqa: E402
+from .style import in_our_look, panels
+from .weak_drive import COLOURS
 
-HARMONICS = 12  # shown, of the motor's speed
+FLOOR = 1e-6  # of the largest amplitude: the lower end of the axis
 
 
-def draw(spectra, path):
+@in_our_look
+def draw(data: xr.Dataset, mass: int = 1) -> Figure:
     """Draw spectra one below the other.
 
     Parameters
     ----------
-    spectra : dict
-        By structure: frequency and amplitude (ndarray), and the motor's mean speed.
-    path : Path
-        PNG file; written whole or not at all.
+    data : xarray.Dataset
+        Of :func:`orchestrate.weak_drive.drive_spectra.drive_spectra`.
+    mass : int
+        1 or 2.
     """
-    figure, axes = plt.subplots(
-        len(spectra),
-        1,
-        figsize=(10, 3.5 * len(spectra)),
-        sharex=True,
-        sharey=True,
-        layout="constrained",
-        squeeze=False,
-    )
-    top = max(amplitude.max() for _, amplitude, _ in spectra.values())
-    for panel, (name, (frequency, amplitude, speed)) in zip(
-        axes[:, 0], spectra.items(), strict=True
-    ):
-        shown = frequency < HARMONICS * speed
-        panel.semilogy(
-            frequency[shown] / speed,
-            np.maximum(amplitude[shown], 1e-9 * top),
-            color=COLOURS[name],
-            lw=0.7,
-        )
-        panel.set_title(f"{name}, $\\Omega$ = {speed:.4f}", loc="left", fontsize=10)
-        panel.set_ylabel(r"acceleration in $\omega^2 S/M_t$")
-        panel.set_ylim(1e-6 * top, 2.0 * top)
-        panel.grid(True, alpha=0.3)
-    axes[-1, 0].set_xlabel(r"frequency over the motor's speed $\Omega$")
-    save(figure, path)
+    count = data.sizes["kind"]
+    figure, axes = panels(count, 1, (10, 3.5 * count), sharex=True, sharey=True)
+    shown = data.acceleration.sel(mass=mass)
+    top = float(shown.max())
+    for panel, kind in zip(axes, map(str, data.kind.values), strict=True):
+        amplitude = shown.sel(kind=kind).clip(1e-3 * FLOOR * top)
+        panel.semilogy(data.order, amplitude, color=COLOURS[kind], linewidth=0.7)
+        speed = float(data.speed.sel(kind=kind))
+        panel.set(title=f"{kind}, $\\Omega$ = {speed:.4f} rad/s", ylabel="amplitude in m/s$^2$")
+        panel.set_ylim(FLOOR * top, 2.0 * top)
+    axes[-1].set_xlabel(r"frequency over the motor's speed $\Omega$")
+    return figure

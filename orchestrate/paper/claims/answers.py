@@ -7,8 +7,7 @@ from collections.abc import Mapping
 import xarray as xr
 
 from ...dynamics.lyapunov import SIGMAS
-from ..cases import MAPS
-from ..cases import CASES
+from ..cases import CASES, MAPS
 from .results import Results, between, shares
 
 REGIONS = (
