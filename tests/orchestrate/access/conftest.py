@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from orchestrate.access import FORMS, OSCILLATOR, find
-from orchestrate.access.exported import default_folder
 
 
 @pytest.fixture(scope="session")
@@ -40,7 +39,5 @@ def event_fmu(oscillator_in):
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _all_forms_exported():
+def _all_forms_there(exported):
     """Nothing is exported where a test has put another folder in the place of the usual one."""
-    for form in FORMS:
-        find(OSCILLATOR, form, folder=default_folder())

@@ -20,7 +20,8 @@ def work(path: str) -> None:
 def main(path: str, ending: str) -> None:
     """Work, then end in one of the ways in which processes end."""
     work(path)
-    print(process_folder(), flush=True)
+    mine = process_folder()
+    print(mine, flush=True)
     if ending == "kill":
         os.kill(os.getpid(), signal.SIGKILL)
     if ending == "error":
@@ -32,7 +33,7 @@ def main(path: str, ending: str) -> None:
             print(process_folder(), flush=True)
             sys.exit()  # runs what is registered for the end of the process, the parent's too
         os.waitpid(child, 0)
-        work(path)
+        assert list(mine.iterdir()), "the child has removed what is its parent's"
     if ending == "wait":
         sys.stdin.readline()
         work(path)
