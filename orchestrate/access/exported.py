@@ -95,13 +95,19 @@ def export(name: str, form: str, folder: Path) -> Path:
     """
     check(name, form)
     open_folder(folder)
-    path = folder / form / f"{name}.fmu"
-    log.info("exporting %s (a model's first export compiles a C library: up to a minute)", path)
+    announce(folder)
+    log.info("exporting %s", folder / form / f"{name}.fmu")
     try:
         return sources.export(name, form, folder)
     except OSError as error:
         reason = error.strerror or error
         raise StoreError(f"{folder}: {reason}; expected a folder that can be written") from None
+
+
+@functools.cache
+def announce(folder: Path) -> None:
+    """Say once that it takes long."""
+    log.info("exporting FMUs to %s: compiling takes up to a minute a model", folder)
 
 
 @functools.cache
