@@ -1,22 +1,18 @@
-"""What all tests share: the exported FMU, made once before any worker starts."""
-
-from pathlib import Path
+"""What all tests share: the FMUs, exported when the first test needs them."""
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
-BUILD = ROOT / "build"
-
-
-def pytest_configure(config):
-    """Export the FMUs where they are missing or out of date."""
-    if not hasattr(config, "workerinput"):
-        from orchestrate.build import refresh
-
-        refresh(BUILD)
+from .exports import BUILD, refresh
 
 
 @pytest.fixture(scope="session")
-def python_fmu():
-    """The pythonfmu FMU."""
-    return BUILD / "fmi2-python" / "TwoMassImpactOscillator.fmu"
+def exported():
+    """The build folder, with all FMUs that can be made here, of the present sources."""
+    refresh(BUILD)
+    return BUILD
+
+
+@pytest.fixture(scope="session")
+def python_fmu(exported):
+    """The oscillator's FMU by pythonfmu."""
+    return exported / "fmi2-python" / "TwoMassImpactOscillator.fmu"

@@ -1,4 +1,4 @@
-"""Scripts in a fresh process that has no project on its path: what a user of the FMU has."""
+"""Programs in a fresh process that has no project on its path: what a user of the FMU has."""
 
 import json
 import os
@@ -7,49 +7,48 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PRELUDE = """
-import sys, json
-from pathlib import Path
-sys.path[:] = [p for p in sys.path if not (Path(p or ".") / "fmu_src").is_dir()]  # this project, or wherever an installation points to
-try:
-    import fmu_src
-    raise SystemExit("the project is on the path")
-except ModuleNotFoundError:
-    pass
-
-def answer(value):
-    print("ANSWER " + json.dumps(value))
-"""
+PROCESS = Path(__file__).with_name("fresh_process.py")
+OURS = (
+    "PYTHONPATH",
+    "VIBROIMPACT_PURE_PYTHON",
+)  # what the outer process may have in its environment
 
 
-def run_fresh(script, *args, cwd, pure=False, env=None, timeout=300):
-    """Run a script that ends with ``answer(value)``; returns value, and the completed process for
-    the rest.
+def run_fresh(folder, program, *arguments, cwd, pure=False, env=None, timeout=300, under=()):
+    """What a program returns, and the completed process for the rest.
 
     Parameters
     ----------
-    script : str
-        Python source; ``sys.argv[1:]`` are ``args``; floats survive JSON to the last bit.
+    folder : path-like
+        Where the program's module lies, and what else it imports of ours.
+    program : str
+        ``"module.function"``.
+    *arguments
+        Whatever JSON can write; a path becomes a string.
     cwd : path-like
         Working directory, not the project's.
     pure : bool
         Ask the FMU for pure Python.
     env : dict, optional
         Further environment variables.
+    under : sequence of str
+        A command to run the process with.
     """
-    environment = {
-        k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "VIBROIMPACT_PURE_PYTHON")
-    }
+    environment = {k: v for k, v in os.environ.items() if k not in OURS}
     environment.update(env or {})
     if pure:
         environment["VIBROIMPACT_PURE_PYTHON"] = "1"
-    command = [sys.executable, "-c", PRELUDE + script, *map(str, args)]
     done = subprocess.run(
-        command, cwd=cwd, env=environment, capture_output=True, text=True, timeout=timeout
+        [*under, sys.executable, str(PROCESS), str(folder), *program.split(".")],
+        input=json.dumps(arguments, default=str),
+        cwd=cwd,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=timeout,
     )
-    assert done.returncode == 0, (
-        f"exit code {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
-    )
+    told = f"exit code {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-4000:]}"
+    assert done.returncode == 0, told
     answers = [line[7:] for line in done.stdout.splitlines() if line.startswith("ANSWER ")]
     assert len(answers) == 1, done.stdout
     return json.loads(answers[0]), done

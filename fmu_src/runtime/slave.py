@@ -92,19 +92,19 @@ class Slave:
 
     # -- failing without a crash -------------------------------------------------------------------
 
-    def heard(self) -> bool:
-        """Whether the importer hears all that is logged."""
+    def listening(self) -> tuple[bool, bool]:
+        """Whether the importer has switched logging on, and whether for all categories."""
         if not self._logger:
-            return False
+            return False, False
         logger = Logger.from_address(self._logger)
-        return bool(logger.on and logger.begin == logger.end)
+        return bool(logger.on), logger.begin == logger.end
 
     def report(self, text: str) -> None:
-        """One line to the error output, where the importer does not hear what is logged.
+        """One line to the error output, where the importer may not hear what is logged.
 
         It may take a discarded step for success.
         """
-        if self.heard():
+        if all(self.listening()):
             return
         try:
             sys.stderr.write(f"{self.model.name} '{self.instance_name}': {text}\n")
@@ -114,7 +114,11 @@ class Slave:
 
     def refuse(self, text: str) -> NoReturn:
         """Give the call an error status, with ``text`` as its message."""
-        self.report(text)
+        on, everything = self.listening()
+        if on and not everything:  # an exception is logged without a category
+            self.complain(text)
+        else:
+            self.report(text)
         for kept in (type(self), self, self.log_queue):
             keep(kept)
         raise FmuError(text.replace("%", "%%"))  # the text ends up as a printf format

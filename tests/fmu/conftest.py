@@ -5,6 +5,12 @@ import pytest
 from .driver import FMUS
 
 
+@pytest.fixture(scope="session", autouse=True)
+def forms(exported):
+    """All tests here need the FMUs."""
+    return exported
+
+
 @pytest.fixture(params=FMUS, scope="session")
 def fmu(request):
     """Path of an exported FMU."""

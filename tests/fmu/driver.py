@@ -1,186 +1,20 @@
-"""A driver for FMUs in a fresh process: each FMI call by its name, and a status that is not OK as
-an exception with the FMU's message.
-"""
+"""Programs on FMUs in a fresh process: the modules below ``programs/`` and the driver there."""
 
 from pathlib import Path
-from textwrap import dedent
 
+from ..exports import BUILD
 from ..fresh import run_fresh
 
-BUILD = Path(__file__).resolve().parents[2] / "build"
-FORMS = ("fmi2-python", "fmi2", "fmi3")  # a further form of the same model is one more folder name
+PROGRAMS = Path(__file__).with_name("programs")
+FORMS = ("fmi2-python", "fmi2", "fmi3")
 FMUS = {form: BUILD / form / "TwoMassImpactOscillator.fmu" for form in FORMS}
 
-DRIVER = r'''
-import atexit, ctypes, gc, math, os, random, re, tempfile
-import fmpy
-from fmpy import fmi2, fmi3
-from fmpy.fmi1 import FMICallException
-from fmpy.logging import addLoggerProxy
 
-OK, WARNING, DISCARD, ERROR, FATAL = range(5)
-messages = []  # of the call under way; the proxy below knows one logger a process
-callbacks = fmi2.fmi2CallbackFunctions()
-callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(lambda _e, _i, _s, _c, text: messages.append(text.decode()))
-callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
-addLoggerProxy(ctypes.byref(callbacks))  # expands the message as a printf format, as importers written in C do
+def run(program, fmu, *arguments, **options):
+    """What a program returns for an FMU; options are those of :func:`..fresh.run_fresh`."""
+    return run_with_output(program, fmu, *arguments, **options)[0]
 
 
-class Refused(Exception):
-    """A call whose status was not OK: function, status, and what the FMU logged."""
-
-    def __init__(self, function, status):
-        self.function, self.status, self.messages = function, status, list(messages)
-        super().__init__(f"{function}: {status}: {self.messages}")
-
-
-class Fmu2:
-    """One FMI 2.0 co-simulation instance; ``time`` is the communication point reached."""
-
-    folders, descriptions = {}, {}  # where an FMU of this process was extracted to, and what is known of it
-    alive = []
-
-    def __init__(self, path, name="instance", logging=True, folder=None):
-        if folder is None:
-            if path not in self.folders:
-                self.folders[path] = fmpy.extract(path, tempfile.mkdtemp(dir=Path.cwd()))
-            folder = self.folders[path]
-        found = describe(path)
-        self.variables = {v.name: v for v in found.modelVariables}
-        scalars = [v for v in found.modelVariables if v.type != "Clock" and not v.dimensions]
-        self.output_names = [v.name for v in scalars if v.causality == "output"]
-        identifier = found.coSimulation.modelIdentifier
-        self.slave = self.make(guid=found.guid, unzipDirectory=folder, modelIdentifier=identifier, instanceName=name)
-        self.instantiate(logging)
-        self.alive.append(self)
-        self.time = 0.0
-
-    make = fmi2.FMU2Slave
-
-    def instantiate(self, logging):
-        self.slave.instantiate(callbacks=callbacks, loggingOn=logging)
-
-    def call(self, function, *arguments, **keywords):
-        messages.clear()
-        try:
-            return getattr(self.slave, function)(*arguments, **keywords)
-        except FMICallException as failure:
-            raise Refused(function, failure.status) from None
-
-    def set(self, **values):
-        for name, value in values.items():
-            variable = self.variables[name]
-            self.call("set" + variable.type, [variable.valueReference], [value])
-
-    def get(self, *names):
-        kinds = [(self.variables[name].type, self.variables[name].valueReference) for name in names]
-        return [self.call("get" + kind, [reference])[0] for kind, reference in kinds]
-
-    def outputs(self, names=None):
-        names = self.output_names if names is None else names
-        return dict(zip(names, self.get(*names)))
-
-    def enter(self, start_time=0.0):
-        self.time = start_time
-        self.call("setupExperiment", startTime=start_time)
-        self.call("enterInitializationMode")
-
-    def leave(self):
-        self.call("exitInitializationMode")
-
-    def start(self, start_time=0.0, **values):
-        self.set(**values)
-        self.enter(start_time)
-        self.leave()
-        return self
-
-    def reset(self):
-        self.call("reset")
-        return self
-
-    def step(self, target):
-        self.call("doStep", self.time, target - self.time)
-        self.time = target
-        return self
-
-    def save(self):
-        state = self.call("getFMUState")
-        data = self.call("serializeFMUState", state)
-        self.call("freeFMUState", state)
-        return data, self.time
-
-    def restore(self, data, time):
-        state = self.call("deserializeFMUState", data)
-        try:
-            self.call("setFMUState", state)
-        finally:
-            self.slave.freeFMUState(state)
-        self.time = time
-        return self
-
-    def free(self):
-        self.alive.remove(self)
-        self.slave.freeInstance()
-
-
-class Fmu3(Fmu2):
-    """The same of FMI 3.0."""
-
-    make = fmi3.FMU3Slave
-
-    def instantiate(self, logging):
-        self.slave.instantiate(loggingOn=logging, logMessage=lambda _e, _s, _c, text: messages.append(text.decode()))
-
-    def enter(self, start_time=0.0):
-        self.time = start_time
-        self.call("enterInitializationMode", startTime=start_time)
-
-
-def excepthook(*error):
-    failed.append(error)
-    sys.__excepthook__(*error)
-
-
-failed, sys.excepthook = [], excepthook
-
-
-@atexit.register
-def leave():
-    for f in list(Fmu2.alive):
-        f.free()
-    if PYTHONFMU:  # its library writes into freed memory when a process ends, see test_limits: no test is to fail of that by chance
-        sys.stdout.flush(), sys.stderr.flush()
-        os._exit(1 if failed else 0)
-
-
-def describe(path):
-    if path not in Fmu2.descriptions:
-        Fmu2.descriptions[path] = fmpy.read_model_description(path)
-    return Fmu2.descriptions[path]
-
-
-def open_fmu(path, **options):
-    return (Fmu3 if describe(path).fmiVersion.startswith("3") else Fmu2)(path, **options)
-
-
-def harmonic(eta):
-    """Settings with which every number is the paper's non-dimensional one."""
-    return {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
-
-
-PATH = sys.argv[1]
-PYTHONFMU = "python" in Path(PATH).parent.name
-'''
-
-
-def run(script, fmu, *arguments, **options):
-    """Run a script that has the driver, with ``PATH`` the FMU's; returns its answer."""
-    return run_with_output(script, fmu, *arguments, **options)[0]
-
-
-def run_with_output(script, fmu, *arguments, **options):
+def run_with_output(program, fmu, *arguments, **options):
     """As :func:`run`; returns the completed process too."""
-    # whatever an importer in this process has set
-    options["env"] = {"VIBROIMPACT_MESSAGES": "", **options.get("env", {})}
-    return run_fresh(DRIVER + dedent(script), fmu, *arguments, **options)
+    return run_fresh(PROGRAMS, program, fmu, *arguments, **options)

@@ -2,8 +2,6 @@
 dampers and impacts.
 """
 
-import json
-
 import numpy as np
 import pytest
 
@@ -28,17 +26,9 @@ def energy(m1, m2, k1, k2, x1, x2, v1, v2):
     ids=lambda values: f"e={values['e']}",
 )
 def test_energy_of_free_motion_is_lost_in_impacts_alone(fmu, tmp_path, values):
-    script = r"""
-    f = open_fmu(PATH)
-    f.start(box_amplitude=0.0, d1=0.0, d2=0.0, x1_start=-0.5, x2_start=0.25, v1_start=1.0, v2_start=-2.0, **json.loads(sys.argv[2]))
-    names = ("x1", "x2", "v1", "v2", "impact_energy", "impact_count", "contact_count")
-    found = [f.get(*names)]
-    for k in range(1, 201):
-        f.step(0.25 * k)
-        found.append(f.get(*names))
-    answer(found)
-    """
-    found = np.array(run(script, fmu, json.dumps(values), cwd=tmp_path))
+    found = np.array(
+        run("energy.energy_of_free_motion_is_lost_in_impacts_alone", fmu, values, cwd=tmp_path)
+    )
     masses = [values[name] for name in ("m1", "m2", "k1", "k2")]
     total = energy(*masses, *found[:, :4].T) + found[:, 4]
     assert found[-1, 5] > 5
@@ -62,33 +52,10 @@ def test_energy_balance_of_driven_motion_closes(fmu, tmp_path):
         "box_amplitude": 0.8,
         "box_frequency": 1.13,
     }
-    script = r"""
-    values, nodes, end = json.loads(sys.argv[2]), json.loads(sys.argv[3]), 100.0
-    f = open_fmu(PATH).start(**values)
-    instants = {0.0, end}
-    while f.time < end:  # where to split the quadrature
-        f.step(f.time + 2.0**-8)
-        count, instant = f.get("impact_count", "impact_time")
-        instants.add(instant)
-    impacts = count
-    f = open_fmu(PATH).start(**values)
-    names = ("x1", "x2", "v1", "v2", "impact_energy", "phase")
-    first, samples = f.get(*names), []
-    instants = sorted(instants)
-    for a, b in zip(instants, instants[1:]):
-        pieces = max(1, math.ceil((b - a) / 0.5))
-        for k in range(pieces):
-            length = (b - a) / pieces
-            for node, weight in nodes:
-                f.step(a + (k + node) * length)
-                samples.append([weight * length, *f.get("v1", "v2", "phase")])
-    f.step(end)
-    answer([first, f.get(*names), samples, impacts, len(instants) - 2])
-    """
     points, weights = np.polynomial.legendre.leggauss(8)
     nodes = list(zip((0.5 + 0.5 * points).tolist(), (0.5 * weights).tolist(), strict=True))
     first, last, samples, impacts, splits = run(
-        script, fmu, json.dumps(values), json.dumps(nodes), cwd=tmp_path
+        "energy.energy_balance_of_driven_motion_closes", fmu, values, nodes, cwd=tmp_path
     )
     assert impacts > 20
     assert splits == impacts  # no two within a step: the quadrature knows them all

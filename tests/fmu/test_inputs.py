@@ -2,7 +2,6 @@
 solutions of the equations of motion.
 """
 
-import json
 import math
 
 import numpy as np
@@ -18,20 +17,7 @@ def test_phase_is_continuous_when_the_frequency_changes(fmu, tmp_path):
     """The phase is the integral of box_frequency, from phase_start on; positions and velocities do
     not jump either.
     """
-    script = r"""
-    f = open_fmu(PATH).start(phase_start=-1.0, box_frequency=0.4)
-    frequencies, found, phase = (0.4, 3.0, 0.0, 1e3, 0.7, 0.7), [], -1.0
-    for number, frequency in enumerate(frequencies):
-        f.set(box_frequency=frequency)
-        before = f.outputs(["phase", "x1", "x2", "v1", "v2", "impact_count"])
-        f.step(f.time)  # no time passes: what the new input does at once
-        after = f.outputs(list(before))
-        phase += 1.7 * frequency
-        f.step(1.7 * (number + 1))
-        found.append([before, after, phase, f.get("phase")[0]])
-    answer(found)
-    """
-    found = run(script, fmu, cwd=tmp_path)
+    found = run("inputs.phase_is_continuous_when_the_frequency_changes", fmu, cwd=tmp_path)
     for frequency, (before, after, expected, phase) in zip(
         (0.4, 3.0, 0.0, 1e3, 0.7, 0.7), found, strict=True
     ):
@@ -45,14 +31,12 @@ def test_constant_acceleration_ends_in_static_displacement(fmu, tmp_path):
     """Pushed apart, mass i comes to rest at -m_i g/k_i; pressed together, both at -(m1 + m2) g/(k1
     + k2), with the force that takes.
     """
-    script = r"""
-    masses, found = json.loads(sys.argv[2]), []
-    for g in (0.5, -0.5):
-        f = open_fmu(PATH).start(box_amplitude=0.0, box_acceleration=g, **masses).step(3000.0)
-        found.append(f.outputs())
-    answer(found)
-    """
-    parted, pressed = run(script, fmu, json.dumps({**MASSES, "m2": 1.2, "d2": 0.06}), cwd=tmp_path)
+    parted, pressed = run(
+        "inputs.constant_acceleration_ends_in_static_displacement",
+        fmu,
+        {**MASSES, "m2": 1.2, "d2": 0.06},
+        cwd=tmp_path,
+    )
     k1, k2, m1, m2 = 1.0, 1.4, 1.0, 1.2
     assert parted["x1"] == pytest.approx(-0.5 * m1 / k1, rel=1e-12)
     assert parted["x2"] == pytest.approx(-0.5 * m2 / k2, rel=1e-12)
@@ -78,7 +62,7 @@ def signal(t):
 
 
 def motion(acceleration, end, values, times):
-    """x1, v1, x2, v2 at ``times`` by integration to 1e-12 and event location, restitution by hand."""
+    """x1, v1, x2, v2 at ``times`` by integration to 1e-12 with event location."""
     m1, m2, k1, k2, d1, d2 = (values[name] for name in ("m1", "m2", "k1", "k2", "d1", "d2"))
 
     def right(t, y):
@@ -120,24 +104,15 @@ def test_piecewise_cubic_acceleration_against_integration(fmu, tmp_path):
     values = {**MASSES, "e": 0.8, "x1_start": -0.5, "x2_start": 0.5}
     times = [0.5 * k for k in range(1, 41)]
     expected, impacts = motion(lambda t: signal(t)[0], times[-1], values, times)
-    script = r"""
-    values, signals, found = json.loads(sys.argv[2]), json.loads(Path("signals.json").read_text()), []
-    names = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
-    for step, rows in signals:
-        f = open_fmu(PATH).start(box_amplitude=0.0, **values, **dict(zip(names, rows[0])))
-        at = []
-        for k, row in enumerate(rows):
-            f.set(**dict(zip(names, row)))
-            f.step((k + 1) * step)
-            if (k + 1) * step % 0.5 == 0.0:
-                at.append(f.get("x1", "v1", "x2", "v2"))
-        found.append([at, f.get("impact_count", "contact_count")])
-    answer(found)
-    """
     steps = (2.0**-3, 2.0**-5)
     signals = [[step, [signal(k * step) for k in range(int(times[-1] / step))]] for step in steps]
-    (tmp_path / "signals.json").write_text(json.dumps(signals))
-    found = run(script, fmu, json.dumps(values), cwd=tmp_path)
+    found = run(
+        "inputs.piecewise_cubic_acceleration_against_integration",
+        fmu,
+        values,
+        signals,
+        cwd=tmp_path,
+    )
     errors = []
     for at, (count, contacts) in found:
         assert count == impacts > 5
@@ -154,13 +129,9 @@ def test_cubic_input_over_one_step_is_exact(fmu, tmp_path):
     = polynomial + decaying part.
     """
     g = [0.3, -0.2, 0.15, -0.05]
-    script = r"""
-    names = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
-    f = open_fmu(PATH).start(box_amplitude=0.0, bonded=True, **dict(zip(names, json.loads(sys.argv[2]))))
-    f.step(5.0)
-    answer(f.get("x1", "v1", "x2", "v2", "box_impulse", "box_impulse_moment"))
-    """
-    x1, v1, x2, v2, impulse, moment = run(script, fmu, json.dumps(g), cwd=tmp_path)
+    x1, v1, x2, v2, impulse, moment = run(
+        "inputs.cubic_input_over_one_step_is_exact", fmu, g, cwd=tmp_path
+    )
 
     def right(t, y):
         force = 2.2 * y[0] + 0.02 * y[1]
@@ -184,12 +155,7 @@ def test_each_derivative_moves_masses_from_rest(fmu, tmp_path, name, sign):
     """From rest at the touching point only the first derivative that does not vanish decides: apart
     for +, pressed together for -.
     """
-    script = r"""
-    f = open_fmu(PATH).start(box_amplitude=0.0, **{sys.argv[2]: float(sys.argv[3])})
-    f.step(2.0**-10)
-    answer(f.step(1.0).outputs())
-    """
-    outputs = run(script, fmu, name, sign, cwd=tmp_path)
+    outputs = run("inputs.each_derivative_moves_masses_from_rest", fmu, name, sign, cwd=tmp_path)
     assert outputs["impact_count"] == outputs["contact_count"] == 0
     assert outputs["in_contact"] == (sign < 0)
     assert (outputs["x_rel"] > 0.0) == (sign > 0)

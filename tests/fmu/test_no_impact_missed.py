@@ -2,8 +2,6 @@
 independent event-driven solution.
 """
 
-import json
-
 import mpmath
 import numpy as np
 import pytest
@@ -15,20 +13,9 @@ def test_giant_steps_count_what_small_steps_count(fmu, tmp_path):
     """From periodic to chaotic motion, with sticking: as many impacts and contacts in one step as
     in thousands.
     """
-    script = r"""
-    found = []
-    for eta in (0.3, 0.4, 0.7, 1.05, 1.13, 1.5, 2.5, 2.9, 4.0):
-        counts = []
-        for step in (256.0, 2.0**-4):
-            f = open_fmu(PATH).start(**harmonic(eta), x_rel_max_on=False)
-            while f.time < 256.0:
-                f.step(f.time + step)
-            counts.append(f.get("impact_count", "contact_count", "impact_time", "impact_energy"))
-            f.free()
-        found.append([eta, *counts])
-    answer(found)
-    """
-    for eta, giant, small in run(script, fmu, cwd=tmp_path):
+    for eta, giant, small in run(
+        "no_impact_missed.giant_steps_count_what_small_steps_count", fmu, cwd=tmp_path
+    ):
         assert giant[0] > 20, eta
         assert giant == small, eta
 
@@ -37,18 +24,7 @@ def test_small_steps_show_every_impact_one_by_one(fmu, tmp_path):
     """Steps so small that hardly two impacts share one: each impact is seen with its own time
     inside its step.
     """
-    script = r"""
-    f = open_fmu(PATH).start(**harmonic(1.13))
-    rows = []
-    while f.time < 60.0:
-        before, count = f.time, f.get("impact_count")[0]
-        f.step(f.time + 2.0**-9)
-        after, instant, closing = f.get("impact_count", "impact_time", "impact_velocity")
-        if after != count:
-            rows.append([after - count, before, instant, f.time, closing])
-    answer(rows)
-    """
-    rows = run(script, fmu, cwd=tmp_path)
+    rows = run("no_impact_missed.small_steps_show_every_impact_one_by_one", fmu, cwd=tmp_path)
     assert len(rows) > 10
     for new, before, instant, after, closing in rows:
         assert new == 1
@@ -66,12 +42,9 @@ def test_graze_of_one_part_in_a_billion(fmu, tmp_path, excess, touches):
     """
     middle = 1.0 - 1.0 / 1.2
     values = {"x1_start": -1.0, "x2_start": -1.0 / 1.2 + middle * (1.0 + excess)}
-    script = r"""
-    f = open_fmu(PATH).start(box_amplitude=0.0, box_acceleration=1.0, d2=0.0, e=1.0, **json.loads(sys.argv[2]))
-    f.step(1000.0)
-    answer(f.get("impact_count", "x_rel_max"))
-    """
-    count, largest = run(script, fmu, json.dumps(values), cwd=tmp_path)
+    count, largest = run(
+        "no_impact_missed.graze_of_one_part_in_a_billion", fmu, values, cwd=tmp_path
+    )
     assert (count > 0) == touches
     if not touches:
         assert largest == pytest.approx(2.0 * middle, rel=1e-8)
@@ -82,10 +55,7 @@ def test_no_impact_is_made_out_of_rounding(fmu, tmp_path, eta):
     """Drawn apart from rest (phase pi), the gap grows for a second at least: there is nothing to
     count.
     """
-    script = """
-    answer(open_fmu(PATH).start(box_frequency=float(sys.argv[2]), phase_start=math.pi).step(1.0).get("impact_count", "x_rel"))
-    """
-    count, gap = run(script, fmu, eta, cwd=tmp_path)
+    count, gap = run("no_impact_missed.no_impact_is_made_out_of_rounding", fmu, eta, cwd=tmp_path)
     assert gap > 1e-3
     assert count == 0
 
@@ -173,18 +143,9 @@ def test_impacts_against_an_independent_solution(fmu, tmp_path, more):
     values = {"m1": 1.0, "m2": 1.0, "k1": 1.0, "k2": 1.2, "d1": 0.01, "d2": 0.01, "e": 0.7}
     values |= {"x1_start": -0.25, "x2_start": 0.5, "v1_start": 0.125, "v2_start": -0.375, **more}
     expected = event_driven(values, 80.0)
-    script = r"""
-    values = json.loads(sys.argv[2])
-    f, rows = open_fmu(PATH).start(**values), []
-    while f.time < 80.0:
-        f.step(f.time + 2.0**-6)
-        row = f.get("impact_count", "impact_time", "impact_velocity")
-        if row[0] and (not rows or row != rows[-1]):
-            rows.append(row)
-    f = open_fmu(PATH).start(**values).step(80.0)
-    answer([rows, f.get("impact_count", "contact_count")])
-    """
-    rows, (count, contacts) = run(script, fmu, json.dumps(values), cwd=tmp_path)
+    rows, (count, contacts) = run(
+        "no_impact_missed.impacts_against_an_independent_solution", fmu, values, cwd=tmp_path
+    )
     assert contacts == 0  # the reference knows none
     assert count == len(expected) == len(rows)
     assert count > 15

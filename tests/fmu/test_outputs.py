@@ -1,6 +1,5 @@
 """What the outputs mean: definitions at a point, exact integrals and largest gap over a step."""
 
-import json
 import math
 
 import numpy as np
@@ -25,11 +24,7 @@ def test_outputs_follow_their_definitions(fmu, tmp_path):
     """Differences, the paper's xi, force on the box, compressive force, phase: in flight and in
     contact.
     """
-    script = r"""
-    f = open_fmu(PATH).start(phase_start=1.0, **json.loads(sys.argv[2]))
-    answer([{"time": f.step(k / 16).time, **f.outputs()} for k in range(1, 1000)])
-    """
-    rows = run(script, fmu, json.dumps(VALUES), cwd=tmp_path)
+    rows = run("outputs.outputs_follow_their_definitions", fmu, VALUES, cwd=tmp_path)
     m1, m2, k1, k2, d1, d2, e, a, frequency = VALUES.values()
     unit = a * frequency**2 * m1 / k1
     contacts = 0
@@ -63,33 +58,19 @@ def test_outputs_follow_their_definitions(fmu, tmp_path):
 
 def test_paper_displacements_are_zero_without_excitation(fmu, tmp_path):
     """Where a eta = 0: zero, not a division by zero."""
-    script = """
-    cases = dict(box_amplitude=0.0), dict(box_frequency=0.0)
-    answer([open_fmu(PATH).start(x1_start=-1.0, **still).step(1.0).get("xi1", "xi2", "xi_rel") for still in cases])
-    """
-    assert run(script, fmu, cwd=tmp_path) == [[0.0] * 3] * 2
+    assert (
+        run("outputs.paper_displacements_are_zero_without_excitation", fmu, cwd=tmp_path)
+        == [[0.0] * 3] * 2
+    )
 
 
 def test_what_belongs_to_a_step_is_exact(fmu, tmp_path):
     """Impulse, its moment and the largest gap of long steps, with many impacts in them, against
     small ones put together.
     """
-    script = r"""
-    values, found = json.loads(sys.argv[2]), []
-    for more in ({}, dict(box_acceleration=0.1), dict(box_frequency=1.13, box_acceleration=-0.2, m2=2.0)):
-        whole, parts = (open_fmu(PATH).start(**{**values, **more}) for _ in range(2))
-        for size in (0.25, 3.0, 17.0, 40.0):
-            begin = whole.time
-            whole.step(begin + size)
-            rows = []
-            while parts.time < begin + size:
-                here, force = parts.time, parts.get("box_force")[0]
-                parts.step(here + 2.0**-6)
-                rows.append([here - begin, force, *parts.get("box_force", "box_impulse", "box_impulse_moment", "x_rel", "x_rel_max")])
-            found.append([whole.get("box_impulse", "box_impulse_moment", "x_rel_max", "x_rel"), rows])
-    answer(found)
-    """
-    for (impulse, moment, largest, gap), rows in run(script, fmu, json.dumps(VALUES), cwd=tmp_path):
+    for (impulse, moment, largest, gap), rows in run(
+        "outputs.what_belongs_to_a_step_is_exact", fmu, VALUES, cwd=tmp_path
+    ):
         since, before, after, impulses, moments, gaps, largests = np.array(rows).T
         step = 2.0**-6
         assert impulse == pytest.approx(np.sum(impulses), abs=1e-11)
@@ -106,12 +87,9 @@ def test_largest_gap_between_samples_is_found(fmu, tmp_path):
     """One step over a single summit of known height, and a step that ends before it; off, it stays
     0.
     """
-    script = r"""
-    values = dict(box_amplitude=0.0, d2=0.0, v2_start=2.0)
-    cases = (True, 2.5), (True, 0.5), (False, 2.5)
-    answer([open_fmu(PATH).start(**values, x_rel_max_on=on).step(end).get("x_rel_max", "x_rel") for on, end in cases])
-    """
-    (summit, _), (climbing, gap), (off, _) = run(script, fmu, cwd=tmp_path)
+    (summit, _), (climbing, gap), (off, _) = run(
+        "outputs.largest_gap_between_samples_is_found", fmu, cwd=tmp_path
+    )
     assert summit == pytest.approx(2.0 / math.sqrt(1.2), rel=1e-14)
     assert climbing == pytest.approx(gap, rel=1e-14)
     assert off == 0.0

@@ -1,22 +1,19 @@
 """The FMUs, and importers compiled for them once a session."""
 
 import importlib.util
-import os
-import pickle
 import sys
-import time
 from types import SimpleNamespace
 
 import pytest
 
 from fmu_src.export import compile_kernel, linking, native_form, pythonfmu_form
-from orchestrate.build import up_to_date
+from fmu_src.export.errors import CannotExport
+from fmu_src.export.forms import FORMS
 
-from ..conftest import BUILD
+from ..exports import guid_inside, once, refresh
 from . import importers
 
 VERSIONS = ("fmi2", "fmi3")
-FORMS = ("fmi2-python", *VERSIONS)
 
 
 def cannot(reason):
@@ -31,45 +28,27 @@ def cannot(reason):
 
 
 @pytest.fixture(scope="session")
-def fmus():
-    """Paths of the FMUs by form; the project's conftest.py has exported what was missing or out of
-    date.
-    """
-    missing = [form for form in FORMS if not up_to_date(form, "TwoMassImpactOscillator", BUILD)]
-    if missing:
-        cannot(f"no FMU of the form {', '.join(missing)} was made")
-    return {form: BUILD / form / "TwoMassImpactOscillator.fmu" for form in FORMS}
+def fmus(exported):
+    """Paths of the FMUs by form."""
+    paths = {form: exported / form / "TwoMassImpactOscillator.fmu" for form in FORMS}
+    if not all(guid_inside(path) for path in paths.values()):
+        cannot(next(iter(refresh(exported).values()), "no reason given"))
+    return paths
 
 
-def compiled_once_more(folder):
-    """The kernel compiled by the first worker that comes here, and what it got for the others."""
-    made = folder / "objects"
-    try:
-        folder.mkdir()
-    except FileExistsError:
-        deadline = time.monotonic() + 240.0
-        while not made.exists() and time.monotonic() < deadline:
-            time.sleep(0.1)
-        return pickle.loads(made.read_bytes())
+def compiled_once_more():
+    """The oscillator's kernel, or why it cannot be compiled."""
     compile_kernel.compile_objects.cache_clear()
     try:
-        found = compile_kernel.compile_objects("fmu_src.models.oscillator.model")
-    except linking.NoCompiler as reason:
-        found = reason
-    (folder / "unfinished").write_bytes(pickle.dumps(found))
-    (folder / "unfinished").rename(made)
-    return found
+        return compile_kernel.compile_objects("oscillator")
+    except CannotExport as reason:
+        return reason
 
 
 @pytest.fixture(scope="session")
 def kernel_objects(tmp_path_factory):
-    """The kernel compiled once more, for builds made by tests: nothing is left over from the FMUs'
-    own build.
-    """
-    base = tmp_path_factory.getbasetemp()
-    found = compiled_once_more(
-        (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "kernel"
-    )
+    """The kernel compiled once more, for builds made by tests: nothing of the FMUs' own build."""
+    found = once(tmp_path_factory, "kernel", compiled_once_more)
     return cannot(found) if isinstance(found, Exception) else found
 
 

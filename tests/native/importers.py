@@ -13,7 +13,8 @@ from pathlib import Path
 
 import fmpy
 
-from fmu_src.export import native_form
+from fmu_src.export import native_form, sources
+from fmu_src.export.model_header import model_header
 from fmu_src.models.oscillator.model import MODEL
 
 HERE = Path(__file__).parent
@@ -129,15 +130,10 @@ def rebuild_shim(version, folder, objects, options=SANITIZE):
     path.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    token = native_form.guid("oscillator", "oscillator", version)
-    digest = native_form.source_digest("vibroimpact", "oscillator")
-    header = native_form.model_header(MODEL, token, digest)
-    files = {
-        **native_form.shim_sources(version),
-        **native_form.fmi_headers(version),
-        "model.h": header,
-        "kernel.o": objects["x86_64-linux"],
-    }
+    token = native_form.guid("oscillator", version)
+    header = model_header(MODEL, token, sources.model_digest("oscillator"))
+    files = {**native_form.shim_sources(version), **native_form.fmi_headers(version)}
+    files |= {"model.h": header, "kernel.o": objects["x86_64-linux"]}
     for name, content in files.items():
         (folder / name).write_bytes(content)
     target = folder / "rebuilt.so"

@@ -42,7 +42,7 @@ STATE = [name for name in COMMON if name not in ("box_impulse", "box_impulse_mom
 
 
 class Slave:
-    """One instance; ``time`` is the communication point reached, ``messages`` what the FMU logged."""
+    """One instance; ``time`` is the point of time reached, ``messages`` what the FMU logged."""
 
     def __init__(self, path, event_mode=False, early_return=False):
         description = fmpy.read_model_description(str(path))

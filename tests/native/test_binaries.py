@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from fmu_src.export import native_form
-from fmu_src.models.oscillator.model import MODEL
 
 from . import importers
 from .object_files import Elf, Pe
@@ -117,14 +116,14 @@ def test_there_is_no_global_state_to_share(version, kernel_objects, tmp_path):
 def test_two_builds_have_the_same_bytes(fmus, version, hide, tmp_path):
     """The other build is made now: its own compilation, its own scratch folders."""
     hide()
-    made = native_form.export(MODEL, "oscillator", "oscillator", tmp_path / version, version)
+    made = native_form.export("oscillator", version, tmp_path)
     assert made.read_bytes() == fmus[version].read_bytes()
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(WINE is None, reason="wine is not installed")
 def test_windows_binary_has_the_same_bits(fmus, importer_of, version, tmp_path):
-    """Slow where ziglang and wine are used for the first time: both prepare themselves for minutes."""
+    """Slow at the first use of ziglang and wine: both prepare themselves for minutes."""
     command = importers.ziglang("x86_64-windows-gnu")
     if command is None:
         pytest.skip("the importer for Windows is compiled by ziglang")

@@ -2,43 +2,20 @@
 process of its own, through chaos.
 """
 
-import json
+from pathlib import Path
 
 import pytest
 
 from ..fresh import run_fresh
 from .slave import COMMON, STATE, Slave, harmonic
 
-SCRIPT = r"""
-import fmpy
-from fmpy import fmi2, fmi3
-
-path, end, count, values, names = sys.argv[1], float(sys.argv[2]), int(sys.argv[3]), json.loads(sys.argv[4]), json.loads(sys.argv[5])
-folder = fmpy.extract(path, str(Path.cwd() / "fmu"))
-found = fmpy.read_model_description(folder)
-third = found.fmiVersion.startswith("3")
-variables = {v.name: v for v in found.modelVariables}
-make = fmi3.FMU3Slave if third else fmi2.FMU2Slave
-fmu = make(guid=found.guid, unzipDirectory=folder, modelIdentifier=found.coSimulation.modelIdentifier, instanceName="a")
-fmu.instantiate()
-for name, value in values.items():
-    getattr(fmu, "set" + variables[name].type)([variables[name].valueReference], [value])
-if not third:
-    fmu.setupExperiment(startTime=0.0)
-fmu.enterInitializationMode()
-fmu.exitInitializationMode()
-rows = []
-for k in range(count):
-    fmu.doStep(currentCommunicationPoint=end * k / count, communicationStepSize=end / count)
-    rows.append([float(getattr(fmu, "get" + variables[n].type)([variables[n].valueReference])[0]).hex() for n in names])
-answer({"rows": rows, "mapped": sorted({line.split("/", 1)[1].strip() for line in open("/proc/self/maps") if "/" in line})})
-"""
+PROGRAMS = Path(__file__).with_name("programs")
 
 
 def run(fmu, tmp_path, end, count, values, **options):
     tmp_path.mkdir()
-    arguments = (end, count, json.dumps(values), json.dumps(COMMON))
-    found, done = run_fresh(SCRIPT, fmu, *arguments, cwd=tmp_path, **options)
+    arguments = (fmu, end, count, values, COMMON)
+    found, done = run_fresh(PROGRAMS, "bits.simulate", *arguments, cwd=tmp_path, **options)
     assert "Traceback" not in done.stderr
     return found
 

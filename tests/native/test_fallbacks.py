@@ -1,25 +1,31 @@
 """Machines that lack a tool: what can be made is made, and one line says what could not."""
 
-import os
-import subprocess
-import sys
 import zipfile
+from types import SimpleNamespace
 
 import pytest
 from fmpy.validation import validate_fmu
 
-from orchestrate.build import build
+from fmu_src.export import compile_kernel, errors
+from fmu_src.export.errors import CannotExport
+from fmu_src.export.forms import FORMS, export
 
-from ..fresh import ROOT
 from . import importers
 from .slave import COMMON, harmonic
 from .test_bit_identity import run
 
-ONE = ("TwoMassImpactOscillator",)  # the model whose kernel the fixture has compiled
+MODEL = "TwoMassImpactOscillator"  # whose kernel the fixture has compiled
 
 
-def forms(paths):
-    return [path.parent.name for path in paths]
+def build(folder):
+    """The FMUs that can be made, by form, and why the others cannot."""
+    made, reasons = {}, {}
+    for form in FORMS:
+        try:
+            made[form] = export(MODEL, form, folder)
+        except CannotExport as reason:
+            reasons[form] = str(reason)
+    return made, reasons
 
 
 def binaries(fmu):
@@ -31,25 +37,23 @@ def same_run(fmu, other, tmp_path):
     """Whether two FMUs go the same way; and the files of a compiled kernel in the first one's
     process.
     """
-    found, expected = (
-        run(fmu, tmp_path / "a", 512.0, 8, harmonic(1.13)),
-        run(other, tmp_path / "b", 512.0, 8, harmonic(1.13)),
-    )
-    return found["rows"] == expected["rows"], [
-        path for path in found["mapped"] if "kernel-" in path
-    ]
+    found = run(fmu, tmp_path / "a", 512.0, 8, harmonic(1.13))
+    expected = run(other, tmp_path / "b", 512.0, 8, harmonic(1.13))
+    compiled = [path for path in found["mapped"] if "kernel-" in path]
+    return found["rows"] == expected["rows"], compiled
 
 
 def test_without_a_compiler_there_is_the_pythonfmu_fmu_and_one_line(fmus, hide, tmp_path, caplog):
     hide("ziglang", "own")
-    made = build(tmp_path / "build", names=ONE)
-    assert forms(made) == ["fmi2-python"]
+    made, reasons = build(tmp_path / "build")
+    assert list(made) == ["fmi2-python"]
+    for line in (*reasons.values(), *caplog.messages):
+        assert "no C compiler" in line and 'pip install "vibroimpact[build]"' in line
+        assert "\n" not in line
     (line,) = caplog.messages
-    assert (
-        "no C compiler" in line and "ziglang" in line and "pure Python" in line and "\n" not in line
-    )
-    assert validate_fmu(str(made[0])) == []
-    assert same_run(made[0], fmus["fmi2"], tmp_path) == (True, [])
+    assert "pure Python" in line
+    assert validate_fmu(str(made["fmi2-python"])) == []
+    assert same_run(made["fmi2-python"], fmus["fmi2"], tmp_path) == (True, [])
 
 
 def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(
@@ -58,25 +62,22 @@ def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(
     hide("ziglang")
     if importers.own_compiler() is None:
         pytest.skip("the machine has no C compiler of its own")
-    made = build(tmp_path / "build", names=ONE)
-    assert forms(made) == ["fmi2-python", "fmi2", "fmi3"]
+    made, reasons = build(tmp_path / "build")
+    assert set(made) == set(FORMS) and not reasons
     (line,) = caplog.messages
     assert "for x86_64-linux alone" in line and "ziglang" in line
-    assert [binaries(path) - {"win64", "linux64"} for path in made[:2]] == [set(), set()]
-    assert binaries(made[1]) == {"linux64"}
-    assert binaries(made[2]) == {"x86_64-linux"}
-    same, compiled = same_run(made[0], fmus["fmi2"], tmp_path)
+    assert binaries(made["fmi2-python"]) <= {"win64", "linux64"}
+    assert binaries(made["fmi2"]) == {"linux64"}
+    assert binaries(made["fmi3"]) == {"x86_64-linux"}
+    same, compiled = same_run(made["fmi2-python"], fmus["fmi2"], tmp_path)
     assert same and compiled
     times = [64.0 * k for k in range(65)]
-    for path in made[1:]:
-        assert validate_fmu(str(path)) == []
-        version = path.parent.name
-        own = importers.Importer(
-            importer_of(version).program, importers.binary(path, version, tmp_path), version
-        )
-        assert own.simulate(COMMON, times, **harmonic(1.13)) == importer_of(version).simulate(
-            COMMON, times, **harmonic(1.13)
-        )
+    for version in ("fmi2", "fmi3"):
+        assert validate_fmu(str(made[version])) == []
+        binary = importers.binary(made[version], version, tmp_path)
+        own = importers.Importer(importer_of(version).program, binary, version)
+        expected = importer_of(version).simulate(COMMON, times, **harmonic(1.13))
+        assert own.simulate(COMMON, times, **harmonic(1.13)) == expected
         assert "FAILURES 0" in own.run("hostile").stdout
 
 
@@ -84,27 +85,28 @@ def test_without_a_compiler_of_its_own_the_machine_makes_the_same_bytes(
     fmus, hide, tmp_path, caplog
 ):
     hide("own")
-    made = build(tmp_path, ["fmi2", "fmi3"], ONE)
-    assert [path.read_bytes() for path in made] == [
-        fmus[form].read_bytes() for form in ("fmi2", "fmi3")
-    ]
+    made, _ = build(tmp_path)
+    assert {form: path.read_bytes() for form, path in made.items()} == {
+        form: fmus[form].read_bytes() for form in FORMS
+    }
     assert not caplog.messages
 
 
-def test_without_numba_the_command_line_says_one_line(tmp_path):
-    """From the command line to the exit code."""
-    (tmp_path / "numba.py").write_text("raise ModuleNotFoundError(\"No module named 'numba'\")\n")
-    path = os.pathsep.join([str(tmp_path), str(ROOT)])
-    command = [sys.executable, "-m", "orchestrate", "build", "--folder", str(tmp_path / "build")]
-    done = subprocess.run(
-        command,
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": path},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0
-    (line,) = done.stderr.splitlines()
-    assert line.endswith("pure Python: No module named 'numba'")
-    made = done.stdout.splitlines()
-    assert len(made) == 2 and all("fmi2-python" in line for line in made)
+@pytest.mark.parametrize(
+    ("package", "left"), [("numba", ["fmi2-python"]), ("pythonfmu", ["fmi2", "fmi3"])]
+)
+def test_a_missing_package_is_named_with_the_extra_that_has_it(
+    fmus, hide, monkeypatch, tmp_path, package, left
+):
+    """Of pythonfmu only its own form knows."""
+    hide()
+    found = SimpleNamespace(find_spec=lambda name: None if name == package else name)
+    monkeypatch.setattr(errors, "importlib", SimpleNamespace(util=found))
+    if package == "numba":  # not the kernel that was compiled before
+        monkeypatch.undo()
+        monkeypatch.setattr(errors, "importlib", SimpleNamespace(util=found))
+        compile_kernel.compile_objects.cache_clear()
+    made, reasons = build(tmp_path)
+    assert list(made) == left
+    for reason in reasons.values():
+        assert f"{package}, which" in reason and 'pip install "vibroimpact[build]"' in reason

@@ -73,7 +73,7 @@ def sanitizer(request, tmp_path):
     """Options of a sanitizer, checked to work here."""
     if importers.own_compiler() is None:
         pytest.skip(
-            "the machine has no C compiler of its own, and ziglang's sanitizers do not load from a shared library"
+            "no C compiler of the machine's own: ziglang's sanitizers do not load from a library"
         )
     (tmp_path / "empty.c").write_text("int main(void) { return 0; }\n")
     try:
@@ -90,7 +90,7 @@ def sanitizer(request, tmp_path):
     "sanitizer", [importers.SANITIZE], indirect=True, ids=["address,undefined"]
 )
 def test_no_error_with_sanitizers_in_the_shim(checked):
-    """A thousand instances and a million steps too; leaks are counted at the end of each process."""
+    """A thousand instances and a million steps too; leaks are counted as a process ends."""
     clean(checked.run("hostile"))
     clean(checked.run("many", 1000, 40, 1000))
     clean(checked.run("million", 1_000_000))

@@ -1,4 +1,4 @@
-"""FMPy's own simulation loop on the native FMUs: with and without event mode, with an input signal."""
+"""FMPy's own simulation loop on the native FMUs: with and without event mode and input signal."""
 
 import fmpy
 import numpy as np

@@ -1,0 +1,57 @@
+"""What is made once for all workers: the FMUs of the present sources, the compiled kernel."""
+
+import os
+import pickle
+import re
+import zipfile
+from pathlib import Path
+
+from filelock import FileLock
+
+from fmu_src.export import forms
+from fmu_src.export.errors import CannotExport
+
+ROOT = Path(__file__).resolve().parents[1]
+BUILD = ROOT / "build"
+
+
+def guid_inside(path):
+    """The GUID that an FMU bears; None where there is none that can be read."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            text = archive.read("modelDescription.xml").decode()
+    except (OSError, KeyError, zipfile.BadZipFile):
+        return None
+    return re.search(r'\b(?:guid|instantiationToken)="([^"]*)"', text)[1]
+
+
+def refresh(build):
+    """Export the FMUs that are missing or out of date.
+
+    Returns
+    -------
+    dict of str to CannotExport
+        What cannot be made here, as ``FORM/NAME``, and why.
+    """
+    reasons = {}
+    build.mkdir(exist_ok=True)
+    with FileLock(build / ".lock"):
+        for form in forms.FORMS:
+            for name in forms.MODELS:
+                if guid_inside(build / form / f"{name}.fmu") != forms.guid(name, form):
+                    try:
+                        forms.export(name, form, build)
+                    except CannotExport as reason:
+                        reasons[f"{form}/{name}"] = reason
+    return reasons
+
+
+def once(tmp_path_factory, name, make):
+    """What ``make()`` returns, called by the first worker of the session that comes here."""
+    base = tmp_path_factory.getbasetemp()
+    folder = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    kept = folder / f"{name}.pickle"
+    with FileLock(folder / f"{name}.lock"):
+        if not kept.exists():
+            kept.write_bytes(pickle.dumps(make()))
+        return pickle.loads(kept.read_bytes())
