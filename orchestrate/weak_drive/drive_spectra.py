@@ -1,0 +1,256 @@
+"""Figure 3: spectra of accelerations where a motor of limited power hangs at the resonance.
+
+The voltage is taken slowly to a value below the jump and held. Then the displacement in space is
+sampled over whole revolutions, and its spectrum multiplied by the square of the frequency: an
+impact is a kink of the displacement, and so is not missed between samples.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..access.exported import finder
+from ..access.instance import Instance
+from ..access.models import OSCILLATOR, SHAKER
+from ..errors import InputError
+from ..response.spectra import amplitude_spectrum
+from ..running.job import Inputs, Job, Table
+from ..running.runner import answer
+from ..structures.drive import Drive
+from ..structures.structure import Structure
+from . import averaged
+from .couple import Run, couple_job, scheme_of
+from .revolutions import TURN
+from .schedule import Ramp, check
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+KINDS = ("bonded", "delaminated")
+
+
+@dataclass(frozen=True)
+class DriveSpectraJob(Job):
+    """Spectra of the coupled system at one voltage, bonded and delaminated.
+
+    Attributes
+    ----------
+    structure : Structure
+    drive : Drive
+    approach : Ramp
+        How the voltage gets where it is held.
+    hold : float
+        Time at that voltage before the record, s.
+    step : float
+        Communication step until then, s.
+    revolutions, points : int
+        Of the record, and samples in each.
+    highest : float
+        Highest line, as a multiple of the motor's speed.
+    """
+
+    structure: Structure
+    drive: Drive
+    approach: Ramp
+    hold: float
+    step: float
+    revolutions: int
+    points: int
+    highest: float
+
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+
+    def count(self) -> int:
+        """Bonded and delaminated."""
+        return len(KINDS)
+
+    def items(self, inputs: Inputs) -> Sequence[Structure]:
+        """Both structures."""
+        return self.structure.as_bonded(), self.structure.as_delaminated()
+
+    def orders(self) -> np.ndarray:
+        """Lines as multiples of the motor's speed."""
+        orders = np.arange(self.revolutions * self.points // 2 + 1) / self.revolutions
+        return np.asarray(orders[orders <= self.highest])
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Structure], carry: Table | None
+    ) -> Table:
+        """Spectra of both masses and the motor's speed."""
+        found = [self.record(fmus, structure) for structure in items]
+        lines = len(self.orders())
+        spectra, speeds = [], []
+        for displacement, speed in found:
+            frequency, amplitude = amplitude_spectrum(displacement, TURN / speed / self.points)
+            spectra.append((frequency**2 * amplitude)[:, :lines])
+            speeds.append(speed)
+        return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
+
+    def record(self, fmus: Mapping[str, Path], structure: Structure) -> tuple[np.ndarray, float]:
+        """Displacements of both masses in space, shape (2, samples), and the mean speed."""
+        scheme = scheme_of(structure, self.step, "rollback", 0.0)
+        job = couple_job(structure, self.drive, self.approach, scheme)
+        with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
+            run = Run(job, oscillator, shaker)
+            try:
+                ends = run.revolve(
+                    range(math.ceil((self.approach.duration + self.hold) / self.step))
+                )["time"][-self.revolutions - 1 :]
+                if len(ends) < 2:
+                    raise InputError(
+                        f"not two revolutions of the motor at {self.approach.last:g} V: expected "
+                        "a voltage that turns it, and time"
+                    )
+                speed = TURN * (len(ends) - 1) / (ends[-1] - ends[0])
+                return self.sample(run, TURN / speed / self.points), float(speed)
+            finally:
+                run.master.close()
+
+    def sample(self, run: Run, interval: float) -> np.ndarray:
+        """Displacements of both masses in space at equal times."""
+        master, voltage, rows = run.master, self.approach.last, []
+        for _ in range(self.revolutions * self.points):
+            master.step(voltage, interval)
+            motion, box = master.motion, master.shaking.box_position
+            rows.append((motion.x1 + box, motion.x2 + box))
+        return np.array(rows).T
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Amplitudes over the lines."""
+        import xarray as xr
+
+        orders, speeds = self.orders(), table["speed"]
+        variables = {
+            "acceleration": (
+                ("kind", "mass", "order"),
+                table["acceleration"],
+                {"units": "m/s2", "long_name": "amplitude of the acceleration in space"},
+            ),
+            "speed": ("kind", speeds, {"units": "rad/s", "long_name": "mean speed of the motor"}),
+        }
+        coordinates = {
+            "kind": ("kind", list(KINDS), {"long_name": "structure"}),
+            "mass": ("mass", [1, 2], {"units": "1", "long_name": "mass"}),
+            "order": ("order", orders, {"units": "1", "long_name": "multiple of the speed"}),
+            "line": (
+                ("kind", "order"),
+                np.outer(speeds, orders),
+                {"units": "rad/s", "long_name": "frequency of the line"},
+            ),
+        }
+        title = f"Spectra of the weak drive at {self.approach.last:g} V"
+        return xr.Dataset(variables, coordinates, {"title": title})
+
+
+def voltage_at_resonance(structure: Structure, drive: Drive, share: float = 0.6) -> float:
+    """A voltage at which the motor hangs at the resonance, V.
+
+    Parameters
+    ----------
+    structure : Structure
+    drive : Drive
+    share : float
+        Of the way from the jump down to the jump up of the bonded structure, by the averaged
+        theory; delaminated it jumps up earlier.
+
+    Raises
+    ------
+    InputError
+        Where the theory knows no jumps.
+    """
+    folds = averaged.folds(structure, drive)
+    if not folds:
+        raise InputError("voltage: expected one, in V; by the averaged theory there is no jump")
+    up, down = folds[0].eta0, folds[-1].eta0
+    return (down + share * (up - down)) * drive.volts(structure)
+
+
+def drive_spectra(
+    structure: Structure,
+    drive: Drive,
+    *,
+    voltage: float | None = None,
+    begin: float | None = None,
+    rate: float | None = None,
+    hold: float | None = None,
+    step: float | None = None,
+    revolutions: int = 64,
+    points: int = 512,
+    highest: float = 12.0,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Amplitude spectra of the masses' accelerations in space, shaken by a motor of limited power.
+
+    Parameters
+    ----------
+    structure : Structure
+        Whether it is bonded does not matter: both kinds are answered.
+    drive : Drive
+    voltage : float, optional
+        V; by default between the jumps of the averaged theory, see :func:`voltage_at_resonance`.
+    begin : float, optional
+        Voltage from which it is approached, V; 0.85 of it by default.
+    rate : float, optional
+        Of the approach, V/s; 1e-4 K omega^2 by default.
+    hold : float, optional
+        Time at the voltage before the record, s; 800/omega by default.
+    step : float, optional
+        Communication step until the record begins, s; 0.1/omega by default.
+    revolutions, points : int
+        Revolutions in the record, which make the lines' distance, and samples in each.
+    highest : float
+        Highest line, as a multiple of the motor's speed.
+    **running
+        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``acceleration`` (m/s2) over ``kind`` (bonded, delaminated), ``mass`` (1, 2) and ``order``,
+        multiples of the motor's mean ``speed`` (rad/s); ``line`` has the frequencies in rad/s.
+
+    Raises
+    ------
+    InputError
+        Where a number is out of its range, or the motor does not turn.
+
+    Notes
+    -----
+    What lies above half the sampling rate folds back; for a kink it falls with the square of the
+    frequency.
+
+    Examples
+    --------
+    >>> from orchestrate import Drive, Structure
+    >>> from orchestrate.weak_drive.drive_spectra import drive_spectra
+    >>> quick = Structure.from_file("quick"), Drive.from_file("quick")
+    >>> short = dict(begin=1.29, hold=50.0, revolutions=8, points=64)
+    >>> found = drive_spectra(*quick, voltage=1.3, **short)
+    >>> found.acceleration.dims, bool(found.acceleration.sel(order=1.0, mass=1).min() > 1.0)
+    (('kind', 'mass', 'order'), True)
+    """
+    omega, volts = structure.omega, drive.volts(structure)
+    target = voltage_at_resonance(structure, drive) if voltage is None else float(voltage)
+    first = 0.85 * target if begin is None else float(begin)
+    speed = 1e-4 * volts * omega if rate is None else float(rate)
+    hold = 800.0 / omega if hold is None else float(hold)
+    check("hold", hold, "s", low=0.0)
+    for name, number, least in (("revolutions", revolutions, 1), ("points", points, 4)):
+        if not isinstance(number, int) or number < least:
+            raise InputError(f"{name} = {number}: expected a whole number >= {least}")
+    if not 0.0 < highest <= points / 2:
+        raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
+    approach = Ramp(first, target, speed, settle=300.0 / omega, back=False)
+    step = scheme_of(structure, step, "rollback", 0.0).h
+    record = (revolutions, points, float(highest))
+    job = DriveSpectraJob("drive_spectra", structure, drive, approach, hold, step, *record)
+    return answer(job, running, finder(running))

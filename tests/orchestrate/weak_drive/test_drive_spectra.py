@@ -1,0 +1,70 @@
+"""Figure 3 through the coupled system: at the resonance, its lines, and no folding back."""
+
+import numpy as np
+import pytest
+
+from orchestrate.errors import InputError
+from orchestrate.weak_drive import averaged
+from orchestrate.weak_drive.drive_spectra import drive_spectra, voltage_at_resonance
+
+from .coupled import BEAM, QUICK
+
+SHORT = {"jobs": 1, "rate": 4e-4, "hold": 400.0, "revolutions": 32, "progress": False}
+
+
+@pytest.fixture(scope="module")
+def quick():
+    return drive_spectra(*QUICK, points=256, **SHORT)
+
+
+def line(found, kind, order):
+    return float(found.acceleration.sel(kind=kind, mass=1, order=order))
+
+
+def test_lines(quick):
+    """One line where the masses are glued; all harmonics and halves of them where they knock."""
+    bonded = [line(quick, "bonded", order) for order in (1.0, 2.0, 3.0, 0.5)]
+    assert max(bonded[1:]) < 1e-3 * bonded[0]
+    delaminated = [line(quick, "delaminated", order) for order in np.arange(0.5, 12.5, 0.5)]
+    assert min(delaminated) > 0.01 * bonded[0]
+    between = quick.acceleration.sel(kind="delaminated", mass=1, order=slice(1.1, 11.9))
+    assert float(between.where(between.order % 0.5 != 0).median()) < 1e-3 * bonded[0]
+
+
+def test_the_line_is_that_of_the_averaged_theory(quick):
+    speed = float(quick.speed.sel(kind="bonded"))
+    H, ratio = averaged.transfer(*QUICK, speed)
+    expected = abs(H * (1.0 + ratio)) * speed**4 * QUICK.drive.length
+    assert line(quick, "bonded", 1.0) == pytest.approx(expected, rel=0.01)
+
+
+def test_twice_as_many_samples_show_the_same(quick):
+    """An impact is a kink of what is sampled: little folds back from above half the rate."""
+    finer = drive_spectra(*QUICK, points=512, **SHORT)
+    for order in (0.5, 3.0, 7.5, 12.0):
+        expected = line(finer, "delaminated", order)
+        assert line(quick, "delaminated", order) == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize("system", [QUICK, BEAM], ids=["quick", "beam"])
+def test_the_default_voltage_is_at_the_resonance(system):
+    """The speed hangs between that of the fold and the amplitude's half, bonded and delaminated."""
+    omega, volts = system.structure.omega, system.drive.volts(system.structure)
+    quickly = {"rate": 4e-4 * volts * omega, "hold": 100.0 / omega}
+    found = drive_spectra(*system, points=64, **{**SHORT, **quickly})
+    up, _ = averaged.folds(*system)
+    Omega = found.speed.values / omega
+    assert np.all(averaged.amplitude(*system, Omega) > 0.5 * averaged.amplitude(*system, up.Omega))
+    assert np.all(Omega < up.Omega)
+
+
+def test_mistakes():
+    strong = QUICK.drive.replace(armature_resistance=1e-3 * QUICK.drive.armature_resistance)
+    with pytest.raises(InputError, match="voltage: expected one"):
+        voltage_at_resonance(QUICK.structure, strong)
+    with pytest.raises(InputError, match="points = 3: expected a whole number >= 4"):
+        drive_spectra(*QUICK, points=3)
+    with pytest.raises(InputError, match="highest = 99: expected 0 < highest <= points/2 = 32"):
+        drive_spectra(*QUICK, points=64, highest=99)
+    with pytest.raises(InputError, match="not two revolutions"):
+        drive_spectra(*QUICK, voltage=0.001, begin=0.0009, hold=1.0, progress=False)
