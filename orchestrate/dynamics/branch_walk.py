@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..access import EventInstance
 from ..errors import InputError
 from .bifurcations import (
     CONTACT_BEGUN,
@@ -22,15 +21,21 @@ from .bifurcations import (
 from .closed_form import Floats
 from .continuation import NoConvergenceError, Root, Walk, corrected, held
 from .families import Family, Setting
-from .guesses import Guess, from_state
-from .impact_sequence import CLOSING, PHASE, POSITION, TURN, Sequence
-from .orbit_search import solve, why_no_motion
-from .turning_points import nearest, phase_zero, turning_points
+from .impact_sequence import CLOSING, IMPACT, PHASE, POSITION, RELEASE, STICK, TURN, Ring, Sequence
+from .orbit_search import solve
+from .turning_points import nearest, turning_points
 
 FIRST_STEP = 1e-3
 SWITCHED = 1e-3  # step away from a bifurcation onto the branch that leaves there
 SHORT_OF = 1.0 - 1e-6  # of a step to the branch's end: where multipliers are looked at
-LIMIT, STUCK, LONG, CLOSED = "limit", "no convergence", "most points", "no orbit of another sequence"
+AT_BEGIN = 1e-7  # of a step: what is found before was there when the step began
+CHANGES = 10  # impacts of a chattering that come or go in one step
+LIMIT, STUCK, LONG, CLOSED = (
+    "limit",
+    "no convergence",
+    "most points",
+    "no orbit of another sequence",
+)
 
 
 @dataclass
@@ -68,7 +73,7 @@ class Pace:
     most: int
 
 
-def follow(instance: EventInstance, start: Look, pace: Pace) -> Leg:
+def follow(start: Look, pace: Pace) -> Leg:
     """Follow a branch from an orbit along its tangent until it ends."""
     leg = Leg([start])
     walk = Walk(start.family, start.root, min(FIRST_STEP, pace.longest), pace.longest)
@@ -76,21 +81,21 @@ def follow(instance: EventInstance, start: Look, pace: Pace) -> Leg:
         if len(leg.looks) > pace.most:
             leg.end = LONG
             break
-        advance(instance, leg, walk)
+        advance(leg, walk)
     return leg
 
 
-def advance(instance: EventInstance, leg: Leg, walk: Walk) -> None:
+def advance(leg: Leg, walk: Walk) -> None:
     """One step on, or the end."""
     before = leg.looks[-1]
     try:
-        root, length = walk.ahead(lambda root: orderly(walk.curve, root))
-        after = Look(walk.curve, root)
-        which = outside(after)
-        if which is not None:
-            after = Look(walk.curve, walk.land(after.family.size, which))
-            length = step_to(walk, after)
-            leg.end = LIMIT
+        limit = limit_ahead(walk)
+        if limit is None:
+            root, length = walk.ahead(lambda root: orderly(walk.curve, root))
+            after = Look(walk.curve, root)
+        else:
+            after = Look(walk.curve, walk.land(walk.curve.size, limit))
+            length, leg.end = step_to(walk, after), LIMIT
         found = located(walk, before, after, length)
     except NoConvergenceError:
         leg.end = STUCK
@@ -102,7 +107,7 @@ def advance(instance: EventInstance, leg: Leg, walk: Walk) -> None:
             leg.end = KINDS[kind]
             return
     if after.wrong_contact:
-        after = resequenced(instance, leg, walk, after, length)
+        after = resequenced(leg, walk, after, length)
     walk.curve, walk.root = after.family, after.root
     leg.looks.append(after)
     rescale(walk)
@@ -121,17 +126,22 @@ def rescale(walk: Walk) -> None:
 
 
 def located(walk: Walk, before: Look, after: Look, length: float) -> list[tuple[float, Look, int]]:
-    """Bifurcations in a step, in order; up to the one that ends the branch, if any."""
+    """Bifurcations in a step, in order; up to the one that ends the branch, if any.
+
+    Not the one that the step begins at.
+    """
+
+    def places(kinds: list[int]) -> list[tuple[float, Look, int]]:
+        found = [(*locate(walk, before, after, length, kind), kind) for kind in kinds]
+        return sorted((one for one in found if one[0] > AT_BEGIN * length), key=lambda one: one[0])
+
     kinds = after.changed(before)
-    ends = [(*locate(walk, before, after, length, kind), kind) for kind in kinds if kind in ENDS]
+    ends = places([kind for kind in kinds if kind in ENDS])[:1]
     if ends:  # multipliers are infinite where an impact grazes
-        last = min(ends, key=lambda one: one[0])
-        length = last[0] * SHORT_OF
+        length = ends[0][0] * SHORT_OF
         after = Look(before.family, walk.at(length))
-        kinds, ends = after.changed(before), [last]
-    inside = [kind for kind in kinds if kind not in ENDS]
-    found = [(*locate(walk, before, after, length, kind), kind) for kind in inside]
-    return [*sorted(found, key=lambda one: one[0]), *ends]
+        kinds = after.changed(before)
+    return [*places([kind for kind in kinds if kind not in ENDS]), *ends]
 
 
 def step_to(walk: Walk, look: Look) -> float:
@@ -146,51 +156,77 @@ def orderly(family: Family, root: Root) -> bool:
     return bool((ring.durations[~ring.contact] > 0.0).all())
 
 
-def outside(look: Look) -> float | None:
-    """The limit that an orbit's parameter has passed, if any."""
-    (low, high), value = look.family.setting.limits[0], look.root.unknowns[look.family.size]
-    rising = look.root.tangent[look.family.size] > 0.0
-    if value >= high and rising:
-        return high
-    if value <= low and not rising:
-        return low
-    return None
+def limit_ahead(walk: Walk) -> float | None:
+    """The parameter's limit that the next step would pass, if any."""
+    family, root = walk.curve, walk.root
+    (low, high), which = family.setting.limits[0], family.size
+    rate = float(root.tangent[which]) * family.scale[which]
+    value = float(root.unknowns[which])
+    limit = high if rate > 0.0 else low
+    return limit if abs(limit - value) <= abs(rate) * walk.step else None
 
 
-def resequenced(
-    instance: EventInstance, leg: Leg, walk: Walk, look: Look, length: float
-) -> Look:
-    """The orbit with the impacts that the FMU has there, where chattering ends earlier or later than before.
+def resequenced(leg: Leg, walk: Walk, look: Look, length: float) -> Look:
+    """The orbit with the impacts that it has there, where chattering ends earlier or later than before.
 
     Where permanent contact is lost or begins, the branch ends: infinitely many impacts would graze
     one after the other.
     """
-    had = bool(look.ring.contact.any())
-    values = look.root.unknowns[look.family.size :]
+    found = look
     try:
-        family, root = solve(look.family.setting, sequence_at(instance, look, values), values)
+        for _ in range(CHANGES):
+            if not found.wrong_contact:
+                turned = look.root.tangent[-1] * found.root.tangent[-1] < 0.0
+                return backwards(found) if turned else found
+            found = rechattered(found)
     except NoConvergenceError:
-        leg.end = CLOSED
-        family, root = look.family, look.root
-    if had != bool(family.sequence.sticks.any()) or leg.end:
-        return contact_changes(leg, walk, look, length, had)
-    if family.sequence == look.family.sequence or why_no_motion(family.ring(root.unknowns)):
-        leg.end = CLOSED
-    turned = look.root.tangent[-1] * root.tangent[-1] < 0.0
-    return Look(family, replace(root, tangent=-root.tangent) if turned else root)
+        pass
+    return contact_changes(leg, walk, look, length)
 
 
-def sequence_at(instance: EventInstance, look: Look, values: Floats) -> Guess:
-    """What the FMU runs through from an orbit's state at phase 0."""
-    point = look.family.setting.point(values)
-    state = phase_zero(look.ring)[0] * point.scale
-    state[1] = max(state[0], state[1])
-    return from_state(instance, point, look.ring.form, state, look.ring.sequence.periods)
+def rechattered(look: Look) -> Look:
+    """The orbit with one impact more before its contact, or with those left out that would come after one that sticks."""
+    ring, kinds = look.ring, list(look.ring.sequence.kinds)
+    nodes, missing = look.ring.nodes, look.sticking
+    impacts = ~(ring.contact | ring.sequence.releases)
+    early = np.flatnonzero(impacts & (missing < 0.0))
+    if len(early):
+        first = int(early[0])
+        kinds, nodes = cut(kinds, nodes, first)
+    else:
+        last = int(np.flatnonzero(ring.contact & (missing >= 0.0))[0])
+        kinds = [*kinds[:last], IMPACT, STICK, *kinds[last + 1 :]]
+        nodes = np.insert(nodes, last + 1, next_impact(ring, last), axis=0)
+    values = look.root.unknowns[look.family.size :]
+    sequence = Sequence(ring.sequence.periods, tuple(kinds))
+    found = Look(*solve(look.family.setting, (sequence, nodes), values, most=12, furthest=1.0))
+    if (found.ring.durations <= 0.0).any():
+        raise NoConvergenceError("no time is left for contact")
+    return found
 
 
-def contact_changes(leg: Leg, walk: Walk, look: Look, length: float, had: bool) -> Look:
+def cut(kinds: list[int], nodes: Floats, stick: int) -> tuple[list[int], Floats]:
+    """Nodes without the impacts between one that sticks and the release after it."""
+    after = [i for i in range(stick + 1, len(kinds)) if kinds[i] == RELEASE]
+    if not after:
+        raise NoConvergenceError("an impact sticks that is not of a chattering")
+    kept = [*range(stick + 1), *range(after[0], len(kinds))]
+    return [STICK if i == stick else kinds[i] for i in kept], nodes[kept]
+
+
+def next_impact(ring: Ring, node: int) -> Floats:
+    """The impact after one with a short flight: a parabola (17)."""
+    phase, position, velocity, closing = ring.nodes[node]
+    parting = ring.form.e * closing
+    time = 2.0 * parting / -float(ring.form.force(position, velocity))
+    if not 0.0 < time < ring.durations[node]:
+        raise NoConvergenceError("no time is left for another impact")
+    return np.array([phase + ring.form.eta * time, position + velocity * time, velocity, parting])
+
+
+def contact_changes(leg: Leg, walk: Walk, look: Look, length: float) -> Look:
     """The end of a branch where permanent contact is lost, or begins."""
-    kind = CONTACT_LOST if had else CONTACT_BEGUN
+    kind = CONTACT_LOST if look.contact_test(CONTACT_LOST) <= 0.0 else CONTACT_BEGUN
     _, found = locate(walk, leg.looks[-1], look, length, kind)
     leg.events.append((kind, found))
     leg.end = KINDS[kind]
@@ -220,7 +256,9 @@ def leaving(kind: int, look: Look) -> Look:
     if kind == GRAZING:
         return without_grazing(look)
     expected = "period doubling or grazing"
-    raise InputError(f"switch: {KINDS[kind]}; no branch of orbits leaves there, expected {expected}")
+    raise InputError(
+        f"switch: {KINDS[kind]}; no branch of orbits leaves there, expected {expected}"
+    )
 
 
 def doubled(look: Look) -> Look:

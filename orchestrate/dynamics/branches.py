@@ -78,8 +78,8 @@ class BranchJob(Question):
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
         """Follow it."""
+        legs = followed(self)
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            legs = followed(instance, self)
             return table(instance, self.setting, legs)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
@@ -97,7 +97,7 @@ class BranchJob(Question):
         return dataset.set_coords([key for key in coordinates(setting, along, "point")])
 
 
-def followed(instance: EventInstance, job: BranchJob) -> list[Leg]:
+def followed(job: BranchJob) -> list[Leg]:
     """The branch in both directions; in one, where it leaves another.
 
     Raises
@@ -111,11 +111,11 @@ def followed(instance: EventInstance, job: BranchJob) -> list[Leg]:
         family, root = solve(job.setting, guess, np.array([job.value]))
         start = Look(family, root)
         if job.switch >= 0:
-            return [follow(instance, leaving(job.switch, start), pace)]
+            return [follow(leaving(job.switch, start), pace)]
     except NoConvergenceError as reason:
         expected = "expected an orbit of this structure"
         raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
-    return [follow(instance, look, pace) for look in (backwards(start), start)]
+    return [follow(look, pace) for look in (backwards(start), start)]
 
 
 def table(instance: EventInstance, setting: Setting, legs: list[Leg]) -> Table:
@@ -249,10 +249,15 @@ def branch(
         value = start_value(start, over, switch, structure)
     nodes, kind = begin_of(start, switch)
     if not low_high[0] <= value <= low_high[1]:
-        raise InputError(f"limits = {low_high!r}: {over} = {value!r} at the start; expected it inside")
+        raise InputError(
+            f"limits = {low_high!r}: {over} = {value!r} at the start; expected it inside"
+        )
     fixed = tuple((name, number) for name, number in given if name != over)
-    setting = Setting(structure, fixed, (over,), (low_high,), finite(ACCELERATION, box_acceleration))
-    setting.form(np.array([value]))
+    setting = Setting(
+        structure, fixed, (over,), (low_high,), finite(ACCELERATION, box_acceleration)
+    )
+    for limit in low_high:  # what is out of range is said before any work
+        setting.form(np.array([limit]))
     job = BranchJob(
         name=f"branch_{structure.label()}_{over}",
         structure=structure,

@@ -16,6 +16,16 @@ from ..structures import Excitation, Structure
 Floats = NDArray[np.float64]
 
 
+BOTH = slice(0, 2)
+
+
+def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
+    """Which two oscillators two masses are: 1 and 2, or twice 3 where they are one."""
+    if not np.any(contact):
+        return BOTH
+    return np.where(np.reshape(contact, (-1, 1)), 2, np.arange(2))
+
+
 @dataclass(frozen=True)
 class ClosedForm:
     """The numbers that the motion between impacts is made of.
@@ -63,7 +73,9 @@ class ClosedForm:
         both, springs = m1 + m2, structure.k1 + structure.k2
         unit = omega * omega
         eta = excitation.frequency / omega
-        dampers = np.array([structure.d1 / m1, structure.d2 / m2, (structure.d1 + structure.d2) / both])
+        dampers = np.array(
+            [structure.d1 / m1, structure.d2 / m2, (structure.d1 + structure.d2) / both]
+        )
         damping = dampers / (2.0 * omega)
         stiffness = np.array([structure.k1 / m1, structure.k2 / m2, springs / both]) / unit
         stiffness[0] = 1.0
@@ -153,20 +165,25 @@ class ClosedForm:
         -------
         ndarray, shape (n, 4)
         """
-        which = np.where(np.reshape(contact, (-1, 1)), 2, np.array([[0, 1]]))
+        which = oscillators(contact)
         cosine, sine = np.cos(phase)[:, None], np.sin(phase)[:, None]
         a, b = self.cosine[which], self.sine[which]
-        position = a * cosine + b * sine + self.offset[which]
-        return np.concatenate([position, self.eta * (b * cosine - a * sine)], axis=1)
+        found = np.empty((len(phase), 4))
+        found[:, :2] = a * cosine + b * sine + self.offset[which]
+        found[:, 2:] = self.eta * (b * cosine - a * sine)
+        return found
 
     def field(
         self, state: Floats, phase: Floats, contact: NDArray[np.bool_] | bool = False
     ) -> Floats:
         """The derivative of states by tau: the right-hand side of (6), shape (n, 4)."""
-        which = np.where(np.reshape(contact, (-1, 1)), 2, np.array([[0, 1]]))
+        which = oscillators(contact)
         drive = np.sin(phase)[:, None] + self.offset[0] * self.stiffness[0]
-        rate = drive - 2.0 * self.damping[which] * state[:, 2:] - self.stiffness[which] * state[:, :2]
-        return np.concatenate([state[:, 2:], rate], axis=1)
+        found = np.empty((len(phase), 4))
+        found[:, :2] = state[:, 2:]
+        found[:, 2:] = drive - 2.0 * self.damping[which] * state[:, 2:]
+        found[:, 2:] -= self.stiffness[which] * state[:, :2]
+        return found
 
     def force(self, position: Floats, velocity: Floats) -> Floats:
         """The contact force f (18): negative where the masses are pressed together."""

@@ -20,7 +20,7 @@ from .closed_form import Floats
 
 
 DENSE = 40  # equations up to which they are solved as if no coefficient were zero
-NEARLY = 1e-8  # a step that shrinks no more from here on is rounding
+NEARLY = 1e-6  # a step that shrinks no more from here on is rounding
 ROUNDED = 0.05
 
 
@@ -65,7 +65,7 @@ def corrected(
     guess: Floats,
     across: Floats,
     *,
-    tolerance: float = 1e-11,
+    tolerance: float = 1e-8,
     most: int = 8,
     furthest: float = 0.5,
 ) -> Root:
@@ -106,18 +106,17 @@ def corrected(
         if not length < np.inf or float(np.abs(way).max()) > furthest:
             raise NoConvergenceError("Newton's method went too far")
         if length <= tolerance or before * ROUNDED <= length <= before <= NEARLY:
-            return finished(curve, unknowns, across, iteration)
+            return finished(curve, unknowns, matrix, iteration)
     raise NoConvergenceError(f"no root after {most} iterations")
 
 
-def finished(curve: Curve, unknowns: Floats, along: Floats, iterations: int) -> Root:
-    """A root with its tangent, on the side of a direction."""
+def finished(curve: Curve, unknowns: Floats, matrix: Floats, iterations: int) -> Root:
+    """A root with its tangent, from the equations' last matrix."""
     try:
-        matrix = curve.jacobian(unknowns) * curve.scale
         left = float(np.abs(curve.residual(unknowns)).max(initial=0.0))
     except InputError as error:
         raise NoConvergenceError(str(error)) from None
-    return Root(unknowns, null_vector(matrix, along), left, iterations)
+    return Root(unknowns, null_vector(matrix), left, iterations)
 
 
 def solved(matrix: Floats, right: Floats) -> Floats:
@@ -142,14 +141,14 @@ def solved(matrix: Floats, right: Floats) -> Floats:
     return found
 
 
-def null_vector(matrix: Floats, along: Floats) -> Floats:
-    """The direction that a matrix of shape (n, n + 1) maps to zero, of length 1, on the side of another."""
-    last = np.zeros(len(along))
+def null_vector(matrix: Floats) -> Floats:
+    """The direction along a curve, of length 1, on the side of the last row; the other rows map it to zero."""
+    last = np.zeros(len(matrix))
     last[-1] = 1.0
     try:
-        found = solved(np.vstack([matrix, along]), last)
-    except np.linalg.LinAlgError:  # it is across: a fold, where a parameter was held
-        found = np.linalg.svd(matrix)[2][-1]
+        found = solved(matrix, last)
+    except np.linalg.LinAlgError:  # it is across the last row: a fold, where a parameter was held
+        found = np.linalg.svd(matrix[:-1])[2][-1]
     tangent: Floats = found / np.linalg.norm(found)
     return tangent
 

@@ -54,9 +54,7 @@ class OrbitRecord:
     verdict: Verdict
 
     @classmethod
-    def of(
-        cls, family: Family, unknowns: Floats, residual: float, verdict: Verdict
-    ) -> OrbitRecord:
+    def of(cls, family: Family, unknowns: Floats, residual: float, verdict: Verdict) -> OrbitRecord:
         """All about a root."""
         ring = family.ring(unknowns)
         turns = turning_points(ring)
@@ -176,7 +174,9 @@ def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
         "multiplier_product": variable(
             row, table["product"], "1", "their product as dampers and impacts dictate it"
         ),
-        "stable": yes_or_no(row, size[:, 0] < 1.0, "whether all multipliers lie in the unit circle"),
+        "stable": yes_or_no(
+            row, size[:, 0] < 1.0, "whether all multipliers lie in the unit circle"
+        ),
         "exponent": variable(
             row, exponent, "1", "largest Lyapunov exponent, per unit of tau, from the multipliers"
         ),
@@ -230,7 +230,9 @@ def node_variables(table: Table, row: str) -> dict[str, Variable]:
     text = "closing speed before the impact over omega a eta^2"
     return {
         "node_kind": flags(along, table["kinds"], "what happens", KINDS),
-        "node_phase": variable(along, nodes[:, :, PHASE], "rad", "phase of the box, where it happens"),
+        "node_phase": variable(
+            along, nodes[:, :, PHASE], "rad", "phase of the box, where it happens"
+        ),
         "node_position": variable(
             along, nodes[:, :, POSITION], "1", "displacement of both masses there over a eta^2"
         ),

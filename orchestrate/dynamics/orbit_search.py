@@ -135,5 +135,3 @@ def single_impacts(form: ClosedForm, periods: int) -> Iterator[Guess]:
     sequence = Sequence(periods, (IMPACT,))
     for phase in np.arange(PHASES) * TURN / PHASES:
         yield from_phases(form, sequence, np.array([phase]))
-
-

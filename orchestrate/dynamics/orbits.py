@@ -116,7 +116,9 @@ class OrbitJob(Question):
         setting = self.setting
         title = f"Periodic orbit of {self.period} periods: {self.structure.label()}"
         whole_table = xr.Dataset(
-            variables(setting, table, "point"), coordinates(setting, table, "point"), {"title": title}
+            variables(setting, table, "point"),
+            coordinates(setting, table, "point"),
+            {"title": title},
         )
         return whole_table.isel(point=0)
 
@@ -161,7 +163,9 @@ def guesses(
         yield from single_impacts(form, job.period)
 
 
-def first_guess(given: Any, structure: Structure, frequency: float, period: int) -> FirstGuess | None:
+def first_guess(
+    given: Any, structure: Structure, frequency: float, period: int
+) -> FirstGuess | None:
     """A user's guess in one of its forms.
 
     Raises

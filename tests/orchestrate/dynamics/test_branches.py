@@ -1,0 +1,207 @@
+"""Branches and their bifurcations against closed forms, and the branches that leave there against the FMU."""
+
+import functools
+
+import numpy as np
+import pytest
+
+from orchestrate.access import OSCILLATOR, EventInstance, begin, find
+from orchestrate.dynamics.branches import branch
+from orchestrate.dynamics.orbits import orbit
+from orchestrate.errors import InputError
+from orchestrate.structures import Excitation, Structure
+
+from .single_impact import SingleImpact, border
+
+PAPER = Structure.nondimensional(e=0.7, D=0.005)
+FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST = range(6)
+STARTS = {1: 1.5, 2: 4.0, 3: 6.0, 4: 8.0}
+WALL_RATE = 1e5  # of mass 2 where it is a wall: the difference is 1e-10
+
+
+@functools.cache
+def windows(period):
+    """The branch with one impact in so many periods, for Figure 6."""
+    return branch(PAPER, eta=STARTS[period], period=period, limits=(1.37, 9.5))
+
+
+def values(found, kind):
+    return found.bifurcation_value.values[found.bifurcation_kind.values == kind]
+
+
+def wall(d1, e):
+    return Structure(m2=1e12, k2=1e12 * WALL_RATE**2, d1=d1, d2=2e12 * WALL_RATE, e=e)
+
+
+TRUE_BORDERS = [
+    (1, 2.5, 2.7),
+    *((2, 3.55, 3.65), (2, 4.7, 4.8)),
+    *((3, 5.65, 5.75), (3, 6.8, 6.9)),
+    *((4, 7.7, 7.85), (4, 8.9, 9.0)),
+]
+
+
+@pytest.mark.parametrize(("period", "low", "high"), TRUE_BORDERS)
+def test_borders_of_stability_are_those_of_the_closed_form(period, low, high):
+    truth = border(period, low, high)
+    found = values(windows(period), TORUS)
+    assert np.abs(found - truth).min() < 1e-9
+
+
+@pytest.mark.parametrize("period", STARTS)
+def test_all_orbits_of_a_branch_are_those_of_the_closed_form(period):
+    found = windows(period)
+    eta = found.eta.values
+    assert (np.diff(eta) > 0.0).all()
+    for i in range(0, len(eta), 10):
+        truth = SingleImpact(float(eta[i]), period)
+        assert found.node_closing.values[i, 0] == pytest.approx(truth.closing, abs=1e-10)
+        assert np.abs(found.multipliers.values[i] @ [1, 1j] - truth.multipliers).max() < (
+            1e-8 * truth.largest
+        )
+    assert found.fmu_same_impacts.values.mean() > 0.99  # but where a flight grazes
+
+
+@pytest.mark.parametrize("period", [2, 3, 4])
+def test_a_window_begins_where_a_flight_grazes(period):
+    """The smallest gap of the closed form's flight is zero there."""
+    found = windows(period)
+    (value,) = values(found, TOUCHING)
+    assert found.attrs["first_end"] == "grazing of a flight"
+    truth = SingleImpact(float(value), period)
+    times = np.linspace(0.0, truth.time, 20_001)[200:-200]
+    lowest = truth.gap(times[::20]).argmin() * 20
+    fine = np.linspace(times[lowest - 20], times[lowest + 20], 201)
+    assert abs(truth.gap(fine).min()) < 1e-9
+
+
+@pytest.mark.parametrize(("kind", "multiplier"), [(FLIP, -1.0), (TORUS, None)])
+def test_multipliers_at_bifurcations(kind, multiplier):
+    found = windows(2)
+    at = found.bifurcation_multipliers.values[found.bifurcation_kind.values == kind] @ [1, 1j]
+    for row in at:
+        if multiplier is None:
+            assert np.abs(np.abs(row) - 1.0).min() < 1e-9
+        else:
+            assert np.abs(row - multiplier).min() < 1e-9
+
+
+def test_period_doubling_against_a_stiff_wall():
+    """At omega = 2.5 and restitution 0.8 the orbit doubles its period at a wall 0.07667521 away."""
+    structure = wall(0.0, 0.8)
+    found = branch(structure, eta=2.5, over="box_acceleration", limits=(-0.1, 0.2))
+    assert np.abs(values(found, FLIP) - 0.07667521).min() < 2e-8
+
+
+def test_impacts_begin_where_the_linear_response_touches():
+    """k = 1, c = 0.1, wall at 1, omega = 1: at the amplitude of force 0.1, from above and from below."""
+    structure = wall(0.1, 0.8)
+    given = {"frequency": 1.0, "over": "amplitude", "box_acceleration": 1.0}
+    above = branch(structure, amplitude=0.2, limits=(0.02, 0.3), **given)
+    assert values(above, GRAZING) == pytest.approx([0.1], abs=1e-9)
+    below = branch(structure, start=above, switch=grazing_of(above), limits=(0.02, 0.3), **given)
+    assert not (below.node_kind.values >= 0).any()
+    assert below.amplitude.values.min() == 0.02
+    again = branch(structure, start=below.isel(point=-1), limits=(0.02, 0.3), **given)
+    assert values(again, TOUCHING) == pytest.approx([0.1], abs=1e-9)
+
+
+def grazing_of(found):
+    return int(np.flatnonzero(found.bifurcation_kind.values == GRAZING)[0])
+
+
+def test_a_doubled_branch_leaves_at_a_period_doubling():
+    first = windows(2)
+    number = int(np.flatnonzero(first.bifurcation_kind.values == FLIP)[0])
+    found = branch(PAPER, start=first, switch=number, limits=(1.37, 9.5))
+    assert found.sizes["sample"] == 4
+    assert found.eta.values[0] == pytest.approx(first.bifurcation_value.values[number], abs=1e-12)
+    later = found.isel(point=slice(3, None))
+    assert (np.abs(later.xi.values[:, :2] - later.xi.values[:, 2:]).max(axis=(1, 2)) > 1e-6).all()
+    assert later.fmu_same_impacts.values.mean() > 0.9
+
+
+def test_an_orbit_with_one_impact_more_leaves_at_a_grazing():
+    first = windows(2)
+    number = int(np.flatnonzero(first.bifurcation_kind.values == TOUCHING)[0])
+    found = branch(PAPER, start=first, switch=number, limits=(1.37, 9.5))
+    assert ((found.node_kind.values == 0).sum(axis=1) == 2).all()
+    assert found.node_closing.values[0].min() == pytest.approx(0.0, abs=1e-12)
+    assert (found.node_closing.values[1:].min(axis=1) > 0.0).all()
+    assert found.fmu_same_impacts.values[1:-1].all()
+    fold = found.isel(bifurcation=found.bifurcation_kind.values == FOLD)
+    assert fold.sizes["bifurcation"] == 1
+    assert fold.bifurcation_value.item() == pytest.approx(found.eta.values.max(), abs=1e-5)
+    assert np.abs(fold.bifurcation_multipliers.values[0] @ [1, 1j] - 1.0).min() < 1e-6
+
+
+def test_permanent_contact_is_followed_until_it_is_lost():
+    found = branch(PAPER, eta=0.41, limits=(0.405, 0.45))
+    assert found.attrs["last_end"] == "loss of permanent contact"
+    assert found.permanent_contact.values.all()
+    assert found.fmu_same_impacts.values.mean() > 0.95
+    (lost,) = values(found, CONTACT_LOST)
+    with EventInstance(find(OSCILLATOR).path) as instance:
+        assert contacts(instance, lost - 1e-5, found) > 0
+        assert contacts(instance, lost + 1e-5, found) == 0
+
+
+def contacts(instance, eta, found):
+    """Permanent contacts of the FMU over 20 periods, from a branch's last orbit on."""
+    excitation = Excitation.nondimensional(eta, PAPER)
+    begin(instance, PAPER, excitation, found.state.values[-1, 0])
+    instance.advance(0.0, 500 * excitation.period)
+    before = instance.get("contact_count")[0]
+    instance.advance(500 * excitation.period, 520 * excitation.period)
+    return instance.get("contact_count")[0] - before
+
+
+@pytest.mark.parametrize("over", ["e", "D", "mu", "kappa"])
+def test_other_parameters_cross_the_same_border(over):
+    """Where the branch over another parameter is stable, the closed form is, and limits are reached exactly."""
+    limits = {"e": (0.3, 1.0), "D": (0.0, 0.1), "mu": (0.8, 1.1), "kappa": (1.1, 1.5)}[over]
+    found = branch(PAPER, eta=4.0, period=2, over=over, limits=limits)
+    ends = [(name, found.attrs[name]) for name in ("first_end", "last_end")]
+    for i, (_, end) in zip((0, -1), ends, strict=True):
+        if end == "limit":
+            assert found[over].values[i] in limits
+    for i in range(0, found.sizes["point"], 7):
+        truth = SingleImpact(4.0, 2, **{over: float(found[over].values[i])})
+        assert np.hypot(*found.multipliers.values[i, 0]) == pytest.approx(truth.largest, abs=1e-8)
+
+
+def test_start_values_and_directions():
+    """The same branch from another orbit of it has the same bifurcations."""
+    one = windows(2)
+    other = branch(PAPER, start=orbit(PAPER, eta=4.5, period=2), limits=(1.37, 9.5))
+    assert other.bifurcation_kind.values.tolist() == one.bifurcation_kind.values.tolist()
+    assert other.bifurcation_value.values == pytest.approx(one.bifurcation_value.values, abs=1e-10)
+
+
+def test_a_result_kept_on_disk_is_the_same(tmp_path):
+    question = {"eta": 1.5, "limits": (1.4, 1.6), "store": tmp_path / "branch.nc"}
+    assert branch(PAPER, **question).identical(branch(PAPER, **question))
+
+
+@pytest.mark.parametrize(
+    ("question", "words"),
+    [
+        ({"over": "ata", "limits": (1.0, 2.0)}, "over = 'ata'"),
+        ({"limits": (2.0, 1.0)}, "limits"),
+        ({"limits": 3.0}, "limits"),
+        ({"over": "e", "limits": (0.1, 0.9)}, "excitation"),
+        ({"over": "e", "limits": (0.1, 1.9), "eta": 1.5}, "e = 1.9"),
+        ({"eta": 4.0, "limits": (1.0, 2.0)}, "eta = 4.0"),
+    ],
+)
+def test_what_cannot_be_asked(question, words):
+    with pytest.raises(InputError, match=words) as caught:
+        branch(PAPER, **question)
+    assert "expected" in str(caught.value)
+
+
+def test_what_cannot_be_switched_to():
+    with pytest.raises(InputError, match="switch: Neimark-Sacker"):
+        branch(PAPER, start=windows(1), switch=0, limits=(1.37, 9.5))
+    with pytest.raises(InputError, match="switch = 99"):
+        branch(PAPER, start=windows(1), switch=99, limits=(1.37, 9.5))
