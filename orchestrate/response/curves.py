@@ -105,7 +105,7 @@ def put_together(
     count = len(impacts.time)
     time = np.concatenate([grid, impacts.time, impacts.time])
     place = np.repeat([0, 1, 2], [len(grid), count, count])
-    order = np.array(np.lexsort((place, time)), dtype=np.intp)
+    order = np.lexsort((place, time))
     parts = [states, impacts.before(point.structure), impacts.state]
     state, time = np.concatenate(parts)[order], time[order]
     kind = kinds(time, state, impacts)
@@ -123,7 +123,7 @@ def kinds(
     """
     kind = np.full(len(time), FLIGHT, dtype=np.int8)
     flights = np.diff(impacts.time)
-    for stick in np.flatnonzero(impacts.sticks):
+    for stick in np.flatnonzero(impacts.sticks).tolist():
         first = stick
         while first > 1 and flights[first - 1] < flights[first - 2]:
             if impacts.sticks[first - 1]:

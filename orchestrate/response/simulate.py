@@ -212,9 +212,10 @@ def simulate(
     xarray.Dataset
         Over ``time`` in s, ``periods*points + 1`` points from the first kept one on: ``x1``,
         ``x2``, ``v1``, ``v2``, ``x_rel``, ``v_rel`` relative to the box; ``a1``, ``a2``, the
-        velocities' derivatives between impacts; ``a1_abs``, ``a2_abs``, accelerations in space; ``box_acceleration``;
-        ``contact_force`` in N and ``in_contact``. Over ``impact``: ``impact_time`` in s,
-        ``impact_velocity``, the closing speed in m/s, ``impulse`` in N s, and ``sticks``.
+        velocities' derivatives between impacts; ``a1_abs``, ``a2_abs``, accelerations in space;
+        ``box_acceleration``; ``contact_force`` in N and ``in_contact``. Over ``impact``:
+        ``impact_time`` in s, ``impact_velocity``, the closing speed in m/s, ``impulse`` in N s,
+        and ``sticks``.
 
     Raises
     ------

@@ -1,0 +1,336 @@
+"""Basins of attraction: which attractor each start of a plane leads to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import OSCILLATOR, REST, STATE, Instance, begin, finder
+from ..errors import InputError
+from ..response.labels import Variable, si_state, variable
+from ..response.questions import Point, Question, one_point, state, whole
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Excitation, Structure
+from .attractors import ATTRACTOR, OF_ATTRACTORS, told_apart
+from .clusters import FEATURES, Telling, attractors_of, clusters, features, response_from
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+Floats = NDArray[np.float64]
+AXES = {  # coordinates of a plane of starts: units, long name
+    "x1": ("m", "displacement of mass 1 at the start"),
+    "x2": ("m", "displacement of mass 2 at the start"),
+    "v1": ("m/s", "velocity of mass 1 at the start"),
+    "v2": ("m/s", "velocity of mass 2 at the start"),
+    "x_rel": ("m", "gap x2 - x1 at the start"),
+    "v_rel": ("m/s", "velocity of the gap at the start"),
+    "phase": ("rad", "phase of the box at the start"),
+}
+GAPS = {"x_rel": ("x1", "x2"), "v_rel": ("v1", "v2")}
+
+
+class Side(NamedTuple):
+    """One side of the plane: equally spaced values of a coordinate.
+
+    Attributes
+    ----------
+    name : str
+        Of ``AXES``.
+    low, high : float
+    number : int
+    """
+
+    name: str
+    low: float
+    high: float
+    number: int
+
+    def values(self) -> Floats:
+        """The coordinate's values."""
+        return np.linspace(self.low, self.high, self.number)
+
+
+class Plane(NamedTuple):
+    """Starts in a plane.
+
+    Attributes
+    ----------
+    point : Point
+    x, y : Side
+    at : tuple of float
+        State in whose neighbourhood the plane lies: x1, x2 in m, v1, v2 in m/s.
+    """
+
+    point: Point
+    x: Side
+    y: Side
+    at: tuple[float, ...]
+
+    def starts(self) -> tuple[Floats, Floats]:
+        """States of all starts, shape (y.number * x.number, 4), and phases, row by row."""
+        y, x = np.meshgrid(self.y.values(), self.x.values(), indexing="ij")
+        given = {self.x.name: x.ravel(), self.y.name: y.ravel()}
+        columns = dict(zip(STATE, np.array(self.at)[:, None] + np.zeros(x.size), strict=True))
+        columns |= {name: values for name, values in given.items() if name in STATE}
+        for name, (one, two) in GAPS.items():
+            if name in given:
+                columns[one], columns[two] = apart(given, name, columns[one], columns[two])
+        phase = given.get("phase", np.full(x.size, self.point.excitation.phase))
+        return np.column_stack([columns[name] for name in STATE]), phase
+
+
+def apart(
+    given: Mapping[str, Floats], name: str, one: Floats, two: Floats
+) -> tuple[Floats, Floats]:
+    """What both masses have, from the difference and what one has, or their mean."""
+    first, second = GAPS[name]
+    if first in given:
+        return one, one + given[name]
+    if second in given:
+        return two - given[name], two
+    middle, half = 0.5 * (one + two), 0.5 * given[name]
+    return middle - half, middle + half
+
+
+class Start(NamedTuple):
+    """A start of the plane: state in m and m/s, and phase of the box in rad."""
+
+    point: Point
+    state: tuple[float, ...]
+    phase: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class BasinJob(Question):
+    """A plane of starts.
+
+    Attributes
+    ----------
+    excitation : Excitation
+        Its phase is that of all starts where ``phase`` is not a coordinate.
+    x, y : Side
+    at : tuple of float
+    telling : Telling
+    """
+
+    excitation: Excitation
+    x: Side
+    y: Side
+    at: tuple[float, ...] = REST
+    telling: Telling = Telling()
+    asked: ClassVar[str] = "basin"
+    chunk: ClassVar[int] = 240
+
+    def plane(self, inputs: Inputs) -> Plane:
+        """What is looked at; another job may find it in what it starts from."""
+        return Plane(Point(self.structure, self.excitation), self.x, self.y, self.at)
+
+    def count(self) -> int:
+        """Number of starts."""
+        return self.x.number * self.y.number
+
+    def items(self, inputs: Inputs) -> Sequence[Start]:
+        """Every start."""
+        plane = self.plane(inputs)
+        states, phases = plane.starts()
+        rows = zip(map(tuple, states.tolist()), phases.tolist(), strict=True)
+        return [Start(plane.point, *row) for row in rows]
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Start], carry: Table | None) -> Table:
+        """Some starts; NaN where the masses would overlap."""
+        rows = np.full((len(items), len(FEATURES)), np.nan)
+        ends = np.full((len(items), len(STATE)), np.nan)
+        with Instance(fmus[OSCILLATOR]) as instance:
+            for i, item in enumerate(items):
+                if item.state[1] < item.state[0]:
+                    continue
+                start = at_phase_zero(instance, item)
+                response = response_from(instance, item.point, start, self.telling)
+                rows[i] = features(response, item.point.length)
+                ends[i] = response.end
+        return {"features": rows, "end": ends}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """The attractor that each start leads to."""
+        import xarray as xr
+
+        plane = self.plane(inputs)
+        rows, ends = table["features"], table["end"]
+        there = np.isfinite(rows).all(axis=1)
+        labels = np.full(len(rows), -1, dtype=np.int16)
+        labels[there] = clusters(rows[there], self.telling)
+        text = "attractor that the start leads to; -1: the masses would overlap"
+        sides = (plane.y, plane.x)
+        variables = {
+            "attractor_of": variable(
+                tuple(side.name for side in sides),
+                labels.reshape([side.number for side in sides]),
+                "1",
+                text,
+            ),
+            **of_attractors(labels[there].astype(np.intp), rows[there], ends[there]),
+        }
+        coordinates = {
+            **{side.name: variable(side.name, side.values(), *AXES[side.name]) for side in sides},
+            "attractor": variable("attractor", np.arange(labels.max() + 1), "1", ATTRACTOR),
+            **si_state(),
+            "eta": variable((), plane.point.excitation.eta(plane.point.structure), "1", "eta (2)"),
+        }
+        title = f"Basins of attraction: {plane.point.structure.label()}"
+        return xr.Dataset(variables, coordinates, {"title": title})
+
+
+def at_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
+    """The state at the first phase 0 from a start on."""
+    left = -start.phase % (2.0 * math.pi)
+    if left == 0.0:
+        return start.state
+    excitation = start.point.excitation.replace(phase=start.phase)
+    begin(instance, start.point.structure, excitation, start.state)
+    instance.step(0.0, left / excitation.frequency)
+    return tuple(instance.get(*STATE))
+
+
+def of_attractors(labels: NDArray[np.intp], rows: Floats, ends: Floats) -> dict[str, Variable]:
+    """Variables along ``attractor``."""
+    found = attractors_of(labels, rows, ends)
+    about = np.array([one.about for one in found])
+    text = "a state on it at phase 0: x1, x2 in m, v1, v2 in m/s"
+    share = np.bincount(labels) / len(labels)
+    return {
+        "share": variable("attractor", share, "1", "share of the plane"),
+        **{
+            name: variable("attractor", about[:, i], "1", OF_ATTRACTORS[name])
+            for i, name in enumerate(OF_ATTRACTORS)
+        },
+        "state": variable(
+            ("attractor", "coordinate"), np.array([one.state for one in found]), "1", text
+        ),
+    }
+
+
+def side(name: str, given: Any) -> Side:
+    """A side of the plane, checked.
+
+    Raises
+    ------
+    InputError
+        Where it is none.
+    """
+    expected = f"expected (name, low, high, count) with a name of {', '.join(AXES)}"
+    try:
+        axis, low, high, count = given
+        low, high = float(low), float(high)
+    except (TypeError, ValueError):
+        raise InputError(f"{name} = {given!r}: {expected}") from None
+    if axis not in AXES:
+        raise InputError(f"{name} = {given!r}: no coordinate {axis!r}; {expected}")
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        raise InputError(f"{name} = {given!r}: expected finite low < high")
+    return Side(axis, low, high, whole(f"{name}: count", count, 2, 100_000))
+
+
+def basin(
+    structure: Structure,
+    *,
+    eta: float | None = None,
+    frequency: float | None = None,
+    amplitude: float | None = None,
+    x: tuple[str, float, float, int] = ("x_rel", 0.0, 1.0, 80),
+    y: tuple[str, float, float, int] = ("v_rel", -1.0, 1.0, 80),
+    at: ArrayLike | None = None,
+    phase: float = 0.0,
+    transient: int = 400,
+    settle: float = 300.0,
+    samples: int = 48,
+    tolerance: float = 1e-2,
+    alike: float = 0.02,
+    alike_irregular: float = 0.25,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Basins of attraction: the attractor that each start of a plane leads to.
+
+    Parameters
+    ----------
+    structure : Structure
+    eta : float, optional
+        Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m.
+    frequency, amplitude : float, optional
+        The physical form instead: rad/s and m.
+    x, y : (str, float, float, int)
+        Sides of the plane: coordinate, its first and last value, and how many. Coordinates are
+        ``x1``, ``x2`` in m, ``v1``, ``v2`` in m/s, ``x_rel`` in m, ``v_rel`` in m/s and ``phase``
+        in rad.
+    at : array_like of 4 floats, optional
+        x1, x2 in m, v1, v2 in m/s: what the coordinates that are not varied are; at rest by
+        default. Where a gap or its velocity is varied alone, the mean of both masses stays that
+        of ``at``.
+    phase : float
+        Phase of the box at the start, rad.
+    transient, settle, samples, tolerance, alike, alike_irregular
+        As in :func:`orchestrate.attractors`.
+    **running
+        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``attractor_of`` over y and x: the number of the attractor, the most frequent one first; -1
+        where x2 < x1, which counts in no share. Over ``attractor``: ``share`` of the plane,
+        ``multiplicity``, ``impacts_per_period``, ``xi_rel_max``, and ``state`` on it at phase 0
+        (x1, x2 in m, v1, v2 in m/s).
+
+    Raises
+    ------
+    InputError
+        Where the question is not whole, or a number is out of its range.
+
+    Notes
+    -----
+    A start at another phase is run on to phase 0 first. Responses are told apart as in
+    :func:`orchestrate.attractors`.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.dynamics.basins import basin
+    >>> plane = {"x": ("x_rel", 0.0, 1.3, 6), "y": ("v_rel", -1.3, 1.3, 6)}
+    >>> found = basin(Structure.nondimensional(), eta=1.315, **plane)
+    >>> found.attractor_of.dims, found.multiplicity.values.tolist()
+    (('v_rel', 'x_rel'), [1.0, 2.0])
+    """
+    chosen, excitation = one_point(structure, eta, frequency, amplitude)
+    sides = side("x", x), side("y", y)
+    if sides[0].name == sides[1].name:
+        raise InputError(f"x and y: {sides[0].name} twice; expected two coordinates")
+    job = BasinJob(
+        name=f"basin_{structure.label()}",
+        structure=chosen,
+        excitation=excitation.replace(phase=phase),
+        x=sides[0],
+        y=sides[1],
+        at=state("at", at, structure),
+        telling=told_apart(transient, settle, samples, tolerance, alike, alike_irregular),
+    )
+    check_plane(job)
+    return answer(job, running, finder(running))
+
+
+def check_plane(job: BasinJob) -> None:
+    """Whether there is a start, and whether the masses can part at all."""
+    if job.structure.bonded:
+        raise InputError("structure: is bonded; expected one whose masses can part")
+    states, _ = job.plane({}).starts()
+    if not (states[:, 1] >= states[:, 0]).any():
+        raise InputError("x and y: the masses overlap at every start; expected some with x2 >= x1")

@@ -1,0 +1,121 @@
+"""Settled responses followed impact by impact, along a parameter."""
+
+from __future__ import annotations
+
+from abc import ABC
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import REST, STATE, EventInstance, Impacts, Instance, begin
+from ..errors import InputError
+from ..response.questions import Point, SeriesQuestion, states
+from ..running.job import Inputs
+from .variational import nondimensional
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..response.questions import Series
+
+State = tuple[float, ...]
+
+
+class Followed(NamedTuple):
+    """What is followed: a structure under an excitation, from a state at phase 0 in m and m/s."""
+
+    point: Point
+    start: State
+
+
+@dataclass(frozen=True, kw_only=True)
+class FollowingQuestion(SeriesQuestion, ABC):
+    """A question to responses that are followed impact by impact.
+
+    Attributes
+    ----------
+    transient : int
+        Periods dropped before.
+    start : tuple of float
+        One state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
+        parameter, or one for each.
+    follows : str
+        Name of a sweep over the same parameter whose responses are followed instead.
+    """
+
+    transient: int = 500
+    start: tuple[float, ...] = REST
+    follows: str = ""
+
+    def needs(self) -> tuple[str, ...]:
+        """The sweep, if any."""
+        return (self.follows,) if self.follows else ()
+
+    def items(self, inputs: Inputs) -> Sequence[Followed]:
+        """What is followed, for each value."""
+        series = self.series
+        rows = np.reshape(self.start, (-1, 4))
+        if self.follows:
+            rows = ends_of(inputs[self.follows], series)
+        starts = np.broadcast_to(rows, (len(series.points), 4)).tolist()
+        return [Followed(*item) for item in zip(series.points, map(tuple, starts), strict=True)]
+
+
+def ends_of(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
+    """States at the ends of a sweep's responses, m and m/s; each value's, or the nearest one's."""
+    rows = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
+    found: NDArray[np.float64] = rows.values * series.scales()
+    return found
+
+
+def starts_of(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:
+    """States that a user's responses start from, one after the other.
+
+    Parameters
+    ----------
+    given : array_like or xarray.Dataset, optional
+        One state, one for each value, or what :func:`orchestrate.sweep` has answered for these
+        values; at rest by default.
+    question : SeriesQuestion
+
+    Raises
+    ------
+    InputError
+        Where these are not as many as there are values, or no states of the structure.
+    """
+    series = question.series
+    if hasattr(given, "end_state"):
+        swept: xr.Dataset = given  # type: ignore[assignment]
+        there = swept.end_state.dims
+        known: ArrayLike = swept[series.name].values if series.name in there else []
+        if there != (series.name, "coordinate") or not np.isin(series.values, known).all():
+            raise InputError(
+                f"start: a dataset over {', '.join(map(str, there))}; expected a sweep in one "
+                f"direction over the same values of {series.name}"
+            )
+        return tuple(ends_of(swept, series).ravel().tolist())
+    rows = states("start", given, question.structure)
+    if len(rows) not in (1, len(series.values)):
+        raise InputError(
+            f"start: {len(rows)} states; expected one, or one for each of {len(series.values)} "
+            f"values of {series.name}"
+        )
+    return tuple(rows.ravel().tolist())
+
+
+def settled(instance: Instance, item: Followed, transient: int) -> State:
+    """The state after a transient, at phase 0 again."""
+    if not transient:
+        return item.start
+    begin(instance, *item.point, item.start)
+    instance.step(0.0, transient * item.point.excitation.period)
+    return tuple(instance.get(*STATE))
+
+
+def impacts_of(instance: EventInstance, point: Point, start: ArrayLike, periods: int) -> Impacts:
+    """Non-dimensional impacts of some periods from a state at phase 0."""
+    begin(instance, *point, start)
+    return nondimensional(instance.impacts(0.0, periods * point.excitation.period), point)

@@ -1,0 +1,205 @@
+"""What settled responses look like impact by impact: how many, how strong, how far apart."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..access import OSCILLATOR, EventInstance, Impacts, Instance, finder
+from ..response.labels import variable
+from ..response.questions import asked_along, whole
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Structure
+from .following import Followed, FollowingQuestion, impacts_of, settled, starts_of
+from .lyapunov import Exponent, largest_exponent, without_impacts
+from .variational import period
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+FIELDS = {
+    "impacts": "impacts per excitation period",
+    "fewest": "fewest impacts in one excitation period",
+    "most": "most impacts in one excitation period",
+    "contacts": "permanent contacts begun per excitation period",
+    "contact_share": "share of the time from beginnings of permanent contact to next impacts",
+    "closing_max": "largest closing velocity over omega a eta^2",
+    "closing_min": "least closing velocity over omega a eta^2",
+    "closing_sum": "sum of closing velocities per excitation period, over omega a eta^2",
+    "distance_min": "least time between successive impacts, over T",
+    "distance_max": "largest time between successive impacts, over T",
+    "exponent": "largest Lyapunov exponent, per unit of tau",
+    "standard_error": "standard error of the exponent",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImpactStatisticsJob(FollowingQuestion):
+    """Responses along a parameter, impact by impact.
+
+    Attributes
+    ----------
+    periods : int
+        Excitation periods followed.
+    """
+
+    periods: int = 100
+    asked: ClassVar[str] = "impact_statistics"
+    chunk: ClassVar[int] = 40
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
+    ) -> Table:
+        """Some responses."""
+        rows = []
+        with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
+            for item in items:
+                start = settled(plain, item, self.transient)
+                impacts = impacts_of(eventful, item.point, start, self.periods)
+                found = statistics(impacts, item, self.periods)
+                rows.append([found[name] for name in FIELDS])
+        return {"rows": np.array(rows, dtype=float)}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """One variable a property, over the parameter."""
+        import xarray as xr
+
+        along = self.series.name
+        variables = {
+            name: variable(along, column, "1", text)
+            for (name, text), column in zip(FIELDS.items(), table["rows"].T, strict=True)
+        }
+        title = f"Responses along {along}, impact by impact: {self.structure.label()}"
+        return xr.Dataset(variables, self.series.coordinates(), {"title": title})
+
+
+def statistics(impacts: Impacts, item: Followed, periods: int) -> dict[str, float]:
+    """What a response looks like impact by impact, by the names of ``FIELDS``.
+
+    Parameters
+    ----------
+    impacts : Impacts
+        Non-dimensional, of the periods.
+    item : Followed
+    periods : int
+    """
+    structure, excitation = item.point
+    eta = excitation.eta(structure)
+    span = period(eta)
+    found: Exponent | None = None if len(impacts.time) else without_impacts(structure)
+    exponent = found or largest_exponent(impacts, periods * span, eta, structure)
+    return {
+        **counts(impacts, span, periods),
+        **strengths(impacts, span, periods),
+        "exponent": exponent.value,
+        "standard_error": exponent.error,
+    }
+
+
+def counts(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
+    """Numbers of impacts; those of a chattering are all counted."""
+    which = np.minimum((impacts.time / span).astype(int), periods - 1)
+    each = np.bincount(which, minlength=periods)
+    distances = np.diff(impacts.time) / span
+    stuck = distances[impacts.sticks[:-1]].sum() if len(distances) else 0.0
+    return {
+        "impacts": len(impacts.time) / periods,
+        "fewest": float(each.min()),
+        "most": float(each.max()),
+        "contacts": impacts.sticks.sum() / periods,
+        "contact_share": stuck / periods,
+    }
+
+
+def strengths(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
+    """Closing velocities, and times between impacts; NaN where there is none."""
+    distances, closing = np.diff(impacts.time) / span, impacts.closing
+    return {
+        "closing_max": closing.max() if len(closing) else math.nan,
+        "closing_min": closing.min() if len(closing) else math.nan,
+        "closing_sum": closing.sum() / periods,
+        "distance_min": distances.min() if len(distances) else math.nan,
+        "distance_max": distances.max() if len(distances) else math.nan,
+    }
+
+
+def impact_statistics(
+    structure: Structure,
+    *,
+    eta: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: ArrayLike | None = None,
+    over: str | None = None,
+    values: ArrayLike | None = None,
+    transient: int = 500,
+    periods: int = 100,
+    start: ArrayLike | xr.Dataset | None = None,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """What settled responses look like impact by impact.
+
+    Parameters
+    ----------
+    structure : Structure
+    eta : array_like, optional
+        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m.
+    frequency, amplitude : array_like, optional
+        The physical form instead: rad/s and m, one amplitude or one for each frequency.
+    over : str, optional
+        Parameter that takes ``values``; by default what is given as a list.
+    values : array_like, optional
+    transient, periods : int
+        Excitation periods dropped, and followed after them, at each value.
+    start : array_like or xarray.Dataset, optional
+        As in :func:`orchestrate.lyapunov`.
+    **running
+        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Per excitation period: ``impacts`` on average, ``fewest``, ``most``; permanent ``contacts``
+        begun, and ``contact_share``, the share of the time from there to the next impacts. Largest
+        and least closing velocity, and their sum per period, over omega a eta^2: ``closing_max``,
+        ``closing_min``, ``closing_sum``. Times between impacts over T: ``distance_min``,
+        ``distance_max``. ``exponent`` and ``standard_error`` as in :func:`orchestrate.lyapunov`,
+        NaN where there are too few impacts.
+
+    Raises
+    ------
+    InputError
+        Where the question is not whole, or a number is out of its range.
+
+    Notes
+    -----
+    The impacts of (13)-(17) that the FMU reports; an impulse over m1 omega a eta^2 is ``mu/(1 + mu)
+    (1 + e)`` times its closing velocity (15).
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.dynamics.impact_statistics import impact_statistics
+    >>> found = impact_statistics(Structure.nondimensional(), eta=[0.4, 1.047], periods=20)
+    >>> found.impacts.values.tolist(), found.contacts.values.tolist()
+    ([30.0, 2.0], [1.0, 0.0])
+    """
+    question = asked_along(structure, eta, frequency, amplitude, over, values)
+    name = f"impacts_{structure.label()}"
+    job = ImpactStatisticsJob(
+        name=name,
+        **question,
+        transient=whole("transient", transient, 0),
+        periods=whole("periods", periods, 1),
+        start=starts_of(start, ImpactStatisticsJob(name=name, **question)),
+    )
+    return answer(job, running, finder(running))

@@ -1,0 +1,339 @@
+"""The largest Lyapunov exponent of a response from its impacts, and the verdict it allows.
+
+It is computed from the impacts that the FMU reports, with exact flow and saltation matrices
+(:mod:`.variational`), not from two neighbours: a neighbour must be near enough for its distance to
+be linear and far enough to be above rounding, which near grazing impacts and in chattering is no
+distance at all.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import OSCILLATOR, EventInstance, Impacts, Instance, finder
+from ..errors import InputError
+from ..response.labels import Variable, flags, variable
+from ..response.questions import asked_along, positive, whole
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Structure
+from .following import Followed, FollowingQuestion, impacts_of, settled, starts_of
+from .variational import Branches, period, slowest_rate, steps
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+PERIODIC, NEUTRAL, CHAOTIC = -1, 0, 1
+WORDS = {PERIODIC: "periodic", NEUTRAL: "neutral", CHAOTIC: "chaotic"}
+LARGEST = "largest Lyapunov exponent"
+BLOCKS, BATCHES, SIGMAS, WANDER = 40, 8, 3.0, 10.0  # defaults of the parameters of these names
+Floats = NDArray[np.float64]
+
+
+class Exponent(NamedTuple):
+    """A largest Lyapunov exponent per unit of tau, and its standard error; NaN where unknown."""
+
+    value: float
+    error: float
+
+
+def products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
+    """Products of ``size`` matrices in turn, scaled, with the logarithms of the scales.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (n, 4, 4)
+    size : int
+        The last product may have fewer factors.
+
+    Returns
+    -------
+    ndarray, shape (m, 4, 4)
+    ndarray, shape (m,)
+    """
+    count = -(-len(matrices) // size)
+    stack = np.broadcast_to(np.eye(4), (count * size, 4, 4)).copy()
+    stack[: len(matrices)] = matrices
+    stack = stack.reshape(count, size, 4, 4)
+    logs = np.zeros((count, size))
+    while stack.shape[1] > 1:
+        if stack.shape[1] % 2:
+            rest = np.broadcast_to(np.eye(4), (count, 1, 4, 4))
+            stack = np.concatenate([stack, rest], axis=1)
+            logs = np.concatenate([logs, np.zeros((count, 1))], axis=1)
+        stack, logs = stack[:, 1::2] @ stack[:, 0::2], logs[:, 0::2] + logs[:, 1::2]
+        scale = np.maximum(np.abs(stack).max(axis=(2, 3)), 1e-300)
+        stack, logs = stack / scale[:, :, None, None], logs + np.log(scale)
+    return stack[:, 0], logs[:, 0]
+
+
+def fewest_impacts(batches: int = BATCHES) -> int:
+    """Impacts from which an exponent has an uncertainty."""
+    return 2 * batches
+
+
+def largest_exponent(
+    impacts: Impacts,
+    end: float,
+    eta: float,
+    structure: Structure,
+    blocks: int = BLOCKS,
+    batches: int = BATCHES,
+) -> Exponent:
+    """The largest Lyapunov exponent over a span.
+
+    Parameters
+    ----------
+    impacts : Impacts
+        Of the span, non-dimensional; time 0 is at phase 0.
+    end : float
+        tau at the span's end.
+    eta : float
+    structure : Structure
+    blocks : int
+        Products of matrices whose growth is told apart.
+    batches : int
+        Groups of blocks; the spread of their means is the uncertainty.
+
+    Returns
+    -------
+    Exponent
+        Natural logarithm per unit of tau, and the standard error of the mean over batches. Minus
+        infinity where the deviation vanishes. NaN where there are fewer impacts than
+        :func:`fewest_impacts` says.
+    """
+    if len(impacts.time) < fewest_impacts(batches):
+        return Exponent(math.nan, math.nan)
+    matrices = steps(impacts, end, eta, structure)
+    size = max(1, len(matrices) // blocks)
+    growth = growth_of(*products(matrices, size))
+    if growth is None:
+        return Exponent(-math.inf, math.nan)
+    durations = np.diff(np.append(impacts.time[::size], end))
+    skip = len(growth) // batches  # the vector turns into its own direction first
+    groups = np.array_split(np.arange(skip, len(growth)), batches - 1)
+    means = np.array([growth[group].sum() / durations[group].sum() for group in groups])
+    mean = growth[skip:].sum() / durations[skip:].sum()
+    return Exponent(float(mean), float(means.std(ddof=1) / np.sqrt(len(means))))
+
+
+def growth_of(blocks: Floats, logs: Floats) -> Floats | None:
+    """Logarithms of the growth of a vector by each block in turn; None where it vanishes."""
+    growth, vector = np.empty(len(blocks)), np.array([1.0, 0.7, 0.3, -0.5])
+    for i, (block, log) in enumerate(zip(blocks, logs, strict=True)):
+        vector = block @ vector
+        norm = np.linalg.norm(vector)
+        if norm == 0.0:
+            return None
+        growth[i], vector = log + np.log(norm), vector / norm
+    return growth
+
+
+def without_impacts(structure: Structure) -> Exponent | None:
+    """The exponent of a structure whose masses never part, or are alike: both move as linear ones.
+
+    Returns
+    -------
+    Exponent or None
+        Exact; None for all other structures.
+    """
+    one, two, both = Branches.of(structure)
+    if not structure.bonded and one != two:
+        return None
+    return Exponent(-slowest_rate(both), 0.0)
+
+
+def verdict(
+    exponent: ArrayLike, error: ArrayLike, floor: ArrayLike, sigmas: float = SIGMAS
+) -> NDArray[np.int8]:
+    """Periodic, neutral (quasi-periodic, or not decided) or chaotic.
+
+    Parameters
+    ----------
+    exponent, error : array_like
+    floor : array_like
+        Least distance from zero that counts: a deviation that neither grows nor shrinks still
+        wanders by a factor of a few.
+    sigmas : float
+        Standard errors that an exponent must be away from zero.
+    """
+    value = np.asarray(exponent, dtype=float)
+    distance = np.fmax(sigmas * np.asarray(error, dtype=float), floor)
+    found = np.where(value > distance, CHAOTIC, np.where(value < -distance, PERIODIC, NEUTRAL))
+    return found.astype(np.int8)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LyapunovJob(FollowingQuestion):
+    """Largest Lyapunov exponents along a parameter.
+
+    Attributes
+    ----------
+    periods : int
+        Excitation periods followed at each value.
+    blocks, batches : int
+        As in :func:`largest_exponent`.
+    sigmas, wander : float
+        As in :func:`lyapunov`.
+    """
+
+    periods: int = 2500
+    blocks: int = BLOCKS
+    batches: int = BATCHES
+    sigmas: float = SIGMAS
+    wander: float = WANDER
+    asked: ClassVar[str] = "lyapunov"
+    chunk: ClassVar[int] = 5
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
+    ) -> Table:
+        """Some values."""
+        rows = []
+        with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
+            for item in items:
+                start = settled(plain, item, self.transient)
+                impacts = impacts_of(eventful, item.point, start, self.periods)
+                exponent = self.exponent(impacts, item)
+                rows.append([*exponent, len(impacts.time) / self.periods])
+        return {"rows": np.array(rows)}
+
+    def exponent(self, impacts: Impacts, item: Followed) -> Exponent:
+        """Of one response.
+
+        Raises
+        ------
+        InputError
+            Where it has too few impacts.
+        """
+        structure, excitation = item.point
+        eta, count = excitation.eta(structure), len(impacts.time)
+        known = None if count else without_impacts(structure)
+        if known is not None:
+            return known
+        needed = fewest_impacts(self.batches)
+        if count < needed:
+            enough = f" (periods >= {-(-needed * self.periods // count)})" if count else ""
+            raise InputError(
+                f"periods = {self.periods}: {count} impacts at eta = {eta:g}; "
+                f"expected periods with at least {needed} impacts{enough}"
+            )
+        end = self.periods * period(eta)
+        return largest_exponent(impacts, end, eta, structure, self.blocks, self.batches)
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Exponent, error and verdict over the parameter."""
+        import xarray as xr
+
+        along, (exponent, error, impacts) = self.series.name, table["rows"].T
+        spans = self.periods * np.array([period(eta) for eta in self.series.etas])
+        found = verdict(exponent, error, np.log(self.wander) / spans, self.sigmas)
+        variables: dict[str, Variable] = {
+            "exponent": variable(along, exponent, "1", f"{LARGEST}, per unit of tau"),
+            "standard_error": variable(along, error, "1", "standard error of the exponent"),
+            "verdict": flags(along, found, "what the exponent says of the response", WORDS),
+            "impacts_per_period": variable(along, impacts, "1", "impacts per excitation period"),
+        }
+        title = f"{LARGEST} along {along}: {self.structure.label()}"
+        return xr.Dataset(variables, self.series.coordinates(), {"title": title})
+
+
+def lyapunov(
+    structure: Structure,
+    *,
+    eta: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: ArrayLike | None = None,
+    over: str | None = None,
+    values: ArrayLike | None = None,
+    transient: int = 500,
+    periods: int = 2500,
+    start: ArrayLike | xr.Dataset | None = None,
+    blocks: int = BLOCKS,
+    batches: int = BATCHES,
+    sigmas: float = SIGMAS,
+    wander: float = WANDER,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Largest Lyapunov exponents of responses: periodic, neutral or chaotic.
+
+    Parameters
+    ----------
+    structure : Structure
+        Masses of different damping, and overdamped ones, included.
+    eta : array_like, optional
+        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m.
+    frequency, amplitude : array_like, optional
+        The physical form instead: rad/s and m, one amplitude or one for each frequency.
+    over : str, optional
+        Parameter that takes ``values``; by default what is given as a list.
+    values : array_like, optional
+    transient, periods : int
+        Excitation periods dropped, and followed after them, at each value.
+    start : array_like or xarray.Dataset, optional
+        State at phase 0 that each response starts from, x1, x2 in m, v1, v2 in m/s, or one state
+        for each; or what :func:`orchestrate.sweep` has answered for the same values, whose
+        responses are followed on. At rest by default.
+    blocks : int
+        Products of the impacts' matrices whose growth is told apart.
+    batches : int
+        Groups of them whose spread is the uncertainty.
+    sigmas : float
+        Standard errors that an exponent must be away from zero for a verdict.
+    wander : float
+        Factor by which a deviation may wander that neither grows nor shrinks.
+    **running
+        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``exponent`` per unit of tau (multiply by omega for 1/s), ``standard_error``, ``verdict``
+        (-1 periodic, 0 neutral: quasi-periodic or not decided, 1 chaotic) and
+        ``impacts_per_period``.
+
+    Raises
+    ------
+    InputError
+        Also where a response has too few impacts in ``periods`` for an uncertainty; it says how
+        many it takes.
+
+    Notes
+    -----
+    A deviation of the state of (6) is carried from impact to impact by exact flow matrices of (10),
+    at each by the saltation matrix of (15), in permanent contact as the common motion of (10) until
+    the release (19). Structures that move as linear ones, bonded or with masses that are alike,
+    have an exact exponent.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.dynamics.lyapunov import lyapunov
+    >>> found = lyapunov(Structure.nondimensional(), eta=[0.8, 1.047], periods=400)
+    >>> found.verdict.values.tolist(), found.exponent.values.round(3)
+    ([1, -1], array([ 0.034, -0.007]))
+    """
+    question = asked_along(structure, eta, frequency, amplitude, over, values)
+    name = f"exponent_{structure.label()}"
+    job = LyapunovJob(
+        name=name,
+        **question,
+        transient=whole("transient", transient, 0),
+        periods=whole("periods", periods, 1),
+        start=starts_of(start, LyapunovJob(name=name, **question)),
+        blocks=whole("blocks", blocks, 1),
+        batches=whole("batches", batches, 3),
+        sigmas=positive("sigmas", sigmas),
+        wander=positive("wander", wander),
+    )
+    return answer(job, running, finder(running))

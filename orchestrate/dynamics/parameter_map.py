@@ -1,0 +1,306 @@
+"""Responses over two parameters, each from the same start: impacts, multiplicity, gaps, exponents.
+
+Points are independent of each other; where attractors coexist a map shows the one that the start
+leads to.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..access import OSCILLATOR, REST, EventInstance, Impacts, Instance, finder
+from ..errors import InputError
+from ..response.labels import Variable, parameter, variable
+from ..response.questions import (
+    ASKED,
+    Numbers,
+    Point,
+    Question,
+    check_form,
+    checked_structure,
+    numbers,
+    point,
+    positive,
+    state,
+    whole,
+)
+from ..response.respond import respond
+from ..running.job import Inputs, Table, plain
+from ..running.options import Running, RunOptions
+from ..running.runner import answer
+from ..structures import PARAMETERS, Structure
+from ..structures.ranges import check_flag, one_of
+from .clusters import settling
+from .following import impacts_of
+from .lyapunov import largest_exponent, without_impacts
+from .variational import period
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+FIELDS = {
+    "impacts_per_period": "impacts per excitation period",
+    "multiplicity": "excitation periods after which the response repeats; 0: irregular",
+    "xi_rel_max": "largest gap over a eta^2",
+    "impulse_max": "largest impulse over m1 omega a eta^2",
+}
+EXPONENT = {
+    "exponent": "largest Lyapunov exponent, per unit of tau",
+    "standard_error": "standard error of the exponent",
+}
+
+
+class Parameters(Running, total=False):
+    """Keywords of :func:`map`: parameters of a structure, and how the question is computed."""
+
+    m1: ArrayLike
+    m2: ArrayLike
+    k1: ArrayLike
+    k2: ArrayLike
+    d1: ArrayLike
+    d2: ArrayLike
+    e: ArrayLike
+    gamma: ArrayLike
+    mu: ArrayLike
+    kappa: ArrayLike
+    D: ArrayLike
+    D1: ArrayLike
+    D2: ArrayLike
+    omega: ArrayLike
+
+
+class Axis(NamedTuple):
+    """One side of the map."""
+
+    name: str
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapJob(Question):
+    """A map.
+
+    Attributes
+    ----------
+    given : tuple of (str, float or tuple of float)
+        Parameters of the excitation and the structure; two of them are lists.
+    transient : int
+        Periods dropped at least.
+    settle : float
+        Periods dropped at least, over eta.
+    samples : int
+        Periods kept.
+    tolerance : float
+        Of :func:`orchestrate.response.multiplicity.multiplicity`.
+    start : tuple of float
+        State that all points start from: x1, x2 in m, v1, v2 in m/s.
+    exponent : bool
+        Whether the largest Lyapunov exponent is computed, over ``periods`` periods.
+    periods : int
+    """
+
+    given: tuple[tuple[str, Numbers], ...]
+    transient: int = 300
+    settle: float = 300.0
+    samples: int = 60
+    tolerance: float = 1e-2
+    start: tuple[float, ...] = REST
+    exponent: bool = False
+    periods: int = 500
+    asked: ClassVar[str] = "map"
+    chunk: ClassVar[int] = 120
+
+    def __post_init__(self) -> None:
+        _ = self.points  # what is wrong is said before any work
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Structure and excitation of each point, row by row."""
+        return points_of(self.structure, self.given)
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """Both sides."""
+        return tuple(Axis(name, value) for name, value in self.given if isinstance(value, tuple))
+
+    def parameters(self) -> dict[str, Any]:
+        """All that decides the numbers, the parameters by their own names."""
+        found = super().parameters()
+        del found["given"]
+        return {**{name: plain(value) for name, value in self.given}, **found}
+
+    def count(self) -> int:
+        """Number of points."""
+        return len(self.points)
+
+    def items(self, inputs: Inputs) -> Sequence[Point]:
+        """The points."""
+        return self.points
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+        """Some points."""
+        with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
+            rows = [self.at(plain, eventful, item) for item in items]
+        return {"rows": np.array(rows, dtype=float)}
+
+    def at(self, plain: Instance, eventful: EventInstance, item: Point) -> list[float]:
+        """One point, in the order of ``FIELDS`` and ``EXPONENT``."""
+        structure, excitation = item
+        dropped = settling(self.transient, self.settle, excitation.eta(structure))
+        kept = self.samples, self.tolerance
+        response = respond(plain, structure, excitation, self.start, dropped, *kept)
+        impacts = impacts_of(eventful, item, response.end, self.samples // 2)
+        mu = structure.mu
+        impulse = (1.0 + structure.e) * mu / (1.0 + mu) * impacts.closing.max(initial=0.0)
+        found = [response.impacts_per_period, response.multiplicity]
+        found += [response.x_rel_max / item.length, impulse]
+        return [*found, *self.exponent_of(eventful, item, response.end)] if self.exponent else found
+
+    def exponent_of(
+        self, eventful: EventInstance, item: Point, start: ArrayLike
+    ) -> tuple[float, float]:
+        """The exponent and its error; NaN where there are too few impacts."""
+        structure, eta = item.structure, item.excitation.eta(item.structure)
+        impacts: Impacts = impacts_of(eventful, item, start, self.periods)
+        known = None if len(impacts.time) else without_impacts(structure)
+        return known or largest_exponent(impacts, self.periods * period(eta), eta, structure)
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """The fields over both parameters."""
+        import xarray as xr
+
+        names = tuple(axis.name for axis in self.axes)
+        shape = [len(axis.values) for axis in self.axes]
+        texts = {**FIELDS, **(EXPONENT if self.exponent else {})}
+        columns = zip(texts.items(), table["rows"].T, strict=True)
+        variables: dict[str, Variable] = {
+            name: variable(names, column.reshape(shape), "1", text)
+            for (name, text), column in columns
+        }
+        coordinates = {
+            axis.name: parameter(axis.name, axis.name, axis.values) for axis in self.axes
+        }
+        title = f"Map over {' and '.join(names)}: {self.structure.label()}"
+        return xr.Dataset(variables, coordinates, {"title": title})
+
+
+@lru_cache(maxsize=4)
+def points_of(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> tuple[Point, ...]:
+    """Structures and excitations of a map, row by row.
+
+    Raises
+    ------
+    InputError
+        Where there are not two lists, the excitation is not whole, or a number is out of its range.
+    """
+    values = dict(given)
+    check_form(values.keys() & ASKED.keys())
+    lists = {name: value for name, value in given if isinstance(value, tuple)}
+    if len(lists) != 2:
+        found = ", ".join(lists) or "none"
+        raise InputError(f"lists of values: {found}; expected two of the parameters as lists")
+    for name, column in lists.items():
+        if len(set(column)) < len(column):
+            raise InputError(f"{name}: a value twice; expected each once")
+    rows = (dict(zip(lists, row, strict=True)) for row in itertools.product(*lists.values()))
+    return tuple(point(structure, {**values, **row}) for row in rows)
+
+
+def map(
+    structure: Structure,
+    *,
+    eta: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: ArrayLike | None = None,
+    transient: int = 300,
+    settle: float = 300.0,
+    samples: int = 60,
+    tolerance: float = 1e-2,
+    start: ArrayLike | None = None,
+    exponent: bool = False,
+    periods: int = 500,
+    **others: Unpack[Parameters],
+) -> xr.Dataset:
+    """Responses over two parameters, each from the same start.
+
+    Parameters
+    ----------
+    structure : Structure
+    eta : array_like, optional
+        Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m.
+    frequency, amplitude : array_like, optional
+        The physical form instead: rad/s and m.
+    transient : int
+        Periods dropped at least.
+    settle : float
+        Periods dropped at least, over eta: a slow decay takes time, not periods.
+    samples : int
+        Periods kept.
+    tolerance : float
+        Relative deviation within which a state counts as repeated.
+    start : array_like of 4 floats, optional
+        State at phase 0 that every point starts from: x1, x2 in m, v1, v2 in m/s; at rest by
+        default.
+    exponent : bool
+        Whether to compute the largest Lyapunov exponents, over ``periods`` further periods.
+    periods : int
+    **others
+        Parameters of the structure by name, such as ``e=``, ``D=``, ``k2=``, as numbers or lists;
+        and ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`. Of
+        all parameters, two must be lists.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over both parameters, the excitation's first: ``impacts_per_period``; ``multiplicity``, 0
+        where irregular; ``xi_rel_max``; ``impulse_max``, the largest impulse over m1 omega a eta^2
+        in half the periods kept; and where asked for ``exponent`` per unit of tau, with its
+        ``standard_error``, NaN where there are too few impacts.
+
+    Raises
+    ------
+    InputError
+        Where the question is not whole, or a number is out of its range.
+
+    Notes
+    -----
+    An impulse follows from its closing velocity by (15). Where attractors coexist a map shows the
+    one that the start leads to, see :func:`orchestrate.attractors`.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.dynamics.parameter_map import map
+    >>> found = map(Structure.nondimensional(), eta=[0.4, 1.047], e=[0.3, 0.7])
+    >>> found.impacts_per_period.values.tolist()
+    [[10.0, 30.0], [2.0, 2.0]]
+    """
+    running = {name: value for name, value in others.items() if name not in PARAMETERS}
+    known = [field.name for field in fields(RunOptions)]
+    for name in running:
+        if name not in known:
+            raise InputError(f"{name}: no parameter; {one_of(name, (*PARAMETERS, *known))}")
+    asked: dict[str, Any] = {"eta": eta, "frequency": frequency, "amplitude": amplitude, **others}
+    told = {name: numbers(name, asked[name]) for name in asked if name not in running}
+    job = MapJob(
+        name=f"map_{structure.label()}",
+        structure=checked_structure(structure),
+        given=tuple((name, value) for name, value in told.items() if value is not None),
+        transient=whole("transient", transient, 0),
+        settle=positive("settle", settle),
+        samples=whole("samples", samples, 4),
+        tolerance=positive("tolerance", tolerance),
+        start=state("start", start, structure),
+        exponent=check_flag("exponent", exponent),
+        periods=whole("periods", periods, 1),
+    )
+    return answer(job, running, finder(running))
