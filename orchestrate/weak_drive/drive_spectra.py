@@ -233,7 +233,7 @@ def drive_spectra(
     >>> from orchestrate import Drive, Structure
     >>> from orchestrate.weak_drive.drive_spectra import drive_spectra
     >>> quick = Structure.from_file("quick"), Drive.from_file("quick")
-    >>> short = dict(begin=1.29, hold=50.0, revolutions=8, points=64)
+    >>> short = dict(begin=1.29, hold=50.0, revolutions=8, points=64, jobs=1)
     >>> found = drive_spectra(*quick, voltage=1.3, **short)
     >>> found.acceleration.dims, bool(found.acceleration.sel(order=1.0, mass=1).min() > 1.0)
     (('kind', 'mass', 'order'), True)
