@@ -1,4 +1,4 @@
-"""What can go wrong: each exception says, in one line, the thing, its value and what is expected."""
+"""What can go wrong; each exception says in one line the thing, its value and what is expected."""
 
 from __future__ import annotations
 

@@ -8,9 +8,9 @@ import sys
 SCRIPT = """
 import sys, time
 import importlib.metadata, dataclasses, typing
-begin = time.perf_counter()
+begin = time.process_time()
 import orchestrate.structures
-print(time.perf_counter() - begin)
+print(time.process_time() - begin)
 heavy = {"numpy", "scipy", "xarray", "matplotlib", "fmpy", "netCDF4", "numba", "pythonfmu"}
 print(*(heavy & sys.modules.keys()))
 """
