@@ -14,7 +14,7 @@ from fmu_src.export import forms as sources
 from fmu_src.export.errors import CannotExport
 
 from ..errors import InputError, StoreError
-from ..running.files import open_folder
+from ..files import open_folder
 from ..version import __version__
 from .description import Description, describe
 

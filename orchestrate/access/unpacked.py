@@ -18,7 +18,7 @@ import threading
 from pathlib import Path
 
 from ..errors import InputError, StoreError
-from ..running.files import alive
+from ..files import alive
 from .description import Description
 
 PREFIX = "vibroimpact-fmu-"

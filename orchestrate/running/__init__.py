@@ -8,7 +8,6 @@ module              idea
 :mod:`.options`     how a question is computed, whatever it asks
 :mod:`.store`       where chunks and results are kept: in memory or on disk
 :mod:`.journal`     chunks on disk while a job is under way
-:mod:`.files`       files that appear whole or not at all
 :mod:`.provenance`  where a dataset comes from, in its attributes
 :mod:`.executors`   who computes: this process, processes of this machine, workers of a cluster
 :mod:`.progress`    how far a job is, and what may be computed next, guesses included

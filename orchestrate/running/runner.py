@@ -15,8 +15,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..files import open_folder
 from .executors import Cluster, Here, Processes, Workers, at_work, compute
-from .files import open_folder
 from .identity import Fmu, Identity, identity_of
 from .job import Job, Table
 from .options import RunOptions

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InputError, StaleError, StoreError
-from .files import open_folder, write_whole
+from ..files import open_folder, write_whole
 from .identity import Identity, difference, same_question
 from .job import Table
 from .journal import Journal, Lock, discard, journal_path

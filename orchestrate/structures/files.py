@@ -162,7 +162,7 @@ def write(
     StoreError
         Where it cannot be written; what stood there before still does.
     """
-    from ..running.files import write_whole
+    from ..files import write_whole
 
     tables: dict[str, Mapping[str, float | bool]] = {}
     if structure is not None:

@@ -18,7 +18,7 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 from ..access.models import OSCILLATOR, SHAKER
-from ..running.files import write_whole
+from ..files import write_whole
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from .couple import oscillator_start

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from ..errors import StoreError
+from .errors import StoreError
 
 
 def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -> Path:
