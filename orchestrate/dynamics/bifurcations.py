@@ -113,7 +113,7 @@ class Look:
         return [kind for kind in kinds if before.test(kind) * self.test(kind) < 0.0]
 
 
-def locate(walk: Walk, before: Look, after: Look, length: float, kind: int) -> tuple[float, Look]:
+def locate(walk: Walk[Family], before: Look, after: Look, length: float, kind: int) -> tuple[float, Look]:
     """Where between two orbits a bifurcation lies, by Brent's method along the branch.
 
     Returns

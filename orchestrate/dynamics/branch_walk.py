@@ -85,16 +85,16 @@ def follow(start: Look, pace: Pace) -> Leg:
     return leg
 
 
-def advance(leg: Leg, walk: Walk) -> None:
+def advance(leg: Leg, walk: Walk[Family]) -> None:
     """One step on, or the end."""
     before = leg.looks[-1]
     try:
-        limit = limit_ahead(walk)
+        limit = walk.limit_ahead(walk.curve.size, walk.curve.setting.limits)
         if limit is None:
             root, length = walk.ahead(lambda root: orderly(walk.curve, root))
             after = Look(walk.curve, root)
         else:
-            after = Look(walk.curve, walk.land(walk.curve.size, limit))
+            after = Look(walk.curve, walk.land(*limit))
             length, leg.end = step_to(walk, after), LIMIT
         found = located(walk, before, after, length)
     except NoConvergenceError:
@@ -113,7 +113,7 @@ def advance(leg: Leg, walk: Walk) -> None:
     rescale(walk)
 
 
-def rescale(walk: Walk) -> None:
+def rescale(walk: Walk[Family]) -> None:
     """Measure the branch in the size that the motion has now."""
     family, root = walk.curve, walk.root
     nodes = root.unknowns[: family.size].reshape(-1, 4)
@@ -125,7 +125,9 @@ def rescale(walk: Walk) -> None:
     walk.root = replace(root, tangent=tangent / np.linalg.norm(tangent))
 
 
-def located(walk: Walk, before: Look, after: Look, length: float) -> list[tuple[float, Look, int]]:
+def located(
+    walk: Walk[Family], before: Look, after: Look, length: float
+) -> list[tuple[float, Look, int]]:
     """Bifurcations in a step, in order; up to the one that ends the branch, if any.
 
     Not the one that the step begins at.
@@ -144,7 +146,7 @@ def located(walk: Walk, before: Look, after: Look, length: float) -> list[tuple[
     return [*places([kind for kind in kinds if kind not in ENDS]), *ends]
 
 
-def step_to(walk: Walk, look: Look) -> float:
+def step_to(walk: Walk[Family], look: Look) -> float:
     """Length of the step along the walk's tangent to an orbit."""
     way = (look.root.unknowns - walk.root.unknowns) / walk.curve.scale
     return float(way @ walk.root.tangent)
@@ -156,17 +158,7 @@ def orderly(family: Family, root: Root) -> bool:
     return bool((ring.durations[~ring.contact] > 0.0).all())
 
 
-def limit_ahead(walk: Walk) -> float | None:
-    """The parameter's limit that the next step would pass, if any."""
-    family, root = walk.curve, walk.root
-    (low, high), which = family.setting.limits[0], family.size
-    rate = float(root.tangent[which]) * family.scale[which]
-    value = float(root.unknowns[which])
-    limit = high if rate > 0.0 else low
-    return limit if abs(limit - value) <= abs(rate) * walk.step else None
-
-
-def resequenced(leg: Leg, walk: Walk, look: Look, length: float) -> Look:
+def resequenced(leg: Leg, walk: Walk[Family], look: Look, length: float) -> Look:
     """The orbit with the impacts that it has there, where chattering ends earlier or later than before.
 
     Where permanent contact is lost or begins, the branch ends: infinitely many impacts would graze
@@ -224,7 +216,7 @@ def next_impact(ring: Ring, node: int) -> Floats:
     return np.array([phase + ring.form.eta * time, position + velocity * time, velocity, parting])
 
 
-def contact_changes(leg: Leg, walk: Walk, look: Look, length: float) -> Look:
+def contact_changes(leg: Leg, walk: Walk[Family], look: Look, length: float) -> Look:
     """The end of a branch where permanent contact is lost, or begins."""
     kind = CONTACT_LOST if look.contact_test(CONTACT_LOST) <= 0.0 else CONTACT_BEGUN
     _, found = locate(walk, leg.looks[-1], look, length, kind)

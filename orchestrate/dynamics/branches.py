@@ -306,8 +306,10 @@ def first_orbit(
     running: Mapping[str, Any],
 ) -> tuple[xr.Dataset, float]:
     """The orbit that a branch begins with where the user names none, and the parameter there."""
-    excitation = dict(given)
-    quiet = {name: value for name, value in running.items() if name in ("fmu", "build_folder")}
+    excitation: dict[str, Any] = dict(given)
+    quiet: dict[str, Any] = {
+        name: value for name, value in running.items() if name in ("fmu", "build_folder")
+    }
     value = excitation[over] if over in excitation else limits[0]
     if over == ACCELERATION:
         value = box_acceleration

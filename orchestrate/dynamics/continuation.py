@@ -9,9 +9,9 @@ engine only follows, and leaves it to the caller to look.)
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -38,6 +38,9 @@ class Curve(Protocol):
 
     def jacobian(self, unknowns: Floats) -> Floats:
         """Its derivative, shape (n, n + 1)."""
+
+
+Followed = TypeVar("Followed", bound=Curve)
 
 
 @dataclass(frozen=True)
@@ -128,7 +131,7 @@ def solved(matrix: Floats, right: Floats) -> Floats:
         Where the matrix is singular.
     """
     if len(right) <= DENSE:
-        return np.linalg.solve(matrix, right)
+        return np.asarray(np.linalg.solve(matrix, right), dtype=float)
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
 
@@ -161,7 +164,7 @@ def held(curve: Curve, unknown: int) -> Floats:
 
 
 @dataclass
-class Walk:
+class Walk(Generic[Followed]):
     """A walk along a curve, with steps as long as the curve is straight.
 
     Attributes
@@ -177,7 +180,7 @@ class Walk:
         Cosine of the largest angle between successive tangents.
     """
 
-    curve: Curve
+    curve: Followed
     root: Root
     step: float
     longest: float
@@ -212,6 +215,19 @@ class Walk:
                 return found, length
             length *= 0.5
         raise NoConvergenceError("no step is short enough")
+
+    def limit_ahead(
+        self, first: int, limits: Sequence[tuple[float, float]]
+    ) -> tuple[int, float] | None:
+        """The unknown, from a first one on, that the next step would take past its limit first, and that limit."""
+        rates = self.root.tangent * self.curve.scale
+        found, nearest = None, self.step
+        for unknown, ends in enumerate(limits, first):
+            limit = ends[1] if rates[unknown] > 0.0 else ends[0]
+            way = (limit - self.root.unknowns[unknown]) / (rates[unknown] or np.inf)
+            if way <= nearest:
+                found, nearest = (unknown, limit), way
+        return found
 
     def land(self, unknown: int, value: float) -> Root:
         """The root near here at which an unknown has a value."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -122,10 +123,17 @@ def node_scales(size: float, count: int) -> Floats:
     return np.tile([1.0, size, size, size], count) * np.sqrt(max(count, 1))
 
 
-def difference(function, unknowns: Floats, which: int, low: float, high: float) -> Floats:  # type: ignore[no-untyped-def]
+def difference(
+    function: Callable[[Floats], Floats],
+    unknowns: Floats,
+    which: int,
+    low: float,
+    high: float,
+    step: float = 0.0,
+) -> Floats:
     """Derivative of a function by one unknown, by a central difference inside limits."""
     value = unknowns[which]
-    step = RELATIVE_STEP * max(abs(value), 1e-3 * (high - low))
+    step = step or RELATIVE_STEP * max(abs(value), 1e-3 * (high - low))
     ends = []
     for place in (value - step, value + step):
         moved = unknowns.copy()

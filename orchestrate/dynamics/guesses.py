@@ -41,7 +41,7 @@ def start(instance: EventInstance, point: Point, form: ClosedForm, state: Floats
     """Begin at a state at phase 0."""
     constant = -float(form.offset[0] * form.stiffness[0])
     push = constant * point.excitation.amplitude * point.excitation.frequency**2
-    begin(instance, *point, state, **({ACCELERATION: push} if push else {}))
+    begin(instance, point.structure, point.excitation, state, **({ACCELERATION: push} if push else {}))
 
 
 def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:

@@ -227,12 +227,10 @@ class Ring:
         """
         before, after = self.blocks()
         k = self.count
-        dtype = complex if isinstance(turn, complex) else float
-        found = np.zeros((k, 4, k, 4), dtype=dtype)
-        rows, following = np.arange(k), (np.arange(k) + 1) % k
-        np.add.at(found, (rows, slice(None), rows), before)
-        factor = np.where(rows == k - 1, turn, 1.0)
-        np.add.at(found, (rows, slice(None), following), after * factor[:, None, None])
+        found = np.zeros((k, 4, k, 4), dtype=complex if isinstance(turn, complex) else float)
+        for i in range(k):
+            found[i, :, i] += before[i]
+            found[i, :, (i + 1) % k] += after[i] * (turn if i == k - 1 else 1.0)
         return found.reshape(4 * k, 4 * k)
 
     def monodromy(self) -> Floats:

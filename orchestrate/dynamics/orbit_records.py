@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence as Rows
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ..response.labels import Variable, flags, nondimensional_state, variable, yes_or_no
+from ..response.labels import Variable, flags, nondimensional_state, parameter, variable, yes_or_no
 from ..running.job import Table
 from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
@@ -104,11 +105,9 @@ def table_of(records: Rows[OrbitRecord]) -> Table:
 
 def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
     """Parameters along the rows, and the names of what has several parts."""
-    from ..response.labels import parameter
-
     points = [setting.point(values) for values in table["values"]]
     excitations = [point.excitation for point in points]
-    along = {
+    along: dict[str, Any] = {
         "eta": [point.excitation.eta(point.structure) for point in points],
         "frequency": [excitation.frequency for excitation in excitations],
         "amplitude": [excitation.amplitude for excitation in excitations],

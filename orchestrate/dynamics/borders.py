@@ -1,0 +1,288 @@
+"""Where windows begin and end over two parameters: curves of folds, period doublings, Neimark-Sacker bifurcations and grazings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..access import OSCILLATOR, EventInstance, finder
+from ..errors import InputError
+from ..response.labels import variable
+from ..response.questions import Question, numbers, whole
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Structure
+from .bifurcations import KINDS, TORUS, Look
+from .border_curve import Border
+from .branch_walk import LIMIT, LONG, STUCK
+from .branches import begin_of, excitation_of
+from .continuation import NoConvergenceError, Root, Walk, corrected, held
+from .families import ACCELERATION, Family, Setting, check_names
+from .orbit_records import OrbitRecord, coordinates, table_of, variables
+from .orbit_search import solve, verdict
+from .orbits import FirstGuess, finite, told
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+FIRST_STEP = 1e-3
+HALVINGS = 24
+
+
+@dataclass(frozen=True, kw_only=True)
+class BorderJob(Question):
+    """A bifurcation over two parameters.
+
+    Attributes
+    ----------
+    setting : Setting
+        The two parameters and their limits.
+    start : FirstGuess
+        Nodes of the orbit at the bifurcation.
+    period, kind : int
+    values : tuple of float
+        Of the parameters there.
+    longest : float
+    most : int
+    """
+
+    setting: Setting
+    start: FirstGuess
+    period: int
+    kind: int
+    values: tuple[float, float]
+    longest: float
+    most: int
+    asked: ClassVar[str] = "border"
+
+    def count(self) -> int:
+        """One curve."""
+        return 1
+
+    def items(self, inputs: Inputs) -> Sequence[int]:
+        """Its number."""
+        return [0]
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+        """Follow it."""
+        border, root = begin(self)
+        legs = [followed(border, one, self) for one in (turned(root), root)]
+        roots = [*reversed(legs[0][0][1:]), *legs[1][0]]
+        with EventInstance(fmus[OSCILLATOR]) as instance:
+            rows = [record(instance, border, root) for root in roots]
+        angles = [root.unknowns[-1] if self.kind == TORUS else np.nan for root in roots]
+        ends = {"ends": np.array([leg[1] for leg in legs])}
+        return {**table_of(rows), "angle": np.array(angles), **ends}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """The curve, labelled."""
+        import xarray as xr
+
+        setting, ends = self.setting, [str(text) for text in table["ends"]]
+        names = coordinates(setting, table, "point")
+        title = f"{KINDS[self.kind]} over {' and '.join(setting.over)}: {self.structure.label()}"
+        attributes = {"title": title, "kind": KINDS[self.kind], "over": list(setting.over)}
+        attributes.update(first_end=ends[0], last_end=ends[1])
+        found = {**variables(setting, table, "point"), **names}
+        text = "angle of the multipliers on the unit circle"
+        found["angle"] = variable("point", table["angle"], "rad", text)
+        return xr.Dataset(found, attrs=attributes).set_coords(list(names))
+
+
+def begin(job: BorderJob) -> tuple[Border, Root]:
+    """The bifurcation where the curve begins.
+
+    Raises
+    ------
+    InputError
+        Where it is none, or not one that is followed.
+    """
+    setting, nodes = job.setting, np.array(job.start.nodes).reshape(-1, 4)
+    sequence, values = job.start.sequence(job.period), np.array(job.values)
+    first = replace(setting, over=setting.over[:1], limits=setting.limits[:1])
+    rest = replace(first, structure=setting.point(values).structure)
+    try:
+        look = Look(*solve(rest, (sequence, nodes), values[:1]))
+        border = Border.of(Family.near(setting, sequence, look.ring.nodes), look, job.kind)
+        guess = np.concatenate([look.ring.nodes.ravel(), values, border.extra])
+        border.lean(guess)
+        root = corrected(border, guess, held(border, border.parameters + 1))
+    except NoConvergenceError as reason:
+        expected = "expected a branch of this structure"
+        raise InputError(f"start: no bifurcation found there ({reason}); {expected}") from None
+    border.lean(root.unknowns)
+    return border, root
+
+
+def turned(root: Root) -> Root:
+    """The same root with the curve's other direction."""
+    return replace(root, tangent=-root.tangent)
+
+
+def followed(border: Border, start: Root, job: BorderJob) -> tuple[list[Root], str]:
+    """Roots in one direction, and why they end."""
+    walk = Walk(border, start, min(FIRST_STEP, job.longest), job.longest)
+    roots = [start]
+    limits = job.setting.limits
+    while len(roots) <= job.most:
+        try:
+            limit = walk.limit_ahead(border.parameters, limits)
+            if limit is None:
+                root, length = walk.ahead()
+            else:
+                root, length = walk.land(*limit), walk.step
+        except NoConvergenceError:
+            return roots, STUCK
+        reason = border.no_motion(root.unknowns)
+        if reason:
+            return [*roots, *last_motion(walk, length)], reason
+        roots.append(root)
+        if limit is not None:
+            return roots, LIMIT
+        walk.root = root
+        border.lean(root.unknowns)
+    return roots, LONG
+
+
+def last_motion(walk: Walk[Border], length: float) -> list[Root]:
+    """The last root of a step that is a bifurcation of a motion, by halving."""
+    low, high, found = 0.0, length, []
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        try:
+            root = walk.at(middle)
+        except NoConvergenceError:
+            return found
+        if walk.curve.no_motion(root.unknowns):
+            high = middle
+        else:
+            low, found = middle, [root]
+    return found
+
+
+def record(instance: EventInstance, border: Border, root: Root) -> OrbitRecord:
+    """An orbit on the curve, run through in the FMU."""
+    unknowns = root.unknowns[: border.family.size + 2]
+    ring = border.ring(root.unknowns)
+    word = verdict(instance, border.family.setting, unknowns[border.family.size :], ring)
+    return OrbitRecord.of(border.family, unknowns, root.residual, word)
+
+
+def border(
+    structure: Structure,
+    *,
+    start: xr.Dataset,
+    bifurcation: int,
+    over: Sequence[str] = ("eta", "e"),
+    limits: ArrayLike,
+    eta: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: ArrayLike | None = None,
+    box_acceleration: float = 0.0,
+    longest: float = 0.03,
+    most: int = 500,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """A bifurcation of a branch, followed over two parameters.
+
+    Parameters
+    ----------
+    structure : Structure
+    start : xarray.Dataset
+        A branch of :func:`orchestrate.branch`.
+    bifurcation : int
+        Number of one of its bifurcations: a fold, period doubling, Neimark-Sacker bifurcation or grazing.
+    over : sequence of 2 str
+        The parameters; the first one is that of the branch.
+    limits : array_like, shape (2, 2)
+        Between which each is followed.
+    eta, frequency, amplitude : float, optional
+        The excitation, where it does not vary; by default that of ``start``.
+    box_acceleration : float
+        Constant acceleration of the box beside the harmonic one, m/s2.
+    longest, most
+        As in :func:`orchestrate.branch`.
+    **running
+        ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``point``: both parameters, the orbit there as :func:`orchestrate.orbit` tells it, and the
+        ``angle`` of the multipliers at a Neimark-Sacker bifurcation. Attributes: ``kind``, and
+        ``first_end`` and ``last_end``, why the curve ends.
+
+    Raises
+    ------
+    InputError
+        Where the question is not whole, or there is no such bifurcation.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.dynamics.branches import branch
+    >>> from orchestrate.dynamics.borders import border
+    >>> beam = Structure.nondimensional()
+    >>> window = branch(beam, eta=2.6, limits=(2.5, 2.7))
+    >>> curve = border(beam, start=window, bifurcation=0, limits=[(2.5, 2.7), (0.65, 0.75)])
+    >>> curve.attrs["kind"], curve.e.values[[0, -1]]
+    ('Neimark-Sacker', array([0.65, 0.75]))
+    """
+    names = tuple(over)
+    check_names(names)
+    if len(names) != 2 or names[0] != start.attrs.get("over"):
+        raise InputError(
+            f"over = {names!r}: expected two names, the first one {start.attrs.get('over')!r} as in start"
+        )
+    pairs = checked_limits(names, limits)
+    nodes, kind = begin_of(start, bifurcation)
+    value = float(start["bifurcation_value"].values[bifurcation])
+    given = excitation_of(start.isel(point=0), names[0], told(eta, frequency, amplitude), pairs[0])
+    second = second_value(structure, names[1], given, box_acceleration)
+    fixed = tuple((name, number) for name, number in given if name not in names)
+    setting = Setting(structure, fixed, names, pairs, finite(ACCELERATION, box_acceleration))
+    for i in range(2):  # what is out of range is said before any work
+        setting.form(np.array([pairs[0][i], pairs[1][i]]))
+    job = BorderJob(
+        name=f"border_{structure.label()}_{'_'.join(names)}",
+        structure=structure,
+        setting=setting,
+        start=nodes,
+        period=start.sizes["sample"],
+        kind=kind,
+        values=(value, second),
+        longest=finite("longest", longest),
+        most=whole("most", most, 1),
+    )
+    return answer(job, running, finder(running))
+
+
+def checked_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
+    """Limits of both parameters."""
+    try:
+        rows = [numbers(name, row) for name, row in zip(names, limits, strict=True)]
+    except (TypeError, ValueError):
+        rows = []
+    good = [row for row in rows if isinstance(row, tuple) and len(row) == 2 and row[0] < row[1]]
+    if len(good) != 2:
+        raise InputError(
+            f"limits = {limits!r}: expected a lower and an upper one for each parameter"
+        )
+    return tuple((row[0], row[1]) for row in good)
+
+
+def second_value(
+    structure: Structure, name: str, given: tuple[tuple[str, float], ...], box_acceleration: float
+) -> float:
+    """The second parameter's value where the curve begins."""
+    if name == ACCELERATION:
+        return box_acceleration
+    return dict(given)[name] if name in dict(given) else structure.get(name)
