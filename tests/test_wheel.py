@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import venv
@@ -47,8 +48,9 @@ def clean(folder: Path, **more: str) -> dict[str, str]:
 def ask(python: Path, folder: Path, **more: str) -> None:
     """Sweep, simulate and couple, in Python and at the command line, outside the clone."""
     environment = clean(folder, **more)
+    questions = shutil.copy(QUESTIONS, folder)  # beside the tests, `orchestrate` would be theirs
     commands = (
-        [str(QUESTIONS)],
+        [str(questions)],
         ["-m", "orchestrate", "sweep", "--eta", "1.0:1.1:0.01", "--transient", "20"],
         ["-m", "orchestrate", "simulate", "--eta", "1.05", "--periods", "5"],
         ["-m", "orchestrate", "couple", "--eta0", "1.2:1.25", "--rate", "1e-2"],

@@ -55,7 +55,7 @@ def questions() -> dict[str, xr.Dataset]:
         "basin": orchestrate.basin(
             OWN, **box, x=("x_rel", 0.0, 1e-3, 3), y=("v_rel", -0.1, 0.1, 2), transient=20
         ),
-        "spectra": orchestrate.spectra(OWN, **box, periods=4, points=64, transient=20),
+        "spectra": orchestrate.spectra(OWN, **box, periods=4, points=128, transient=20),
         "impact_statistics": orchestrate.impact_statistics(OWN, **box, transient=20, periods=20),
         "couple": orchestrate.couple(
             OWN, motor(), voltage=(1.2 * volts, 1.25 * volts), rate=1e-3 * volts * OWN.omega
