@@ -26,8 +26,8 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
         Of both axes; by default those of the coordinates.
     """
     figure, (plane,) = panels(1, 1, (8, 6.5))
-    y, x = map(str, data.label.dims)
-    labels = data.label.values.clip(max=len(COLOURS))
+    y, x = map(str, data.attractor_of.dims)
+    labels = data.attractor_of.where(data.attractor_of >= 0).values.clip(max=len(COLOURS))
     shades = ListedColormap([*COLOURS, OTHER])
     limits = {"vmin": -0.5, "vmax": len(COLOURS) + 0.5}
     plane.pcolormesh(data[x], data[y], labels, cmap=shades, rasterized=True, **limits)

@@ -8,7 +8,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from ..running.files import write_whole
+from ..files import write_whole
 from .style import look
 
 UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, today and tomorrow

@@ -67,7 +67,7 @@ def basin(name: str, data: xr.Dataset) -> Figure:
     from ..figures import basin as figure
     from ..figures.style import XI_REL, XI_REL_RATE
 
-    eta = float(data.attrs["eta"])
+    eta = float(data.eta)
     return figure.draw(data, rf"$\eta = {eta:.3f}$", (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
 
 

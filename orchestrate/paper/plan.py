@@ -5,11 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from ..dynamics.attractors import AttractorsJob
+from ..dynamics.basins import Side
+from ..dynamics.clusters import Telling
+from ..dynamics.impact_statistics import ImpactStatisticsJob
+from ..dynamics.lyapunov import LyapunovJob
+from ..dynamics.parameter_map import MapJob
 from ..errors import InputError
 from ..response.sweep import SweepJob
 from ..running.job import Job
-from ..structures import Structure
-from .cases import CASES
+from ..structures import Excitation, Structure
+from .basin import EvenBasinJob
+from .cases import CASES, MAP_ETAS, MAPS, map_values
 from .curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
 from .gamma import GammaJob
 from .pictures import ORBITS
@@ -84,6 +93,73 @@ def sweep_job(structure: Structure, direction: str, resolution: Resolution) -> S
     )
 
 
+def exponent_job(sweep: SweepJob, resolution: Resolution) -> LyapunovJob:
+    """Exponents along an up-sweep, of each fifth response; below 0.43 all have permanent contact."""
+    etas = tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5]
+    return LyapunovJob(
+        name=f"exponent_{sweep.structure.label()}",
+        structure=sweep.structure,
+        eta=etas,
+        transient=0,
+        periods=resolution.long_run,
+        follows=sweep.name,
+    )
+
+
+def statistics_job(sweep: SweepJob, resolution: Resolution) -> ImpactStatisticsJob:
+    """A sweep's responses, impact by impact."""
+    return ImpactStatisticsJob(
+        name=sweep.name.replace("orbit", "steady"),
+        structure=sweep.structure,
+        eta=sweep.eta,
+        transient=0,
+        periods=resolution.steady,
+        follows=sweep.name,
+    )
+
+
+def attractors_job(sweep: SweepJob, resolution: Resolution) -> AttractorsJob:
+    """Random starts in boxes three times as wide as the sweep's largest gaps."""
+    return AttractorsJob(
+        name="attractors",
+        structure=sweep.structure,
+        eta=resolution.attractor_etas(),
+        starts=resolution.starts,
+        seed=2026,
+        width=3.0,
+        follows=sweep.name,
+        telling=Telling(transient=resolution.settle),
+    )
+
+
+def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution) -> EvenBasinJob:
+    """Gap and gap velocity, mass 1 at rest in its middle, up to three times the largest gap."""
+    side = resolution.basin
+    return EvenBasinJob(
+        name="basin",
+        structure=sweep.structure,
+        excitation=Excitation.nondimensional(1.0, sweep.structure),  # replaced by what is found
+        x=Side("x2", 0.0, 3.0, side),
+        y=Side("v2", -3.0, 3.0, side),
+        telling=attractors.telling,
+        attractors=attractors.name,
+        sweep=sweep.name,
+    )
+
+
+def map_job(parameter: str, structure: Structure, resolution: Resolution) -> MapJob:
+    """A map over a parameter and the frequency, from rest."""
+    etas = np.linspace(*MAP_ETAS, resolution.map_etas)
+    values = map_values(parameter, resolution.map_rows)
+    return MapJob(
+        name=f"map_{parameter}",
+        structure=structure,
+        given=((parameter, tuple(values.tolist())), ("eta", tuple(etas.tolist()))),
+        transient=resolution.map_settle,
+        samples=resolution.map_keep,
+    )
+
+
 def curve_jobs(ups: Sequence[SweepJob], resolution: Resolution) -> dict[str, Job]:
     """The curves of Figures 5, 7, 8, 9 and 12, by number."""
     skip, keep = resolution.skip, resolution.keep
@@ -112,19 +188,32 @@ def make(resolution: Resolution) -> Plan:
     """The plan at a resolution."""
     ups = [sweep_job(structure, "up", resolution) for structure in CASES.values()]
     downs = [sweep_job(structure, "down", resolution) for structure in CASES.values()]
-    curves = curve_jobs(ups, resolution)
+    statistics = [statistics_job(sweep, resolution) for sweep in ups]
+    curves, gamma = curve_jobs(ups, resolution), GammaJob(name="gamma")
+    further = further_jobs(ups, resolution)
     shown: dict[str, list[Job]] = {
         **{number: [ups[list(CASES).index(case)]] for number, case in ORBITS.items()},
         **{number: [job] for number, job in curves.items()},
     }
-    further: dict[str, list[Job]] = {
-        "spectra": [PeakSpectraJob(name="spectra", sweep=ups[0].name, structure=ups[0].structure)],
-    }
-    gamma = GammaJob(name="gamma")
-    evidence = [*ups, *downs, *(curves[number] for number in ("5", "7", "12")), gamma]
-    evidence += [job for some in further.values() for job in some]
-    jobs = {job.name: job for job in (*ups, *downs, *curves.values(), *evidence)}
+    beyond = [job for some in further.values() for job in some]
+    evidence = [*ups, *downs, *statistics, gamma, *beyond]
+    evidence += [curves[number] for number in ("5", "7", "12")]
     parts = [Part("claims", "", names_of(evidence))]
     parts += [Part(n, f"figure{n}", names_of(shown[n])) for n in sorted(shown, key=int)]
     parts += [Part(name, name, names_of(some)) for name, some in further.items()]
-    return Plan(jobs, {part.name: part for part in parts})
+    jobs = [*ups, *downs, *statistics, *curves.values(), gamma, *beyond]
+    return Plan({job.name: job for job in jobs}, {part.name: part for part in parts})
+
+
+def further_jobs(ups: Sequence[SweepJob], resolution: Resolution) -> dict[str, list[Job]]:
+    """What goes beyond the paper's figures, by part."""
+    first = ups[0]
+    attractors = attractors_job(first, resolution)
+    spectra = PeakSpectraJob(name="spectra", sweep=first.name, structure=first.structure)
+    return {
+        "lyapunov": [exponent_job(sweep, resolution) for sweep in ups],
+        "attractors": [attractors],
+        "basin": [basin_job(attractors, first, resolution)],
+        "maps": [map_job(parameter, first.structure, resolution) for parameter in MAPS],
+        "spectra": [spectra],
+    }

@@ -9,7 +9,7 @@ from typing import Any
 
 import jinja2
 
-from ..running.files import write_whole
+from ..files import write_whole
 from ..version import __version__
 from .captions import CAPTIONS
 from .claims.claim import WORDS

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..access import OSCILLATOR, finder
-from ..running.files import write_whole
+from ..files import write_whole
 from ..running.options import RunOptions
 from ..running.runner import answer_all
 from ..running.store import load

@@ -102,7 +102,7 @@ def coexisting(data: xr.Dataset) -> str:
         impacts, share = float(data.impacts_per_period[k]), 100 * float(data.share[k])
         kinds.append(f"{kind} with {impacts:.2f} impacts per T from {share:.1f} %")
     return (
-        f"At eta = {data.attrs['eta']:.3f} a plane of {data.label.size} starts leads to: "
+        f"At eta = {float(data.eta):.3f} a plane of {data.attractor_of.size} starts leads to: "
         f"{'; '.join(kinds)}."
     )
 

@@ -1,0 +1,40 @@
+"""Where windows begin and end over two parameters: a curve for each bifurcation."""
+
+from __future__ import annotations
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from .labels import symbol
+from .style import in_our_look, panels
+
+COLOURS = {
+    "fold": "tab:orange",
+    "period doubling": "tab:red",
+    "Neimark-Sacker": "tab:blue",
+    "grazing of an impact": "tab:green",
+    "grazing of a flight": "black",
+}
+
+
+@in_our_look
+def draw(*curves: xr.Dataset, title: str = "") -> Figure:
+    """Draw bifurcations over two parameters.
+
+    Parameters
+    ----------
+    *curves : xarray.Dataset
+        Of :func:`orchestrate.border`, all over the same two parameters.
+    title : str
+    """
+    figure, (plane,) = panels(1, 1, (12, 5))
+    first, second = (str(name) for name in curves[0].attrs["over"])
+    shown: set[str] = set()
+    for curve in curves:
+        kind = str(curve.attrs["kind"])
+        label = kind if kind not in shown else None
+        plane.plot(curve[first], curve[second], color=COLOURS[kind], linewidth=1.2, label=label)
+        shown.add(kind)
+    plane.set(xlabel=symbol(first), ylabel=symbol(second), title=title)
+    plane.legend()
+    return figure

@@ -1,0 +1,92 @@
+"""An orbit diagram (Figure 6) with the branches that lie under it: solid where stable, dashed where not."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .labels import meanings, symbol
+from .orbit_diagram import scale
+from .style import BLUE, GREY, RED, XI_REL, in_our_look, panels
+
+MARKERS = {  # by the bifurcation's kind
+    "fold": "<",
+    "period doubling": "s",
+    "Neimark-Sacker": "o",
+    "grazing of an impact": "v",
+    "grazing of a flight": "^",
+    "loss of permanent contact": "X",
+    "begin of permanent contact": "P",
+    "earlier release": "D",
+}
+
+
+@in_our_look
+def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str = "") -> Figure:
+    """Draw branches of orbits over an orbit diagram.
+
+    Parameters
+    ----------
+    *branches : xarray.Dataset
+        Of :func:`orchestrate.branch`, all along the same parameter.
+    responses : xarray.Dataset, optional
+        Of :func:`orchestrate.sweep` along it, in one direction.
+    title : str
+    """
+    figure, (plane,) = panels(1, 1, (12, 7))
+    name = str(branches[0].attrs["over"])
+    if responses is not None:
+        draw_responses(plane, responses, name)
+    shown: set[str] = set()
+    for found in branches:
+        draw_branch(plane, found, name)
+        draw_bifurcations(plane, found, shown)
+    gaps = np.concatenate([found.xi_rel.values.ravel() for found in branches])
+    scale(plane, gaps if responses is None else np.append(gaps, responses.xi_rel.values.ravel()))
+    low = min(float(found[name].min()) for found in branches)
+    high = max(float(found[name].max()) for found in branches)
+    plane.set(xlabel=symbol(name), ylabel=rf"{XI_REL}$(nT)$", title=title, xlim=(low, high))
+    plane.legend(loc="lower left", ncols=2)
+    return figure
+
+
+def draw_responses(plane: Axes, data: xr.Dataset, name: str) -> None:
+    """The orbit diagram below, a pixel a sample."""
+    samples = data.xi_rel.transpose(name, "sample").values
+    along = np.repeat(data[name].values, samples.shape[1])
+    gaps = np.where(samples > 0.0, samples, np.nan).ravel()
+    plane.plot(along, gaps, ",", color=GREY, alpha=0.4, rasterized=True)
+
+
+def draw_branch(plane: Axes, found: xr.Dataset, name: str) -> None:
+    """One line for each phase 0 of the orbit."""
+    along, stable = found[name].values, found.stable.values == 1
+    # a step of which one end is unstable is drawn as unstable
+    both = stable & np.append(stable[1:], True) & np.append(True, stable[:-1])
+    for gaps in found.xi_rel.transpose("sample", "point").values:
+        plane.plot(along, np.where(stable, gaps, np.nan), "-", color=BLUE, linewidth=1.2)
+        plane.plot(along, np.where(both, np.nan, gaps), "--", color=RED, linewidth=0.9)
+
+
+def draw_bifurcations(plane: Axes, found: xr.Dataset, shown: set[str]) -> None:
+    """A marker for each kind; each kind once in the legend."""
+    if not found.sizes.get("bifurcation"):
+        return
+    names = meanings(found.bifurcation_kind)
+    for i, kind in enumerate(found.bifurcation_kind.values):
+        word = names[int(kind)].replace("Neimark Sacker", "Neimark-Sacker")
+        gaps = found.bifurcation_xi_rel.values[i]
+        plane.plot(
+            np.full(len(gaps), found.bifurcation_value.values[i]),
+            gaps,
+            MARKERS[word],
+            color="black",
+            markerfacecolor="white",
+            markersize=5,
+            linestyle="none",
+            label=word if word not in shown else None,
+            zorder=3,
+        )
+        shown.add(word)

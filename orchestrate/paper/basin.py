@@ -1,0 +1,58 @@
+"""A plane of starts at the frequency at which two periodic attractors share them most evenly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..dynamics.basins import BasinJob, Plane
+from ..response.questions import Point
+from ..running.job import Inputs
+from ..structures import Excitation
+
+
+@dataclass(frozen=True, kw_only=True)
+class EvenBasinJob(BasinJob):
+    """Basins where random starts have found two attractors.
+
+    Its sides ``x`` and ``y`` are in units of the largest gap of the sweep at that frequency.
+
+    Attributes
+    ----------
+    attractors, sweep : str
+        Names of the random starts, and of the sweep that sets the scale.
+    low, high : float
+        Range of eta that is looked at.
+    apart : float
+        Impacts per period by which both attractors differ at least.
+    """
+
+    attractors: str
+    sweep: str
+    low: float = 1.07
+    high: float = 1.37
+    apart: float = 0.2
+
+    def needs(self) -> tuple[str, ...]:
+        """Both results."""
+        return self.attractors, self.sweep
+
+    def frequency(self, inputs: Inputs) -> float:
+        """The frequency ratio."""
+        data = inputs[self.attractors].sel(eta=slice(self.low, self.high))
+        first, second = data.isel(attractor=0), data.isel(attractor=1)
+        periodic = (first.multiplicity > 0) & (second.multiplicity > 0)
+        apart = np.abs(first.impacts_per_period - second.impacts_per_period) > self.apart
+        clear = second.share.where(periodic & apart, 0.0)
+        return float((clear if float(clear.max()) > 0.0 else second.share).idxmax())
+
+    def plane(self, inputs: Inputs) -> Plane:
+        """What is looked at, at that frequency and to its scale."""
+        eta = self.frequency(inputs)
+        scale = float(inputs[self.sweep].xi_rel_max.sel(eta=eta, method="nearest"))
+        x, y = (
+            side._replace(low=side.low * scale, high=side.high * scale) for side in (self.x, self.y)
+        )
+        point = Point(self.structure, Excitation.nondimensional(eta, self.structure))
+        return Plane(point, x, y, self.at)
