@@ -130,9 +130,11 @@ def peaks(
 
     Notes
     -----
-    With 200 samples over p periods, displacements are exact to about ``1e-7 p^4`` and accelerations
-    to about ``1e-6 p^4`` of themselves; of several impacts in one interval only the first is
-    seen, which then costs up to ``pi p/200``.
+    Intervals of length h are exact to about ``(w h)^4/400`` of the largest value, with w the
+    fastest of the frequencies of excitation and masses: with 200 intervals, to ``1e-8 p^4`` where
+    p periods of the excitation are looked at and it is the fastest. Of several impacts in one
+    interval, as in chattering, the first is seen alone: an acceleration that is largest between
+    the others may then be missed by up to ``w h`` of it.
     """
     count = states.shape[1] - 1
     rates = Rates.of(point.structure for point in points)

@@ -56,7 +56,7 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
     --------
     >>> time = np.arange(256) / 256
     >>> frequency, amplitude = amplitude_spectrum(3.0 * np.sin(10.0 * np.pi * time), 1.0 / 256)
-    >>> frequency[5] / np.pi, amplitude[4:7].round(6)
+    >>> float(frequency[5] / np.pi), amplitude[4:7].round(6)
     (10.0, array([1.5, 3. , 1.5]))
     """
     from scipy.signal import periodogram

@@ -1,11 +1,11 @@
-"""Multiplicity on sequences whose answer is known: periodic, quasi-periodic, noisy, decaying, too short."""
+"""Multiplicity of sequences whose answer is known."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from orchestrate.poincare import multiplicity
+from orchestrate.response.multiplicity import multiplicity
 
 TOLERANCE = 1e-2
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
@@ -13,7 +13,7 @@ GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 @st.composite
 def orbits(draw, longest=12):
-    """One period of distinct states of four co-ordinates, well apart compared with the tolerance."""
+    """One period of distinct states of four co-ordinates, well apart for the tolerance."""
     n = draw(st.integers(1, longest))
     order = draw(st.permutations(range(n)))
     scales = draw(st.lists(st.floats(1e-6, 1e6), min_size=4, max_size=4))
@@ -34,7 +34,9 @@ def test_period_of_a_periodic_sequence(orbit, more):
 def test_noise_below_the_tolerance_changes_nothing(orbit, periods, part, seed):
     samples = repeat(orbit, periods * len(orbit) + 3)
     noise = np.random.default_rng(seed).uniform(-1.0, 1.0, samples.shape)
-    assert multiplicity(samples + part * TOLERANCE * np.abs(orbit).max(axis=0) * noise, TOLERANCE) == len(orbit)
+    assert multiplicity(
+        samples + part * TOLERANCE * np.abs(orbit).max(axis=0) * noise, TOLERANCE
+    ) == len(orbit)
 
 
 @given(st.integers(0, 1000), st.integers(40, 200))
@@ -51,7 +53,9 @@ def test_quasi_periodic_motion_never_repeats(phase, length):
 @given(st.floats(0.0, 1.0), st.floats(0.0, 0.45))
 def test_a_torus_narrower_than_the_tolerance_counts_as_periodic(phase, part):
     angle = 2.0 * np.pi * (GOLDEN * np.arange(120) + phase)
-    orbit = np.stack([1.0 + part * TOLERANCE * np.cos(angle), 2.0 + part * TOLERANCE * np.sin(angle)], axis=1)
+    orbit = np.stack(
+        [1.0 + part * TOLERANCE * np.cos(angle), 2.0 + part * TOLERANCE * np.sin(angle)], axis=1
+    )
     assert multiplicity(orbit, TOLERANCE) == 1
 
 

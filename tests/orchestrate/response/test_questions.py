@@ -1,0 +1,142 @@
+"""At what a question is asked: both forms of an excitation, one parameter, and what is refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from orchestrate.errors import InputError
+from orchestrate.response.questions import asked_along, numbers, one_point, series, states, whole
+from orchestrate.structures import Structure
+
+OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
+
+
+def along(structure=OWN, eta=None, frequency=None, amplitude=None, over=None, values=None):
+    return series(**asked_along(structure, eta, frequency, amplitude, over, values))
+
+
+def test_eta_is_a_frequency_and_an_amplitude():
+    found = along(eta=[0.5, 2.0])
+    assert (found.name, found.values, found.etas) == ("eta", (0.5, 2.0), (0.5, 2.0))
+    for point, eta in zip(found.points, found.etas, strict=True):
+        assert point.excitation.frequency == eta * OWN.omega
+        assert point.excitation.amplitude == 1.0 / (eta * eta)
+        assert point.length == 1.0
+        assert point.speed == OWN.omega
+
+
+@pytest.mark.parametrize(
+    ("asked", "name", "count"),
+    [
+        ({"eta": 1.2}, "eta", 1),
+        ({"frequency": 90.0, "amplitude": 1e-3}, "frequency", 1),
+        ({"frequency": [80.0, 90.0], "amplitude": 1e-3}, "frequency", 2),
+        ({"frequency": [80.0, 90.0], "amplitude": [1e-3, 2e-3]}, "frequency", 2),
+        ({"frequency": 80.0, "amplitude": [1e-3, 2e-3, 3e-3]}, "amplitude", 3),
+        ({"eta": 1.2, "over": "k2", "values": [6000.0, 8000.0]}, "k2", 2),
+        ({"over": "eta", "values": [0.5, 0.6]}, "eta", 2),
+        ({"frequency": 80.0, "over": "amplitude", "values": [1e-3]}, "amplitude", 1),
+    ],
+)
+def test_what_is_a_list_is_the_dimension(asked, name, count):
+    found = along(**asked)
+    assert (found.name, len(found.values), len(found.points)) == (name, count, count)
+    coordinates = found.coordinates()
+    assert {"eta", "frequency", "amplitude", "period", name} == set(coordinates)
+    for dims, values, attributes in coordinates.values():
+        assert dims == name
+        assert len(values) == count
+        assert attributes["units"] and attributes["long_name"]
+
+
+@given(st.floats(0.05, 20.0), st.floats(1e-6, 1e3))
+def test_both_forms_are_the_same_question(eta, length):
+    amplitude = length / eta**2
+    physical = along(frequency=eta * OWN.omega, amplitude=amplitude)
+    assert physical.etas[0] == pytest.approx(eta, rel=1e-15)
+    assert physical.points[0].length == pytest.approx(length, rel=1e-14)
+
+
+def test_amplitudes_go_with_their_frequencies():
+    found = along(frequency=[80.0, 90.0], amplitude=[1e-3, 2e-3])
+    pairs = [(p.excitation.frequency, p.excitation.amplitude) for p in found.points]
+    assert pairs == [(80.0, 1e-3), (90.0, 2e-3)]
+
+
+def test_a_parameter_of_the_structure_is_replaced_and_eta_stays():
+    found = along(eta=1.5, over="omega", values=[1.0, 10.0])
+    assert [point.structure.omega for point in found.points] == [1.0, 10.0]
+    assert [point.excitation.frequency for point in found.points] == [1.5, 15.0]
+    assert found.etas == (1.5, 1.5)
+
+
+@pytest.mark.parametrize(
+    ("asked", "text"),
+    [
+        ({}, "nothing given; expected eta="),
+        ({"eta": 1.0, "frequency": 1.0}, "eta= and frequency= given"),
+        ({"amplitude": 1.0}, "amplitude= given; expected"),
+        ({"eta": 0.0}, r"eta = 0\.0"),
+        ({"eta": math.inf}, "eta = inf"),
+        ({"eta": 1e7}, "expected 1e-06 <= eta <= 1e"),
+        ({"eta": "many"}, "eta = 'many': expected a number or a list"),
+        ({"eta": []}, "eta: 0 values"),
+        ({"eta": np.ones((2, 2))}, "eta: 2x2 values"),
+        ({"eta": [True]}, "expected a number"),
+        ({"frequency": 1.0, "amplitude": 0.0}, r"amplitude = 0\.0: expected finite numbers > 0"),
+        ({"frequency": [1.0, 2.0], "amplitude": [1.0, 2.0, 3.0]}, "3 values for 2 of frequency"),
+        ({"eta": 1.0, "values": [1.0]}, "values: expected with over="),
+        ({"eta": 1.0, "over": "e"}, "expected values="),
+        ({"eta": 1.0, "over": "eta", "values": [1.0]}, "is given as eta= too"),
+        ({"eta": [1.0, 2.0], "over": "e", "values": [0.5]}, "eta: is a list beside over"),
+        ({"eta": 1.0, "over": "kapa", "values": [1.0]}, r"did you mean kappa\?"),
+        ({"eta": 1.0, "over": "e", "values": [0.5, 1.5]}, r"e = 1\.5: expected 0 <= e <= 1"),
+        ({"eta": 1.0, "over": "e", "values": [math.nan]}, "values = nan"),
+    ],
+)
+def test_what_is_no_question_is_one_line(asked, text):
+    with pytest.raises(InputError, match=text) as caught:
+        along(**asked)
+    assert "\n" not in str(caught.value)
+    assert "expected" in str(caught.value)
+
+
+def test_a_single_excitation_is_no_list():
+    with pytest.raises(InputError, match="eta: 2 values; expected one number"):
+        one_point(OWN, [1.0, 2.0], None, None)
+    with pytest.raises(InputError, match="structure = None: expected a Structure"):
+        one_point(None, 1.0, None, None)
+
+
+@pytest.mark.parametrize(
+    ("state", "structure"),
+    [
+        ((0.0, -1e-9, 0.0, 0.0), OWN),
+        ((0.0, math.nan, 0.0, 0.0), OWN),
+        ((0.0, 0.0, 0.0), OWN),
+        ("rest", OWN),
+        ((0.0, 1e-9, 0.0, 0.0), OWN.as_bonded()),
+        ((0.0, 0.0, 0.0, 1e-9), OWN.as_bonded()),
+    ],
+)
+def test_states_that_cannot_be(state, structure):
+    with pytest.raises(InputError, match="start.*expected x"):
+        states("start", state, structure)
+
+
+@pytest.mark.parametrize("given", [0, 1.0, True, None, "7", 10**7])
+def test_whole_numbers(given):
+    with pytest.raises(InputError, match="periods = .*expected a whole number from 1 to"):
+        whole("periods", given, 1)
+    assert whole("periods", np.int64(3), 1) == 3
+
+
+def test_numbers_of_any_kind():
+    assert numbers("eta", np.float32(0.5)) == 0.5
+    assert numbers("eta", range(1, 3)) == (1.0, 2.0)
+    assert numbers("values", None) is None

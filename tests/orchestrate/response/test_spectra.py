@@ -1,0 +1,84 @@
+"""Spectra hold the impulses: against the sum over the impacts that the FMU reports."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import trapezoid
+
+from orchestrate.errors import InputError
+from orchestrate.response.simulate import simulate
+from orchestrate.response.spectra import amplitude_spectrum, spectra
+from orchestrate.structures import Structure
+
+PAPER = Structure.nondimensional()
+OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=1.9, e=0.6)
+LINES = np.arange(1, 31)
+
+
+def fourier(structure, eta, mass, impulses):
+    """Amplitudes of a periodic response's lines by its Fourier integral over one period."""
+    motion = simulate(structure, eta=eta, transient=1200, periods=1, points=8_000)
+    time, acceleration = motion.time.values, motion[f"a{mass}_abs"].values
+    speed = eta * structure.omega
+    turns = np.exp(-1j * speed * np.outer(LINES, time))
+    found = trapezoid(acceleration * turns, time, axis=1)
+    if impulses:
+        jumps = motion.impulse.values * {1: -1.0, 2: 1.0}[mass] / getattr(structure, f"m{mass}")
+        found += np.exp(-1j * speed * np.outer(LINES, motion.impact_time.values)) @ jumps
+    return 2.0 * np.abs(found) * speed / (2.0 * np.pi)
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize(("structure", "eta"), [(PAPER, 1.047), (PAPER, 0.4), (OWN, 1.6)])
+def test_lines_of_a_periodic_response(structure, eta):
+    found = spectra(structure, eta=eta, transient=1200, periods=16).isel(eta=0)
+    at_lines = found.acceleration.sel(order=LINES.astype(float))
+    for mass in (1, 2):
+        whole = fourier(structure, eta, mass, True)
+        between = fourier(structure, eta, mass, False)
+        of_mass = at_lines.sel(mass=mass)
+        np.testing.assert_allclose(of_mass.sel(kind="delaminated"), whole, rtol=0.01)
+        top = between.max()
+        np.testing.assert_allclose(of_mass.sel(kind="sampled"), between, atol=1e-3 * top)
+    np.testing.assert_allclose(found.line, found.order * eta * structure.omega)
+
+
+@pytest.mark.usefixtures("exported")
+def test_impulses_are_what_sampled_accelerations_lack():
+    found = spectra(PAPER, eta=1.047, transient=1200, periods=16).acceleration.isel(eta=0)
+    line = found.sel(mass=1, order=20.0)
+    assert line.sel(kind="sampled") < 0.02 * line.sel(kind="delaminated")
+    assert line.sel(kind="bonded") < 1e-6 * line.sel(kind="delaminated")
+
+
+@pytest.mark.usefixtures("exported")
+def test_in_contact_the_contact_force_is_part_of_the_acceleration():
+    sampled = spectra(PAPER, eta=0.4).acceleration.sel(kind="sampled", mass=1, order=5.0)
+    assert float(sampled[0]) == pytest.approx(0.00238, abs=5e-5)
+
+
+@pytest.mark.usefixtures("exported")
+def test_a_bonded_structure_has_one_line():
+    structure = Structure.nondimensional(D=0.05)
+    found = spectra(structure, eta=[0.5, 1.1], transient=300, periods=8, points=64, highest=20.0)
+    for eta in found.eta.values:
+        part = found.acceleration.sel(eta=eta, kind="bonded", mass=2)
+        reach = complex(structure.omega_3**2 - eta**2, 2.0 * structure.D3 * eta)
+        assert float(part.sel(order=1.0)) == pytest.approx(abs(1.0 + eta**2 / reach), rel=1e-6)
+        assert float(part.sel(order=slice(1.5, None)).max()) < 1e-6
+
+
+@pytest.mark.parametrize("count", [256, 257])
+def test_amplitudes_of_sines(count):
+    time = np.arange(count) / count
+    signal = 0.5 + 3.0 * np.sin(10 * np.pi * time) + 2.0 * np.cos(100 * np.pi * time)
+    frequency, amplitude = amplitude_spectrum([signal, 2.0 * signal], 1.0 / count)
+    assert frequency[5] == pytest.approx(10.0 * np.pi)
+    assert amplitude[0, [5, 50]] == pytest.approx([3.0, 2.0])
+    np.testing.assert_allclose(amplitude[1], 2.0 * amplitude[0])
+
+
+def test_lines_beyond_half_the_rate_are_refused(exported):
+    with pytest.raises(InputError, match="highest = 40: expected at most points/2 = 16"):
+        spectra(PAPER, eta=1.0, points=32)

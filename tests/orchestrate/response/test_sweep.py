@@ -1,0 +1,187 @@
+"""Sweeps: order, directions, any parameter; chunks and scales change nothing."""
+
+from __future__ import annotations
+
+import math
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from orchestrate.access import OSCILLATOR, Instance, begin, find, sampled
+from orchestrate.errors import InputError
+from orchestrate.response.sweep import SweepJob, sweep
+from orchestrate.structures import Excitation, Structure
+
+PAPER = Structure.nondimensional()
+SHORT = {"transient": 30, "samples": 20}
+ETAS = (1.13, 0.4, 1.10, 1.2)  # chaotic ones among them: a wrong start is seen
+NUMBERS = ("xi_rel", "xi_rel_max", "impacts_per_period", "end_state", "a1_max", "x2_max")
+
+pytestmark = pytest.mark.usefixtures("exported")
+
+
+def same(one, other, names=NUMBERS):
+    for name in names:
+        np.testing.assert_array_equal(one[name].values, other[name].values, err_msg=name)
+
+
+def test_values_keep_their_order_whatever_the_direction():
+    given = sweep(PAPER, eta=ETAS, **SHORT)
+    assert tuple(given.eta.values) == ETAS
+    same(given.sortby("eta"), sweep(PAPER, eta=sorted(ETAS), direction="given", **SHORT))
+    down = sweep(PAPER, eta=ETAS, direction="down", **SHORT)
+    backwards = sweep(PAPER, eta=sorted(ETAS)[::-1], direction="given", **SHORT)
+    same(down.sortby("eta", ascending=False), backwards)
+    assert (given.end_state != down.end_state).any()
+
+
+def test_both_directions_side_by_side():
+    both = sweep(PAPER, eta=ETAS, direction="both", **SHORT)
+    assert both.direction.values.tolist() == ["up", "down"]
+    for direction in ("up", "down"):
+        one = sweep(PAPER, eta=ETAS, direction=direction, **SHORT)
+        same(both.sel(direction=direction), one)
+
+
+def test_each_value_starts_from_the_end_of_the_last():
+    found = sweep(PAPER, eta=[0.9, 1.13], **SHORT)
+    first = found.isel(eta=0).end_state.values
+    alone = sweep(PAPER, eta=1.13, start=first, **SHORT)
+    same(found.isel(eta=1), alone.isel(eta=0))
+
+
+def test_a_response_is_what_the_fmu_says_step_by_step():
+    excitation = Excitation.nondimensional(1.13, PAPER)
+    period = excitation.period
+    with Instance(find(OSCILLATOR).path) as instance:
+        begin(instance, PAPER, excitation, x_rel_max_on=True)
+        states = sampled(instance, 0.0, 50 * period, 50)
+        impacts = instance.get("impact_count")[0]
+    found = sweep(PAPER, eta=1.13, transient=20, samples=30).isel(eta=0)
+    np.testing.assert_allclose(found.xi_rel, states[20:, 1] - states[20:, 0], atol=1e-12)
+    np.testing.assert_array_equal(found.end_state, states[-1])
+    whole = sweep(PAPER, eta=1.13, transient=0, samples=50).isel(eta=0)
+    assert float(whole.impacts_per_period) == impacts / 50
+    assert found.sample.values.tolist() == list(range(21, 51))
+
+
+def test_more_samples_than_the_fmu_keeps_in_a_step():
+    long = sweep(PAPER, eta=1.13, transient=10, samples=450)
+    short = sweep(PAPER, eta=1.13, transient=10, samples=200)
+    np.testing.assert_array_equal(long.xi_rel[:, :200], short.xi_rel)
+
+
+@pytest.mark.parametrize("size", [1, 3])
+def test_chunks_change_no_bit(size):
+    etas = np.linspace(1.1, 1.3, 7)
+    whole = sweep(PAPER, eta=etas, direction="both", **SHORT)
+    with patch.object(SweepJob, "chunk", size):
+        same(whole, sweep(PAPER, eta=etas, direction="both", **SHORT))
+
+
+def test_peaks_change_no_other_number():
+    names = ("xi_rel", "xi_rel_max", "impacts_per_period", "end_state", "multiplicity")
+    with_one, with_many = (sweep(PAPER, eta=ETAS, peak_periods=count, **SHORT) for count in (1, 8))
+    same(with_one, with_many, names)
+
+
+@pytest.mark.parametrize(
+    ("name", "values"), [("e", [0.3, 0.7]), ("k2", [1.1, 1.4]), ("D", [0.01, 0.05]), ("mu", [0.5])]
+)
+def test_over_a_parameter_of_the_structure(name, values):
+    found = sweep(PAPER, over=name, values=values, eta=0.9, **SHORT)
+    start = None
+    for value in values:
+        one = sweep(PAPER.replace(**{name: value}), eta=0.9, start=start, **SHORT).isel(eta=0)
+        same(found.sel({name: value}), one)
+        start = one.end_state.values
+    assert found[name].attrs["units"]
+
+
+def test_over_the_amplitude_all_is_proportional():
+    found = sweep(
+        PAPER, over="amplitude", values=[1.0, 2.0], frequency=1.1, direction="given", **SHORT
+    )
+    rest = sweep(PAPER, frequency=1.1, amplitude=2.0, **SHORT)
+    assert found.sizes["amplitude"] == 2
+    assert found.x1_max.values[1] != found.x1_max.values[0]
+    np.testing.assert_allclose(rest.a1_max, 2.0 * found.a1_max[:1], rtol=1e-12)
+    np.testing.assert_allclose(rest.xi1_max, found.xi1_max[:1], rtol=1e-12)
+
+
+@given(
+    st.integers(-8, 8),
+    st.integers(-4, 4),
+    st.floats(0.3, 3.0),
+    st.floats(0.7, 2.0),
+    st.floats(0.1, 0.9),
+)
+@settings(max_examples=15, deadline=None)
+def test_the_unit_of_mass_and_time_does_not_matter(mass, time, eta, kappa, e):
+    unit = Structure.nondimensional(kappa=kappa, e=e, mu=1.5)
+    m, omega = 2.0**mass, 2.0**time
+    other = Structure(
+        m1=m * unit.m1,
+        m2=m * unit.m2,
+        k1=m * omega**2 * unit.k1,
+        k2=m * omega**2 * unit.k2,
+        d1=m * omega * unit.d1,
+        d2=m * omega * unit.d2,
+        e=e,
+    )
+    one, two = (sweep(s, eta=eta, transient=20, samples=5) for s in (unit, other))
+    same(one, two, ("xi_rel", "xi_rel_max", "end_state", "xi1_max"))
+    np.testing.assert_allclose(two.a1_max, omega**2 * one.a1_max, rtol=1e-12)
+
+
+def test_any_unit_gives_the_same_but_for_rounding():
+    own = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
+    unit = Structure.nondimensional(mu=own.mu, kappa=own.kappa, D1=own.D1, D2=own.D2, e=own.e)
+    one, two = (sweep(s, eta=[0.7, 1.6], transient=50, samples=10) for s in (own, unit))
+    np.testing.assert_allclose(one.xi_rel, two.xi_rel, rtol=1e-8)
+    np.testing.assert_allclose(one.end_state, two.end_state, rtol=1e-7)
+
+
+def test_the_physical_form_is_the_same_motion():
+    one = sweep(PAPER, eta=1.6, transient=50, samples=10)
+    two = sweep(PAPER, frequency=1.6, amplitude=0.02, transient=50, samples=10)
+    length = 0.02 * 1.6**2
+    np.testing.assert_allclose(two.xi_rel, one.xi_rel, rtol=1e-9)
+    np.testing.assert_allclose(two.x2_max, length * one.x2_max, rtol=1e-9)
+
+
+def test_a_bonded_structure_has_the_linear_amplitude():
+    structure = Structure.nondimensional(D=0.05, bonded=True)
+    found = sweep(structure, eta=[0.5, 1.0, 1.1], transient=300, samples=10)
+    for eta, x, a in zip(found.eta.values, found.x1_max.values, found.a1_max.values, strict=True):
+        reach = complex(structure.omega_3**2 - eta**2, 2.0 * structure.D3 * eta)
+        assert x == pytest.approx(1.0 / abs(reach), rel=1e-6)
+        assert a == pytest.approx(abs(1.0 + eta**2 / reach), rel=1e-6)
+    assert (found.xi_rel_max == 0.0).all()
+    assert found.permanent_contact.values.tolist() == [1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("asked", "text"),
+    [
+        ({"eta": [1.0, 1.0]}, r"eta: 1\.0 twice; expected each value once"),
+        ({"eta": 1.0, "direction": "left"}, "direction = 'left': expected one of up, down"),
+        ({"eta": 1.0, "tolerance": 0.0}, r"tolerance = 0\.0: expected a number > 0"),
+        ({"eta": 1.0, "transient": -1}, "transient = -1: expected a whole number from 0"),
+        ({"eta": 1.0, "start": (0.0, -1.0, 0.0, 0.0)}, "with x2 >= x1"),
+    ],
+)
+def test_what_is_refused(asked, text):
+    with pytest.raises(InputError, match=text):
+        sweep(PAPER, **asked)
+    assert sweep(PAPER, eta=[1.0, 1.0], direction="given", transient=1, samples=1).sizes["eta"] == 2
+
+
+def test_everything_has_units_and_a_name():
+    found = sweep(PAPER, over="m2", values=[1.0, 2.0], eta=1.0, direction="both", **SHORT)
+    for name, variable in found.variables.items():
+        assert variable.attrs["units"] and variable.attrs["long_name"], name
+    assert math.isclose(float(found.period[0]), 2.0 * math.pi)
