@@ -45,7 +45,7 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
     "models": {"kernels.oscillator", "kernels.shaker", "runtime"},
     "export": {"runtime"},
 }
-DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/compile_kernel.py"}
+DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them
     "fmpy": "orchestrate/access/",
     "matplotlib": "orchestrate/figures/",

@@ -1,0 +1,49 @@
+"""A wheel carries the FMUs that were built from its own sources, so that it runs without compilers.
+
+For a wheel, not for an editable installation, ``build/FORM/NAME.fmu`` of the source tree becomes
+``orchestrate/access/fmus/FORM/NAME.fmu``. What is not there, or was made of other sources, is left
+out, and said to be.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import zipfile
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+PLACE = "orchestrate/access/fmus"
+
+
+def guid_inside(path: Path) -> str:
+    """The GUID that an FMU bears; an empty string where there is none that can be read."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            text = archive.read("modelDescription.xml").decode()
+    except (OSError, KeyError, zipfile.BadZipFile):
+        return ""
+    found = re.search(r'\b(?:guid|instantiationToken)="([^"]*)"', text)
+    return found[1] if found else ""
+
+
+class CustomBuildHook(BuildHookInterface):
+    """Adds the FMUs to a wheel."""
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Name the files to be included; ``version`` is ``"editable"`` or ``"standard"``."""
+        if version == "editable":
+            return
+        root = Path(self.root)
+        sys.path.insert(0, str(root))
+        from fmu_src.export import forms
+
+        for form in forms.FORMS:
+            for name in forms.MODELS:
+                path = root / "build" / form / f"{name}.fmu"
+                if guid_inside(path) == forms.guid(name, form):
+                    build_data["force_include"][str(path)] = f"{PLACE}/{form}/{name}.fmu"
+                else:
+                    self.app.display_warning(f"{path}: none of these sources, left out")

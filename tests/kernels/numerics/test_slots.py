@@ -1,0 +1,57 @@
+"""Slots follow one another; variable tables and memories of the kernels agree."""
+
+import doctest
+from dataclasses import replace
+
+import pytest
+
+from fmu_src.kernels.numerics import slots
+from fmu_src.kernels.oscillator import memory as oscillator
+from fmu_src.kernels.shaker import memory as shaker
+from fmu_src.models.motor_shaker import variables as motor_shaker_table
+from fmu_src.models.oscillator import variables as oscillator_table
+from fmu_src.runtime.table import numbered, with_slots
+
+MODELS = [(oscillator, oscillator_table.VARIABLES), (shaker, motor_shaker_table.VARIABLES)]
+
+
+def test_the_example_in_its_docstring():
+    found = doctest.testmod(slots)
+    assert found.attempted > 0 and found.failed == 0
+
+
+@pytest.mark.parametrize(("memory", "variables"), MODELS)
+def test_value_references_are_places_in_the_table_and_slots(memory, variables):
+    assert [variable.slot for variable in variables] == list(range(len(variables)))
+    assert memory.TIME == len(variables)
+    for variable in variables:
+        if "[" not in variable.name:
+            assert getattr(memory, variable.name.upper()) == variable.slot
+
+
+def test_promised_value_references():
+    """Those that were given out before: saved states and other people's scripts rely on them."""
+    places = {variable.name: variable.slot for variable in oscillator_table.VARIABLES}
+    first = {"m1": 0, "e": 6, "box_amplitude": 15, "x1": 21, "x_rel_max": 40, "sample_count": 42}
+    samples = {"x1_sample[1]": 43, "x2_sample[1]": 243, "v1_sample[1]": 443, "v2_sample[200]": 842}
+    promised = {**first, **samples}
+    assert {name: places[name] for name in promised} == promised
+
+
+def test_a_table_in_another_order_is_refused():
+    first, second, *others = (replace(v, slot=-1) for v in oscillator_table.VARIABLES)
+    with pytest.raises(ValueError, match="m2 is variable 0 of the table, but slot 1"):
+        numbered([second, first, *others], oscillator)
+
+
+def test_messages_name_slots():
+    assert with_slots({3: "e = {E}, {MODE:a|b}"}, oscillator) == {
+        3: f"e = {{{oscillator.E}}}, {{{oscillator.MODE}:a|b}}"
+    }
+
+
+def test_no_slot_lies_in_another():
+    """Each name has its own place; offsets inside a branch count from 0 on their own."""
+    assert oscillator.BRANCH_2 - oscillator.BRANCH_1 == oscillator.ENVELOPE_SINE + 1
+    assert oscillator.SIZE == oscillator.SERIES_GAP + oscillator.SERIES_LONGEST + 1
+    assert shaker.SIZE == shaker.STOP + 1
