@@ -12,6 +12,7 @@ import re
 from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -77,7 +78,7 @@ def draw(reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence
     folder = MODELS / reference.folder
     shaker = reference is SHAKER
     scheme = shaker_pictures.draw_shaker if shaker else fmu_pictures.draw_scheme
-    tight = {"dpi": 100, "bbox_inches": "tight"}
+    tight: Any = {"dpi": 100, "bbox_inches": "tight"}
     files.save(scheme(), folder / "documentation" / "scheme", **tight)
     files.save(scheme(width=2.4), folder / "model", **tight)
     if shaker:

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .drives import add_drive, described, own_fmus
-from .options import Commands, add_running, check_output, draw_if_missing, ends_of, running_of
+from .options import Commands, add_drive, described, ends_of
+from .output import add_running, check_output, draw_if_missing, own_fmus, running_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -148,9 +148,10 @@ def run(arguments: argparse.Namespace) -> None:
 
     structure, drive = described(arguments)
     jobs = jobs_of(arguments, structure, drive)
-    running = {**running_of(arguments), "fmu": own_fmus(arguments.fmu)}
+    own = own_fmus(arguments.fmu)
+    running = {**running_of(arguments), "fmu": own}
     if arguments.ssp:
-        print(write_package(arguments, drive, jobs[-1], running["fmu"]))
+        print(write_package(arguments, drive, jobs[-1], own))
         return
     check_output(arguments.output)
     fresh = any(not (arguments.output / f"{job.name}.nc").exists() for job in jobs)

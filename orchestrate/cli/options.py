@@ -1,11 +1,10 @@
-"""What commands share: options for structures, frequencies and files, and what is made of them."""
+"""What commands share of what is asked: structures, motors and frequencies, from their options."""
 
 from __future__ import annotations
 
 import argparse
-import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,15 +12,11 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 
 if TYPE_CHECKING:
-    from ..running.options import Running
-    from ..structures import Structure
+    from ..structures import Drive, Structure
 
 MOST_VALUES = 10_000_000
 RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
 SETS = Path(__file__).resolve().parents[1] / "structures" / "sets"
-AFTER = (
-    """Interrupted, the same command goes on where it was. A finished result is left as it is."""
-)
 
 
 @dataclass(frozen=True)
@@ -151,6 +146,35 @@ def title_of(structure: Structure) -> str:
     return parameters_text({name: structure.get(name) for name in names})
 
 
+# -- motor and box ---------------------------------------------------------------------------------
+
+
+def add_drive(parser: argparse.ArgumentParser) -> None:
+    """``--drive``, ``--structure`` and ``--set``."""
+    group = parser.add_argument_group("structure, motor and box")
+    text = (
+        "TOML file with [motor], [box] and [structure], or a set: quick, beam (default: "
+        "%(default)s)"
+    )
+    group.add_argument("--drive", default="quick", metavar="FILE", help=text)
+    other = "file or set with another [structure] than that of --drive"
+    group.add_argument("--structure", metavar="FILE", help=other)
+    add_set(group, "a parameter of the structure, or of motor and box in SI; may be repeated")
+
+
+def described(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
+    """Structure and drive, with what is set of either."""
+    from ..structures import Drive, Structure
+
+    drive = Drive.from_file(arguments.drive)
+    structure = Structure.from_file(arguments.structure or arguments.drive)
+    changes = changes_of(arguments.set)
+    own = {field.name for field in fields(Drive)}
+    of_drive = {name: float(value) for name, value in changes.items() if name in own}
+    of_structure = {name: value for name, value in changes.items() if name not in own}
+    return structure.replace(**of_structure), drive.replace(**of_drive)
+
+
 # -- frequencies ----------------------------------------------------------------------------------
 
 
@@ -216,86 +240,3 @@ def ends_of(option: str, text: str) -> tuple[float, float]:
             f"{option} {text}: expected FIRST:LAST, two numbers such as 1.2:1.65"
         ) from None
     return first, last
-
-
-# -- running --------------------------------------------------------------------------------------
-
-
-def add_running(
-    parser: argparse.ArgumentParser,
-    output: Path | None = Path("results"),
-    shown: str = "results",
-    several: bool = False,
-) -> None:
-    """Where results go, and how they are computed.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-    output : Path, optional
-        Default of ``--output``.
-    shown : str
-        The same, for people.
-    several : bool
-        Whether FMUs of several models compute it.
-    """
-    option = parser.add_argument_group("results and running").add_argument
-    text = f"folder of the results (default: {shown})"
-    option("--output", type=Path, default=output, metavar="FOLDER", help=text)
-    option("--force", action="store_true", help="compute anew what is there already")
-    stale = "take results that older code or another FMU has made"
-    option("--keep-stale", action="store_true", help=stale)
-    option("--jobs", type=int, metavar="N", help="processes at once (default: all cores)")
-    cluster = "compute on the workers of a Dask scheduler, such as tcp://host:8786"
-    option("--cluster", metavar="ADDRESS", help=cluster)
-    own = "own FMU (default: the one of the present sources)"
-    more = {"action": "append"} if several else {}
-    option("--fmu", type=Path, metavar="FILE", help=own + "; may be repeated" * several, **more)
-    place = "where FMUs are looked for and exported to"
-    option("--build-folder", type=Path, metavar="FOLDER", help=place)
-
-
-def running_of(arguments: argparse.Namespace, store: Path | None = None) -> Running:
-    """Keywords of the public API from the options."""
-    running: Running = {
-        "jobs": arguments.jobs,
-        "cluster": arguments.cluster,
-        "force": arguments.force,
-        "keep_stale": arguments.keep_stale,
-        "fmu": arguments.fmu,
-        "build_folder": arguments.build_folder,
-    }
-    if store is not None:
-        running["store"] = store
-    return running
-
-
-def check_output(folder: Path) -> None:
-    """See that a folder can be written, or made, without making it yet.
-
-    Raises
-    ------
-    InputError
-    """
-    place = next((place for place in (folder, *folder.parents) if place.exists()), Path())
-    if not (place.is_dir() and os.access(place, os.W_OK)):
-        reason = "not writable" if place.is_dir() else f"{place} is no folder"
-        raise InputError(f"--output {folder}: {reason}; expected a folder that can be written")
-
-
-def draw_if_missing(picture: Path, fresh: bool, draw: Callable[[], Any]) -> Path:
-    """The picture of a result: drawn where the result is new or the picture is missing.
-
-    Parameters
-    ----------
-    picture : Path
-    fresh : bool
-        Whether the result is new.
-    draw : callable
-        Gives a :class:`matplotlib.figure.Figure`.
-    """
-    if fresh or not picture.exists():
-        from ..figures.files import save
-
-        save(draw(), picture.with_suffix(""), (picture.suffix.lstrip("."),))
-    return picture

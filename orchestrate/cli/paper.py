@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from .options import Commands, add_running, check_output, running_of
+from .options import Commands
+from .output import add_running, check_output, running_of
 
 EXAMPLES = """\
   {program} paper                     all at the paper's resolution, into results/paper/

@@ -6,17 +6,8 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import (
-    Commands,
-    add_running,
-    add_structure,
-    check_output,
-    draw_if_missing,
-    one_value,
-    running_of,
-    structure_of,
-    title_of,
-)
+from .options import Commands, add_structure, one_value, structure_of, title_of
+from .output import add_running, check_output, draw_if_missing, running_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -79,8 +70,8 @@ def run(arguments: argparse.Namespace) -> None:
     result = arguments.output / f"motion_{structure.label()}_{ending}.nc"
     fresh = arguments.force or not result.exists()
 
+    from .. import simulate
     from ..figures.labels import parameters_text
-    from ..response.simulate import simulate
 
     data = simulate(
         structure,

@@ -8,16 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .drives import add_drive, described, own_fmus
-from .options import (
-    Commands,
-    add_running,
-    changes_of,
-    check_output,
-    draw_if_missing,
-    running_of,
-    values_of,
-)
+from .options import Commands, add_drive, changes_of, described, values_of
+from .output import add_running, check_output, draw_if_missing, own_fmus, running_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -86,8 +78,8 @@ def shaken_harmonically(arguments: argparse.Namespace) -> None:
     """Spectra at frequency ratios."""
     etas, _ = values_of("--eta", arguments.eta)
 
+    from .. import spectra
     from ..figures import spectra as figure
-    from ..response.spectra import spectra
     from ..structures import Structure
 
     structure = Structure.from_file(arguments.structure or "paper")

@@ -6,18 +6,8 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import (
-    Commands,
-    add_running,
-    add_structure,
-    check_output,
-    draw_if_missing,
-    one_value,
-    running_of,
-    structure_of,
-    title_of,
-    values_of,
-)
+from .options import Commands, add_structure, one_value, structure_of, title_of, values_of
+from .output import add_running, check_output, draw_if_missing, running_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -84,7 +74,7 @@ def run(arguments: argparse.Namespace) -> None:
     result = arguments.output / f"orbit_{structure.label()}_{ending}.nc"
     fresh = arguments.force or not result.exists()
 
-    from ..response.sweep import sweep
+    from .. import sweep
 
     data = sweep(
         structure,

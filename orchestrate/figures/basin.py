@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
@@ -29,7 +31,7 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     y, x = map(str, data.attractor_of.dims)
     labels = data.attractor_of.where(data.attractor_of >= 0).values.clip(max=len(COLOURS))
     shades = ListedColormap([*COLOURS, OTHER])
-    limits = {"vmin": -0.5, "vmax": len(COLOURS) + 0.5}
+    limits: Any = {"vmin": -0.5, "vmax": len(COLOURS) + 0.5}
     plane.pcolormesh(data[x], data[y], labels, cmap=shades, rasterized=True, **limits)
     label_attractors(plane, data)
     plane.set(xlabel=names[0] or x, ylabel=names[1] or y, title=title)

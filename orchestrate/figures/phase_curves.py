@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -53,7 +55,7 @@ def draw_kinds(
         width = 2.5 if contact and not dotted else 1.0
         marker = "o" if contact and dotted else ""
         label = names[index] if style == "-" else None
-        line = {"color": colour, "linewidth": width, "label": label, "marker": marker}
+        line: Any = {"color": colour, "linewidth": width, "label": label, "marker": marker}
         axes.plot(curve[0] * here, curve[1] * here, style, **line)
 
 

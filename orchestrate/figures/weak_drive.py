@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -37,7 +38,8 @@ def draw(runs: Mapping[str, xr.Dataset], theory: xr.Dataset | None = None) -> Fi
     figure, axes = panels(3, 2, (13, 13))
     for name, data in runs.items():
         for part, style, way in ways(data):
-            line = {"color": COLOURS[name], "linewidth": 1.2, "label": f"{name}, {way}"}
+            label = f"{name}, {way}"
+            line: Any = {"color": COLOURS[name], "linewidth": 1.2, "label": label}
             axes[0].plot(data.voltage[part], data.speed[part], style, **line)
             axes[1].plot(data.speed[part], data.amplitude[part], style, **line)
             if name == "delaminated":
@@ -46,7 +48,7 @@ def draw(runs: Mapping[str, xr.Dataset], theory: xr.Dataset | None = None) -> Fi
     for panel, jump in zip(axes[4:], ("up", "down"), strict=True):
         draw_histories(panel, runs, jump)
     if theory is not None:
-        dotted = {"linewidth": 1.0, "label": THEORY}
+        dotted: Any = {"linewidth": 1.0, "label": THEORY}
         axes[0].plot(theory.voltage, theory.speed, "k:", **dotted)
         axes[1].plot(theory.speed, theory.amplitude, "k:", **dotted)
     name = list(runs)[-1]
@@ -79,7 +81,7 @@ def draw_impacts(axes: Axes, data: xr.Dataset, way: str) -> None:
     axes.plot(speed, count, ".", markersize=2.0, color=colour, alpha=0.3)
     if len(count) > WINDOW:
         label = f"delaminated, {way}, mean of {WINDOW}"
-        line = {"color": colour, "linewidth": 1.2, "label": label}
+        line: Any = {"color": colour, "linewidth": 1.2, "label": label}
         axes.plot(mean_of(speed), mean_of(count), style, **line)
     axes.set_yscale("log")
 
@@ -90,8 +92,8 @@ def mark_jumps(axes: Axes, data: xr.Dataset, colour: str) -> None:
         value = float(data.jumps.sel(jump=jump))
         if np.isfinite(value):
             axes.axvline(value, color=colour, linewidth=0.6, alpha=0.6)
-            where = {"transform": axes.get_xaxis_transform(), "rotation": 90, "fontsize": 8}
-            side = {"verticalalignment": "bottom" if jump == "up" else "top"}
+            where: Any = {"transform": axes.get_xaxis_transform(), "rotation": 90, "fontsize": 8}
+            side: Any = {"verticalalignment": "bottom" if jump == "up" else "top"}
             axes.text(value, place, f" {value:.4f}", color=colour, **where, **side)
 
 
@@ -108,7 +110,7 @@ def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str) -> Non
         span = AROUND * float(data.Omega[row] / data.speed[row])
         time = data.time.values - float(data.time[row])
         near = np.abs(time) < span
-        line = {"color": COLOURS[name]}
+        line: Any = {"color": COLOURS[name]}
         axes.plot(time[near], data.speed.values[near], **line, label=f"{name}: speed")
         line |= {"linewidth": 0.8, "linestyle": "--", "label": f"{name}: amplitude"}
         amplitudes.plot(time[near], data.amplitude.values[near], **line)
@@ -145,8 +147,8 @@ def label_axes(axes: Sequence[Axes]) -> None:
     axes[3].set(xlabel=speed, ylabel="power in W")
     for index, panel in enumerate(axes):
         if panel.get_legend_handles_labels()[0]:
-            place = "center right" if index >= 4 else "best"  # two scales confuse "best"
-            panel.legend(fontsize=7, loc=place)
+            place: Any = "center right" if index >= 4 else "best"  # two scales confuse "best"
+            panel.legend(loc=place, fontsize=7)
 
 
 def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:

@@ -13,8 +13,8 @@ from .cases import CASES
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
+    from ..figures.style import Figure
     from .plan import Part
 
 ORBITS = {"6": "elastic", "10": "damped", "11": "plastic"}  # figures that are sweeps

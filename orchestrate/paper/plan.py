@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -94,7 +95,7 @@ def sweep_job(structure: Structure, direction: str, resolution: Resolution) -> S
 
 
 def exponent_job(sweep: SweepJob, resolution: Resolution) -> LyapunovJob:
-    """Exponents along an up-sweep, of each fifth response; below 0.43 all have permanent contact."""
+    """Exponents of each fifth response of an up-sweep; below 0.43 all have permanent contact."""
     etas = tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5]
     return LyapunovJob(
         name=f"exponent_{sweep.structure.label()}",
@@ -163,8 +164,8 @@ def map_job(parameter: str, structure: Structure, resolution: Resolution) -> Map
 def curve_jobs(ups: Sequence[SweepJob], resolution: Resolution) -> dict[str, Job]:
     """The curves of Figures 5, 7, 8, 9 and 12, by number."""
     skip, keep = resolution.skip, resolution.keep
-    first = {"sweeps": (ups[0].name,), "structures": (ups[0].structure,), "skip": skip}
-    every = {
+    first: Any = {"sweeps": (ups[0].name,), "structures": (ups[0].structure,), "skip": skip}
+    every: Any = {
         "sweeps": tuple(job.name for job in ups),
         "structures": tuple(job.structure for job in ups),
         "skip": skip,

@@ -90,10 +90,11 @@ def windows_in_order(results: Results) -> Finding:
     up = results.up("elastic")
     found = [window(up, n) for n in range(1, 5)]
     text = "; ".join(f"{n}T: {w[0]:.3f} to {w[1]:.3f}" for n, w in enumerate(found, 1) if w)
-    ordered = [
-        w is not None and (i == 0 or found[i - 1] is None or found[i - 1][1] < w[0])
-        for i, w in enumerate(found)
-    ]
+    before: tuple[float, float] | None = None
+    ordered = []
+    for limits in found:
+        ordered.append(limits is not None and (before is None or before[1] < limits[0]))
+        before = limits
     return holds(ordered, text)
 
 
@@ -171,7 +172,7 @@ def other_regions(results: Results) -> Finding:
     text = "; ".join(
         f"{a:.3f} to {d:.3f}, from {n}T to {n + 1}T" for n, (a, _, _, d) in enumerate(edges, 2)
     )
-    return holds([np.isfinite(edge).all() for edge in edges], text)
+    return holds([bool(np.isfinite(edge).all()) for edge in edges], text)
 
 
 CLAIMS = (
