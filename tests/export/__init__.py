@@ -1,0 +1,1 @@
+"""The exporters: which sources an FMU is made of, and what they need to be asked."""

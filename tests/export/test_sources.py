@@ -1,0 +1,86 @@
+"""The files an FMU is made of are those that its modules import; nothing else decides its GUID."""
+
+import json
+import os
+import subprocess
+import sys
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+
+from fmu_src.export import forms, native_form, pythonfmu_form, sources
+
+from ..fresh import ROOT
+
+PROGRAMS = Path(__file__).with_name("programs")
+
+
+def told_by(program, *arguments):
+    """What a program with the project on its path prints."""
+    command = [sys.executable, str(PROGRAMS / program), *arguments]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("folder", forms.MODELS.values())
+def test_a_model_is_made_of_what_it_imports(folder):
+    ran = told_by("imported.py", f"fmu_src.models.{folder}.model")
+    assert sorted(sources.model_sources(folder)) == ran
+    other = {"oscillator": "shaker", "motor_shaker": "oscillator"}[folder]
+    assert not [name for name in ran if name.startswith(f"kernels/{other}/")]
+
+
+@pytest.mark.parametrize("folder", forms.MODELS.values())
+def test_the_embedded_package_is_made_of_what_it_imports(folder):
+    ran = told_by("imported.py", f"fmu_src.models.{folder}.model", "fmu_src.runtime.slave")
+    assert sorted(pythonfmu_form.embedded_sources(folder)) == ran
+
+
+def test_an_import_that_leads_nowhere_is_named():
+    with pytest.raises(FileNotFoundError, match=r"runtime/x.py, line 2: from .nothing import it"):
+        list(sources.imported("runtime/x.py", b"import math\nfrom .nothing import it\n"))
+
+
+def test_the_native_forms_know_nothing_of_pythonfmu():
+    files = sources.exporters("export/native_form.py")
+    assert "export/pythonfmu_form.py" not in files
+    assert not [name for name, text in files.items() if b"import pythonfmu" in text]
+
+
+@pytest.mark.parametrize("version", native_form.SHIM)
+def test_a_change_of_any_source_is_another_guid(monkeypatch, version):
+    """Kernel, table, exporter and C shim; the other form's exporter is none of them."""
+    before = native_form.guid("oscillator", version)
+    read = Path.read_bytes
+    for changed, same in (
+        ("kernels/numerics/elementary.py", False),
+        ("models/oscillator/variables.py", False),
+        ("export/linking.py", False),
+        ("runtime/native/core.c", False),
+        ("kernels/shaker/stepper.py", True),
+        ("export/pythonfmu_form.py", True),
+        ("runtime/slave.py", True),
+    ):
+
+        def altered(path, changed=changed):
+            return read(path) + (b"#" if path == sources.ROOT / changed else b"")
+
+        monkeypatch.setattr(Path, "read_bytes", altered)
+        assert (native_form.guid("oscillator", version) == before) == same, changed
+
+
+def test_guids_need_the_standard_library_alone():
+    """And an export says in one line which extra brings what is missing."""
+    told = told_by("bare.py")
+    assert len(told) == len(forms.FORMS) * len(forms.MODELS)
+    for key, (guid, reason) in told.items():
+        form, name = key.split("/")
+        assert guid == forms.guid(name, form)
+        assert 'pip install "vibroimpact[build]"' in reason and "\n" not in reason
+
+
+def test_pythonfmu_is_the_version_the_slave_is_made_for():
+    required = [line for line in metadata.requires("vibroimpact") if line.startswith("pythonfmu")]
+    assert required[0].startswith(f"pythonfmu=={pythonfmu_form.PYTHONFMU};")
