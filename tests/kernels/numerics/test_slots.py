@@ -35,7 +35,8 @@ def test_value_references_are_places_in_the_table_and_slots(memory, variables):
 
 def test_promised_value_references():
     places = {variable.name: variable.slot for variable in oscillator_table.VARIABLES}
-    assert {name: places[name] for name in PROMISED} == PROMISED
+    found = {name: places[name] for name in PROMISED}
+    assert found == PROMISED
 
 
 def test_a_table_in_another_order_is_refused():
