@@ -91,10 +91,10 @@ def entry_ir(entry: Any, size: int) -> tuple[str, str]:
     import numba
 
     def c_entry(pointer: Any, time: Any) -> Any:
-        return entry(numba.carray(pointer, (size,)), time)  # type: ignore[attr-defined]
+        return entry(numba.carray(pointer, (size,)), time)
 
     double = numba.types.float64
-    signature = numba.types.int32(numba.types.CPointer(double), double)  # type: ignore[no-untyped-call]
+    signature = numba.types.int32(numba.types.CPointer(double), double)
     compiled = numba.cfunc(signature, error_model="numpy")(c_entry)
     return compiled.inspect_llvm(), compiled.native_name
 

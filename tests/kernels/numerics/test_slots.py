@@ -27,7 +27,7 @@ def test_the_example_in_its_docstring():
 @pytest.mark.parametrize(("memory", "variables"), MODELS)
 def test_value_references_are_places_in_the_table_and_slots(memory, variables):
     assert [variable.slot for variable in variables] == list(range(len(variables)))
-    assert memory.TIME == len(variables)
+    assert len(variables) == memory.TIME
     for variable in variables:
         if "[" not in variable.name:
             assert getattr(memory, variable.name.upper()) == variable.slot
