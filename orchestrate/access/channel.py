@@ -27,64 +27,65 @@ class Channel:
     def __init__(self, instance: Instance, inputs: Sequence[str], outputs: Sequence[str]) -> None:
         self.instance = instance
         self._fmu = instance._fmu
-        self._in = self._array(inputs)
-        self._out = self._array(outputs)
-        functions = self._functions3() if instance.is_fmi3 else self._functions2()
-        self._set, self._get, self._step, self._save, self._restore, self._free = functions
-        self._reused = not instance.description.needs_tool  # pythonfmu makes a new state each time
         self._states: dict[int, c_void_p] = {}
+        self._reused = not instance.description.needs_tool  # pythonfmu makes a new state each time
+        functions = self._functions3() if instance.is_fmi3 else self._functions2()
+        self._set, self._read, self._step, self._save, self._restore, self._free = functions
+        places, count, self._inputs = self._array(inputs)
+        self._puts = [self._arguments(places, n, self._inputs) for n in range(count + 1)]
+        places, count, self._outputs = self._array(outputs)
+        self._gets = self._arguments(places, count, self._outputs)
 
     def _array(self, names: Sequence[str]) -> tuple[Any, int, Any]:
         references = [self.instance.variable(name).valueReference for name in names]
         count = len(references)
         return (c_uint * count)(*references), count, (c_double * count)()
 
-    def _functions2(self) -> tuple[Callable[..., Any], ...]:
-        fmu, component = self._fmu, self._fmu.component
+    def _arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
+        """Of the functions that set and get; FMI 3.0 wants the number of values too."""
+        sizes = (count,) if self.instance.is_fmi3 else ()
+        return (self._fmu.component, references, count, values, *sizes)
 
-        def step(time: float, h: float) -> None:
-            fmu.fmi2DoStep(component, time, h, 0)
+    def _functions2(self) -> tuple[Callable[..., int], ...]:
+        dll, component = self._fmu.dll, self._fmu.component
+        do_step = dll.fmi2DoStep
 
-        states = (fmu.fmi2GetFMUstate, fmu.fmi2SetFMUstate, fmu.fmi2FreeFMUstate)
-        return fmu.fmi2SetReal, fmu.fmi2GetReal, step, *states
+        def step(time: float, h: float) -> int:
+            return int(do_step(component, time, h, 0))
 
-    def _functions3(self) -> tuple[Callable[..., Any], ...]:
-        fmu, component = self._fmu, self._fmu.component
+        states = (dll.fmi2GetFMUstate, dll.fmi2SetFMUstate, dll.fmi2FreeFMUstate)
+        return dll.fmi2SetReal, dll.fmi2GetReal, step, *states
+
+    def _functions3(self) -> tuple[Callable[..., int], ...]:
+        dll, component = self._fmu.dll, self._fmu.component
+        do_step = dll.fmi3DoStep
         flags, last = [c_bool() for _ in range(3)], c_double()
         answers = [*map(byref, flags), byref(last)]
 
-        def step(time: float, h: float) -> None:
-            fmu.fmi3DoStep(component, time, h, False, *answers)
+        def step(time: float, h: float) -> int:
+            return int(do_step(component, time, h, False, *answers))
 
-        states = (fmu.fmi3GetFMUState, fmu.fmi3SetFMUState, fmu.fmi3FreeFMUState)
-        return fmu.fmi3SetFloat64, fmu.fmi3GetFloat64, step, *states
+        states = (dll.fmi3GetFMUState, dll.fmi3SetFMUState, dll.fmi3FreeFMUState)
+        return dll.fmi3SetFloat64, dll.fmi3GetFloat64, step, *states
 
-    def _call(self, function: Callable[..., Any], *arguments: Any) -> None:
-        """Call, with the FMU's message where it fails."""
+    def _call(self, function: Callable[..., int], *arguments: Any) -> None:
+        """Call the FMU itself, past FMPy's wrapper; its message where the status is not OK."""
         self.instance._messages.clear()
-        try:
-            function(*arguments)
-        except Exception as error:
-            raise self.instance.failure(error) from None
-
-    def _sizes(self, count: int) -> list[int]:
-        """FMI 3.0 wants the number of values too."""
-        return [count] if self.instance.is_fmi3 else []
+        status = function(*arguments)
+        if status:
+            name = getattr(function, "__name__", "a call of the FMU")
+            raise self.instance.failure(f"{name} failed with status {status}")
 
     def put(self, *values: float) -> None:
         """Set the first of the inputs, as many as values are given."""
-        references, _, array = self._in
         count = len(values)
-        array[:count] = values
-        component = self._fmu.component
-        self._call(self._set, component, references, count, array, *self._sizes(count))
+        self._inputs[:count] = values
+        self._call(self._set, *self._puts[count])
 
     def get(self) -> list[float]:
         """Values of the outputs."""
-        references, count, array = self._out
-        component = self._fmu.component
-        self._call(self._get, component, references, count, array, *self._sizes(count))
-        values: list[float] = array[:]
+        self._call(self._read, *self._gets)
+        values: list[float] = self._outputs[:]
         return values
 
     def step(self, time: float, h: float) -> None:
