@@ -12,7 +12,8 @@ What is described
     numbers, in Python or in TOML files.
 What is asked
     :func:`simulate`, :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`,
-    :func:`attractors`, :func:`basin`, :func:`impact_statistics`; :func:`couple` for the weak drive.
+    :func:`attractors`, :func:`basin`, :func:`impact_statistics`; :func:`couple` and
+    :func:`drive_spectra` for the weak drive, :func:`write_ssp` for other tools.
 What is answered
     An :class:`xarray.Dataset` with units, long names, all parameters, and where it comes from.
 
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
     from .response.sweep import sweep
     from .structures import Drive, Excitation, Structure
     from .weak_drive.couple import couple
+    from .weak_drive.drive_spectra import drive_spectra
+    from .weak_drive.ssp import write_ssp
 
 __all__ = [
     "Drive",
@@ -54,12 +57,14 @@ __all__ = [
     "attractors",
     "basin",
     "couple",
+    "drive_spectra",
     "impact_statistics",
     "lyapunov",
     "map",
     "simulate",
     "spectra",
     "sweep",
+    "write_ssp",
 ]
 PLACES = {  # where each name lives: it is imported when it is used, so that `import` takes no time
     "structures": ("Drive", "Excitation", "Structure"),
@@ -76,6 +81,8 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "dynamics.basins": ("basin",),
     "dynamics.impact_statistics": ("impact_statistics",),
     "weak_drive.couple": ("couple",),
+    "weak_drive.drive_spectra": ("drive_spectra",),
+    "weak_drive.ssp": ("write_ssp",),
 }
 
 
