@@ -1,0 +1,89 @@
+"""Coexisting attractors: reproducible starts, known attractors, states that stay on them."""
+
+from __future__ import annotations
+
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+
+from orchestrate.dynamics.attractors import AttractorsJob, attractors, random_starts
+from orchestrate.dynamics.clusters import settling
+from orchestrate.errors import InputError
+from orchestrate.response.sweep import sweep
+from orchestrate.structures import Structure
+
+PAPER = Structure.nondimensional()
+TWO = 1.315  # eta at which a response T and one 2T coexist
+ASKED = {"eta": [1.2, TWO], "starts": 24, "seed": 3, "transient": 300}
+
+pytestmark = pytest.mark.usefixtures("exported")
+
+
+@pytest.fixture(scope="module")
+def found(exported):
+    return attractors(PAPER, **ASKED)
+
+
+def test_two_periodic_responses_coexist(found):
+    there = found.sel(eta=TWO)
+    assert int(there.number) == 2
+    assert there.multiplicity.values[:2].tolist() == [1.0, 2.0]
+    assert there.impacts_per_period.values[:2].tolist() == [1.0, 1.5]
+    assert there.share.values[:2].sum() == pytest.approx(1.0)
+    assert np.bincount(there.attractor_of)[1] / 24 == there.share.values[1]
+
+
+@pytest.mark.parametrize("k", [0, 1])
+def test_a_state_on_an_attractor_stays_there(found, k):
+    there = found.sel(eta=TWO).isel(attractor=k)
+    swept = sweep(PAPER, eta=TWO, start=there.state.values, transient=10, samples=20).isel(eta=0)
+    assert int(swept.multiplicity) == int(there.multiplicity)
+    assert float(swept.xi_rel_max) == pytest.approx(float(there.xi_rel_max), rel=1e-3)
+
+
+def test_the_same_seed_gives_the_same_starts(found):
+    with patch.object(AttractorsJob, "chunk", 7):
+        again = attractors(PAPER, **ASKED)
+    np.testing.assert_array_equal(again.features, found.features)
+    np.testing.assert_array_equal(again.attractor_of, found.attractor_of)
+    other = attractors(PAPER, **{**ASKED, "seed": 4})
+    assert (other.features != found.features).any()
+
+
+def test_starts_are_states_in_their_box():
+    states = random_starts(1000, 2.0, (1, 0), 10.0)
+    x1, x2, v1, v2 = states.T
+    assert (x2 >= x1).all()
+    assert np.abs(x1).max() < 2.0
+    assert (x2 - x1).max() < 2.0
+    assert 10.0 < np.abs(v1).max() < 20.0
+    assert 10.0 < np.abs(v2 - v1).max() < 20.0
+    assert (random_starts(1000, 2.0, (1, 1), 10.0) != states).all()
+
+
+def test_scale_is_three_times_the_largest_gap_from_rest():
+    gap = float(
+        sweep(PAPER, eta=TWO, transient=settling(300, 300.0, TWO), samples=48).xi_rel_max[0]
+    )
+    asked = {**ASKED, "eta": TWO, "starts": 4}
+    one, two = attractors(PAPER, **asked), attractors(PAPER, **asked, scale=3.0 * gap)
+    np.testing.assert_array_equal(one.features, two.features)
+    with pytest.raises(InputError, match="scale: 2 values for 1 of eta"):
+        attractors(PAPER, **asked, scale=[1.0, 2.0])
+    with pytest.raises(InputError, match=r"scale = -1\.0: expected numbers > 0"):
+        attractors(PAPER, **asked, scale=-1.0)
+
+
+def test_units_do_not_matter():
+    own = Structure(m1=0.8, m2=0.8, k1=5000.0, k2=6000.0, d1=0.4, d2=0.4)
+    unit = Structure.nondimensional(D=own.D1)
+    asked = {"eta": TWO, "starts": 8, "seed": 3, "transient": 300}
+    one, two = (attractors(s, **asked) for s in (own, unit))
+    np.testing.assert_array_equal(one.attractor_of, two.attractor_of)
+    np.testing.assert_allclose(one.xi_rel_max, two.xi_rel_max, rtol=1e-3)
+
+
+def test_a_bonded_structure_has_nothing_to_tell():
+    with pytest.raises(InputError, match="is bonded; expected one whose masses can part"):
+        attractors(PAPER.as_bonded(), eta=1.0)

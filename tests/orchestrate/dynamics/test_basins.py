@@ -1,0 +1,146 @@
+"""Basins: what the coordinates of a plane mean, and that each start leads where it says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from orchestrate.access import REST
+from orchestrate.dynamics.basins import BasinJob, Plane, Side, basin
+from orchestrate.errors import InputError
+from orchestrate.response.questions import Point
+from orchestrate.response.simulate import simulate
+from orchestrate.response.sweep import sweep
+from orchestrate.structures import Excitation, Structure
+
+PAPER = Structure.nondimensional()
+ETA = 1.315
+POINT = Point(PAPER, Excitation.nondimensional(ETA, PAPER))
+AT = (-1.0, 2.0, 0.3, -0.1)
+SIDES = {"x": ("x_rel", -0.4, 1.2, 5), "y": ("v_rel", -1.0, 1.0, 4)}
+
+
+def starts(x, y, at=AT):
+    states, phases = Plane(POINT, Side(*x), Side(*y), at).starts()
+    return states.reshape(y[3], x[3], 4), phases.reshape(y[3], x[3])
+
+
+@pytest.fixture(scope="module")
+def found(exported):
+    return basin(PAPER, eta=ETA, **SIDES)
+
+
+def test_gap_coordinates_keep_the_means():
+    states, _ = starts(("x_rel", 0.0, 3.0, 4), ("v_rel", -2.0, 2.0, 3))
+    np.testing.assert_allclose(states[..., :2].mean(axis=-1), 0.5)
+    np.testing.assert_allclose(states[..., 2:].mean(axis=-1), 0.1)
+    np.testing.assert_allclose(states[1, :, 1] - states[1, :, 0], [0.0, 1.0, 2.0, 3.0])
+    np.testing.assert_allclose(states[:, 0, 3] - states[:, 0, 2], [-2.0, 0.0, 2.0])
+
+
+def test_other_coordinates_are_taken_as_they_are():
+    states, phases = starts(("x2", 0.0, 1.0, 3), ("phase", 0.0, 6.0, 2))
+    assert states[1, :, 1].tolist() == [0.0, 0.5, 1.0]
+    assert phases[:, 0].tolist() == [0.0, 6.0]
+    np.testing.assert_array_equal(
+        states[..., [0, 2, 3]], np.broadcast_to([-1.0, 0.3, -0.1], (2, 3, 3))
+    )
+    with_gap, _ = starts(("x1", 0.0, 1.0, 3), ("x_rel", 0.0, 2.0, 2))
+    np.testing.assert_array_equal(with_gap[1, :, 1], [2.0, 2.5, 3.0])
+    with_second, _ = starts(("v2", 0.0, 1.0, 2), ("v_rel", -1.0, 1.0, 2))
+    np.testing.assert_array_equal(with_second[0, :, 2], [1.0, 2.0])
+
+
+def test_each_start_leads_where_it_says(found):
+    states, _ = starts(SIDES["x"], SIDES["y"], REST)
+    assert found.attractor_of.dims == ("v_rel", "x_rel")
+    for i, j in ((0, 2), (3, 4), (1, 1)):
+        label = int(found.attractor_of[i, j])
+        swept = sweep(PAPER, eta=ETA, start=states[i, j], transient=400, samples=48).isel(eta=0)
+        assert int(swept.multiplicity) == int(found.multiplicity[label])
+        assert float(swept.xi_rel_max) == pytest.approx(float(found.xi_rel_max[label]), rel=0.02)
+
+
+def test_starts_that_overlap_count_in_no_share(found):
+    labels = found.attractor_of.values
+    assert (labels[:, 0] == -1).all()
+    assert (labels[:, 1:] >= 0).all()
+    np.testing.assert_allclose(found.share, np.bincount(labels[labels >= 0]) / 16)
+    assert float(found.share.sum()) == pytest.approx(1.0)
+    assert (np.diff(found.share) <= 0.0).all()
+
+
+def test_states_on_attractors_stay_there(found):
+    for k in range(found.sizes["attractor"]):
+        state = found.state.values[k]
+        swept = sweep(PAPER, eta=ETA, start=state, transient=5, samples=20)
+        assert int(swept.multiplicity[0]) == int(found.multiplicity[k])
+
+
+@pytest.mark.usefixtures("exported")
+def test_a_start_at_another_phase_is_run_on_to_phase_zero():
+    """A plane over the phase leads where the motion of each start leads."""
+    plane = {"x": ("phase", 0.0, 5.0, 3), "y": ("x_rel", 0.2, 0.9, 3)}
+    found = basin(PAPER, eta=ETA, **plane, at=AT)
+    fixed = basin(PAPER, eta=ETA, phase=2.5, x=("v_rel", -0.4, 0.0, 2), y=plane["y"], at=AT)
+    assert fixed.attractor_of.values[:, 0].tolist() == found.attractor_of.values[:, 1].tolist()
+    states, phases = starts(plane["x"], plane["y"])
+    period = POINT.excitation.period
+    for i, j in ((0, 1), (2, 2)):
+        left = (-phases[i, j]) % (2.0 * np.pi) / POINT.excitation.frequency
+        points = 1000
+        motion = simulate(
+            PAPER, eta=ETA, start=states[i, j], phase=phases[i, j], periods=1, points=points
+        )
+        index = round(left / period * points)
+        assert abs(float(motion.time[index]) - left) < period / points
+        state = [float(motion[name][index]) for name in ("x1", "x2", "v1", "v2")]
+        swept = sweep(PAPER, eta=ETA, start=state, transient=400, samples=48).isel(eta=0)
+        label = int(found.attractor_of[i, j])
+        assert int(swept.multiplicity) == int(found.multiplicity[label])
+
+
+@pytest.mark.usefixtures("exported")
+def test_units_do_not_matter():
+    own = Structure(m1=0.8, m2=0.8, k1=5000.0, k2=6000.0, d1=0.4, d2=0.4)
+    unit = Structure.nondimensional(D=own.D1)
+    omega = own.omega
+    one = basin(unit, eta=ETA, x=("x_rel", 0.0, 1.2, 4), y=("v_rel", -1.0, 1.0, 3))
+    two = basin(own, eta=ETA, x=("x_rel", 0.0, 1.2, 4), y=("v_rel", -omega, omega, 3))
+    np.testing.assert_array_equal(one.attractor_of, two.attractor_of)
+    assert one.v_rel.attrs["units"] == "m/s"
+
+
+@pytest.mark.parametrize(
+    ("asked", "text"),
+    [
+        ({"x": ("z", 0.0, 1.0, 3)}, "no coordinate 'z'; expected"),
+        ({"x": ("v_rel", 0.0, 1.0, 3)}, "v_rel twice; expected two coordinates"),
+        ({"x": ("x_rel", 1.0, 0.0, 3)}, "expected finite low < high"),
+        ({"x": ("x_rel", 0.0, 1.0, 1)}, "x: count = 1: expected a whole number from 2"),
+        ({"x": ("x_rel", 0.0, 1.0)}, r"expected \(name, low, high, count\)"),
+        ({"x": ("x_rel", -2.0, -1.0, 3)}, "overlap at every start"),
+        ({"at": (1.0, 0.0, 0.0, 0.0)}, "x2 >= x1"),
+        ({"eta": [1.0, 2.0]}, "expected one number"),
+    ],
+)
+def test_what_is_refused(asked, text):
+    with pytest.raises(InputError, match=text):
+        basin(PAPER, **{"eta": ETA, **SIDES, **asked})
+    with pytest.raises(InputError, match="is bonded"):
+        basin(PAPER.as_bonded(), eta=ETA)
+
+
+def test_a_job_may_find_its_plane_in_what_it_starts_from():
+    class Chosen(BasinJob):
+        def plane(self, inputs):
+            return Plane(POINT, self.x, self.y, AT)
+
+    job = Chosen(
+        name="b",
+        structure=PAPER,
+        excitation=POINT.excitation,
+        x=Side("x2", 0.0, 1.0, 2),
+        y=Side("v2", 0.0, 1.0, 2),
+    )
+    assert [item.state[0] for item in job.items({})] == [-1.0] * 4

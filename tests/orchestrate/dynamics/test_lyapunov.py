@@ -1,0 +1,176 @@
+"""Largest Lyapunov exponents against multipliers, neighbours, linear cases and other units."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from orchestrate.access import (
+    OSCILLATOR,
+    REST,
+    STATE,
+    EventInstance,
+    Impacts,
+    Instance,
+    begin,
+    find,
+)
+from orchestrate.dynamics.following import impacts_of
+from orchestrate.dynamics.lyapunov import (
+    CHAOTIC,
+    NEUTRAL,
+    PERIODIC,
+    fewest_impacts,
+    largest_exponent,
+    lyapunov,
+    products,
+    verdict,
+)
+from orchestrate.dynamics.variational import monodromy, period
+from orchestrate.errors import InputError
+from orchestrate.response.questions import Point
+from orchestrate.response.sweep import sweep
+from orchestrate.structures import Excitation, Structure
+
+make = Structure.nondimensional
+PAPER = make()
+
+
+@pytest.fixture(scope="module")
+def instances(exported):
+    """One instance without and one with events."""
+    fmu = find(OSCILLATOR).path
+    with Instance(fmu) as plain, EventInstance(fmu) as eventful:
+        yield plain, eventful
+
+
+def settled(instance, point, periods):
+    begin(instance, *point, REST)
+    instance.step(0.0, periods * point.excitation.period)
+    return np.array(instance.get(*STATE))
+
+
+@pytest.mark.parametrize(
+    ("structure", "eta"),
+    [
+        (PAPER, 1.047),
+        (make(D=0.05), 0.8),
+        (make(e=0.3), 0.6),
+        (make(D1=0.02, D2=0.1), 0.9),
+        (make(D1=0.1, D2=1.5), 1.6),
+        (Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=6.0, e=0.6), 1.8),
+    ],
+)
+def test_of_a_periodic_response_it_is_that_of_its_multipliers(instances, structure, eta):
+    plain, eventful = instances
+    point = Point(structure, Excitation.nondimensional(eta, structure))
+    start, span = settled(plain, point, 1500), period(eta)
+    impacts = impacts_of(eventful, point, start, 400)
+    exponent, error = largest_exponent(impacts, 400 * span, eta, structure)
+    first = np.searchsorted(impacts.time, span)
+    names = ("time", "state", "closing", "sticks")
+    one = Impacts(*(getattr(impacts, name)[:first] for name in names))
+    multiplier = np.abs(np.linalg.eigvals(monodromy(one, eta, structure))).max()
+    assert exponent == pytest.approx(math.log(multiplier) / span, abs=5e-4)
+    assert 0.0 < error < 5e-4
+    assert verdict(exponent, error, 1e-3) == PERIODIC
+
+
+@pytest.mark.parametrize(
+    ("eta", "expected"), [(0.8, CHAOTIC), (1.13, CHAOTIC), (1.047, PERIODIC), (2.655, NEUTRAL)]
+)
+def test_it_agrees_with_two_neighbours_of_the_fmu(instances, eta, expected):
+    plain, eventful = instances
+    point, periods = Point(PAPER, Excitation.nondimensional(eta, PAPER)), 400
+    start, span = settled(plain, point, 3000), period(eta)
+    impacts = impacts_of(eventful, point, start, periods)
+    exponent, error = largest_exponent(impacts, periods * span, eta, PAPER)
+    here, growth = start, 0.0
+    shift = 1e-8 * np.array([0.5, -0.5, 0.5, 0.5]) * np.abs(start).max()
+    scale = np.linalg.norm(shift)
+
+    def a_period(state):
+        begin(plain, *point, state)
+        plain.step(0.0, span)
+        return np.array(plain.get(*STATE))
+
+    for _ in range(periods):
+        there, here = a_period(here + shift), a_period(here)
+        distance = np.linalg.norm(there - here)
+        growth += math.log(distance / scale)
+        shift = (there - here) * scale / distance
+        if shift[1] < shift[0] and here[1] - here[0] < 2 * scale:
+            shift = -shift  # the neighbour on the side that is free
+    assert growth / (periods * span) == pytest.approx(exponent, abs=3e-3 + 5 * error)
+    assert verdict(exponent, error, math.log(10.0) / (periods * span)) == expected
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize(
+    ("structure", "expected"),
+    [
+        (make(D=0.02, bonded=True), -0.02),
+        (make(D1=0.3, D2=0.5, bonded=True), -0.4),
+        (make(D=3.0, bonded=True), math.sqrt(9.0 - 1.1) - 3.0),
+        (make(D=0.03, mu=1.4, kappa=1.4), -0.03),  # masses that are alike never press each other
+    ],
+)
+def test_linear_motions_have_exact_exponents(structure, expected):
+    found = lyapunov(structure, eta=1.3, transient=5, periods=10).isel(eta=0)
+    assert float(found.exponent) == pytest.approx(expected, rel=1e-12)
+    assert int(found.verdict) == (PERIODIC if expected < -0.05 else NEUTRAL)
+
+
+@pytest.mark.usefixtures("exported")
+def test_too_few_impacts_are_no_uncertainty():
+    with pytest.raises(InputError, match=r"periods = 20: 10 impacts at eta = 4; expected periods"):
+        lyapunov(PAPER, eta=4.0, transient=2000, periods=20)
+    with pytest.raises(InputError, match=r"at least 16 impacts \(periods >= 32\)"):
+        lyapunov(PAPER, eta=4.0, transient=2000, periods=20)
+    assert lyapunov(PAPER, eta=4.0, transient=2000, periods=40).standard_error > 0.0
+    assert fewest_impacts(5) == 10
+
+
+@pytest.mark.usefixtures("exported")
+def test_a_sweep_s_responses_are_followed_on():
+    etas = [1.2, 1.13, 0.8]
+    swept = sweep(PAPER, eta=etas, transient=100, samples=20)
+    found = lyapunov(PAPER, eta=etas, start=swept, transient=0, periods=60)
+    states = lyapunov(PAPER, eta=etas, start=swept.end_state.values, transient=0, periods=60)
+    np.testing.assert_array_equal(found.exponent, states.exponent)
+    alone = lyapunov(PAPER, eta=0.8, start=swept.end_state.values[2], transient=0, periods=60)
+    assert alone.exponent[0] == found.exponent[2]
+    with pytest.raises(InputError, match="expected a sweep in one direction over the same values"):
+        lyapunov(PAPER, eta=0.9, start=swept)
+    with pytest.raises(InputError, match="2 states; expected one, or one for each of 3"):
+        lyapunov(PAPER, eta=etas, start=swept.end_state.values[:2])
+
+
+@pytest.mark.usefixtures("exported")
+def test_units_do_not_matter():
+    own = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=6.0, e=0.6)
+    unit = make(mu=own.mu, kappa=own.kappa, D1=own.D1, D2=own.D2, e=own.e)
+    asked = {"transient": 300, "periods": 200}
+    one, two = (lyapunov(s, eta=1.5, **asked).exponent.item() for s in (own, unit))
+    assert one == pytest.approx(two, rel=1e-6)
+    box = {"frequency": 1.5 * own.omega, "amplitude": 1e-3}
+    assert lyapunov(own, **box, **asked).exponent.item() == pytest.approx(two, rel=1e-6)
+
+
+def test_verdicts():
+    exponent, error = [0.1, -0.1, 0.1, 0.001, -np.inf], [0.01, 0.01, 0.05, 1e-6, np.nan]
+    expected = [CHAOTIC, PERIODIC, NEUTRAL, NEUTRAL, PERIODIC]
+    assert verdict(exponent, error, 0.01).tolist() == expected
+    assert verdict(0.1, 0.05, 0.01, sigmas=1.0) == CHAOTIC
+
+
+def test_products_of_matrices():
+    matrices = np.random.default_rng(3).normal(size=(23, 4, 4))
+    found, logs = products(matrices, 5)
+    for i in range(5):
+        expected = np.eye(4)
+        for matrix in matrices[5 * i : 5 * i + 5]:
+            expected = matrix @ expected
+        np.testing.assert_allclose(found[i] * np.exp(logs[i]), expected, rtol=1e-10, atol=1e-12)

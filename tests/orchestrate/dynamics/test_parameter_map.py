@@ -1,0 +1,82 @@
+"""Maps: each point is a response from the same start, in whatever unit and order."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from orchestrate.dynamics.lyapunov import lyapunov
+from orchestrate.dynamics.parameter_map import map
+from orchestrate.errors import InputError
+from orchestrate.response.simulate import simulate
+from orchestrate.response.sweep import sweep
+from orchestrate.structures import Structure
+
+PAPER = Structure.nondimensional()
+ETAS, ES = [0.4, 1.13, 1.6], [0.3, 0.7]
+
+pytestmark = pytest.mark.usefixtures("exported")
+
+
+@pytest.fixture(scope="module")
+def found(exported):
+    return map(PAPER, eta=ETAS, e=ES, exponent=True, periods=100)
+
+
+def test_each_point_is_a_response_from_rest(found):
+    assert found.multiplicity.dims == ("eta", "e")
+    for eta in ETAS:
+        for e in ES:
+            dropped = max(300, round(300 * eta))
+            swept = sweep(PAPER.replace(e=e), eta=eta, transient=dropped, samples=60).isel(eta=0)
+            point = found.sel(eta=eta, e=e)
+            for name in ("impacts_per_period", "multiplicity", "xi_rel_max"):
+                assert float(point[name]) == float(swept[name]), name
+
+
+def test_the_largest_impulse_is_that_of_the_motion(found):
+    motion = simulate(PAPER, eta=1.6, transient=480 + 60, periods=30)
+    expected = 0.85 * float(motion.impact_velocity.max())
+    assert float(found.impulse_max.sel(eta=1.6, e=0.7)) == pytest.approx(expected, rel=1e-9)
+
+
+def test_exponents_are_those_of_the_responses(found):
+    states = sweep(PAPER, eta=1.13, transient=339, samples=60).end_state.values
+    one = lyapunov(PAPER, eta=1.13, start=states, transient=0, periods=100)
+    there = found.sel(eta=1.13, e=0.7)
+    assert float(there.exponent) == one.exponent.item()
+    assert float(there.standard_error) == one.standard_error.item()
+    short = map(PAPER, eta=[4.0, 4.1], e=ES, exponent=True, periods=4, transient=5, settle=1.0)
+    assert np.isnan(short.exponent).any()
+
+
+def test_any_two_parameters_in_any_unit():
+    own = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
+    short = {"transient": 50, "settle": 1.0, "samples": 10}
+    found = map(own, k2=[6000.0, 8000.0], D=[0.01, 0.02, 0.03], eta=1.4, m2=1.0, **short)
+    assert found.xi_rel_max.dims == ("k2", "D")
+    assert found.k2.attrs["units"] == "N/m"
+    one = own.replace(m2=1.0, k2=8000.0, D=0.02)
+    swept = sweep(one, eta=1.4, transient=50, samples=10)
+    assert float(found.xi_rel_max.sel(k2=8000.0, D=0.02)) == float(swept.xi_rel_max[0])
+    box = map(own, frequency=[90.0, 110.0], amplitude=[1e-3, 2e-3], **short)
+    np.testing.assert_allclose(box.xi_rel_max[:, 0], box.xi_rel_max[:, 1], rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("asked", "text"),
+    [
+        ({"eta": ETAS}, "lists of values: eta; expected two"),
+        ({"eta": 1.0, "e": 0.5}, "lists of values: none; expected two"),
+        ({"eta": ETAS, "e": ES, "D": [0.1, 0.2]}, "lists of values: eta, e, D; expected two"),
+        ({"e": ES, "D": [0.1, 0.2]}, "nothing given; expected eta="),
+        ({"eta": ETAS, "colour": ES}, "colour: no parameter; expected"),
+        ({"eta": ETAS, "e": [0.5, 1.5]}, r"e = 1\.5: expected 0 <= e <= 1"),
+        ({"eta": ETAS, "e": [0.5, 0.5]}, "e: a value twice"),
+        ({"eta": ETAS, "e": ES, "samples": 0}, "samples = 0"),
+        ({"eta": ETAS, "e": ES, "exponent": 1}, "exponent = 1: expected true or false"),
+    ],
+)
+def test_what_is_refused(asked, text):
+    with pytest.raises(InputError, match=text):
+        map(PAPER, **asked)

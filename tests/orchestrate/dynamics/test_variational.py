@@ -1,0 +1,175 @@
+"""Flow and saltation matrices against neighbouring runs of the FMU and matrix exponentials."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import expm
+
+from orchestrate.access import (
+    OSCILLATOR,
+    REST,
+    STATE,
+    EventInstance,
+    Impacts,
+    Instance,
+    begin,
+    find,
+)
+from orchestrate.dynamics.following import impacts_of
+from orchestrate.dynamics.variational import (
+    Branch,
+    Branches,
+    centre,
+    contact,
+    flight,
+    monodromy,
+    oscillator,
+    period,
+    releases,
+    slowest_rate,
+)
+from orchestrate.response.questions import Point
+from orchestrate.structures import Excitation, Structure
+
+make = Structure.nondimensional
+ALIKE = (make(), make(e=0.3), make(D=0.05), make(mu=1.5, kappa=2.1))
+UNLIKE = (
+    make(D1=0.01, D2=0.2),
+    make(D1=0.3, D2=0.02, mu=0.6, e=0.4),
+    make(D1=0.05, D2=2.0, kappa=1.5),  # mass 2 overdamped
+    make(D1=1.0, D2=0.1),  # mass 1 critically damped
+    make(D1=3.0, D2=2.5, mu=2.0, e=0.9),  # all three overdamped
+    Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=12.0, e=0.6),
+)
+
+
+@pytest.fixture(scope="module")
+def instances(exported):
+    """One instance without and one with events."""
+    fmu = find(OSCILLATOR).path
+    with Instance(fmu) as plain, EventInstance(fmu) as eventful:
+        yield plain, eventful
+
+
+def after(instance, point, start, periods=1):
+    """State of the FMU some periods after a start."""
+    begin(instance, *point, start)
+    instance.step(0.0, periods * point.excitation.period)
+    return np.array(instance.get(*STATE))
+
+
+def differences(instance, point, start, periods):
+    """Central differences of the state after some periods: the matrix through the FMU alone."""
+    step = 1e-7 * np.abs(start / point.scale).max()
+    columns = [
+        (after(instance, point, start + d, periods) - after(instance, point, start - d, periods))
+        for d in step * np.diag(point.scale)
+    ]
+    return np.array(columns).T / point.scale[:, None] / (2.0 * step)
+
+
+@pytest.mark.parametrize(
+    ("structure", "eta"), list(itertools.product((*ALIKE, *UNLIKE), (0.3, 0.6, 1.047, 2.0)))
+)
+def test_monodromy_equals_differences_of_the_fmu(instances, structure, eta):
+    plain, eventful = instances
+    point = Point(structure, Excitation.nondimensional(eta, structure))
+    start = after(plain, point, REST, 200)
+    if start[1] - start[0] < 1e-3 * np.abs(start).max():
+        start = point.scale * [-0.5, 0.5, 0.3, -0.2]  # in contact there is no neighbour beyond
+    impacts = impacts_of(eventful, point, start, 2)
+    assert len(impacts.time)
+    expected = differences(plain, point, start, 2)
+    np.testing.assert_allclose(monodromy(impacts, eta, structure, 2), expected, atol=2e-5)
+
+
+@pytest.mark.parametrize("structure", [ALIKE[0], *UNLIKE])
+@pytest.mark.parametrize("eta", [0.2, 0.35])
+def test_releases_are_those_of_the_fmu(instances, structure, eta):
+    plain, eventful = instances
+    point = Point(structure, Excitation.nondimensional(eta, structure))
+    span = period(eta)
+    impacts = impacts_of(eventful, point, REST, 4)
+    ends = np.append(impacts.time[1:], 4 * span)
+    found = releases(impacts, ends, eta, structure)
+    for stick in np.flatnonzero(impacts.sticks):
+        release = impacts.time[stick] + found[stick]
+        touching = []
+        for tau in (release - 1e-7 * span, release + 1e-7 * span):
+            begin(plain, *point, REST)
+            plain.step(0.0, tau / structure.omega)
+            touching += plain.get("in_contact")
+        assert touching == [True, release >= ends[stick]]
+
+
+def test_permanent_contact_is_in_the_matrices(instances):
+    _, eventful = instances
+    seen = 0
+    for structure in (ALIKE[0], *UNLIKE):
+        point = Point(structure, Excitation.nondimensional(0.3, structure))
+        seen += impacts_of(eventful, point, REST, 3).sticks.any()
+    assert seen >= 5
+
+
+@pytest.mark.parametrize("eta", [0.4, 7.4])
+def test_contacts_shorter_than_a_look_are_seen(instances, eta):
+    """Pressed together, but the force vanishes long before the next impact."""
+    plain, _ = instances
+    structure, start = ALIKE[0], (0.01, 0.01, -0.5, -0.5)
+    point = Point(structure, Excitation.nondimensional(eta, structure))
+    one = Impacts(np.zeros(1), np.array([start]), np.zeros(1), np.ones(1, dtype=bool))
+    found = releases(one, np.array([20.0]), eta, structure).item()
+    assert 0.01 < found < 20.0 / 64.0
+    touching = []
+    for tau in (found - 1e-9, found + 1e-9):
+        begin(plain, *point, start)
+        plain.step(0.0, tau)
+        touching += plain.get("in_contact")
+    assert touching == [True, False]
+
+
+@given(st.floats(0.0, 5.0), st.floats(0.1, 5.0), st.floats(0.0, 10.0))
+def test_one_oscillator_is_a_matrix_exponential(damping, square, time):
+    matrix = np.array([[0.0, 1.0], [-square, -2.0 * damping]])
+    found = oscillator(np.array([time]), Branch(damping, square))[0]
+    np.testing.assert_allclose(found, expm(matrix * time), atol=1e-9)
+
+
+@pytest.mark.parametrize("damping", [1.0, 1.0 + 1e-12, 1.0 - 1e-12, np.nextafter(1.0, 2.0)])
+def test_near_critical_damping_nothing_is_lost(damping):
+    time = np.array([0.0, 0.5, 3.0])
+    found, critical = (oscillator(time, Branch(d, 1.0)) for d in (damping, 1.0))
+    np.testing.assert_allclose(found, critical, atol=1e-9)
+
+
+def test_nothing_overflows_in_a_long_flight():
+    structure = make(D1=5.0, D2=50.0)
+    assert np.isfinite(flight(np.array([1e4]), structure)).all()
+    assert np.isfinite(contact(np.array([1e4]), structure)).all()
+
+
+@pytest.mark.parametrize("damping", [0.005, 1.0, 3.0])
+def test_slowest_rate_is_that_of_the_matrix(damping):
+    values = np.linalg.eigvals([[0.0, 1.0], [-1.2, -2.0 * damping]])
+    assert slowest_rate(Branch(damping, 1.2)) == pytest.approx(-values.real.max(), rel=1e-12)
+
+
+def test_the_centre_of_mass_is_left_in_contact():
+    structure = make(mu=3.0)
+    matrix = centre(structure)
+    np.testing.assert_allclose(matrix @ matrix, matrix, atol=1e-15)
+    np.testing.assert_allclose(matrix @ [1.0, 1.0, 2.0, 2.0], [1.0, 1.0, 2.0, 2.0])
+    np.testing.assert_allclose(matrix @ [3.0, -1.0, 0.0, 0.0], 0.0, atol=1e-15)
+
+
+def test_branches_are_those_of_the_structure():
+    structure = UNLIKE[-1]
+    one, two, both = Branches.of(structure)
+    assert (one.damping, one.square) == (structure.D1, 1.0)
+    assert (two.damping, two.square) == (structure.D2, pytest.approx(structure.omega_2**2))
+    assert (both.damping, both.square) == (structure.D3, pytest.approx(structure.omega_3**2))
