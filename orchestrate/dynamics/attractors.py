@@ -356,7 +356,8 @@ def checked_scale(given: ArrayLike | None) -> Numbers | None:
         Where one is not.
     """
     found = numbers("scale", given)
-    wrong = [value for value in np.ravel([] if found is None else found) if value <= 0.0]
+    each = found if isinstance(found, tuple) else () if found is None else (found,)
+    wrong = [value for value in each if value <= 0.0]
     if wrong:
         raise InputError(f"scale = {wrong[0]!r}: expected numbers > 0, m")
     return found

@@ -81,7 +81,7 @@ def test_monodromy_equals_differences_of_the_fmu(instances, structure, eta):
     point = Point(structure, Excitation.nondimensional(eta, structure))
     start = after(plain, point, REST, 200)
     if start[1] - start[0] < 1e-3 * np.abs(start).max():
-        start = point.scale * [-0.5, 0.5, 0.3, -0.2]  # in contact there is no neighbour beyond
+        start = point.scale * [-0.05, 0.05, 1.0, -1.0]  # in contact there is no neighbour beyond
     impacts = impacts_of(eventful, point, start, 2)
     assert len(impacts.time)
     expected = differences(plain, point, start, 2)
