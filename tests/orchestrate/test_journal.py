@@ -59,7 +59,10 @@ def test_a_row_is_entered_once(plan, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-CREATED = ("CREATE TABLE identity (text TEXT)", "CREATE TABLE rows (i INTEGER PRIMARY KEY, data BLOB)")
+CREATED = (
+    "CREATE TABLE identity (text TEXT)",
+    "CREATE TABLE rows (i INTEGER PRIMARY KEY, data BLOB)",
+)
 
 
 @pytest.mark.parametrize("statements", range(3))
@@ -89,10 +92,17 @@ def damaged(sweeps, plan):
     return path
 
 
-TRUNCATED = [lambda data: data[: len(data) // 2], lambda data: data[:4096], lambda data: data[:1000], lambda _: os.urandom(5000)]
+TRUNCATED = [
+    lambda data: data[: len(data) // 2],
+    lambda data: data[:4096],
+    lambda data: data[:1000],
+    lambda _: os.urandom(5000),
+]
 
 
-@pytest.mark.parametrize("damage", TRUNCATED, ids=["half", "first page", "part of a page", "random"])
+@pytest.mark.parametrize(
+    "damage", TRUNCATED, ids=["half", "first page", "part of a page", "random"]
+)
 def test_truncated_or_foreign_journal(sweeps, damaged, damage):
     damaged.write_bytes(damage(damaged.read_bytes()))
     sweeps.run(*SHORT).complaint(damaged, "journal", "allowed")
@@ -112,7 +122,9 @@ def shortened(path):
 
 def other_tables(path):
     """Make a database that is not a journal."""
-    change(path, "DROP TABLE rows", "CREATE TABLE rows (name TEXT)", "INSERT INTO rows VALUES ('x')")
+    change(
+        path, "DROP TABLE rows", "CREATE TABLE rows (name TEXT)", "INSERT INTO rows VALUES ('x')"
+    )
 
 
 def no_identity(path):
