@@ -66,8 +66,9 @@ class SweepJob(SeriesQuestion):
     start: tuple[float, ...] = REST
     peak_periods: int = 8
     asked: ClassVar[str] = "sweep"
-    chunk: ClassVar[int] = 200
+    chunk: ClassVar[int] = 100
     sequential: ClassVar[bool] = True
+    lead: ClassVar[int] = 16  # most responses forget where they came from within as many
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -126,6 +127,10 @@ class SweepJob(SeriesQuestion):
             },
             **peaks(items, spans, np.array(orbits)),
         }
+
+    def seam(self, table: Table) -> bytes:
+        """The state that the next response starts from."""
+        return bytes(table["end"][-1].tobytes())
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Everything over the parameter, in the order of its values."""
@@ -267,8 +272,8 @@ def sweep(
     array([10., 30.])
     """
     job = SweepJob(
-        name=f"sweep_{structure.label()}_{direction}",
         **asked_along(structure, eta, frequency, amplitude, over, values),
+        name=f"sweep_{structure.label()}_{direction}",
         direction=direction,
         transient=whole("transient", transient, 0),
         samples=whole("samples", samples, 1),
