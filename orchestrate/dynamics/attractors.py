@@ -336,8 +336,8 @@ def attractors(
     (array([1., 2.]), array([0.95, 0.05]))
     """
     job = AttractorsJob(
-        name=f"attractors_{structure.label()}",
         **asked_along(structure, eta, frequency, amplitude, over, values),
+        name=f"attractors_{structure.label()}",
         starts=whole("starts", starts, 1),
         seed=whole("seed", seed, 0, 2**32 - 1),
         scale=checked_scale(scale),

@@ -292,8 +292,8 @@ def map(
     asked: dict[str, Any] = {"eta": eta, "frequency": frequency, "amplitude": amplitude, **others}
     told = {name: numbers(name, asked[name]) for name in asked if name not in running}
     job = MapJob(
-        name=f"map_{structure.label()}",
         structure=checked_structure(structure),
+        name=f"map_{structure.label()}",
         given=tuple((name, value) for name, value in told.items() if value is not None),
         transient=whole("transient", transient, 0),
         settle=positive("settle", settle),

@@ -220,8 +220,8 @@ def spectra(
     array([0. , 9.3, 0. ])
     """
     job = SpectraJob(
-        name=f"spectra_{structure.label()}",
         **asked_along(structure, eta, frequency, amplitude),
+        name=f"spectra_{structure.label()}",
         periods=whole("periods", periods, 1),
         points=whole("points", points, 2),
         transient=whole("transient", transient, 0),
