@@ -1,7 +1,8 @@
 """What the FMUs carry beside their code, made through them: ``python -m tools.assets``.
 
-Pictures of the documentation, ``model.png`` and the reference results; the README's variable tables
-too. They are kept in the repository, so that an export does not depend on a plotting library.
+Pictures of the documentation, ``model.png`` and the reference results; the variable tables of
+``docs/variables.md`` too. They are kept in the repository, so that an export does not depend on a
+plotting library.
 """
 
 from __future__ import annotations
@@ -21,19 +22,19 @@ from orchestrate.figures import files, fmu_pictures, shaker_pictures
 
 from .references import MODELS, REFERENCES, SHAKER, Reference, reference_rows, write_reference
 
-README = Path(__file__).resolve().parents[1] / "README.md"
+TABLES = Path(__file__).resolve().parents[1] / "docs" / "variables.md"
 SERIES = re.compile(r"\[(?!1\])\d+\]$")  # of a series, the first stands for all
 
 
 def marks(reference: Reference) -> tuple[str, str]:
-    """The lines of the README between which a model's variable table stands."""
+    """The lines between which a model's variable table stands."""
     source = f"fmu_src/models/{reference.folder}/variables.py"
     begin = f"<!-- variables: generated from {source}, kept so by a test -->"
     return begin, "<!-- end of variables -->"
 
 
 def variable_table(path: str | PathLike[str]) -> str:
-    """A model's variables as a table of the README, from the FMU's own description."""
+    """A model's variables as a table, from the FMU's own description."""
     lines = ["| name | causality | unit | start | meaning |", "|---|---|---|---|---|"]
     for v in describe(path).variables.values():
         if SERIES.search(v.name):
@@ -45,10 +46,10 @@ def variable_table(path: str | PathLike[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def with_table(readme: str, reference: Reference, table: str) -> str:
-    """The README with a model's variable table replaced."""
+def with_table(page: str, reference: Reference, table: str) -> str:
+    """The page with a model's variable table replaced."""
     begin, end = marks(reference)
-    head, rest = readme.split(begin + "\n")
+    head, rest = page.split(begin + "\n")
     _, tail = rest.split(end, 1)
     return f"{head}{begin}\n{table}{end}{tail}"
 
@@ -97,8 +98,8 @@ def main() -> None:
         write_reference(reference, rows)
         draw(reference, fmu, rows)
         table = variable_table(find(reference.model, "fmi2-python").path)
-        readme = README.read_text(encoding="utf-8")
-        README.write_text(with_table(readme, reference, table), encoding="utf-8")
+        page = TABLES.read_text(encoding="utf-8")
+        TABLES.write_text(with_table(page, reference, table), encoding="utf-8")
 
 
 if __name__ == "__main__":
