@@ -117,3 +117,17 @@ class Forgetful(Job):
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         return xr.Dataset({"value": ("number", table["value"])})
+
+
+@dataclass(frozen=True)
+class Noise(Squares):
+    """Numbers that cannot be compressed: 8 kB an item."""
+
+    size: int = 30
+
+    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+        rows = [np.random.default_rng(item).uniform(size=1000) for item in items]
+        return {"noise": np.array(rows)}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        return xr.Dataset({"noise": (("number", "part"), table["noise"])})
