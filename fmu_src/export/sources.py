@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -49,29 +50,38 @@ def closure(*names: str) -> Files:
     return found
 
 
-def imported(name: str, source: bytes) -> Iterator[str]:
-    """Files below ``fmu_src`` that run when a module is imported, itself left out."""
-    folder = Path(name).parent
-    yield from ((place / "__init__.py").as_posix() for place in (folder, *folder.parents))
-    for node in ast.walk(ast.parse(source, name)):
+@functools.cache
+def imported(name: str, source: bytes) -> tuple[str, ...]:
+    """Files below ``fmu_src`` that run when a module is imported or its functions are."""
+    package = name.split("/")[:-1]
+    found = ["/".join([*package[:depth], "__init__.py"]) for depth in range(len(package) + 1)]
+    for node in statements(ast.parse(source, name)):
         if isinstance(node, ast.ImportFrom) and node.level:
-            base = folder.joinpath(*[".."] * (node.level - 1), *(node.module or "").split("."))
+            base = package[: len(package) + 1 - node.level]
+            base += node.module.split(".") if node.module else []
             for alias in node.names:
-                yield module_file(base / alias.name) or module_file(base) or missing(name, node)
+                found.append(module_file(*base, alias.name) or module_file(*base))
+                if not found[-1]:
+                    line = f"{name}, line {node.lineno}"
+                    raise FileNotFoundError(f"{line}: {ast.unparse(node)} leads to no file")
+    return tuple(found)
 
 
-def module_file(path: Path) -> str:
+def statements(tree: ast.AST) -> Iterator[ast.AST]:
+    """All statements below a node, those of functions included."""
+    for part in ("body", "orelse", "handlers", "finalbody"):
+        for node in getattr(tree, part, ()):
+            yield node
+            yield from statements(node)
+
+
+@functools.cache
+def module_file(*parts: str) -> str:
     """The file of a module or package below ``fmu_src``; an empty string where there is none."""
-    place = (ROOT / path).resolve()
-    for file in (place.with_suffix(".py"), place / "__init__.py"):
-        if file.is_file():
-            return file.relative_to(ROOT).as_posix()
+    for name in ("/".join(parts) + ".py", "/".join([*parts, "__init__.py"])):
+        if (ROOT / name).is_file():
+            return name
     return ""
-
-
-def missing(name: str, node: ast.ImportFrom) -> str:
-    """Refuse an import that leads nowhere."""
-    raise FileNotFoundError(f"{name}, line {node.lineno}: {ast.unparse(node)} leads to no file")
 
 
 def model_sources(folder: str) -> Files:
