@@ -205,7 +205,10 @@ def report(name: str, data: xr.Dataset) -> None:
         volts = float(data.jumps.sel(jump=jump))
         eta0 = volts * float(data.eta0[0] / data.voltage[0])
         there = f"at {volts:.4f} V (eta0 = {eta0:.4f})"
-        found.append(f"jump {jump} {there if math.isfinite(volts) else 'none'}")
+        lag = float(data.jump_lag.sel(jump=jump))
+        late = f", {abs(lag):.4f} V late at this rate" if math.isfinite(lag) else ""
+        none = f"none ({data.no_jump.sel(jump=jump).item()})"
+        found.append(f"jump {jump} {there + late if math.isfinite(volts) else none}")
     print(f"{name}: {data.sizes['revolution']} revolutions; {'; '.join(found)}")
     missing, defects = (
         float(data.attrs[key]) for key in ("missing_over_motor_work", "defects_over_motor_work")

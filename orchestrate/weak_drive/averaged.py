@@ -77,6 +77,13 @@ def amplitude(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarra
     return np.asarray(np.abs(np.asarray(Omega) ** 2 * H * ratio))
 
 
+def resonance(structure: Structure, drive: Drive) -> float:
+    """Speed over omega at which the bonded masses resonate in the box: its faster frequency."""
+    pull, masses, box = mechanics(structure, drive)
+    roots = (box * (pull + masses) + pull * masses).roots()
+    return float(np.abs(roots).max())
+
+
 def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0) -> list[Fold]:
     """Where the speed jumps: zeros of d eta0 / d Omega.
 

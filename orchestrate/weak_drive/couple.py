@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
@@ -22,7 +22,7 @@ from ..running.options import Running
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .jumps import find_jumps
+from .jumps import Jump, Way, find_jump, why_none
 from .master import Master, Scheme
 from .revolutions import COLUMNS, Revolutions
 from .schedule import Constant, Ramp, Schedule, check
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 MOST_STEPS = 1e9
-Variable = tuple[str, Sequence[float], dict[str, str]]
+Variable = tuple[str, Sequence[float] | Sequence[str], dict[str, str]]
 
 
 def oscillator_start(structure: Structure) -> dict[str, float | bool]:
@@ -126,33 +126,30 @@ class CoupleJob(Job):
         return dataset.assign_coords(jump=("jump", ["up", "down"], names))
 
     def jumps(self, table: Table, eta0: np.ndarray, Omega: np.ndarray) -> dict[str, Variable]:
-        """Voltages and speeds of the jumps; where bonded, those of the averaged theory too."""
-        rows = find_jumps(eta0, Omega, self.schedule.trend(table["time"]))
-
-        def at(name: str) -> list[float]:
-            return [math.nan if row is None else float(table[name][row]) for row in rows]
-
-        found: dict[str, Variable] = {
-            "jumps": (
-                "jump",
-                at("voltage"),
-                {"units": "V", "long_name": "voltage at which the speed jumps"},
-            ),
-            "jump_speed": (
-                "jump",
-                at("speed"),
-                {"units": "rad/s", "long_name": "mean speed of that revolution"},
-            ),
-        }
-        if self.structure.bonded:
-            folds = averaged.folds(self.structure, self.drive)
-            volts = self.drive.volts(self.structure)
-            theory = (
-                [folds[0].eta0 * volts, folds[-1].eta0 * volts] if folds else [math.nan, math.nan]
-            )
+        """The jumps up and down, or why there is none; where bonded, the averaged theory's too."""
+        structure, drive = self.structure, self.drive
+        volts = drive.volts(structure)
+        trend, time = self.schedule.trend(table["time"]), table["time"] * structure.omega
+        found, reasons, lags = [], [], [math.nan, math.nan]
+        for up in (True, False):
+            rows = np.flatnonzero(trend > 0 if up else trend < 0)
+            way = Way(time[rows], np.abs(eta0[rows]), np.abs(Omega[rows]))
+            jump = find_jump(way, drive.b(structure), up)
+            resonance = averaged.resonance(structure, drive)
+            found.append(None if jump is None else Jump._make(int(rows[i]) for i in jump))
+            reasons.append("" if jump else why_none(way, up, resonance))
+        columns = jump_columns(table, found)
+        if structure.bonded:
+            folds = averaged.folds(structure, drive)
+            theory = [folds[0].eta0, folds[-1].eta0] if folds else [math.nan, math.nan]
             text = "voltage at which the speed jumps, by the averaged theory"
-            found["averaged_jumps"] = ("jump", theory, {"units": "V", "long_name": text})
-        return found
+            ends = [volts * value for value in theory]
+            columns["averaged_jumps"] = ("jump", ends, {"units": "V", "long_name": text})
+            lags = (np.array(columns["jumps"][1], dtype=float) - ends).tolist()
+        text = "how late the jump comes on the ramp, by the averaged theory (bonded only)"
+        columns["jump_lag"] = ("jump", lags, {"units": "V", "long_name": text})
+        columns["no_jump"] = ("jump", reasons, {"long_name": "why there is no jump"})
+        return columns
 
     def attributes(self, table: Table) -> dict[str, str | float]:
         """Title, and what the coupling has lost of the motor's work."""
@@ -163,6 +160,37 @@ class CoupleJob(Job):
             "missing_over_motor_work": float(table["missing"][-1]) / motor,
             "defects_over_motor_work": float(table["defect_sizes"][-1]) / motor,
         }
+
+
+def jump_columns(table: Table, jumps: Sequence[Jump | None]) -> dict[str, Variable]:
+    """Voltage, speed, amplitude and rate at jumps; NaN where there is none."""
+
+    def at(name: str, place: str) -> list[float]:
+        return [
+            math.nan if jump is None else float(table[name][getattr(jump, place)]) for jump in jumps
+        ]
+
+    def rate(jump: Jump | None) -> float:
+        if jump is None:
+            return math.nan
+        ends = [jump.before, jump.after]
+        return float(np.diff(table["voltage"][ends])[0] / np.diff(table["time"][ends])[0])
+
+    wanted = {
+        "jumps": ("voltage", "row", "V", "voltage at which the speed jumps"),
+        "jump_speed": ("speed", "row", "rad/s", "mean speed of that revolution"),
+        "jump_speed_before": ("speed", "before", "rad/s", "mean speed where it leaves its branch"),
+        "jump_speed_after": ("speed", "after", "rad/s", "mean speed after the jump"),
+        "jump_amplitude_before": ("amplitude", "before", "m", "amplitude before the jump"),
+        "jump_amplitude_after": ("amplitude", "after", "m", "amplitude after the jump"),
+    }
+    columns: dict[str, Variable] = {
+        key: ("jump", at(name, place), {"units": unit, "long_name": text})
+        for key, (name, place, unit, text) in wanted.items()
+    }
+    text = "change of the voltage per time during the jump"
+    rates = [rate(jump) for jump in jumps]
+    return {**columns, "jump_rate": ("jump", rates, {"units": "V/s", "long_name": text})}
 
 
 class Run:
@@ -181,7 +209,7 @@ class Run:
         voltage = job.schedule.voltage(0.0)
         shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
         self.master = Master(oscillator, shaker, job.structure, job.scheme)
-        self.revolutions = Revolutions(self.master, self.impact_count)
+        self.revolutions = Revolutions(self.master, job.structure, self.impact_count)
 
     def impact_count(self) -> float:
         """Impacts so far."""
@@ -227,6 +255,7 @@ def schedule_of(
     settle: float | None = None,
     increment: float = 0.0,
     back: bool = True,
+    spin_up: float | None = None,
 ) -> Schedule:
     """A schedule from the arguments of :func:`couple`.
 
@@ -253,7 +282,11 @@ def schedule_of(
     rate = 1e-4 * volts * omega if rate is None else rate
     settle = 300.0 / omega if settle is None else settle
     first, last = ends
-    return Ramp(first, last, float(rate), float(settle), float(increment), bool(back))
+    low = 0.9 * averaged.resonance(structure, drive) * volts
+    if spin_up is None:  # a run up begins on the branch below the resonance
+        spin_up = 600.0 / omega if last > first > low / 0.9 else 0.0
+    ramp = Ramp(first, last, float(rate), float(settle), float(increment), bool(back))
+    return replace(ramp, spin_up=float(spin_up), low=low) if spin_up else ramp
 
 
 def scheme_of(structure: Structure, step: float | None, algorithm: str, tolerance: float) -> Scheme:
@@ -308,6 +341,7 @@ def couple(
     back: bool = True,
     increment: float = 0.0,
     settle: float | None = None,
+    spin_up: float | None = None,
     speed_start: float | None = None,
     step: float | None = None,
     algorithm: str = "rollback",
@@ -337,6 +371,10 @@ def couple(
         Height of steps instead of a ramp, V; 0 for a ramp.
     settle : float, optional
         Time at the first voltage before the ramp, s; 300/omega by default.
+    spin_up : float, optional
+        Time before that in which the voltage rises from below the resonance to the first one, s;
+        by default 600/omega where a run up would begin beyond the resonance otherwise and no
+        ``speed_start`` is given, else 0.
     speed_start : float, optional
         Speed of the motor at the start, rad/s; by default its no-load speed at the first voltage.
     step : float, optional
@@ -355,8 +393,9 @@ def couple(
         Dimension ``revolution``: ``time`` (s), ``voltage`` (V), ``speed`` (rad/s), ``amplitude``
         and ``box_amplitude`` (m), ``box_acceleration`` (m/s2), ``impacts``, energies since the
         start (J), and the numbers ``eta0`` = U/(K omega) and ``Omega`` = speed/omega. Dimension
-        ``jump``: ``jumps`` (V) and ``jump_speed`` (rad/s) at the jumps up and down, NaN where there
-        is none; for a bonded structure ``averaged_jumps`` too.
+        ``jump``: ``jumps`` (V), ``jump_speed`` (rad/s), speed and amplitude before and after,
+        ``jump_rate`` (V/s) at the jumps up and down, NaN where there is none, and ``no_jump`` says
+        why; for a bonded structure ``averaged_jumps`` and ``jump_lag`` (V) too.
 
     Raises
     ------
@@ -365,7 +404,8 @@ def couple(
 
     Notes
     -----
-    A ramp's jump comes late, about as rate^(2/3).
+    A ramp's jump comes late, about as rate^(2/3). What counts as a jump is told in
+    :mod:`orchestrate.weak_drive.jumps`.
 
     Examples
     --------
@@ -383,7 +423,10 @@ def couple(
 
     if not drive.motor_constant > 0.0:
         raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
-    schedule = schedule_of(structure, drive, voltage, duration, rate, settle, increment, back)
+    if spin_up is None and speed_start is not None:
+        spin_up = 0.0
+    given = (duration, rate, settle, increment, back, spin_up)
+    schedule = schedule_of(structure, drive, voltage, *given)
     scheme = scheme_of(structure, step, algorithm, tolerance)
     job = couple_job(structure, drive, schedule, scheme, speed_start)
     return answer(job, running, finder(running))

@@ -29,6 +29,7 @@ class OscillatorOutputs(NamedTuple):
     box_impulse: float
     box_impulse_moment: float
     impact_energy: float
+    impact_time: float
 
 
 class ShakerInputs(NamedTuple):

@@ -1,56 +1,152 @@
 """Where the speed jumps, as the voltage comes and goes.
 
-The slip, no-load speed less speed, is what the vibration takes from the motor. It falls at the jump
-up and rises at the jump down; where it passes half of its largest value on that way is where the
-jump is said to be.
+A slow ramp takes the motor along a branch of stationary motions. Where the branch ends the speed
+leaves it: it changes many times as much as the voltage does meanwhile, and so fast that the rotor's
+inertia takes a good part of the torque that the vibration sets free. A steep but stable branch is
+followed in the ramp's own time: it is no jump.
+
+Non-dimensional throughout: time 1/omega, speeds over omega, the voltage as no-load speed over
+omega. The slip is no-load speed less speed: what the vibration takes from the motor.
 """
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 
-class Jumps(NamedTuple):
-    """Rows at which the speed jumps, up and down; None where it does not."""
+class Way(NamedTuple):
+    """Revolutions on which the voltage goes one way, each shape (n,).
 
-    up: int | None
-    down: int | None
+    Attributes
+    ----------
+    time, eta0, Omega : ndarray
+        At the revolutions' ends.
+    """
+
+    time: np.ndarray
+    eta0: np.ndarray
+    Omega: np.ndarray
 
 
-def find_jumps(eta0: np.ndarray, Omega: np.ndarray, trend: np.ndarray) -> Jumps:
-    """Find the revolutions in which the speed jumps.
+class Jump(NamedTuple):
+    """A jump of the speed, by rows.
+
+    Attributes
+    ----------
+    row : int
+        Where the slip passes half of its largest value.
+    before, after : int
+        Where the speed leaves its branch, and where it follows the voltage again.
+    """
+
+    row: int
+    before: int
+    after: int
+
+
+class Criterion(NamedTuple):
+    """What counts as a jump.
+
+    Attributes
+    ----------
+    growth : float
+        Least change of the speed over that of the voltage meanwhile.
+    share : float
+        Least torque of the rotor's inertia at its largest, over the torque set free.
+    """
+
+    growth: float = 3.0
+    share: float = 0.12
+
+
+def find_jump(way: Way, b: float, up: bool, criterion: Criterion | None = None) -> Jump | None:
+    """Find the jump on a way up or down; None where the speed follows the voltage.
 
     Parameters
     ----------
-    eta0 : ndarray, shape (n,)
-        Voltage of each revolution, as no-load speed over omega.
-    Omega : ndarray, shape (n,)
-        Mean speed over omega.
-    trend : ndarray, shape (n,)
-        Positive where the voltage rises, negative where it falls.
+    way : Way
+    b : float
+        Slope of the torque line, the inverse of the time in which a rotor without load settles.
+    up : bool
+        Whether the voltage rises; a jump goes the same way.
+    criterion : Criterion, optional
     """
-    slip = eta0 - Omega
-    return Jumps(
-        first_fall(slip, np.flatnonzero(trend > 0)), first_rise(slip, np.flatnonzero(trend < 0))
+    limits, sign = criterion or Criterion(), 1.0 if up else -1.0
+    if len(way.time) < 2:
+        return None
+    width = max(4, math.ceil(0.5 / (b * float(np.median(np.diff(way.time))))))
+    if len(way.time) < 4 * width:
+        return None
+    time, eta0, speed = (running_mean(values, width) for values in way)
+    rise, change = sign * apart(speed, width), np.abs(apart(eta0, width))
+    top = int(np.argmax(rise / apart(time, width)))
+    before, after = extent(rise > limits.growth * change, top)
+    if rise[top] <= limits.growth * change[top]:
+        return None
+    last = min(after + 2 * width, len(way.time) - 1)
+    slip = sign * (way.eta0 - way.Omega)
+    freed = slip[before] - slip[last]
+    inertia = rise[top] / (b * (time[top + width] - time[top]))
+    grown = abs(way.Omega[last] - way.Omega[before])
+    if inertia < limits.share * freed or grown < limits.growth * np.ptp(
+        way.eta0[before : last + 1]
+    ):
+        return None
+    row = half_slip(np.abs(way.eta0 - way.Omega), before, up)
+    return None if row is None else Jump(row, before, last)
+
+
+def running_mean(values: np.ndarray, width: int) -> np.ndarray:
+    """Means of ``width`` values each: motions that repeat after some revolutions look steady."""
+    return np.convolve(values, np.full(width, 1.0 / width), "valid")
+
+
+def apart(values: np.ndarray, width: int) -> np.ndarray:
+    """Differences of values ``width`` places apart."""
+    return np.asarray(values[width:] - values[:-width])
+
+
+def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
+    """First and last place of the stretch of true values around ``top``."""
+    breaks = np.flatnonzero(~runs)
+    before, after = breaks[breaks < top], breaks[breaks > top]
+    return (
+        int(before[-1]) + 1 if before.size else 0,
+        int(after[0]) - 1 if after.size else len(runs) - 1,
     )
 
 
-def first_fall(slip: np.ndarray, rows: np.ndarray) -> int | None:
-    """The row at which the slip falls below half of its largest value, after that."""
-    if not rows.size:
-        return None
-    level = slip[rows]
-    highest = int(np.argmax(level))
-    after = 1 + np.flatnonzero(level[highest + 1 :] < 0.5 * level[highest])
-    return int(rows[highest + after[0]]) if after.size else None
+def half_slip(slip: np.ndarray, before: int, up: bool) -> int | None:
+    """The row at which the slip falls below (down: rises above) half of its largest value."""
+    level = slip[before:]
+    if up:
+        highest = int(np.argmax(level))
+        after = 1 + highest + np.flatnonzero(level[highest + 1 :] < 0.5 * level[highest])
+    else:
+        after = np.flatnonzero(level > 0.5 * level.max())
+    return before + int(after[0]) if after.size else None
 
 
-def first_rise(slip: np.ndarray, rows: np.ndarray) -> int | None:
-    """The row at which the slip rises above half of its largest value."""
-    if not rows.size:
-        return None
-    level = slip[rows]
-    after = np.flatnonzero(level > 0.5 * level.max())
-    return int(rows[after[0]]) if after.size and after[0] > 0 else None
+def why_none(way: Way, up: bool, resonance: float) -> str:
+    """Why there is no jump.
+
+    Parameters
+    ----------
+    way : Way
+    up : bool
+    resonance : float
+        Speed of the resonance over omega.
+    """
+    if not len(way.time):
+        return f"the voltage does not {'rise' if up else 'fall'}"
+    speed = np.abs(way.Omega)
+    first, last = float(speed[: 1 + len(speed) // 50].mean()), float(speed[-1])
+    beyond = first > resonance
+    if beyond == up and (last > resonance) == up:
+        return f"began {'beyond' if up else 'below'} the resonance"
+    if (last > resonance) != up:
+        return f"ends {'below' if up else 'beyond'} the resonance"
+    return "no fold: the speed follows the voltage through the resonance"

@@ -13,7 +13,7 @@ values have.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -153,6 +153,9 @@ class Master:
         Length of the last step, s.
     halved : int
         Steps that the tolerance has halved.
+    watch : callable, optional
+        Called at the end of every step, halves too, with what was done and its length, before the
+        master goes on.
     """
 
     def __init__(
@@ -168,6 +171,7 @@ class Master:
         self.scheme, self._algorithm = scheme, ALGORITHMS[scheme.algorithm]
         self.time, self.halved, self.voltage = start_time, 0, math.nan
         self.motion, self.shaking = self._motion(), self._shaking()
+        self.watch: Callable[[Step, float], None] | None = None
         self.slope = 0.0  # of the force, at the present communication point
         self.force_before = self.h_before = 0.0
         self.acceleration_before = self.jerk_before = 0.0
@@ -213,6 +217,8 @@ class Master:
 
     def _go_on(self, done: Step, h: float) -> None:
         """To the step's end."""
+        if self.watch:
+            self.watch(done, h)
         # at the start the force's slope was not known, nor the jerk
         self.jerk_before = self.shaking.box_jerk if self.h_before else done.acceleration[1]
         self.acceleration_before = self.shaking.box_acceleration

@@ -6,7 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass
 
-from .master import Master
+from ..structures.structure import Structure
+from .extremes import reach_of_box, reach_of_mass
+from .master import Master, Step
 
 TURN = 2.0 * math.pi
 COLUMNS = {
@@ -46,8 +48,6 @@ class Revolution:
         s, and impacts so far, at its beginning.
     x1_high, x1_low, box_high, box_low : float
         Extreme positions since, m.
-    v1, box_velocity : float
-        At the last communication point, m/s.
     acceleration : float
         Largest of the box, m/s2.
     """
@@ -59,16 +59,7 @@ class Revolution:
     x1_low: float
     box_high: float
     box_low: float
-    v1: float
-    box_velocity: float
     acceleration: float = 0.0
-
-
-def reach(value: float, velocity: float, before: float, h: float) -> float:
-    """A position, or how far it has been where it has turned round since: on a parabola."""
-    if before * velocity < 0.0:
-        return value + 0.5 * velocity * velocity / (before - velocity) * h
-    return value
 
 
 class Revolutions:
@@ -77,20 +68,24 @@ class Revolutions:
     Parameters
     ----------
     master : Master
-        At the start.
+        At the start; its steps are watched from now on.
+    structure : Structure
     impact_count : callable
         The number of impacts so far, asked at the end of a revolution.
     """
 
-    def __init__(self, master: Master, impact_count: Callable[[], float]) -> None:
-        self._master, self._impact_count = master, impact_count
+    def __init__(
+        self, master: Master, structure: Structure, impact_count: Callable[[], float]
+    ) -> None:
+        self._master, self._structure, self._impact_count = master, structure, impact_count
+        master.watch = self._watch
         self._begin(0.0, 0.0, 0.0)
 
     def _begin(self, turn: float, time: float, impacts: float) -> None:
         """A revolution begins."""
         motion, shaking = self._master.motion, self._master.shaking
         x, y = motion.x1, shaking.box_position
-        self._now = Revolution(turn, time, impacts, x, x, y, y, motion.v1, shaking.box_velocity)
+        self._now = Revolution(turn, time, impacts, x, x, y, y)
 
     def add(self) -> tuple[float, ...] | None:
         """Look at the state after a step.
@@ -101,7 +96,6 @@ class Revolutions:
             In the order of ``COLUMNS``, when a revolution is complete, forward or backward.
         """
         master, now = self._master, self._now
-        self._watch(now)
         angle = master.shaking.angle / TURN
         turn = math.floor(angle)
         if turn <= now.turn:
@@ -114,16 +108,15 @@ class Revolutions:
         self._begin(turn, time, impacts)
         return row
 
-    def _watch(self, now: Revolution) -> None:
-        """Keep the extreme values."""
-        master = self._master
-        motion, shaking, h = master.motion, master.shaking, master.h_before
-        x = reach(motion.x1, motion.v1, now.v1, h)
-        now.x1_high, now.x1_low = max(now.x1_high, x), min(now.x1_low, x)
-        y = reach(shaking.box_position, shaking.box_velocity, now.box_velocity, h)
-        now.box_high, now.box_low = max(now.box_high, y), min(now.box_low, y)
-        now.v1, now.box_velocity = motion.v1, shaking.box_velocity
-        now.acceleration = max(now.acceleration, abs(shaking.box_acceleration))
+    def _watch(self, done: Step, h: float) -> None:
+        """Keep the extreme values of a step."""
+        master, now = self._master, self._now
+        ends = (master.motion, done.motion)
+        x = reach_of_mass(self._structure, ends, done.acceleration, master.time, h)
+        now.x1_high, now.x1_low = max(now.x1_high, x.high), min(now.x1_low, x.low)
+        y = reach_of_box(master.shaking, done.shaking, done.acceleration, h)
+        now.box_high, now.box_low = max(now.box_high, y.high), min(now.box_low, y.low)
+        now.acceleration = max(now.acceleration, abs(done.shaking.box_acceleration))
 
     def _row(self, time: float, speed: float, impacts: float) -> tuple[float, ...]:
         """What is kept of a revolution that ends at ``time``."""

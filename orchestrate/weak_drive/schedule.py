@@ -83,7 +83,7 @@ class Constant(Schedule):
 
 @dataclass(frozen=True)
 class Ramp(Schedule):
-    """Settle at the first voltage, go to the last one, and back.
+    """Spin up, settle at the first voltage, go to the last one, and back.
 
     Attributes
     ----------
@@ -97,6 +97,10 @@ class Ramp(Schedule):
         Height of steps, V; 0 for a ramp.
     back : bool
         Whether it goes back to ``first`` again.
+    spin_up : float
+        Time in which the voltage rises from ``low`` to ``first`` at the very beginning, s.
+    low : float
+        Voltage at which it spins up from, V.
 
     Raises
     ------
@@ -115,10 +119,14 @@ class Ramp(Schedule):
     settle: float = 0.0
     increment: float = 0.0
     back: bool = True
+    spin_up: float = 0.0
+    low: float = 0.0
 
     def __post_init__(self) -> None:
         check("voltage", self.first, "V")
         check("voltage", self.last, "V")
+        check("spin_up", self.spin_up, "s", low=0.0)
+        check("low", self.low, "V")
         if self.first == self.last:
             raise InputError(
                 f"voltage = ({self.first}, {self.last}) V: expected two different ones, or a "
@@ -130,6 +138,11 @@ class Ramp(Schedule):
         check("increment", self.increment, "V", low=0.0, high=abs(self.last - self.first))
 
     @property
+    def begin(self) -> float:
+        """Time at which it leaves the first voltage, s."""
+        return self.spin_up + self.settle
+
+    @property
     def rise(self) -> float:
         """Time the voltage takes from one end to the other, s."""
         return abs(self.last - self.first) / self.rate
@@ -137,16 +150,18 @@ class Ramp(Schedule):
     @property
     def turn(self) -> float:
         """Time at which it is at the last voltage, s."""
-        return self.settle + self.rise
+        return self.begin + self.rise
 
     @property
     def duration(self) -> float:
         """Time of the whole run, s."""
-        return self.settle + self.rise * (2 if self.back else 1)
+        return self.begin + self.rise * (2 if self.back else 1)
 
     def voltage(self, time: float) -> float:
         """Voltage at a time, V."""
-        ramp = min(max(time - self.settle, 0.0), self.duration - self.settle)
+        if time < self.spin_up:
+            return self.low + (self.first - self.low) * time / self.spin_up
+        ramp = min(max(time - self.begin, 0.0), self.duration - self.begin)
         there = ramp <= self.rise
         change = self.rate * (ramp if there else 2.0 * self.rise - ramp)
         if self.increment:
@@ -160,4 +175,4 @@ class Ramp(Schedule):
     def trend(self, times: np.ndarray) -> np.ndarray:
         """Up or down on the way there, the other way round on the way back."""
         times, there = np.asarray(times), 1 if self.last > self.first else -1
-        return np.where(times > self.turn, -there, np.where(times > self.settle, there, 0))
+        return np.where(times > self.turn, -there, np.where(times > self.begin, there, 0))

@@ -18,7 +18,9 @@ def run(system, voltage, rate=None, **more):
     """A run by non-dimensional numbers: voltages over K omega, times in 1/omega."""
     structure, drive = system
     omega, volts = structure.omega, drive.volts(structure)
-    times = {name: more.pop(name) / omega for name in ("duration", "settle") if name in more}
+    times = {
+        name: more.pop(name) / omega for name in ("duration", "settle", "spin_up") if name in more
+    }
     speed = {"speed_start": more.pop("speed_start") * omega} if "speed_start" in more else {}
     ramp = {} if rate is None else {"rate": rate * volts * omega}
     step = more.pop("step", 0.2) / omega

@@ -1,9 +1,8 @@
-"""The voltage over time, and the jumps read from it."""
+"""The voltage over time."""
 
 import numpy as np
 import pytest
 
-from orchestrate.weak_drive.jumps import find_jumps
 from orchestrate.weak_drive.schedule import Constant, Ramp
 
 
@@ -30,11 +29,10 @@ def test_constant():
     assert not constant.trend(np.arange(5.0)).any()
 
 
-def test_jumps():
-    """The slip falls at the jump up and rises at the jump down."""
-    eta0 = np.array([1.0, 1.1, 1.2, 1.3, 1.3, 1.2, 1.1, 1.0])
-    Omega = np.array([1.0, 1.0, 1.0, 1.25, 1.25, 1.15, 1.02, 0.8])
-    trend = np.array([0, 1, 1, 1, -1, -1, -1, -1])
-    assert find_jumps(eta0, Omega, trend) == (3, 7)
-    assert find_jumps(eta0, Omega, 0 * trend) == (None, None)
-    assert find_jumps(eta0[:3], Omega[:3], trend[:3]) == (None, None)
+def test_spin_up():
+    ramp = Ramp(1.4, 1.6, 1e-3, 50.0, spin_up=100.0, low=1.2)
+    times = (0.0, 50.0, 100.0, 150.0, 250.0, 350.0, 450.0, 550.0)
+    expected = [1.2, 1.3, 1.4, 1.4, 1.5, 1.6, 1.5, 1.4]
+    assert [ramp.voltage(time) for time in times] == pytest.approx(expected)
+    assert ramp.duration == pytest.approx(550.0)
+    assert ramp.trend(np.array([10.0, 120.0, 151.0, 351.0])).tolist() == [0, 0, 1, -1]
