@@ -1,0 +1,74 @@
+"""How the manual is built: ``python -m sphinx -W docs site`` makes it, without network.
+
+Pages are MyST Markdown; those with code cells are run when the manual is built. The reference comes
+from the docstrings. Formulas become MathML, which browsers show without any script.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from docutils import nodes
+from docutils.utils.math.latex2mathml import tex2mathml
+from sphinx.application import Sphinx
+
+import orchestrate
+
+project = "vibroimpact"
+author = "the vibroimpact developers"
+project_copyright = author
+version = release = orchestrate.__version__
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "numpydoc",
+    "sphinx_copybutton",
+]
+exclude_patterns = ["site"]
+nitpicky = False
+
+html_theme = "furo"
+html_title = f"vibroimpact {version}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_show_sourcelink = True
+html_math_renderer = "mathml"
+html_theme_options = {
+    "light_css_variables": {"color-brand-primary": "#1f5f99", "color-brand-content": "#1f5f99"},
+    "dark_css_variables": {"color-brand-primary": "#7db7ea", "color-brand-content": "#7db7ea"},
+}
+
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_inline"]
+myst_heading_anchors = 3
+nb_execution_timeout = 300
+nb_execution_raise_on_error = True
+nb_merge_streams = True
+nb_output_stderr = "remove"  # progress bars
+
+autodoc_typehints = "none"  # numpydoc's sections have the types
+autodoc_member_order = "bysource"
+python_maximum_signature_line_length = 80
+numpydoc_show_class_members = False
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
+
+
+def as_mathml(translator: Any, node: nodes.Element) -> None:
+    """A formula in the text."""
+    translator.body.append(tex2mathml(node.astext()))
+    raise nodes.SkipNode
+
+
+def as_mathml_block(translator: Any, node: nodes.Element) -> None:
+    """A formula on a line of its own, with its number if it has one."""
+    number = f'<span class="eqno">({node["number"]})</span>' if node.get("number") else ""
+    formula = tex2mathml(node.astext(), as_block=True)
+    anchor = node["ids"][0] if node.get("ids") else ""
+    translator.body.append(f'<div class="math" id="{anchor}">{number}{formula}</div>')
+    raise nodes.SkipNode
+
+
+def setup(app: Sphinx) -> None:
+    """Tell Sphinx about the formulas."""
+    app.add_html_math_renderer("mathml", (as_mathml, None), (as_mathml_block, None))

@@ -1,0 +1,25 @@
+"""A folder as a reader has it: the FMUs in ``build/``, nothing else."""
+
+from __future__ import annotations
+
+import pytest
+
+import orchestrate
+
+from .smaller import QUESTIONS, smaller
+
+
+@pytest.fixture
+def folder(exported, tmp_path, monkeypatch):
+    """Where the reader works."""
+    (tmp_path / "build").symlink_to(exported, target_is_directory=True)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def small(monkeypatch):
+    """All questions are small ones."""
+    for name in QUESTIONS:
+        if name in orchestrate.__all__:
+            monkeypatch.setattr(orchestrate, name, smaller(getattr(orchestrate, name)))

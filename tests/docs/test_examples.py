@@ -1,0 +1,60 @@
+"""Every script of ``examples/`` runs as it stands, and the one in C says what its twin says."""
+
+from __future__ import annotations
+
+import runpy
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pytest
+
+from .written import ROOT
+
+EXAMPLES = ROOT / "examples"
+SCRIPTS = sorted(EXAMPLES.glob("*.py"))
+SAID = {  # something of what each prints
+    "basin": "2 attractors",
+    "event_mode": "impact at 9.584866 s, closing at 1.198201 m/s",
+    "fmpy_sweep": "eta = 1.045: largest gap 20.5801",
+    "lyapunov_sweep": "chaotic at",
+    "own_motor": "delaminated: the speed jumps at 6.3",
+    "parameter_map": "of the map repeats after one period",
+    "resonance_curve": "bonded           : 3.18 mm at 12.7 Hz",
+    "time_history": "largest gap: 7.80 mm",
+}
+
+
+def test_all_are_known():
+    assert [script.stem for script in SCRIPTS] == sorted(SAID)
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_script_runs(script, folder, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", [str(script)])
+    runpy.run_path(str(script), run_name="__main__")
+    assert SAID[script.stem] in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_scripts_are_short(script):
+    lines = script.read_text(encoding="utf-8").splitlines()
+    assert len([line for line in lines if line.strip()]) <= 35
+
+
+@pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler")
+def test_c_example(folder, monkeypatch, capsys):
+    headers = Path(fmpy.__file__).parent / "c-code"
+    program, source = folder / "event_mode", EXAMPLES / "event_mode.c"
+    warnings = ("-Wall", "-Wextra", "-Werror")
+    command = ("cc", *warnings, "-I", headers, source, "-ldl", "-lm", "-o", program)
+    subprocess.run(command, check=True)
+    with zipfile.ZipFile(folder / "build" / "fmi3" / "TwoMassImpactOscillator.fmu") as archive:
+        archive.extractall(folder / "fmu")
+    said = subprocess.run([program, "fmu"], cwd=folder, capture_output=True, text=True, check=True)
+    monkeypatch.setattr(sys, "argv", ["event_mode.py"])
+    runpy.run_path(str(EXAMPLES / "event_mode.py"), run_name="__main__")
+    assert said.stdout == capsys.readouterr().out

@@ -1,0 +1,68 @@
+"""The manual builds without a warning, its code cells run, and nothing public is left out."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import zlib
+from importlib import import_module
+
+import pytest
+
+import orchestrate
+from orchestrate import cli
+
+from .written import DOCS
+
+KERNEL = "fmu_src.kernels.oscillator"
+
+
+@pytest.fixture(scope="session")
+def site(exported, tmp_path_factory):
+    """The manual, built in a process of its own as its users do."""
+    place = tmp_path_factory.mktemp("site")
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", DOCS, place]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
+    return place
+
+
+def inventory(site):
+    """Names of all that the reference describes."""
+    packed = (site / "objects.inv").read_bytes().split(b"\n", 4)[4]
+    return {line.split()[0] for line in zlib.decompress(packed).decode().splitlines() if line}
+
+
+@pytest.mark.xdist_group("site")
+def test_the_public_face_is_described(site):
+    names = {f"orchestrate.{name}" for name in orchestrate.__all__ if not name.startswith("_")}
+    assert names - inventory(site) == set()
+
+
+@pytest.mark.xdist_group("site")
+def test_every_command_has_its_help(site):
+    page = (site / "commands.html").read_text(encoding="utf-8")
+    names = [command.__name__.rpartition(".")[2] for command in cli.COMMANDS]
+    assert [name for name in names if f">{name}<" not in page] == []
+
+
+@pytest.mark.xdist_group("site")
+def test_nothing_comes_from_elsewhere(site):
+    """No script, style, font or picture is taken from the network."""
+    outside = re.compile(r'(?:<script[^>]* src|<link[^>]* href|<img[^>]* src)="(https?:[^"]*)"')
+    for page in site.rglob("*.html"):
+        assert outside.findall(page.read_text(encoding="utf-8")) == [], page.name
+
+
+def test_functions_of_the_theory_are_there():
+    text = (DOCS / "theory.md").read_text(encoding="utf-8")
+    named = sorted(set(re.findall(r"`(\w+)\.(\w+)`", text)))
+    assert len(named) > 20
+    for module, function in named:
+        assert hasattr(import_module(f"{KERNEL}.{module}"), function), (module, function)
+
+
+def test_equations_have_the_papers_numbers():
+    text = (DOCS / "theory.md").read_text(encoding="utf-8")
+    assert len(re.findall(r"^\$\$ \(eq-", text, re.M)) == 22

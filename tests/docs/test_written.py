@@ -1,0 +1,58 @@
+"""Every block of Python and every command line of the README and the manual runs."""
+
+from __future__ import annotations
+
+import pytest
+
+from orchestrate import cli
+
+from .written import PAGES, commands, python_blocks, toml_files
+
+LONG = ("build", "couple", "paper")  # commands whose options are read, and no more
+EVERY = [
+    pytest.param(page, words, id=f"{page.stem}-{' '.join(words)[:60]}")
+    for page in PAGES
+    for words in dict.fromkeys(map(tuple, commands(page)))
+]
+
+
+def write_files(folder):
+    """The TOML files that pages show."""
+    for page in PAGES:
+        for name, text in toml_files(page).items():
+            (folder / name).write_text(text, encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if python_blocks(page)], ids=lambda page: page.stem
+)
+def test_python_runs(page, folder, small):
+    write_files(folder)
+    names = {}
+    for number, text in enumerate(python_blocks(page)):
+        exec(compile(text, f"{page.name}, block {number}", "exec"), names)
+
+
+@pytest.mark.parametrize(("page", "words"), EVERY)
+def test_commands_run(page, words, folder, small, capsys):
+    if not words or words[0] in LONG or words[-1] in ("--help", "--version"):
+        try:
+            cli.make_parser().parse_args(cli.with_negative_values(words))
+        except SystemExit as ended:
+            assert ended.code == 0 or not words, capsys.readouterr().err
+        return
+    write_files(folder)
+    assert cli.main(list(words)) == 0, capsys.readouterr().err
+
+
+def test_code_fits_its_place():
+    """Lines of code are not wider than the page."""
+    pages = [page for page in PAGES if page.parent.name == "docs"]
+    wide = [
+        (page.name, line)
+        for page in pages
+        for text in (*python_blocks(page), *toml_files(page).values())
+        for line in text.splitlines()
+        if len(line) > 88
+    ]
+    assert wide == []
