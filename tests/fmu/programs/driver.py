@@ -39,7 +39,6 @@ class Fmu2:
     folders = {}  # where an FMU of this process was extracted to,
     descriptions = {}  # and what is known of it
     alive = []
-    pythonfmu = False  # whether the library of pythonfmu was loaded
 
     def __init__(self, path, name="instance", logging=True, folder=None):
         if folder is None:
@@ -158,7 +157,7 @@ def leave():
         f.free()
     # pythonfmu's library writes into freed memory when a process ends, see test_limits: no test is
     # to fail of that by chance
-    if Fmu2.pythonfmu and not os.environ.get("TEST_THE_END"):
+    if "pythonfmu" in sys.modules and not os.environ.get("TEST_THE_END"):
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(1 if failed else 0)
@@ -172,7 +171,6 @@ def describe(path):
 
 def open_fmu(path, **options):
     """An instance of an FMU, of its own FMI version."""
-    Fmu2.pythonfmu |= "python" in Path(path).parent.name
     return (Fmu3 if describe(path).fmiVersion.startswith("3") else Fmu2)(path, **options)
 
 
