@@ -27,6 +27,8 @@ KINDS = {
 }
 CONTACT = (CONTACT_LOST, CONTACT_BEGUN)
 ENDS = (GRAZING, TOUCHING, RELEASE)  # beyond them the sequence of impacts is another one
+SIGNS = (FOLD, FLIP, TORUS, GRAZING, TOUCHING, RELEASE)  # told by a sign on every branch
+ON_CIRCLE = 1e-6
 ACCURACY = 1e-14  # of a place along the branch, in unknowns over their scale
 
 
@@ -77,7 +79,7 @@ class Look:
 
     @property
     def wrong_contact(self) -> bool:
-        """Whether an impact sticks that should not, or the other way round, or a contact has no length."""
+        """Whether an impact sticks that should not, or the reverse, or a contact is over."""
         return self.ring.count > 0 and min(self.contact_test(kind) for kind in CONTACT) <= 0.0
 
     def test(self, kind: int) -> float:
@@ -88,7 +90,8 @@ class Look:
             found = self.multipliers
             return float(np.prod((1.0 + found) / (1.0 + np.abs(found))).real)
         if kind == TORUS:
-            return float(np.prod(np.abs(self.pairs) - 1.0))
+            products = np.multiply.outer(self.multipliers, self.multipliers)[np.triu_indices(4, 1)]
+            return float(np.prod((1.0 - products) / (1.0 + np.abs(products))).real)
         if kind == GRAZING:
             closing = self.ring.nodes[~self.ring.sequence.releases, CLOSING]
             return float(closing.min(initial=np.inf))
@@ -107,13 +110,18 @@ class Look:
 
     def changed(self, before: Look) -> list[int]:
         """Kinds of the bifurcations between an orbit and this one."""
-        kinds = [FOLD, FLIP, GRAZING, TOUCHING, RELEASE]
-        if len(self.pairs) == len(before.pairs) and len(self.pairs):
-            kinds.append(TORUS)
-        return [kind for kind in kinds if before.test(kind) * self.test(kind) < 0.0]
+        return [kind for kind in SIGNS if before.test(kind) * self.test(kind) < 0.0]
+
+    def happens(self, kind: int) -> bool:
+        """Whether it is the bifurcation: the product of two real multipliers may be 1 as well."""
+        if kind != TORUS:
+            return True
+        return bool((np.abs(np.abs(self.pairs) - 1.0) < ON_CIRCLE).any())
 
 
-def locate(walk: Walk[Family], before: Look, after: Look, length: float, kind: int) -> tuple[float, Look]:
+def locate(
+    walk: Walk[Family], before: Look, after: Look, length: float, kind: int
+) -> tuple[float, Look]:
     """Where between two orbits a bifurcation lies, by Brent's method along the branch.
 
     Returns

@@ -1,8 +1,9 @@
 """Bifurcations followed over two parameters: an orbit's equations with those of its bifurcation.
 
-Folds, period doublings and Neimark-Sacker bifurcations are where the orbit's matrix with a multiplier
-``turn`` is singular: its bordered system tells how nearly (Govaerts, Numerical Methods for Bifurcations of
-Dynamical Equilibria, 2000, chapter 4), and needs no determinant. Grazings are equations of their own.
+Folds, period doublings and Neimark-Sacker bifurcations are where the orbit's matrix with a
+multiplier ``turn`` is singular: its bordered system tells how nearly (Govaerts, Numerical Methods
+for Bifurcations of Dynamical Equilibria, 2000, chapter 4), and needs no determinant. Grazings are
+equations of their own.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ STEP = 1e-6  # of an unknown, over its scale, for differences
 
 @dataclass
 class Border:
-    """A bifurcation over two parameters: unknowns are those of the nodes, the two parameters, and what the kind adds.
+    """A bifurcation over two parameters.
+
+    Its unknowns are those of the nodes, the two parameters, and what the kind adds.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Where windows begin and end over two parameters: curves of folds, period doublings, Neimark-Sacker bifurcations and grazings."""
+"""Where windows begin and end over two parameters: a curve for each bifurcation."""
 
 from __future__ import annotations
 
@@ -107,10 +107,8 @@ def begin(job: BorderJob) -> tuple[Border, Root]:
     """
     setting, nodes = job.setting, np.array(job.start.nodes).reshape(-1, 4)
     sequence, values = job.start.sequence(job.period), np.array(job.values)
-    first = replace(setting, over=setting.over[:1], limits=setting.limits[:1])
-    rest = replace(first, structure=setting.point(values).structure)
     try:
-        look = Look(*solve(rest, (sequence, nodes), values[:1]))
+        look = Look(*solve(setting.first_alone(values), (sequence, nodes), values[:1]))
         border = Border.of(Family.near(setting, sequence, look.ring.nodes), look, job.kind)
         guess = np.concatenate([look.ring.nodes.ravel(), values, border.extra])
         border.lean(guess)
@@ -134,18 +132,14 @@ def followed(border: Border, start: Root, job: BorderJob) -> tuple[list[Root], s
     limits = job.setting.limits
     while len(roots) <= job.most:
         try:
-            limit = walk.limit_ahead(border.parameters, limits)
-            if limit is None:
-                root, length = walk.ahead()
-            else:
-                root, length = walk.land(*limit), walk.step
+            root, length, arrived = walk.inside(border.parameters, limits)
         except NoConvergenceError:
             return roots, STUCK
         reason = border.no_motion(root.unknowns)
         if reason:
             return [*roots, *last_motion(walk, length)], reason
         roots.append(root)
-        if limit is not None:
+        if arrived:
             return roots, LIMIT
         walk.root = root
         border.lean(root.unknowns)
@@ -154,7 +148,8 @@ def followed(border: Border, start: Root, job: BorderJob) -> tuple[list[Root], s
 
 def last_motion(walk: Walk[Border], length: float) -> list[Root]:
     """The last root of a step that is a bifurcation of a motion, by halving."""
-    low, high, found = 0.0, length, []
+    low, high = 0.0, length
+    found: list[Root] = []
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         try:
@@ -199,7 +194,8 @@ def border(
     start : xarray.Dataset
         A branch of :func:`orchestrate.branch`.
     bifurcation : int
-        Number of one of its bifurcations: a fold, period doubling, Neimark-Sacker bifurcation or grazing.
+        Number of one of its bifurcations: a fold, period doubling, Neimark-Sacker bifurcation or
+        grazing.
     over : sequence of 2 str
         The parameters; the first one is that of the branch.
     limits : array_like, shape (2, 2)
@@ -216,8 +212,8 @@ def border(
     Returns
     -------
     xarray.Dataset
-        Along ``point``: both parameters, the orbit there as :func:`orchestrate.orbit` tells it, and the
-        ``angle`` of the multipliers at a Neimark-Sacker bifurcation. Attributes: ``kind``, and
+        Along ``point``: both parameters, the orbit there as :func:`orchestrate.orbit` tells it, and
+        the ``angle`` of the multipliers at a Neimark-Sacker bifurcation. Attributes: ``kind``, and
         ``first_end`` and ``last_end``, why the curve ends.
 
     Raises
@@ -240,7 +236,8 @@ def border(
     check_names(names)
     if len(names) != 2 or names[0] != start.attrs.get("over"):
         raise InputError(
-            f"over = {names!r}: expected two names, the first one {start.attrs.get('over')!r} as in start"
+            f"over = {names!r}: expected two names, the first one that of start, "
+            f"{start.attrs.get('over')!r}"
         )
     pairs = checked_limits(names, limits)
     nodes, kind = begin_of(start, bifurcation)

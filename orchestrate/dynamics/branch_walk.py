@@ -1,4 +1,4 @@
-"""A branch of orbits followed until it ends, with the bifurcations on it; and the branches that leave there."""
+"""A branch of orbits followed until it ends, its bifurcations, and branches that leave there."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .bifurcations import (
 )
 from .closed_form import Floats
 from .continuation import NoConvergenceError, Root, Walk, corrected, held
-from .families import Family, Setting
+from .families import Family
 from .impact_sequence import CLOSING, IMPACT, PHASE, POSITION, RELEASE, STICK, TURN, Ring, Sequence
 from .orbit_search import solve
 from .turning_points import nearest, turning_points
@@ -38,6 +38,24 @@ LIMIT, STUCK, LONG, CLOSED = (
 )
 
 
+@dataclass(frozen=True)
+class Event:
+    """A bifurcation on a branch.
+
+    Attributes
+    ----------
+    kind : int
+    look : Look
+        The orbit there.
+    place : float
+        Among the branch's orbits: between two numbers where it lies between two orbits.
+    """
+
+    kind: int
+    look: Look
+    place: float
+
+
 @dataclass
 class Leg:
     """A branch in one direction.
@@ -46,14 +64,14 @@ class Leg:
     ----------
     looks : list of Look
         Its orbits, from the start on.
-    events : list of (int, Look)
+    events : list of Event
         Bifurcations on it, in order.
     end : str
         Why it ends.
     """
 
     looks: list[Look] = field(default_factory=list)
-    events: list[tuple[int, Look]] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
     end: str = ""
 
 
@@ -89,20 +107,20 @@ def advance(leg: Leg, walk: Walk[Family]) -> None:
     """One step on, or the end."""
     before = leg.looks[-1]
     try:
-        limit = walk.limit_ahead(walk.curve.size, walk.curve.setting.limits)
-        if limit is None:
-            root, length = walk.ahead(lambda root: orderly(walk.curve, root))
-            after = Look(walk.curve, root)
-        else:
-            after = Look(walk.curve, walk.land(*limit))
-            length, leg.end = step_to(walk, after), LIMIT
+        family = walk.curve
+        root, length, arrived = walk.inside(
+            family.size, family.setting.limits, lambda root: orderly(family, root)
+        )
+        after, leg.end = Look(family, root), LIMIT if arrived else ""
         found = located(walk, before, after, length)
     except NoConvergenceError:
         leg.end = STUCK
         return
-    for _, look, kind in found:
-        leg.events.append((kind, look))
-        if kind in ENDS:
+    last = len(leg.looks) - 1
+    for place, look, kind in found:
+        ends = kind in ENDS
+        leg.events.append(Event(kind, look, last + (1.0 if ends else place / length)))
+        if ends:
             leg.looks.append(look)
             leg.end = KINDS[kind]
             return
@@ -135,7 +153,8 @@ def located(
 
     def places(kinds: list[int]) -> list[tuple[float, Look, int]]:
         found = [(*locate(walk, before, after, length, kind), kind) for kind in kinds]
-        return sorted((one for one in found if one[0] > AT_BEGIN * length), key=lambda one: one[0])
+        there = [one for one in found if one[0] > AT_BEGIN * length and one[1].happens(one[2])]
+        return sorted(there, key=lambda one: one[0])
 
     kinds = after.changed(before)
     ends = places([kind for kind in kinds if kind in ENDS])[:1]
@@ -146,12 +165,6 @@ def located(
     return [*places([kind for kind in kinds if kind not in ENDS]), *ends]
 
 
-def step_to(walk: Walk[Family], look: Look) -> float:
-    """Length of the step along the walk's tangent to an orbit."""
-    way = (look.root.unknowns - walk.root.unknowns) / walk.curve.scale
-    return float(way @ walk.root.tangent)
-
-
 def orderly(family: Family, root: Root) -> bool:
     """Whether the flights of a root all have a length."""
     ring = family.ring(root.unknowns)
@@ -159,34 +172,51 @@ def orderly(family: Family, root: Root) -> bool:
 
 
 def resequenced(leg: Leg, walk: Walk[Family], look: Look, length: float) -> Look:
-    """The orbit with the impacts that it has there, where chattering ends earlier or later than before.
+    """The orbit with the impacts that it has, where chattering ends earlier or later than before.
 
     Where permanent contact is lost or begins, the branch ends: infinitely many impacts would graze
     one after the other.
     """
-    found = look
     try:
-        for _ in range(CHANGES):
-            if not found.wrong_contact:
-                turned = look.root.tangent[-1] * found.root.tangent[-1] < 0.0
-                return backwards(found) if turned else found
-            found = rechattered(found)
+        return chattering(look)
+    except NoConvergenceError:  # too far on: look where the first impact comes or goes
+        kind = CONTACT_LOST if look.contact_test(CONTACT_LOST) <= 0.0 else CONTACT_BEGUN
+        place, first = locate(walk, leg.looks[-1], look, length, kind)
+    try:
+        found = chattering(rechattered(first))
     except NoConvergenceError:
-        pass
-    return contact_changes(leg, walk, look, length)
+        leg.events.append(Event(kind, first, float(len(leg.looks))))
+        leg.end = KINDS[kind]
+        return first
+    walk.step, leg.end = max(place, 2.0 * walk.shortest), ""
+    return found
+
+
+def chattering(look: Look) -> Look:
+    """The orbit with impacts added or left out until it has those that (17) says.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where there is no such orbit.
+    """
+    found = look
+    for _ in range(CHANGES):
+        if not found.wrong_contact:
+            return found
+        found = rechattered(found)
+    raise NoConvergenceError("impacts of a chattering come and go")
 
 
 def rechattered(look: Look) -> Look:
-    """The orbit with one impact more before its contact, or with those left out that would come after one that sticks."""
+    """The orbit with one impact more before its contact, or without those after one that sticks."""
     ring, kinds = look.ring, list(look.ring.sequence.kinds)
     nodes, missing = look.ring.nodes, look.sticking
-    impacts = ~(ring.contact | ring.sequence.releases)
-    early = np.flatnonzero(impacts & (missing < 0.0))
-    if len(early):
-        first = int(early[0])
-        kinds, nodes = cut(kinds, nodes, first)
+    if look.contact_test(CONTACT_BEGUN) < look.contact_test(CONTACT_LOST):
+        impacts = ~(ring.contact | ring.sequence.releases)
+        kinds, nodes = cut(kinds, nodes, int(np.where(impacts, missing, np.inf).argmin()))
     else:
-        last = int(np.flatnonzero(ring.contact & (missing >= 0.0))[0])
+        last = int(np.where(ring.contact, missing, -np.inf).argmax())
         kinds = [*kinds[:last], IMPACT, STICK, *kinds[last + 1 :]]
         nodes = np.insert(nodes, last + 1, next_impact(ring, last), axis=0)
     values = look.root.unknowns[look.family.size :]
@@ -194,7 +224,8 @@ def rechattered(look: Look) -> Look:
     found = Look(*solve(look.family.setting, (sequence, nodes), values, most=12, furthest=1.0))
     if (found.ring.durations <= 0.0).any():
         raise NoConvergenceError("no time is left for contact")
-    return found
+    turned = look.root.tangent[-1] * found.root.tangent[-1] < 0.0
+    return backwards(found) if turned else found
 
 
 def cut(kinds: list[int], nodes: Floats, stick: int) -> tuple[list[int], Floats]:
@@ -214,15 +245,6 @@ def next_impact(ring: Ring, node: int) -> Floats:
     if not 0.0 < time < ring.durations[node]:
         raise NoConvergenceError("no time is left for another impact")
     return np.array([phase + ring.form.eta * time, position + velocity * time, velocity, parting])
-
-
-def contact_changes(leg: Leg, walk: Walk[Family], look: Look, length: float) -> Look:
-    """The end of a branch where permanent contact is lost, or begins."""
-    kind = CONTACT_LOST if look.contact_test(CONTACT_LOST) <= 0.0 else CONTACT_BEGUN
-    _, found = locate(walk, leg.looks[-1], look, length, kind)
-    leg.events.append((kind, found))
-    leg.end = KINDS[kind]
-    return found
 
 
 def backwards(look: Look) -> Look:

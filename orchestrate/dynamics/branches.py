@@ -1,9 +1,9 @@
-"""Orbits followed along a parameter, through folds, stable and unstable, with the bifurcations on the way."""
+"""Orbits followed along a parameter, stable and unstable, with the bifurcations on the way."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,10 +18,9 @@ from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .bifurcations import KINDS, Look
-from .branch_walk import Leg, Pace, backwards, follow, leaving
+from .branch_walk import Event, Leg, Pace, backwards, follow, leaving
 from .continuation import NoConvergenceError
 from .families import ACCELERATION, Setting, check_names
-from .impact_sequence import Sequence as ImpactSequence
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import solve, verdict
 from .orbits import FirstGuess, finite, from_result, orbit, told
@@ -52,7 +51,7 @@ class BranchJob(Question):
     value : float
         Of the parameter there.
     switch : int
-        Kind of the bifurcation at which the branch leaves; -1: the branch through the start, both ways.
+        Kind of the bifurcation at which the branch leaves; -1: that through the start, both ways.
     longest : float
         Longest step.
     most : int
@@ -94,7 +93,7 @@ class BranchJob(Question):
         title = f"Branch of orbits of {periods} periods along {name}: {self.structure.label()}"
         attributes = {"title": title, "over": name, "first_end": ends[0], "last_end": ends[1]}
         dataset = xr.Dataset({**found, **at_bifurcations(setting, table)}, attrs=attributes)
-        return dataset.set_coords([key for key in coordinates(setting, along, "point")])
+        return dataset.set_coords(list(coordinates(setting, along, "point")))
 
 
 def followed(job: BranchJob) -> list[Leg]:
@@ -120,19 +119,28 @@ def followed(job: BranchJob) -> list[Leg]:
 
 def table(instance: EventInstance, setting: Setting, legs: list[Leg]) -> Table:
     """Arrays along the branch, and those of its bifurcations, in the order along it."""
-    looks, events = list(legs[-1].looks), list(legs[-1].events)
+    looks, events = joined(legs)
     ends = [legs[0].end if len(legs) > 1 else "start", legs[-1].end]
-    if len(legs) > 1:
-        looks = [*reversed(legs[0].looks[1:]), *looks]
-        events = [*reversed(legs[0].events), *events]
     found = table_of([record(instance, setting, look) for look in looks])
-    at = table_of([record(instance, setting, look) for _, look in events]) if events else {}
+    at = table_of([record(instance, setting, one.look) for one in events]) if events else {}
     return {
         **found,
         **{f"{BIFURCATION}_{name}": values for name, values in at.items()},
-        "bifurcation_kind": np.array([kind for kind, _ in events], dtype=int),
+        "bifurcation_kind": np.array([one.kind for one in events], dtype=int),
+        "bifurcation_place": np.array([one.place for one in events]),
         "bifurcation_ends": np.array(ends),
     }
+
+
+def joined(legs: list[Leg]) -> tuple[list[Look], list[Event]]:
+    """Orbits and bifurcations of one direction, or of both in the order along the branch."""
+    last = legs[-1]
+    if len(legs) == 1:
+        return last.looks, last.events
+    back, middle = legs[0], len(legs[0].looks) - 1.0
+    events = [replace(one, place=middle - one.place) for one in reversed(back.events)]
+    events += [replace(one, place=middle + one.place) for one in last.events]
+    return [*reversed(back.looks[1:]), *last.looks], events
 
 
 def record(instance: EventInstance, setting: Setting, look: Look) -> OrbitRecord:
@@ -146,7 +154,11 @@ def at_bifurcations(setting: Setting, table: Table) -> dict[str, Variable]:
     """What is told of the bifurcations."""
     (name,) = setting.over
     kinds = flags(BIFURCATION, table["bifurcation_kind"], "kind of bifurcation", KINDS)
-    found = {"bifurcation_kind": kinds}
+    place = "position along the branch's points: between two where not whole"
+    found = {
+        "bifurcation_kind": kinds,
+        "bifurcation_place": variable(BIFURCATION, table["bifurcation_place"], "1", place),
+    }
     if not len(table["bifurcation_kind"]):
         found["bifurcation_value"] = variable(BIFURCATION, np.zeros(0), "1", name)
         return found
@@ -188,7 +200,8 @@ def branch(
     structure : Structure
     start : xarray.Dataset, optional
         An orbit of :func:`orchestrate.orbit`, a point of a branch, or with ``switch`` a branch. By
-        default the orbit that :func:`orchestrate.orbit` finds at the excitation given, or at the lower limit.
+        default the orbit that :func:`orchestrate.orbit` finds at the excitation given, or at the
+        lower limit.
     over : str
         The parameter: ``"eta"``, ``"frequency"``, ``"amplitude"``, ``"box_acceleration"`` or any of
         a structure, such as ``"e"``, ``"D"``, ``"mu"``, ``"kappa"``.
@@ -225,10 +238,10 @@ def branch(
     Notes
     -----
     Pseudo-arclength continuation of the equations of
-    :mod:`orchestrate.dynamics.impact_sequence`. Bifurcations are located by Brent's method to rounding.
-    A branch ends where the sequence of impacts does: where an impact or a flight grazes, or where
-    permanent contact is lost or begins. Impacts of a chattering that come and go by (17) are
-    followed.
+    :mod:`orchestrate.dynamics.impact_sequence`. Bifurcations are located by Brent's method to
+    rounding. A branch ends where the sequence of impacts does: where an impact or a flight grazes,
+    or where permanent contact is lost or begins. Impacts of a chattering that come and go by (17)
+    are followed.
 
     Examples
     --------

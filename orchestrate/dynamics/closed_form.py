@@ -103,7 +103,7 @@ class ClosedForm:
         return float(max(self.eta, swinging.max()))
 
     def basis(self, i: int, time: Floats) -> tuple[Floats, Floats]:
-        """``e^{-D t} cos(nu t)`` and ``e^{-D t} sin(nu t)/nu`` of oscillator ``i``, and what they become overdamped."""
+        """``e^{-D t} cos(nu t)`` and ``e^{-D t} sin(nu t)/nu`` of an oscillator, overdamped too."""
         damping, square = self.damping[i], self.stiffness[i]
         nu_squared = square - damping * damping
         if abs(nu_squared) <= 1e-14 * square:  # critical

@@ -9,6 +9,7 @@ engine only follows, and leaves it to the caller to look.)
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
@@ -17,7 +18,6 @@ import numpy as np
 
 from ..errors import InputError
 from .closed_form import Floats
-
 
 DENSE = 40  # equations up to which they are solved as if no coefficient were zero
 NEARLY = 1e-6  # a step that shrinks no more from here on is rounding
@@ -79,8 +79,8 @@ def corrected(
     curve : Curve
     guess : ndarray, shape (n + 1,)
     across : ndarray, shape (n + 1,)
-        Direction in unknowns over their scale; the root differs from the guess across it alone. A unit
-        vector holds an unknown fixed.
+        Direction in unknowns over their scale; the root differs from the guess across it alone. A
+        unit vector holds an unknown fixed.
     tolerance : float
         Largest last step, in unknowns over their scale; the error after it is its square.
     most : int
@@ -145,7 +145,7 @@ def solved(matrix: Floats, right: Floats) -> Floats:
 
 
 def null_vector(matrix: Floats) -> Floats:
-    """The direction along a curve, of length 1, on the side of the last row; the other rows map it to zero."""
+    """The direction of length 1 that all rows but the last map to zero, on the side of the last."""
     last = np.zeros(len(matrix))
     last[-1] = 1.0
     try:
@@ -194,7 +194,7 @@ class Walk(Generic[Followed]):
         return corrected(self.curve, guess, root.tangent)
 
     def ahead(self, acceptable: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
-        """The next root, and the length of the step to it; shortened until it is straight and acceptable.
+        """The next root, and the length of the step to it: straight and acceptable.
 
         Raises
         ------
@@ -216,15 +216,42 @@ class Walk(Generic[Followed]):
             length *= 0.5
         raise NoConvergenceError("no step is short enough")
 
+    def inside(
+        self,
+        first: int,
+        limits: Sequence[tuple[float, float]],
+        acceptable: Callable[[Root], bool] = lambda root: True,
+    ) -> tuple[Root, float, bool]:
+        """The next root inside limits, as :meth:`ahead`, and whether it lies on one of them.
+
+        Parameters
+        ----------
+        first : int
+            Number of the first unknown that has limits.
+        limits : sequence of (float, float)
+            Of that one and those after it.
+        acceptable : callable
+        """
+        limit = self.limit_ahead(first, limits)
+        if limit is not None:
+            with contextlib.suppress(NoConvergenceError):
+                found = self.land(*limit)
+                if found.tangent @ self.root.tangent >= self.sharpest and acceptable(found):
+                    way = (found.unknowns - self.root.unknowns) / self.curve.scale
+                    return found, float(way @ self.root.tangent), True
+            self.step *= 0.5
+        return *self.ahead(acceptable), False
+
     def limit_ahead(
         self, first: int, limits: Sequence[tuple[float, float]]
     ) -> tuple[int, float] | None:
-        """The unknown, from a first one on, that the next step would take past its limit first, and that limit."""
+        """The unknown that the next step takes past its limit, and the limit."""
         rates = self.root.tangent * self.curve.scale
         found, nearest = None, self.step
         for unknown, ends in enumerate(limits, first):
-            limit = ends[1] if rates[unknown] > 0.0 else ends[0]
-            way = (limit - self.root.unknowns[unknown]) / (rates[unknown] or np.inf)
+            rate = float(rates[unknown])
+            limit = ends[1] if rate > 0.0 else ends[0]
+            way = (limit - self.root.unknowns[unknown]) / rate if rate else np.inf
             if way <= nearest:
                 found, nearest = (unknown, limit), way
         return found

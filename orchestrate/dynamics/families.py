@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -58,6 +59,16 @@ class Setting:
         found = self.point(values)
         return ClosedForm.of(found.structure, found.excitation, self.acceleration(values))
 
+    def first_alone(self, values: Floats) -> Setting:
+        """The same, with all parameters but the first one at values."""
+        told = dict(zip(self.over[1:], map(float, values[1:]), strict=True))
+        acceleration = told.pop(ACCELERATION, self.box_acceleration)
+        excitation = {**dict(self.excitation), **{k: v for k, v in told.items() if k in ASKED}}
+        changes: dict[str, Any] = {k: v for k, v in told.items() if k not in ASKED}
+        structure = self.structure.replace(**changes)
+        rest = tuple(excitation.items())
+        return Setting(structure, rest, self.over[:1], self.limits[:1], acceleration)
+
 
 def check_names(over: tuple[str, ...]) -> None:
     """Whether these are parameters that can vary.
@@ -74,7 +85,7 @@ def check_names(over: tuple[str, ...]) -> None:
 
 @dataclass
 class Family:
-    """The orbits of a sequence over parameters: unknowns are those of the nodes, then the parameters.
+    """Orbits of a sequence over parameters: unknowns are those of the nodes, then the parameters.
 
     Attributes
     ----------
@@ -90,7 +101,7 @@ class Family:
 
     @classmethod
     def near(cls, setting: Setting, sequence: Sequence, nodes: Floats) -> Family:
-        """With scales from the nodes of one of its orbits; as many as there are, they count as one."""
+        """With scales from the nodes of one of its orbits, which count as one."""
         size = max(float(np.abs(nodes[:, 1:]).max(initial=0.0)), SMALLEST)
         spans = [high - low for low, high in setting.limits]
         return cls(setting, sequence, np.append(node_scales(size, len(nodes)), spans))

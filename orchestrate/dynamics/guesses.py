@@ -1,4 +1,4 @@
-"""Where Newton's method begins: sequences of impacts that the FMU runs through, and close returns of a response."""
+"""Where Newton's method begins: sequences of impacts of the FMU, and close returns."""
 
 from __future__ import annotations
 
@@ -41,7 +41,9 @@ def start(instance: EventInstance, point: Point, form: ClosedForm, state: Floats
     """Begin at a state at phase 0."""
     constant = -float(form.offset[0] * form.stiffness[0])
     push = constant * point.excitation.amplitude * point.excitation.frequency**2
-    begin(instance, point.structure, point.excitation, state, **({ACCELERATION: push} if push else {}))
+    begin(
+        instance, point.structure, point.excitation, state, **({ACCELERATION: push} if push else {})
+    )
 
 
 def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
@@ -84,7 +86,7 @@ def release(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
 
 
 def from_phases(form: ClosedForm, sequence: Sequence, phases: Floats) -> Guess:
-    """Nodes at given phases: the rest of the equations are linear, and are met as well as can be."""
+    """Nodes at given phases: the equations left are linear, and are met as well as can be."""
     nodes = np.zeros((len(phases), 4))
     nodes[:, PHASE] = phases
     ring = Ring(sequence, form, nodes)

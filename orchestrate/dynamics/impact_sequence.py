@@ -160,7 +160,7 @@ class Ring:
 
     @cached_property
     def reduction(self) -> Floats:
-        """Gap, position and velocity of the centre of mass, and closing speed of a state, shape (4, 4)."""
+        """Gap, place and velocity of the centre of mass, closing speed of a state, shape (4, 4)."""
         share = self.form.mu / (1.0 + self.form.mu)
         return np.array(
             [
@@ -174,8 +174,8 @@ class Ring:
     def residual(self) -> Floats:
         """What is left of the equations, shape (4 k,).
 
-        Each segment must arrive at the node after it: with no gap, at its displacement and velocity,
-        and with its closing speed; at a release with f = 0 (19) and no closing speed.
+        Each segment must arrive at the node after it: with no gap, at its displacement and
+        velocity, and with its closing speed; at a release with f = 0 (19) and no closing speed.
         """
         if not self.count:
             return np.zeros(0)
@@ -258,7 +258,7 @@ class Ring:
         return found[np.lexsort((found.imag, -np.abs(found).round(14)))]
 
     def dictated(self) -> float:
-        """The product of the multipliers that dampers and impacts dictate: by Liouville's formula, and e^2 an impact."""
+        """The multipliers' product, by Liouville's formula and e^2 for each impact."""
         lost = float(self.form.damping[0] + self.form.damping[1])
         time = TURN * self.sequence.periods / self.form.eta
         if self.contact.any():

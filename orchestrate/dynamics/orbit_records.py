@@ -138,56 +138,63 @@ def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
     scale = np.array([point.scale for point in points])
     frequency = np.array([point.excitation.frequency for point in points])
     omega = np.array([point.structure.omega for point in points])
-    eta, zero, nodes = frequency / omega, table["zero"], table["nodes"]
-    size = np.hypot(*np.moveaxis(table["multipliers"], -1, 0))
-    periods = zero.shape[1]
-    with np.errstate(divide="ignore"):
-        exponent = np.log(size[:, 0]) / (periods * 2.0 * np.pi / eta)
-    happens = table["kinds"] >= 0
-    impacts = happens & (table["kinds"] != RELEASE)
-    ages = nodes[:, :, PHASE] / frequency[:, None]
-    speeds = nodes[:, :, CLOSING] * scale[:, 2:3]
     return {
-        "state": variable(
-            (row, "sample", "coordinate"),
-            zero * scale[:, None],
-            "SI",
-            "states at phase 0: x1, x2 in m, v1, v2 in m/s",
-        ),
-        "xi": variable((row, "sample", "coordinate"), zero, "1", "states at phase 0 (3)"),
-        "xi_rel": variable(
-            (row, "sample"), zero[:, :, 1] - zero[:, :, 0], "1", "gap at phase 0 (21)"
-        ),
-        "impact_time": variable(
-            (row, "node"), np.where(impacts, ages, np.nan), "s", "impacts after the first phase 0"
-        ),
-        "impact_velocity": variable(
-            (row, "node"), np.where(impacts, speeds, np.nan), "m/s", "their closing speeds"
-        ),
-        "multipliers": variable(
-            (row, "multiplier", "part"),
-            table["multipliers"],
-            "1",
-            "Floquet multipliers, the largest first",
-        ),
-        "multiplier_product": variable(
-            row, table["product"], "1", "their product as dampers and impacts dictate it"
-        ),
-        "stable": yes_or_no(
-            row, size[:, 0] < 1.0, "whether all multipliers lie in the unit circle"
-        ),
-        "exponent": variable(
-            row, exponent, "1", "largest Lyapunov exponent, per unit of tau, from the multipliers"
-        ),
-        "permanent_contact": yes_or_no(
-            row, (table["kinds"] == RELEASE).any(axis=1), "whether permanent contact occurs"
-        ),
-        "impacts_per_period": variable(
-            row, impacts.sum(axis=1) / periods, "1", "impacts per excitation period"
-        ),
+        **states(table, scale, row),
+        **impacts(table, scale, frequency, row),
+        **stability(table, frequency / omega, row),
         **sizes(table, row),
         **checks(table, row),
         **node_variables(table, row),
+    }
+
+
+def states(table: Table, scale: Floats, row: str) -> dict[str, Variable]:
+    """Where the orbits are at each phase 0."""
+    zero, along = table["zero"], (row, "sample", "coordinate")
+    text = "states at phase 0: x1, x2 in m, v1, v2 in m/s"
+    gap = zero[:, :, 1] - zero[:, :, 0]
+    return {
+        "state": variable(along, zero * scale[:, None], "SI", text),
+        "xi": variable(along, zero, "1", "states at phase 0 (3)"),
+        "xi_rel": variable((row, "sample"), gap, "1", "gap at phase 0 (21)"),
+    }
+
+
+def impacts(table: Table, scale: Floats, frequency: Floats, row: str) -> dict[str, Variable]:
+    """Their impacts; of nodes that are none, not a number."""
+    nodes, along, periods = table["nodes"], (row, "node"), table["zero"].shape[1]
+    there = (table["kinds"] >= 0) & (table["kinds"] != RELEASE)
+    times = np.where(there, nodes[:, :, PHASE] / frequency[:, None], np.nan)
+    speeds = np.where(there, nodes[:, :, CLOSING] * scale[:, 2:3], np.nan)
+    contact = (table["kinds"] == RELEASE).any(axis=1)
+    rate = there.sum(axis=1) / periods
+    return {
+        "impact_time": variable(along, times, "s", "impacts after the first phase 0"),
+        "impact_velocity": variable(along, speeds, "m/s", "their closing speeds"),
+        "impacts_per_period": variable(row, rate, "1", "impacts per excitation period"),
+        "permanent_contact": yes_or_no(row, contact, "whether permanent contact occurs"),
+    }
+
+
+def stability(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
+    """Their multipliers, and what follows."""
+    multipliers, time = table["multipliers"], table["zero"].shape[1] * 2.0 * np.pi / eta
+    size = np.hypot(*np.moveaxis(multipliers, -1, 0))
+    with np.errstate(divide="ignore"):
+        exponent = np.log(size[:, 0]) / time
+    texts = {
+        "multipliers": "Floquet multipliers, the largest first",
+        "multiplier_product": "their product as dampers and impacts dictate it",
+        "stable": "whether all multipliers lie in the unit circle",
+        "exponent": "largest Lyapunov exponent, per unit of tau, from the multipliers",
+    }
+    along = (row, "multiplier", "part")
+    product = table["product"]
+    return {
+        "multipliers": variable(along, multipliers, "1", texts["multipliers"]),
+        "multiplier_product": variable(row, product, "1", texts["multiplier_product"]),
+        "stable": yes_or_no(row, size[:, 0] < 1.0, texts["stable"]),
+        "exponent": variable(row, exponent, "1", texts["exponent"]),
     }
 
 

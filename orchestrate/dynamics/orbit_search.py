@@ -1,4 +1,4 @@
-"""One periodic orbit: Newton's method from guesses, what makes a root a motion, and the FMU's word on it."""
+"""One periodic orbit: by Newton's method, what makes a root a motion, and the FMU's word on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One periodic orbit, stable or not: its impacts, its Floquet multipliers, and that the FMU runs through it."""
+"""One periodic orbit, stable or not: its impacts and multipliers, run through in the FMU."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .closed_form import Floats
 from .continuation import NoConvergenceError
 from .families import Setting
 from .guesses import Guess, close_returns, from_phases, from_state
-from .impact_sequence import IMPACT
+from .impact_sequence import IMPACT, TURN
 from .impact_sequence import Sequence as ImpactSequence
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import first_motion, single_impacts, verdict
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 MOST_PERIODS = 1000
+SHIFTS = 12  # of all impact times in common, that are tried
 NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
 SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
 
@@ -154,8 +155,11 @@ def guesses(
         yield from_state(instance, point, form, np.array(guess.state), job.period)
     elif guess is not None:
         nodes, sequence = np.array(guess.nodes), guess.sequence(job.period)
-        full = nodes.shape[1:] == (4,)
-        yield (sequence, nodes) if full else from_phases(form, sequence, nodes[:, 0])
+        if nodes.shape[1:] == (4,):
+            yield sequence, nodes
+            return
+        for shift in np.arange(SHIFTS) * TURN / SHIFTS:
+            yield from_phases(form, sequence, nodes[:, 0] + shift)
     else:
         returns = close_returns(instance, point, form, job.period, job.transient, job.search)
         for state, _ in islice(list(returns), job.tries):
@@ -184,7 +188,7 @@ def first_guess(
         raise InputError(f"guess: without impact_time; {expected}")
     times = np.sort(np.asarray(numbers("impact_time", given["impact_time"]), dtype=float).ravel())
     phases = frequency * times
-    if not (0.0 <= phases[0] and phases[-1] - phases[0] < 2.0 * np.pi * period):
+    if not (phases[0] >= 0.0 and phases[-1] - phases[0] < 2.0 * np.pi * period):
         raise InputError(f"impact_time = {times.tolist()}: expected times within {period} periods")
     rows = tuple((float(phase),) for phase in phases)
     return FirstGuess(kinds=(IMPACT,) * len(rows), nodes=rows)
@@ -242,9 +246,9 @@ def orbit(
         Excitation periods after which the orbit closes.
     guess : array_like of 4 floats, or mapping, optional
         What Newton's method begins with: a state x1, x2 in m, v1, v2 in m/s at phase 0, from which
-        the FMU tells the impacts; or a mapping with ``impact_time``, times of all impacts in s; or
-        an orbit found before, at another parameter. By default the closest returns of the response
-        from rest, then orbits with a single impact.
+        the FMU tells the impacts; or a mapping with ``impact_time``, times of all impacts in s, of
+        which the distances matter most; or an orbit found before, at another parameter. By default
+        the closest returns of the response from rest, then orbits with a single impact.
     box_acceleration : float
         Constant acceleration of the box beside the harmonic one, m/s2: it opens or closes the gap.
     transient, search, tries : int
@@ -257,10 +261,10 @@ def orbit(
     -------
     xarray.Dataset
         ``state`` (SI) and ``xi`` at each phase 0; ``impact_time`` and ``impact_velocity``;
-        ``multipliers``, with real and imaginary parts; ``stable``; ``exponent``, the largest Lyapunov
-        exponent that follows; ``permanent_contact``; amplitudes ``xi1_max``, ``xi2_max``,
-        ``xi_rel_max``; ``residual`` of Newton's method; ``fmu_same_impacts`` and ``fmu_return``, how
-        the FMU runs through it; and its nodes, what Newton's method
+        ``multipliers``, with real and imaginary parts; ``stable``; ``exponent``, the largest
+        Lyapunov exponent that follows; ``permanent_contact``; amplitudes ``xi1_max``, ``xi2_max``,
+        ``xi_rel_max``; ``residual`` of Newton's method; ``fmu_same_impacts`` and ``fmu_return``,
+        how the FMU runs through it; and its nodes, what Newton's method
         solved for: ``node_kind``, ``node_phase`` and so on.
 
     Raises
@@ -270,9 +274,9 @@ def orbit(
 
     Notes
     -----
-    See :mod:`orchestrate.dynamics.impact_sequence` for the equations. Where chattering ends in permanent
-    contact the deviation of the gap dies there: two multipliers are zero. The other two tell the
-    stability; the sequence of the last impacts is that of the structure's ``gamma``.
+    See :mod:`orchestrate.dynamics.impact_sequence` for the equations. Where chattering ends in
+    permanent contact the deviation of the gap dies there: two multipliers are zero. The other two
+    tell the stability; the sequence of the last impacts is that of the structure's ``gamma``.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Where displacements and gap turn inside an orbit's flights: amplitudes, and how near it comes to one more impact."""
+"""Where displacements and gap turn inside an orbit: amplitudes, and near misses."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def nearest(ring: Ring, turns: TurningPoints) -> tuple[float, int, float]:
 
 
 def weakest_force(ring: Ring) -> float:
-    """How near permanent contact comes to an earlier release: its smallest -f (18) at which f turns.
+    """How near permanent contact comes to an earlier release: the smallest -f (18) where f turns.
 
     Infinite where there is no contact, or f has no turning point there that comes near to zero.
     """
@@ -141,7 +141,7 @@ def weakest_force(ring: Ring) -> float:
 
 
 def phase_zero(ring: Ring) -> Floats:
-    """States at the phases that are multiples of 2 pi, in their order in time, shape (periods, 4)."""
+    """States at multiples of 2 pi of the phase, in their order, shape (periods, 4)."""
     turn, periods = 2.0 * np.pi, ring.sequence.periods
     wanted = turn * np.arange(periods)
     begin = ring.begins[0]

@@ -1,4 +1,4 @@
-"""An orbit diagram (Figure 6) with the branches that lie under it: solid where stable, dashed where not."""
+"""An orbit diagram (Figure 6) with its branches: solid where stable, dashed where not."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
     low = min(float(found[name].min()) for found in branches)
     high = max(float(found[name].max()) for found in branches)
     plane.set(xlabel=symbol(name), ylabel=rf"{XI_REL}$(nT)$", title=title, xlim=(low, high))
-    plane.legend(loc="lower left", ncols=2)
+    plane.legend(loc="upper right", ncols=2)
     return figure
 
 

@@ -1,8 +1,9 @@
 """One impact in n periods of the two-mass system, solved by hand: linear algebra alone.
 
-Between impacts z' = A z + b sin(eta tau), so after n periods z = H(phi) + P (z0 - H(phi)) with P = exp(A nT) and
-the forced response H(phi) = Hc cos phi + Hs sin phi. With the restitution S, z0 = S z: z is linear in cos phi
-and sin phi, and the gap's zero gives phi. Nothing is taken from the package.
+Between impacts z' = A z + b sin(eta tau), so after n periods z = H(phi) + P (z0 - H(phi)) with P =
+exp(A nT) and the forced response H(phi) = Hc cos phi + Hs sin phi. With the restitution S, z0 = S
+z: z is linear in cos phi and sin phi, and the gap's zero gives phi. Nothing is taken from the
+package.
 """
 
 import numpy as np
@@ -14,7 +15,7 @@ RATE = np.array([0.0, 0.0, -1.0, 1.0])
 
 
 class SingleImpact:
-    """The orbit with one impact in ``n`` periods; phase, closing speed, state before it, and multipliers."""
+    """One impact in ``n`` periods: phase, closing speed, state before it, and multipliers."""
 
     def __init__(self, eta, n, e=0.7, D=0.005, kappa=1.2, mu=1.0):
         a = np.zeros((4, 4))
@@ -22,9 +23,7 @@ class SingleImpact:
         a[2:, :2] = -np.diag([1.0, kappa / mu])
         a[2:, 2:] = -2.0 * D * np.eye(2)
         b = np.array([0.0, 0.0, 1.0, 1.0])
-        response = np.linalg.solve(
-            1j * eta * np.eye(4) - a, b
-        )  # of exp(i phi); sin is its imaginary part
+        response = np.linalg.solve(1j * eta * np.eye(4) - a, b)
         time = 2.0 * np.pi * n / eta
         flow = expm(a * time)
         part = (1.0 + e) / (1.0 + mu)
@@ -57,18 +56,12 @@ class SingleImpact:
 
     def gap(self, times):
         """The gap some times after the impact."""
-        start = self.restitution @ self.state
-        forced = lambda phase: (self.response * np.exp(1j * phase)).imag  # noqa: E731
-        return np.array(
-            [
-                GAP
-                @ (
-                    forced(self.phase + self.eta * t)
-                    + expm(self.a * t) @ (start - forced(self.phase))
-                )
-                for t in times
-            ]
-        )
+        rates, vectors = np.linalg.eig(self.a)
+        free = self.restitution @ self.state - (self.response * np.exp(1j * self.phase)).imag
+        parts = (GAP @ vectors) * np.linalg.solve(vectors, free)
+        phase = self.phase + self.eta * times
+        forced = (GAP @ self.response * np.exp(1j * phase)).imag
+        return forced + (np.exp(np.outer(times, rates)) @ parts).real
 
 
 def border(n, low, high, test=lambda found: found.largest - 1.0, **numbers):

@@ -1,0 +1,99 @@
+"""Bifurcations over two parameters against closed forms."""
+
+import functools
+
+import numpy as np
+import pytest
+
+from orchestrate.dynamics.borders import border
+from orchestrate.dynamics.branches import branch
+from orchestrate.dynamics.orbits import orbit
+from orchestrate.errors import InputError
+from orchestrate.structures import Structure
+
+from .single_impact import SingleImpact
+
+PAPER = Structure.nondimensional(e=0.7, D=0.005)
+LIMITS = {"e": (0.5, 0.9), "D": (0.002, 0.02), "kappa": (1.1, 1.4)}
+
+
+@functools.cache
+def window():
+    return branch(PAPER, eta=4.0, period=2, limits=(3.2, 4.0))
+
+
+def number(kind):
+    """The bifurcation of a kind that is highest in eta."""
+    found = window()
+    names = found.bifurcation_kind.attrs["flag_meanings"].split()
+    there = [i for i, one in enumerate(found.bifurcation_kind.values) if names[one] == kind]
+    return there[-1]
+
+
+@pytest.mark.parametrize("over", LIMITS)
+@pytest.mark.parametrize("kind", ["Neimark-Sacker", "period_doubling", "grazing_of_a_flight"])
+def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
+    limits = [(2.5, 5.0), LIMITS[over]]
+    found = border(
+        PAPER, start=window(), bifurcation=number(kind), over=("eta", over), limits=limits
+    )
+    assert found.sizes["point"] > 5
+    for i in range(0, found.sizes["point"], 4):
+        value = float(found[over].values[i])
+        truth = SingleImpact(float(found.eta.values[i]), 2, **{over: value})
+        assert found.node_closing.values[i, 0] == pytest.approx(truth.closing, abs=1e-10)
+        if kind == "Neimark-Sacker":
+            assert np.abs(np.abs(truth.multipliers) - 1.0).min() < 1e-9
+            assert np.abs(truth.multipliers - np.exp(1j * found.angle.values[i])).min() < 1e-9
+        elif kind == "period_doubling":
+            assert np.abs(truth.multipliers + 1.0).min() < 1e-9
+        else:
+            assert abs(found.clearance.values[i]) < 1e-12
+            times = np.linspace(0.01, 0.99, 20_001) * truth.time
+            assert abs(truth.gap(times).min()) < 1e-7
+
+
+@pytest.mark.parametrize("over", ["e", "D"])
+def test_limits_are_reached_exactly(over):
+    limits = [(3.0, 4.0), LIMITS[over]]
+    at = number("Neimark-Sacker")
+    found = border(PAPER, start=window(), bifurcation=at, over=("eta", over), limits=limits)
+    assert {found.attrs["first_end"], found.attrs["last_end"]} == {"limit"}
+    assert sorted(found[over].values[[0, -1]]) == list(LIMITS[over])
+
+
+def test_impacts_begin_along_the_resonance_curve():
+    """A linear response reaches a wall at 1 at the force sqrt((1 - omega^2)^2 + c^2 omega^2).
+
+    The box's amplitude is A/omega^2.
+    """
+    rate = 1e5
+    wall = Structure(m2=1e12, k2=1e12 * rate**2, d1=0.1, d2=2e12 * rate, e=0.8)
+    given = {"box_acceleration": 1.0}
+    start = orbit(wall, frequency=1.0, amplitude=0.2, guess={"impact_time": [2.0]}, **given)
+    above = branch(wall, start=start, over="amplitude", limits=(0.02, 0.3), **given)
+    (at,) = np.flatnonzero(above.bifurcation_kind.values == 3)
+    over, limits = ("amplitude", "frequency"), [(0.05, 4.0), (0.5, 1.5)]
+    found = border(
+        wall, start=above, bifurcation=at, over=over, limits=limits, longest=0.1, **given
+    )
+    omega = found.frequency.values
+    force = np.sqrt((1.0 - omega**2) ** 2 + 0.01 * omega**2)
+    assert found.amplitude.values * omega**2 == pytest.approx(force, abs=1e-8)
+    assert (omega.min(), omega.max()) == (0.5, 1.5)
+
+
+@pytest.mark.parametrize(
+    ("question", "words"),
+    [
+        ({"over": ("e", "eta")}, "over"),
+        ({"over": ("eta", "ee")}, "over = 'ee'"),
+        ({"limits": [(3.0, 4.0)]}, "limits"),
+        ({"bifurcation": 99}, "switch = 99"),
+    ],
+)
+def test_what_cannot_be_asked(question, words):
+    good = {"bifurcation": 0, "limits": [(3.0, 4.0), (0.5, 0.9)], "over": ("eta", "e")}
+    with pytest.raises(InputError, match=words) as caught:
+        border(PAPER, start=window(), **{**good, **question})
+    assert "expected" in str(caught.value)

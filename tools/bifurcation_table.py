@@ -1,0 +1,237 @@
+"""The tables of docs/bifurcations.md: each bifurcation is checked by direct simulation.
+
+    python -m tools.bifurcation_table
+
+follows the branches, asks the FMU on both sides of each bifurcation, and writes the table and the
+pictures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from orchestrate.access import OSCILLATOR, EventInstance, begin, find
+from orchestrate.dynamics.borders import border
+from orchestrate.dynamics.branches import branch
+from orchestrate.dynamics.orbits import orbit
+from orchestrate.errors import InputError
+from orchestrate.figures import borders as borders_figure
+from orchestrate.figures import branches as branches_figure
+from orchestrate.figures.files import save
+from orchestrate.files import write_whole
+from orchestrate.response.sweep import sweep
+from orchestrate.structures import Excitation, Structure
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+PAPER = Structure.nondimensional(e=0.7, D=0.005)
+STARTS = {  # label: eta and periods of an orbit on each branch, and how far it is followed
+    "T, contact": (0.38, 1, (0.2, 1.0)),
+    "T/3": (0.69, 1, (0.42, 1.37)),
+    "T/2": (1.0, 1, (0.42, 1.37)),
+    "T/1": (1.37, 1, (0.9, 8.0)),
+    "2T/1": (4.0, 2, (1.37, 8.0)),
+    "3T/1": (6.0, 3, (1.37, 8.0)),
+    "4T/1": (8.0, 4, (1.37, 9.5)),
+}
+FIGURE_6 = np.arange(100, 8001, 2) / 1000.0
+PERIODS = 20_000
+NEIGHBOURS = 6  # of a bifurcation, among the branch's points
+NUDGE = 1e-7  # of a state, over a eta^2
+FARTHEST = 2e-3  # from a bifurcation, in eta,
+NEAREST = 1e-5  # and from the loss of contact
+GROWTH = 5.0  # a deviation that is this much larger or smaller has grown or died
+CASES = {"section 3": PAPER, "4.1": PAPER.replace(D=0.05), "4.2": PAPER.replace(e=0.3)}
+WINDOWS = {  # the same branches, where all three cases have orbits on them
+    "T, contact": (0.4, 1, (0.3, 1.3)),
+    "T/2": (1.06, 1, (0.42, 1.37)),
+    "T/1": (1.6, 1, (0.9, 9.5)),
+    "2T/1": (4.2, 2, (1.37, 9.5)),
+    "3T/1": (6.3, 3, (1.37, 9.5)),
+    "4T/1": (8.3, 4, (1.37, 9.5)),
+}
+MARK = "<!-- {}: {} -->\n"
+
+
+NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_closing")
+
+
+def run(instance: EventInstance, eta: float, state: np.ndarray, periods: int) -> np.ndarray:
+    """The FMU's state after some periods."""
+    excitation = Excitation.nondimensional(eta, PAPER)
+    begin(instance, PAPER, excitation, state)
+    instance.advance(0.0, periods * excitation.period)
+    return instance.read("x1", "x2", "v1", "v2").copy()
+
+
+def growth(instance: EventInstance, found: xr.Dataset) -> float:
+    """How much a small deviation from an orbit has grown after ``PERIODS``."""
+    states = found.state.values
+    nudged = states[0] + NUDGE * np.array([-1.0, 1.0, 1.0, -1.0])
+    ended = run(instance, float(found.eta), nudged, PERIODS // len(states) * len(states))
+    return float(np.abs(states - ended).max(axis=1).min() / NUDGE)
+
+
+def outside(instance: EventInstance, found: xr.Dataset) -> int:
+    """Multipliers outside the unit circle, by differences of the FMU's own map."""
+    state, periods, eta = found.state.values[0], found.sizes["sample"], float(found.eta)
+    slowest = float(np.nanmin(found.node_closing.where(found.node_kind == 0)))
+    step = min(1e-7, max(1e-9, 1e-4 * slowest**2))  # the map bends the more the slower an impact
+    moved = [run(instance, eta, state + s * step * a, periods) for a in np.eye(4) for s in (1, -1)]
+    matrix = (np.array(moved[0::2]) - np.array(moved[1::2])).T / (2.0 * step)
+    return int((np.abs(np.linalg.eigvals(matrix)) > 1.0).sum())
+
+
+def beside(found: xr.Dataset, at: xr.Dataset, eta: float) -> list[xr.Dataset]:
+    """The branch's orbits at an eta beside a bifurcation: one, none, or two at a fold."""
+    place, value = float(at.bifurcation_place), float(at.bifurcation_value)
+    count = found.sizes["point"]
+    orbits = []
+    for way in (-1, 1):
+        first = int(np.floor(place) if way < 0 else np.ceil(place))
+        numbers = [i for i in range(first, first + NEIGHBOURS * way, way) if 0 <= i < count]
+        near = [i for i in numbers if (found.eta.values[i] - value) * (eta - value) > 0.0]
+        for i in sorted(near, key=lambda i: abs(float(found.eta[i]) - eta)):
+            one = corrected(found.isel(point=i), eta)
+            if one is not None:
+                orbits.append(one)
+                break
+    return orbits
+
+
+def corrected(guess: xr.Dataset, eta: float) -> xr.Dataset | None:
+    """The orbit at an eta near another one, if there is one that the FMU runs through."""
+    periods = guess.sizes["sample"]
+    try:
+        found = orbit(PAPER, eta=eta, period=periods, guess=guess, progress=False)
+    except InputError:
+        return None
+    return found if found.fmu_same_impacts else None
+
+
+def told(instance: EventInstance, found: xr.Dataset) -> str:
+    """What the FMU does near an orbit."""
+    largest, grown = float(np.hypot(*found.multipliers.values[0])), growth(instance, found)
+    as_said = grown < 1.0 / GROWTH if found.stable else grown > GROWTH
+    count = outside(instance, found)
+    by_formula = int((np.hypot(*found.multipliers.values.T) > 1.0).sum())
+    agrees = as_said and count == by_formula
+    return f"{largest:.4f}, {count}, {grown:.0e}{'' if agrees else ' (!)'}"
+
+
+def without_orbit(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
+    """What the FMU does where there is no such orbit: its impacts per period."""
+    run(instance, eta, at.bifurcation_state.values[0], PERIODS)
+    impacts = instance.get("impact_count")[0] / PERIODS
+    return f"none: {impacts:.3f} impacts a period"
+
+
+def contacts(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
+    """Permanent contacts of the FMU in ``PERIODS``."""
+    run(instance, eta, at.bifurcation_state.values[0], PERIODS)
+    return f"{int(instance.get('contact_count')[0])} contacts in {PERIODS} periods"
+
+
+def names_of(found: xr.Dataset) -> dict[int, str]:
+    """Names of the kinds of bifurcations."""
+    words = found.bifurcation_kind.attrs
+    names = [word.replace("_", " ") for word in words["flag_meanings"].split()]
+    return dict(zip(words["flag_values"], names, strict=True))
+
+
+def rows(instance: EventInstance, label: str, found: xr.Dataset) -> Iterator[str]:
+    """Lines of the table for a branch, upwards."""
+    values, names = found.bifurcation_value.values, names_of(found)
+    for i in np.argsort(values):
+        at = found.isel(bifurcation=int(i))
+        kind = names[int(at.bifurcation_kind)]
+        lost = "contact" in kind
+        gaps = np.abs(np.delete(values, i) - values[i]) / 3.0
+        away = NEAREST if lost else min([FARTHEST, *gaps])
+        cells = []
+        for eta in (values[i] - away, values[i] + away):
+            if lost:
+                cells.append(contacts(instance, at, eta))
+                continue
+            orbits = [told(instance, one) for one in beside(found, at, eta)]
+            cells.append("; ".join(orbits) or without_orbit(instance, at, eta))
+        yield f"| {label} | {values[i]:.8f} | {kind} | {away:.1e} | {cells[0]} | {cells[1]} |"
+
+
+def table(found: dict[str, xr.Dataset]) -> list[str]:
+    """All lines."""
+    lines = ["| branch | eta | kind | ± | below | above |", "|---|---|---|---|---|---|"]
+    with EventInstance(find(OSCILLATOR).path) as instance:
+        for label, one in found.items():
+            lines += rows(instance, label, one)
+    return lines
+
+
+def windows(found: dict[str, xr.Dataset]) -> list[xr.Dataset]:
+    """The borders of T/1 to 4T/1 over eta and e."""
+    curves = []
+    for label in ("T/1", "2T/1", "3T/1", "4T/1"):
+        for i in range(found[label].sizes["bifurcation"]):
+            limits = [(0.9, 9.5), (0.05, 1.0)]
+            curves.append(border(PAPER, start=found[label], bifurcation=i, limits=limits))
+    return curves
+
+
+def stable_windows(case: str, label: str, found: xr.Dataset) -> list[str]:
+    """Lines of the table of windows: where a branch is stable, and what ends it."""
+    names = names_of(found)
+    order = np.argsort(found.bifurcation_place.values)
+    places = [0.0, *found.bifurcation_place.values[order], found.sizes["point"] - 1.0]
+    ends = [
+        f"{value:.8f}, {names[int(kind)]}"
+        for value, kind in zip(
+            found.bifurcation_value.values[order], found.bifurcation_kind.values[order], strict=True
+        )
+    ]
+    ends = [f"{float(found.eta[0]):g}, limit", *ends, f"{float(found.eta[-1]):g}, limit"]
+    lines = []
+    for i, (first, last) in enumerate(zip(places[:-1], places[1:], strict=True)):
+        inside = found.stable.values[int(np.ceil(first + 1e-9)) : int(np.floor(last - 1e-9)) + 1]
+        if inside.size and inside.all():
+            lines.append(f"| {case} | {label} | {ends[i]} | {ends[i + 1]} |")
+    return lines
+
+
+def all_windows() -> list[str]:
+    """The table of windows of the paper's three cases."""
+    lines = ["| case | orbit | stable from | to |", "|---|---|---|---|"]
+    for case, structure in CASES.items():
+        for label, (eta, period, limits) in WINDOWS.items():
+            start = orbit(structure, eta=eta, period=period)
+            lines += stable_windows(case, label, branch(structure, start=start, limits=limits))
+    return lines
+
+
+def put(text: str, name: str, lines: list[str]) -> str:
+    """A page's text with lines between two marks."""
+    before, rest = text.split(MARK.format(name, "begin"))
+    after = rest.split(MARK.format(name, "end"))[1]
+    own = "\n".join(lines)
+    return f"{before}{MARK.format(name, 'begin')}{own}\n{MARK.format(name, 'end')}{after}"
+
+
+def main() -> None:
+    """Write tables and pictures."""
+    found = {
+        label: branch(PAPER, start=orbit(PAPER, eta=eta, period=period), limits=limits)
+        for label, (eta, period, limits) in STARTS.items()
+    }
+    page = DOCS / "bifurcations.md"
+    text = put(page.read_text("utf-8"), "table", table(found))
+    text = put(text, "windows", all_windows())
+    write_whole(page, lambda place: place.write_text(text, "utf-8"))
+    responses = sweep(PAPER, eta=FIGURE_6)
+    save(branches_figure.draw(*found.values(), responses=responses), DOCS / "branches")
+    save(borders_figure.draw(*windows(found)), DOCS / "borders")
+
+
+if __name__ == "__main__":
+    main()
