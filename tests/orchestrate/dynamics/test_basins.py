@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from orchestrate.access import REST
-from orchestrate.dynamics.basins import BasinJob, Plane, Side, basin
+from orchestrate.access import OSCILLATOR, REST, Instance, find
+from orchestrate.dynamics.basins import BasinJob, Plane, Side, Start, at_phase_zero, basin
 from orchestrate.errors import InputError
 from orchestrate.response.questions import Point
 from orchestrate.response.simulate import simulate
@@ -78,26 +78,24 @@ def test_states_on_attractors_stay_there(found):
 
 
 @pytest.mark.usefixtures("exported")
-def test_a_start_at_another_phase_is_run_on_to_phase_zero():
-    """A plane over the phase leads where the motion of each start leads."""
+@pytest.mark.parametrize("phase", [0.0, 0.7, 2.0 * np.pi, 5.0, -1.0, 9.0])
+def test_a_start_at_another_phase_is_run_on_to_phase_zero(phase):
+    with Instance(find(OSCILLATOR).path) as instance:
+        found = at_phase_zero(instance, Start(POINT, AT, phase))
+    left = (-phase % (2.0 * np.pi)) / (2.0 * np.pi)
+    motion = simulate(PAPER, eta=ETA, start=AT, phase=phase, periods=1, points=20_000)
+    for name, value in zip(("x1", "x2", "v1", "v2"), found, strict=True):
+        expected = np.interp(left, motion.periods_done, motion[name])
+        assert value == pytest.approx(expected, abs=1e-3)
+    assert left > 0.0 or found == AT
+
+
+@pytest.mark.usefixtures("exported")
+def test_a_plane_over_the_phase_leads_where_its_starts_lead():
     plane = {"x": ("phase", 0.0, 5.0, 3), "y": ("x_rel", 0.2, 0.9, 3)}
     found = basin(PAPER, eta=ETA, **plane, at=AT)
     fixed = basin(PAPER, eta=ETA, phase=2.5, x=("v_rel", -0.4, 0.0, 2), y=plane["y"], at=AT)
     assert fixed.attractor_of.values[:, 0].tolist() == found.attractor_of.values[:, 1].tolist()
-    states, phases = starts(plane["x"], plane["y"])
-    period = POINT.excitation.period
-    for i, j in ((0, 1), (2, 2)):
-        left = (-phases[i, j]) % (2.0 * np.pi) / POINT.excitation.frequency
-        points = 1000
-        motion = simulate(
-            PAPER, eta=ETA, start=states[i, j], phase=phases[i, j], periods=1, points=points
-        )
-        index = round(left / period * points)
-        assert abs(float(motion.time[index]) - left) < period / points
-        state = [float(motion[name][index]) for name in ("x1", "x2", "v1", "v2")]
-        swept = sweep(PAPER, eta=ETA, start=state, transient=400, samples=48).isel(eta=0)
-        label = int(found.attractor_of[i, j])
-        assert int(swept.multiplicity) == int(found.multiplicity[label])
 
 
 @pytest.mark.usefixtures("exported")

@@ -157,6 +157,12 @@ def test_units_do_not_matter():
     assert one == pytest.approx(two, rel=1e-6)
     box = {"frequency": 1.5 * own.omega, "amplitude": 1e-3}
     assert lyapunov(own, **box, **asked).exponent.item() == pytest.approx(two, rel=1e-6)
+    swept = sweep(own, **box, transient=300, samples=5)
+    on = lyapunov(own, **box, start=swept, transient=0, periods=200)
+    assert on.exponent.item() == pytest.approx(two, rel=1e-3)
+    states = swept.end_state.values * [*(1e-3 * 1.5**2,) * 2, *(1e-3 * 1.5**2 * own.omega,) * 2]
+    same = lyapunov(own, **box, start=states, transient=0, periods=200)
+    assert on.exponent.item() == pytest.approx(same.exponent.item(), rel=1e-9)
 
 
 def test_verdicts():

@@ -25,6 +25,9 @@ def test_a_curve_has_both_sides_of_each_impact():
     jumps = (np.diff(tau) == 0.0) & (np.diff(state[:, 2]) != 0.0)
     assert jumps.sum() == 30
     assert (np.abs(np.diff(state, axis=0)[jumps][:, :2]) < 1e-9).all(), "displacements jump"
+    before, after = found.v_rel.values[:-1][jumps], found.v_rel.values[1:][jumps]
+    assert (before < 0.0).all()
+    assert after[after != 0.0] == pytest.approx(-0.7 * before[after != 0.0], rel=1e-6)
     momentum = np.diff(state[:, 2] + state[:, 3])[jumps]
     assert np.abs(momentum).max() < 1e-12
 

@@ -58,11 +58,14 @@ def test_a_response_is_what_the_fmu_says_step_by_step():
     period = excitation.period
     with Instance(find(OSCILLATOR).path) as instance:
         begin(instance, PAPER, excitation, x_rel_max_on=True)
-        states = sampled(instance, 0.0, 50 * period, 50)
+        states = sampled(instance, 0.0, 20 * period, 20)
+        before = instance.get("impact_count")[0]
+        states = np.concatenate([states, sampled(instance, 20 * period, 50 * period, 30)])
         impacts = instance.get("impact_count")[0]
     found = sweep(PAPER, eta=1.13, transient=20, samples=30).isel(eta=0)
     np.testing.assert_allclose(found.xi_rel, states[20:, 1] - states[20:, 0], atol=1e-12)
     np.testing.assert_array_equal(found.end_state, states[-1])
+    assert float(found.impacts_per_period) == (impacts - before) / 30
     whole = sweep(PAPER, eta=1.13, transient=0, samples=50).isel(eta=0)
     assert float(whole.impacts_per_period) == impacts / 50
     assert found.sample.values.tolist() == list(range(21, 51))
