@@ -12,8 +12,9 @@ What is described
     numbers, in Python or in TOML files.
 What is asked
     :func:`simulate`, :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`,
-    :func:`attractors`, :func:`basin`, :func:`impact_statistics`; :func:`couple` and
-    :func:`drive_spectra` for the weak drive, :func:`write_ssp` for other tools.
+    :func:`attractors`, :func:`basin`, :func:`impact_statistics`; :func:`couple`,
+    :func:`jump_voltages` and :func:`drive_spectra` for the weak drive, :func:`write_ssp` for other
+    tools.
 What is answered
     An :class:`xarray.Dataset` with units, long names, all parameters, and where it comes from.
 
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from .structures import Drive, Excitation, Structure
     from .weak_drive.couple import couple
     from .weak_drive.drive_spectra import drive_spectra
+    from .weak_drive.jump_voltages import jump_voltages
     from .weak_drive.ssp import write_ssp
 
 __all__ = [
@@ -59,6 +61,7 @@ __all__ = [
     "couple",
     "drive_spectra",
     "impact_statistics",
+    "jump_voltages",
     "lyapunov",
     "map",
     "simulate",
@@ -82,6 +85,7 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "dynamics.impact_statistics": ("impact_statistics",),
     "weak_drive.couple": ("couple",),
     "weak_drive.drive_spectra": ("drive_spectra",),
+    "weak_drive.jump_voltages": ("jump_voltages",),
     "weak_drive.ssp": ("write_ssp",),
 }
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import Commands, add_drive, described, ends_of
+from .options import Commands, add_drive, described, ends_of, values_of
 from .output import add_running, check_output, draw_if_missing, own_fmus, running_of
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ EXAMPLES = """\
   {program} couple                               quick: bonded, delaminated, up and down
   {program} couple --drive beam                  a delaminated beam on a small motor
   {program} couple --eta0 1.4:1.62 --rate 1e-5   a slower ramp over less
+  {program} couple --rate 1e-4,5e-5,2.5e-5       jumps at rate 0 with their standard error
   {program} couple --drive beam --voltage 5.6:7.2
   {program} couple --increment 0.005             in steps of the voltage, each with time to settle
   {program} couple --ssp weak_drive.ssp          the coupled system as a package for other tools
@@ -59,8 +60,9 @@ def add_schedule(parser: argparse.ArgumentParser) -> None:
     option("--voltage", metavar="FIRST:LAST", help="the same in V")
     option(
         "--rate",
-        type=float,
-        help="change of eta0 in a time 1/omega (default: "
+        metavar="A,B,...",
+        help="change of eta0 in a time 1/omega; several give the jumps at rate 0, with a standard "
+        "error (default: "
         + ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
         + f", else {RATE:g})",
     )
@@ -111,12 +113,19 @@ def ends_in_volts(arguments: argparse.Namespace, volts: float) -> tuple[float, f
     return first * volts, last * volts
 
 
+def rates_of(arguments: argparse.Namespace) -> tuple[float, ...]:
+    """Rates of eta0."""
+    if arguments.rate is None:
+        return (USUAL.get(arguments.drive, ("", RATE))[1],)
+    return values_of("--rate", arguments.rate)[0]
+
+
 def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> list[CoupleJob]:
     """The runs, bonded first."""
     from ..weak_drive.couple import couple_job, schedule_of, scheme_of
 
     omega, volts = structure.omega, drive.volts(structure)
-    rate = USUAL.get(arguments.drive, ("", RATE))[1] if arguments.rate is None else arguments.rate
+    rate = rates_of(arguments)[0]
     schedule = schedule_of(
         structure,
         drive,
@@ -147,6 +156,9 @@ def run(arguments: argparse.Namespace) -> None:
     from ..running.store import load
 
     structure, drive = described(arguments)
+    if len(rates_of(arguments)) > 1:
+        extrapolated(arguments, structure, drive)
+        return
     jobs = jobs_of(arguments, structure, drive)
     own = own_fmus(arguments.fmu)
     running = {**running_of(arguments), "fmu": own}
@@ -166,6 +178,35 @@ def run(arguments: argparse.Namespace) -> None:
         report(name, data)
     for path in (*paths.values(), picture):
         print(path)
+
+
+def extrapolated(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> None:
+    """Ramps at several rates: a table of the jumps at rate 0, bonded against delaminated."""
+    from ..weak_drive.jump_voltages import jump_voltages
+
+    check_output(arguments.output)
+    omega, volts = structure.omega, drive.volts(structure)
+    store = arguments.output / f"jump_voltages_{Path(arguments.drive).stem}.nc"
+    running = running_of(arguments, store)
+    running["fmu"] = own_fmus(arguments.fmu)
+    found = jump_voltages(
+        structure,
+        drive,
+        voltage=ends_in_volts(arguments, volts),
+        rates=[rate * volts * omega for rate in rates_of(arguments)],
+        back=not arguments.one_way,
+        settle=arguments.settle / omega,
+        step=arguments.step / omega,
+        **running,
+    )
+    print(f"{'jump':6}{'bonded':>24}{'delaminated':>24}{'change':>12}   in V, at rate 0")
+    for jump in found.jump.values:
+        at = found.sel(jump=jump)
+        pairs = zip(at.jumps.values, at.standard_error.values, strict=True)
+        texts = [f"{value:.4f} +- {error:.4f}" for value, error in pairs]
+        change = float(at.jumps[1] - at.jumps[0])
+        print(f"{jump:6}{texts[0]:>24}{texts[1]:>24}{change:>12.4f}")
+    print(store)
 
 
 def write_package(

@@ -246,6 +246,17 @@ class Run:
         self.revolutions.remember(table["revolution_memory"][-1].tolist())
 
 
+def checked_motor(drive: Drive) -> None:
+    """See that a voltage turns the motor.
+
+    Raises
+    ------
+    InputError
+    """
+    if not drive.motor_constant > 0.0:
+        raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
+
+
 def schedule_of(
     structure: Structure,
     drive: Drive,
@@ -421,8 +432,7 @@ def couple(
     from ..access.exported import finder
     from ..running.runner import answer
 
-    if not drive.motor_constant > 0.0:
-        raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
+    checked_motor(drive)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     given = (duration, rate, settle, increment, back, spin_up)

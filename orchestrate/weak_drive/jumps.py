@@ -84,7 +84,8 @@ def find_jump(way: Way, b: float, up: bool, criterion: Criterion | None = None) 
     rise, change = sign * apart(speed, width), np.abs(apart(eta0, width))
     top = int(np.argmax(rise / apart(time, width)))
     before, after = extent(rise > limits.growth * change, top)
-    if rise[top] <= limits.growth * change[top]:
+    unfinished = after == len(rise) - 1 and rise[-1] > 0.5 * rise[top]
+    if rise[top] <= limits.growth * change[top] or unfinished:
         return None
     last = min(after + 2 * width, len(way.time) - 1)
     slip = sign * (way.eta0 - way.Omega)
@@ -147,6 +148,8 @@ def why_none(way: Way, up: bool, resonance: float) -> str:
     beyond = first > resonance
     if beyond == up and (last > resonance) == up:
         return f"began {'beyond' if up else 'below'} the resonance"
+    if abs(speed[-1] - speed[-5:][0]) > np.ptp(way.eta0[-5:]) * Criterion().growth:
+        return "the ramp ends within a jump"
     if (last > resonance) != up:
         return f"ends {'below' if up else 'beyond'} the resonance"
     return "no fold: the speed follows the voltage through the resonance"

@@ -1,0 +1,228 @@
+"""Jump voltages with an error: ramps at several rates, bonded and delaminated, extrapolated to 0.
+
+A ramp's jump comes late, about as rate^(2/3): so it is where a fold is passed at a finite rate. A
+line through the voltages over rate^(2/3) meets rate 0 at the voltage of the fold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..access.exported import finder
+from ..access.models import OSCILLATOR, SHAKER
+from ..errors import InputError
+from ..running.job import Inputs, Job, Table
+from ..running.runner import answer
+from ..structures.drive import Drive
+from ..structures.structure import Structure
+from .couple import checked_motor, couple_job, schedule_of, scheme_of
+from .master import Scheme
+from .schedule import Ramp, Schedule
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+KINDS = ("bonded", "delaminated")
+WAYS = ("up", "down")
+USUAL_RATES = (1e-4, 5e-5, 2.5e-5)  # of eta0 in a time 1/omega
+EXPONENT = 2.0 / 3.0
+
+
+def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
+    """The voltage at rate 0, and its standard error.
+
+    Parameters
+    ----------
+    rates : ndarray, shape (n,)
+        V/s.
+    voltages : ndarray, shape (n,)
+        V, NaN where there is no jump.
+
+    Returns
+    -------
+    voltage, error : float
+        NaN with fewer than two jumps; the error NaN with two, which a line always meets.
+
+    Examples
+    --------
+    >>> rates = np.array([1e-4, 3e-5, 1e-5])
+    >>> voltage, error = extrapolate(rates, 1.5 + 10.0 * rates ** (2 / 3))
+    >>> round(voltage, 9), error < 1e-9
+    (1.5, True)
+    """
+    known = np.isfinite(voltages)
+    count = int(known.sum())
+    if count < 2:
+        return float("nan"), float("nan")
+    lag = rates[known] ** EXPONENT
+    design = np.stack([np.ones(count), lag], axis=1)
+    scale = np.array([1.0, lag.max()])
+    solution = np.linalg.lstsq(design / scale, voltages[known], rcond=None)[0]
+    if count == 2:
+        return float(solution[0]), float("nan")
+    misfit = voltages[known] - design / scale @ solution
+    variance = float(misfit @ misfit) / (count - 2)
+    covariance = variance * np.linalg.inv((design / scale).T @ (design / scale))
+    return float(solution[0]), float(np.sqrt(covariance[0, 0]))
+
+
+@dataclass(frozen=True)
+class JumpVoltagesJob(Job):
+    """Ramps at several rates, both structures; one item is one ramp.
+
+    Attributes
+    ----------
+    structure : Structure
+    drive : Drive
+    schedules : tuple of Ramp
+        One for each rate, slowest first.
+    scheme : Scheme
+    """
+
+    structure: Structure
+    drive: Drive
+    schedules: tuple[Ramp, ...]
+    scheme: Scheme
+
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+    item: ClassVar[str] = "ramp"
+
+    def count(self) -> int:
+        """Ramps."""
+        return len(KINDS) * len(self.schedules)
+
+    def items(self, inputs: Inputs) -> Sequence[tuple[Structure, Ramp]]:
+        """Structure and ramp of each, slowest first."""
+        both = (self.structure.as_bonded(), self.structure.as_delaminated())
+        return [(structure, schedule) for schedule in self.schedules for structure in both]
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[tuple[Structure, Ramp]], carry: Any
+    ) -> Table:
+        """Jumps of some ramps."""
+        rows = []
+        for structure, schedule in items:
+            job = couple_job(structure, self.drive, schedule, self.scheme)
+            table = job.work(fmus, range(job.count()), None)
+            found = job.dataset(table, {})
+            rows.append([found.jumps.values, found.jump_speed_before.values])
+        return {"jumps": np.array(rows).reshape(-1, 2, len(WAYS))}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Voltages over the rates, and at rate 0."""
+        import xarray as xr
+
+        rates = np.array([schedule.rate for schedule in self.schedules])
+        shaped = table["jumps"].reshape(len(rates), len(KINDS), 2, len(WAYS))
+        at_rates, speeds = shaped[:, :, 0], shaped[:, :, 1]
+        ends = np.array(
+            [
+                [extrapolate(rates, at_rates[:, kind, way]) for way in range(len(WAYS))]
+                for kind in range(len(KINDS))
+            ]
+        )
+        every, each = ("rate", "structure", "jump"), ("structure", "jump")
+        late = "voltage at which the speed jumps on the ramp"
+        before = "mean speed where it leaves its branch"
+        variables = {
+            "voltage": (every, at_rates, {"units": "V", "long_name": late}),
+            "speed_before": (every, speeds, {"units": "rad/s", "long_name": before}),
+            "jumps": (each, ends[..., 0], {"units": "V", "long_name": "the same at rate 0"}),
+            "standard_error": (
+                each,
+                ends[..., 1],
+                {"units": "V", "long_name": "standard error of the voltage at rate 0"},
+            ),
+        }
+        coordinates = {
+            "rate": ("rate", rates, {"units": "V/s", "long_name": "change of the voltage"}),
+            "structure": ("structure", list(KINDS), {"long_name": "structure"}),
+            "jump": ("jump", list(WAYS), {"long_name": "direction in which the speed jumps"}),
+        }
+        return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
+
+
+def jump_voltages(
+    structure: Structure,
+    drive: Drive,
+    *,
+    voltage: tuple[float, float],
+    rates: Sequence[float] | None = None,
+    back: bool = True,
+    settle: float | None = None,
+    step: float | None = None,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Voltages at which the speed jumps, bonded against delaminated, at no rate.
+
+    Parameters
+    ----------
+    structure : Structure
+        Whether it is bonded does not matter: both kinds are answered.
+    drive : Drive
+    voltage : (float, float)
+        Ends of the ramps, V.
+    rates : sequence of float, optional
+        V/s; three or more give a standard error. By default (1e-4, 5e-5, 2.5e-5) K omega^2.
+    back : bool
+        Whether the ramps come back: the jump down too.
+    settle : float, optional
+        Time at the first voltage before, s; 300/omega by default.
+    step : float, optional
+        Communication step, s; 0.1/omega by default.
+    **running
+        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`; the ramps
+        run side by side.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``jumps`` and ``standard_error`` (V) over ``structure`` and ``jump``, and the ``voltage`` of
+        each ramp over ``rate`` (V/s) too; NaN where there is no jump.
+
+    Raises
+    ------
+    InputError
+        Where an argument is not what is expected.
+
+    Examples
+    --------
+    >>> from orchestrate import Drive, Structure, jump_voltages
+    >>> quick = Structure.from_file("quick"), Drive.from_file("quick")
+    >>> few = dict(rates=[4e-4, 2e-4], back=False, step=0.2, settle=100.0, progress=False)
+    >>> found = jump_voltages(*quick, voltage=(1.3, 1.7), **few)
+    >>> bool(found.jumps.sel(structure="bonded", jump="up") > 1.57)
+    True
+    """
+    checked_motor(drive)
+    unit = drive.volts(structure) * structure.omega
+    given = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
+    if len(set(given)) < 2:
+        raise InputError(f"rates = {rates}: expected two different ones or more, in V/s")
+    schedules = tuple(
+        ramp(schedule_of(structure, drive, voltage, None, rate, settle, 0.0, back))
+        for rate in sorted(given)
+    )
+    scheme = scheme_of(structure, step, "rollback", 0.0)
+    job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme)
+    return answer(job, running, finder(running))
+
+
+def ramp(schedule: Schedule) -> Ramp:
+    """A schedule that is to be a ramp.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(schedule, Ramp):
+        raise InputError("voltage: expected (first, last) in V, the ends of ramps")
+    return schedule
