@@ -335,8 +335,15 @@ class Question(Job, ABC):
 
     def call(self) -> str:
         """The call that asks it."""
-        told = {name: value for name, value in self.parameters().items() if value is not None}
-        return f"{self.asked}({', '.join(f'{name}={brief(told[name])}' for name in told)})"
+        told: dict[str, Any] = {}
+        for name, value in self.parameters().items():
+            inside = isinstance(value, dict) and "sha256" not in value and name != "structure"
+            told.update(value if inside else {name: value})
+        if not told.get("phase"):
+            told.pop("phase", None)
+        parts = [f"Structure{brief(told.pop('structure'))}"]
+        parts += [f"{name}={brief(told[name])}" for name in told if told[name] not in (None, "")]
+        return f"{self.asked}({', '.join(parts)})"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -140,3 +140,17 @@ def test_numbers_of_any_kind():
     assert numbers("eta", np.float32(0.5)) == 0.5
     assert numbers("eta", range(1, 3)) == (1.0, 2.0)
     assert numbers("values", None) is None
+
+
+def test_the_call_is_one_that_can_be_made_again(exported):
+    import orchestrate
+
+    names = {"Structure": Structure, "__builtins__": {}}
+    for ask, asked in (
+        (orchestrate.sweep, {"eta": [0.4, 1.1], "transient": 3, "samples": 4}),
+        (orchestrate.simulate, {"eta": 1.1, "periods": 2, "points": 3, "phase": 1.0}),
+        (orchestrate.map, {"eta": [0.4, 1.1], "e": [0.3, 0.6], "transient": 3, "settle": 1.0}),
+    ):
+        found = ask(OWN, **asked)
+        again = eval(found.attrs["call"], {**names, ask.__name__: ask})
+        assert again.identical(found.assign_attrs(history=again.attrs["history"]))
