@@ -228,9 +228,10 @@ def border(
     >>> from orchestrate.dynamics.borders import border
     >>> beam = Structure.nondimensional()
     >>> window = branch(beam, eta=2.6, limits=(2.5, 2.7))
-    >>> curve = border(beam, start=window, bifurcation=0, limits=[(2.5, 2.7), (0.65, 0.75)])
+    >>> limits = [(2.5, 2.7), (0.69, 0.71)]
+    >>> curve = border(beam, start=window, bifurcation=0, limits=limits, longest=0.5)
     >>> curve.attrs["kind"], curve.e.values[[0, -1]]
-    ('Neimark-Sacker', array([0.65, 0.75]))
+    ('Neimark-Sacker', array([0.69, 0.71]))
     """
     names = tuple(over)
     check_names(names)

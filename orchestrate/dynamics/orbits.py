@@ -284,9 +284,9 @@ def orbit(
     >>> from orchestrate.dynamics.orbits import orbit
     >>> found = orbit(Structure.nondimensional(), eta=3.0)
     >>> found.impact_time.values.round(6), bool(found.stable)
-    (array([0.479077]), False)
+    (array([0.480678]), False)
     >>> found.multipliers.sel(part="real").values.round(4)
-    array([-3.5182, -0.8115, -0.8115, -0.1347])
+    array([-3.3595, -0.5903, -0.5903, -0.1421])
     """
     given = one_point(structure, eta, frequency, amplitude)
     count = whole("period", period, 1, MOST_PERIODS)

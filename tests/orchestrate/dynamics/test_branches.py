@@ -1,6 +1,8 @@
 """Branches and bifurcations against closed forms, and the branches that leave there."""
 
 import functools
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from orchestrate.structures import Excitation, Structure
 from .single_impact import SingleImpact, border
 
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
+DOCS = Path(__file__).resolve().parents[3] / "docs"
 FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST = range(6)
 STARTS = {1: 1.5, 2: 4.0, 3: 6.0, 4: 8.0}
 WALL_RATE = 1e5  # of mass 2 where it is a wall: the difference is 1e-10
@@ -171,6 +174,49 @@ def test_other_parameters_cross_the_same_border(over):
     for i in range(0, found.sizes["point"], 7):
         truth = SingleImpact(4.0, 2, **{over: float(found[over].values[i])})
         assert np.hypot(*found.multipliers.values[i, 0]) == pytest.approx(truth.largest, abs=1e-8)
+
+
+@pytest.mark.parametrize("period", STARTS)
+def test_the_table_in_the_documentation_is_this(period):
+    """Eight digits each; the T/1 branch is followed further down there."""
+    label = f"{'' if period == 1 else period}T/1"
+    lines = (DOCS / "bifurcations.md").read_text("utf-8").splitlines()
+    rows = [line.split("|")[1:] for line in lines if line.startswith(f"| {label} |")]
+    printed = {(float(row[1]), row[2].strip()) for row in rows if float(row[1]) > 1.37}
+    found = windows(period)
+    names = [w.replace("_", " ") for w in found.bifurcation_kind.attrs["flag_meanings"].split()]
+    limit = {1: 8.0, 2: 8.0, 3: 8.0, 4: 9.5}[period]
+    own = {
+        (round(float(value), 8), names[kind])
+        for value, kind in zip(
+            found.bifurcation_value.values, found.bifurcation_kind.values, strict=True
+        )
+        if value < limit
+    }
+    assert {name for _, name in own} == {name for _, name in printed}
+    values_own, values_printed = sorted(v for v, _ in own), sorted(v for v, _ in printed)
+    assert values_own == pytest.approx(values_printed, abs=1.1e-8)
+
+
+def test_no_bifurcation_is_missed():
+    """The number of multipliers outside the unit circle changes at bifurcations alone."""
+    for period in STARTS:
+        found = windows(period)
+        outside = (np.hypot(*np.moveaxis(found.multipliers.values, -1, 0)) > 1.0).sum(axis=1)
+        for i in np.flatnonzero(np.diff(outside)):
+            place = found.bifurcation_place.values
+            inside = found.bifurcation_kind.values[(place > i) & (place < i + 1)]
+            steps = [1 if kind == FLIP else 2 for kind in inside]
+            assert abs(np.diff(outside)[i]) <= sum(steps)
+
+
+def test_the_branch_of_t_1_is_followed_quickly():
+    """From 1.37 to 8, the FMU's runs included: under 2 s on a machine that does nothing else."""
+    start = orbit(PAPER, eta=1.37)
+    branch(PAPER, start=start, limits=(1.37, 1.4))
+    before = time.process_time()
+    branch(PAPER, start=start, limits=(1.37, 8.0))
+    assert time.process_time() - before < 4.0
 
 
 def test_start_values_and_directions():

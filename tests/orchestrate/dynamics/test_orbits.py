@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate.access import OSCILLATOR, REST, EventInstance, begin, find
+from orchestrate.dynamics.lyapunov import lyapunov
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.structures import Excitation, Structure
@@ -111,6 +112,14 @@ def test_chattering_into_permanent_contact_leaves_two_multipliers():
     assert np.abs(multipliers(found)[2:]).max() == 0.0
     assert np.abs(multipliers(found)[:2]).min() > 0.5
     assert found.multiplier_product.item() == 0.0
+
+
+@pytest.mark.parametrize(("eta", "period"), [(1.5, 1), (4.0, 2), (0.6, 1)])
+def test_lyapunov_exponents_are_those_of_the_multipliers(eta, period):
+    """From the impacts of a settled response of the FMU: log of the largest multiplier over nT."""
+    seen = lyapunov(PAPER, eta=[eta], transient=3000, periods=2000)
+    told = known(eta, period).exponent.item()
+    assert told == pytest.approx(seen.exponent.item(), rel=5e-3)
 
 
 def test_an_attractor_found_by_simulation_is_the_orbit():

@@ -1,0 +1,50 @@
+"""Branches and borders as pictures: what is solid, what is dashed, where the marks are."""
+
+import functools
+
+import numpy as np
+import pytest
+
+from orchestrate.dynamics.borders import border
+from orchestrate.dynamics.branches import branch
+from orchestrate.figures import borders, branches
+from orchestrate.response.sweep import sweep
+from orchestrate.structures import Structure
+
+PAPER = Structure.nondimensional()
+
+
+@functools.cache
+def window():
+    return branch(PAPER, eta=2.5, limits=(2.4, 2.8))
+
+
+def test_stable_is_solid_and_unstable_dashed():
+    figure = branches.draw(window())
+    lines = figure.axes[0].get_lines()
+    solid = next(line for line in lines if line.get_linestyle() == "-")
+    dashed = next(line for line in lines if line.get_linestyle() == "--")
+    border_at = window().bifurcation_value.values[0]
+    shown = np.isfinite(solid.get_ydata())
+    assert (solid.get_xdata()[shown] < border_at).all()
+    assert np.isfinite(dashed.get_ydata()).sum() > 3
+    assert dashed.get_xdata()[np.isfinite(dashed.get_ydata())].max() == pytest.approx(2.8)
+
+
+def test_bifurcations_are_marked_each_kind_once_in_the_legend():
+    figure = branches.draw(
+        window(), window(), responses=sweep(PAPER, eta=[2.45, 2.5], transient=20)
+    )
+    (plane,) = figure.axes
+    words = [text.get_text() for text in plane.get_legend().get_texts()]
+    assert sorted(words) == ["Neimark-Sacker", "period doubling"]
+    marks = [line for line in plane.get_lines() if line.get_marker() in ("o", "s")]
+    assert {float(mark.get_xdata()[0]) for mark in marks} == set(window().bifurcation_value.values)
+
+
+def test_a_border_is_a_line_over_both_parameters():
+    curve = border(PAPER, start=window(), bifurcation=1, limits=[(2.7, 2.9), (0.69, 0.71)])
+    figure = borders.draw(curve)
+    (line,) = figure.axes[0].get_lines()
+    assert line.get_xdata() == pytest.approx(curve.eta.values)
+    assert line.get_ydata() == pytest.approx(curve.e.values)
