@@ -58,6 +58,8 @@ def add_schedule(parser: argparse.ArgumentParser) -> None:
         + ")",
     )
     option("--voltage", metavar="FIRST:LAST", help="the same in V")
+    course = "CSV file with time in s and voltage in V, a row each: straight lines between, instead"
+    option("--course", type=Path, metavar="FILE", help=course)
     option(
         "--rate",
         metavar="A,B,...",
@@ -123,13 +125,15 @@ def rates_of(arguments: argparse.Namespace) -> tuple[float, ...]:
 def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> list[CoupleJob]:
     """The runs, bonded first."""
     from ..weak_drive.couple import couple_job, schedule_of, scheme_of
+    from ..weak_drive.schedule import Course
 
     omega, volts = structure.omega, drive.volts(structure)
     rate = rates_of(arguments)[0]
+    course = arguments.course
     schedule = schedule_of(
         structure,
         drive,
-        ends_in_volts(arguments, volts),
+        Course.from_csv(course) if course else ends_in_volts(arguments, volts),
         rate=rate * volts * omega,
         settle=arguments.settle / omega,
         increment=arguments.increment * volts,

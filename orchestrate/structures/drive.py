@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 from os import PathLike
 
+from ..errors import InputError
 from .ranges import DRIVE, NUMBERS, made_of, recover
 from .structure import Structure
 
@@ -112,6 +113,91 @@ class Drive:
                 motor_constant=constant,
                 armature_resistance=constant**2 / (given["b"] * inertia * omega),
             ),
+        )
+
+    @classmethod
+    def from_datasheet(
+        cls,
+        *,
+        rated_voltage: float,
+        no_load_speed: float,
+        stall_torque: float,
+        unbalance_mass: float,
+        unbalance_radius: float,
+        box_mass: float,
+        box_stiffness: float,
+        box_damping: float,
+        rotor_inertia: float | None = None,
+        mechanical_time_constant: float | None = None,
+        armature_inductance: float = 0.0,
+    ) -> Drive:
+        """A drive with a motor as its datasheet describes it.
+
+        Parameters
+        ----------
+        rated_voltage : float
+            V.
+        no_load_speed : float
+            At that voltage, rad/s.
+        stall_torque : float
+            At that voltage, N m.
+        unbalance_mass, unbalance_radius : float
+            kg and m.
+        box_mass, box_stiffness, box_damping : float
+            kg, N/m, N s/m.
+        rotor_inertia : float, optional
+            Of the rotor alone, kg m^2; the unbalance is added.
+        mechanical_time_constant : float, optional
+            Instead of the inertia, s: J_rotor = tau_m K^2/R_a.
+        armature_inductance : float
+            H.
+
+        Raises
+        ------
+        InputError
+
+        Notes
+        -----
+        K = U/omega_0 and R_a = K U/T_stall: friction is not told apart, its torque is part of the
+        line between both points.
+
+        Examples
+        --------
+        >>> motor = dict(rated_voltage=12.0, no_load_speed=200.0, stall_torque=0.06)
+        >>> rest = dict(unbalance_mass=0.025, unbalance_radius=0.02, box_mass=5.5)
+        >>> box = dict(box_stiffness=309.0, box_damping=4.1)
+        >>> drive = Drive.from_datasheet(**motor, **rest, **box, rotor_inertia=4e-5)
+        >>> drive.motor_constant, drive.armature_resistance, round(drive.rotor_inertia, 9)
+        (0.06, 12.0, 5e-05)
+        """
+        given = {
+            "rated_voltage": rated_voltage,
+            "no_load_speed": no_load_speed,
+            "stall_torque": stall_torque,
+        }
+        for name, value in given.items():
+            if not (math.isfinite(value) and value > 0.0):
+                raise InputError(f"{name} = {value}: expected a number > 0")
+        constant = rated_voltage / no_load_speed
+        resistance = constant * rated_voltage / stall_torque
+        if (rotor_inertia is None) == (mechanical_time_constant is None):
+            raise InputError(
+                f"rotor_inertia = {rotor_inertia} and mechanical_time_constant = "
+                f"{mechanical_time_constant}: expected one of them"
+            )
+        if mechanical_time_constant is not None:
+            rotor_inertia = mechanical_time_constant * constant**2 / resistance
+        assert rotor_inertia is not None
+        return cls(
+            box_mass=box_mass,
+            box_stiffness=box_stiffness,
+            box_damping=box_damping,
+            unbalance_mass=unbalance_mass,
+            unbalance_radius=unbalance_radius,
+            rotor_inertia=rotor_inertia + unbalance_mass * unbalance_radius**2,
+            motor_constant=constant,
+            armature_resistance=resistance,
+            armature_inductance=armature_inductance,
         )
 
     @classmethod

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from bisect import bisect_right
 from dataclasses import dataclass
+from itertools import pairwise
+from os import PathLike
+from pathlib import Path
 
 import numpy as np
 
@@ -176,3 +180,90 @@ class Ramp(Schedule):
         """Up or down on the way there, the other way round on the way back."""
         times, there = np.asarray(times), 1 if self.last > self.first else -1
         return np.where(times > self.turn, -there, np.where(times > self.begin, there, 0))
+
+
+@dataclass(frozen=True)
+class Course(Schedule):
+    """Voltages at given times, straight lines between them: ramps with holds, steps, any course.
+
+    Attributes
+    ----------
+    times : tuple of float
+        s, from 0, never falling; two equal ones are a step.
+    voltages : tuple of float
+        V.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> course = Course(times=(0.0, 100.0, 150.0, 150.0, 200.0), voltages=(1.0, 1.5, 1.5, 1.6, 1.6))
+    >>> [course.voltage(time) for time in (50.0, 120.0, 151.0, 999.0)]
+    [1.25, 1.5, 1.6, 1.6]
+    """
+
+    times: tuple[float, ...]
+    voltages: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        for name in ("times", "voltages"):
+            object.__setattr__(self, name, tuple(float(value) for value in getattr(self, name)))
+        if len(self.times) != len(self.voltages) or len(self.times) < 2:
+            count = f"{len(self.times)} times and {len(self.voltages)} voltages"
+            raise InputError(f"{count}: expected as many of both, two or more")
+        for time, value in zip(self.times, self.voltages, strict=True):
+            check("time", time, "s", low=0.0)
+            check("voltage", value, "V")
+        falls = any(after < before for before, after in pairwise(self.times))
+        if self.times[0] != 0.0 or falls or self.times[-1] == 0.0:
+            raise InputError(f"times = {self.times}: expected rising ones from 0, in s")
+
+    @classmethod
+    def from_csv(cls, path: str | PathLike[str]) -> Course:
+        """A file with time in s and voltage in V, separated by a comma, a row each.
+
+        Rows that begin with ``#``, and one with names, are passed over.
+
+        Raises
+        ------
+        InputError
+        """
+        try:
+            lines = Path(path).read_text(encoding="utf-8").splitlines()
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{path}: cannot be read ({error}); expected a CSV file") from None
+        rows: list[list[float]] = []
+        for number, line in enumerate(lines, start=1):
+            if not line.strip() or line.lstrip().startswith("#"):
+                continue
+            try:
+                time, voltage = (float(part) for part in line.split(","))
+            except ValueError:
+                if rows:
+                    expected = "expected time in s and voltage in V"
+                    raise InputError(f"{path}, line {number}: {line!r}; {expected}") from None
+                continue  # names of the columns
+            rows.append([time, voltage])
+        times, voltages = zip(*rows, strict=True) if rows else ((), ())
+        return cls(times, voltages)
+
+    @property
+    def duration(self) -> float:
+        """Time of the whole run, s."""
+        return self.times[-1]
+
+    def voltage(self, time: float) -> float:
+        """Voltage at a time, V; just after a step at the time of it."""
+        last = bisect_right(self.times, time)
+        if last == len(self.times):
+            return self.voltages[-1]
+        begin, end = self.times[last - 1], self.times[last]
+        low, high = self.voltages[last - 1], self.voltages[last]
+        return low + (high - low) * (time - begin) / (end - begin)
+
+    def trend(self, times: np.ndarray) -> np.ndarray:
+        """By the line that each time is on."""
+        places = np.clip(np.searchsorted(self.times, times) - 1, 0, len(self.times) - 2)
+        return np.sign(np.diff(self.voltages))[places].astype(int)

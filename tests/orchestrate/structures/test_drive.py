@@ -94,3 +94,40 @@ def test_a_number_out_of_range():
         InputError, match=r"^beta = 1e-30, epsilon.* make rotor_inertia = 9.99.*: expected"
     ):
         Drive.nondimensional(beta=1e-30, **numbers, structure=Structure())
+
+
+SHEET = {"rated_voltage": 24.0, "no_load_speed": 300.0, "stall_torque": 0.4}
+REST = {
+    **{"unbalance_mass": 0.05, "unbalance_radius": 0.01},
+    **{"box_mass": 5.0, "box_stiffness": 300.0, "box_damping": 4.0},
+}
+
+
+def test_a_datasheet():
+    """The torque line goes through both points, and the rotor starts with its time constant."""
+    drive = Drive.from_datasheet(**SHEET, **REST, mechanical_time_constant=0.02)
+    constant, resistance = drive.motor_constant, drive.armature_resistance
+
+    def torque(speed):
+        return constant * (24.0 - constant * speed) / resistance
+
+    assert torque(300.0) == pytest.approx(0.0, abs=1e-12)
+    assert torque(0.0) == pytest.approx(0.4)
+    rotor = drive.rotor_inertia - 0.05 * 0.01**2
+    assert rotor * resistance / constant**2 == pytest.approx(0.02)
+    by_inertia = Drive.from_datasheet(**SHEET, **REST, rotor_inertia=rotor)
+    assert by_inertia.rotor_inertia == pytest.approx(drive.rotor_inertia)
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"stall_torque": 0.0}, "stall_torque = 0.0: expected a number > 0"),
+        ({"no_load_speed": float("nan")}, "no_load_speed = nan"),
+        ({}, "rotor_inertia = None and mechanical_time_constant = None: expected one"),
+        ({"rotor_inertia": -1.0}, "rotor_inertia"),
+    ],
+)
+def test_mistakes_in_a_datasheet(changes, text):
+    with pytest.raises(InputError, match=text):
+        Drive.from_datasheet(**{**SHEET, **REST, **changes})
