@@ -63,6 +63,15 @@ class BorderJob(Question):
     most: int
     asked: ClassVar[str] = "border"
 
+    def call(self) -> str:
+        """The call that asks it, with the orbit at the bifurcation for the branch."""
+        setting, values = self.setting, np.array(self.values)
+        guess = self.start.told(setting.point(values).excitation.frequency)
+        start = f"start={setting.first_orbit(values, self.period, guess)}"
+        given = [f"bifurcation={KINDS[self.kind]!r}", f"over={setting.over!r}"]
+        given += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
+        return f"border({', '.join([repr(self.structure), start, *given])})"
+
     def count(self) -> int:
         """One curve."""
         return 1

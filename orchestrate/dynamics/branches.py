@@ -67,6 +67,24 @@ class BranchJob(Question):
     most: int
     asked: ClassVar[str] = "branch"
 
+    def call(self) -> str:
+        """The call that asks it; where it leaves another branch, that one is not told."""
+        setting, values = self.setting, np.array([self.value])
+        guess = self.start.told(setting.point(values).excitation.frequency)
+        start = f"start={setting.first_orbit(values, self.period, guess)}"
+        switch = [f"switch={KINDS[self.switch]!r}"] if self.switch >= 0 else []
+        steps = [f"longest={self.longest!r}", f"most={self.most}"]
+        (over,), (limits,) = setting.over, setting.limits
+        parts = [
+            repr(self.structure),
+            start,
+            *switch,
+            f"over={over!r}",
+            f"limits={limits!r}",
+            *steps,
+        ]
+        return f"branch({', '.join(parts)})"
+
     def count(self) -> int:
         """One branch."""
         return 1

@@ -49,6 +49,16 @@ class Setting:
         given.pop(ACCELERATION, None)
         return point(self.structure, given)
 
+    def first_orbit(self, values: Floats, period: int, guess: str) -> str:
+        """The call that asks for the orbit at values of the parameters."""
+        found, told = self.point(values), dict(self.excitation)
+        told.update(zip(self.over, map(float, values), strict=True))
+        shown = {name: told[name] for name in ASKED if name in told}
+        if self.acceleration(values):
+            shown[ACCELERATION] = self.acceleration(values)
+        parts = [f"{name}={value!r}" for name, value in {**shown, "period": period}.items()]
+        return f"orbit({', '.join([repr(found.structure), *parts, f'guess={guess}'])})"
+
     def acceleration(self, values: Floats) -> float:
         """The box's constant acceleration there."""
         given = dict(zip(self.over, map(float, values), strict=True))

@@ -20,9 +20,9 @@ from ..running.runner import answer
 from ..structures import Structure
 from .closed_form import Floats
 from .continuation import NoConvergenceError
-from .families import Setting
+from .families import ACCELERATION, Setting
 from .guesses import Guess, close_returns, from_phases, from_state
-from .impact_sequence import IMPACT, TURN
+from .impact_sequence import IMPACT, PHASE, RELEASE, TURN
 from .impact_sequence import Sequence as ImpactSequence
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import first_motion, single_impacts, verdict
@@ -57,6 +57,14 @@ class FirstGuess:
     kinds: tuple[int, ...] = ()
     nodes: tuple[tuple[float, ...], ...] = ()
 
+    def told(self, frequency: float) -> str:
+        """As a user would write it; contacts are left to the FMU."""
+        if self.state:
+            return f"{self.state!r}"
+        rows = zip(self.kinds, self.nodes, strict=True)
+        times = [row[PHASE] / frequency for kind, row in rows if kind != RELEASE]
+        return f"{{'impact_time': {times!r}}}"
+
     def sequence(self, periods: int) -> ImpactSequence:
         """The sequence of its nodes."""
         return ImpactSequence(periods, self.kinds)
@@ -89,6 +97,19 @@ class OrbitJob(Question):
     search: int
     tries: int
     asked: ClassVar[str] = "orbit"
+
+    def call(self) -> str:
+        """The call that asks it."""
+        frequency = self.setting.point(np.array([self.excitation[0][1]])).excitation.frequency
+        told = {**dict(self.excitation), "period": self.period}
+        if self.box_acceleration:
+            told[ACCELERATION] = self.box_acceleration
+        parts = [f"{self.structure!r}", *(f"{name}={value!r}" for name, value in told.items())]
+        if self.guess is None:
+            parts += [f"{name}={getattr(self, name)}" for name in ("transient", "search", "tries")]
+        else:
+            parts.append(f"guess={self.guess.told(frequency)}")
+        return f"orbit({', '.join(parts)})"
 
     @property
     def setting(self) -> Setting:

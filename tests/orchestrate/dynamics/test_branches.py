@@ -227,6 +227,15 @@ def test_start_values_and_directions():
     assert other.bifurcation_value.values == pytest.approx(one.bifurcation_value.values, abs=1e-10)
 
 
+def test_the_call_told_asks_it_again():
+    first = branch(PAPER, eta=2.5, limits=(2.4, 2.7))
+    names = {"orbit": orbit, "branch": branch, "Structure": Structure}
+    again = eval(first.attrs["call"], names)  # noqa: S307
+    assert again.bifurcation_value.values == pytest.approx(
+        first.bifurcation_value.values, abs=1e-12
+    )
+
+
 def test_a_result_kept_on_disk_is_the_same(tmp_path):
     question = {"eta": 1.5, "limits": (1.4, 1.6), "store": tmp_path / "branch.nc"}
     assert branch(PAPER, **question).identical(branch(PAPER, **question))

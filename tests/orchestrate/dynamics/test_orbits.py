@@ -178,6 +178,14 @@ def test_a_result_kept_on_disk_is_the_same(tmp_path):
     assert first.identical(again)
 
 
+@pytest.mark.parametrize("guessed", [False, True])
+def test_the_call_told_asks_it_again(guessed):
+    guess = known(3.0).state.values[0] if guessed else None
+    first = orbit(PAPER, eta=3.0, guess=guess)
+    again = eval(first.attrs["call"], {"orbit": orbit, "Structure": Structure})  # noqa: S307
+    assert again.xi.identical(first.xi)
+
+
 @pytest.mark.parametrize(
     ("question", "words"),
     [
