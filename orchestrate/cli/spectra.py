@@ -39,6 +39,8 @@ def add_parser(commands: Commands) -> None:
     option = parser.add_argument_group("shaken harmonically").add_argument
     option("--eta", metavar="VALUES", help="frequency ratios, FIRST:LAST:STEP or A,B,...")
     option("--transient", type=int, default=2000, help="periods dropped (default: %(default)s)")
+    option("--periods", type=int, default=64, help="periods of the record (default: %(default)s)")
+    option("--points", type=int, default=1024, help="samples a period (default: %(default)s)")
     add_running(parser, several=True)
 
 
@@ -87,7 +89,14 @@ def shaken_harmonically(arguments: argparse.Namespace) -> None:
     result = arguments.output / f"spectra_{structure.label()}_eta{arguments.eta}.nc"
     fresh = arguments.force or not result.exists()
     running: Any = {**running_of(arguments, result), "fmu": own_fmus(arguments.fmu)}
-    data = spectra(structure, eta=etas, transient=arguments.transient, **running)
+    data = spectra(
+        structure,
+        eta=etas,
+        transient=arguments.transient,
+        periods=arguments.periods,
+        points=arguments.points,
+        **running,
+    )
     for kind in map(str, data.kind.values):
         for eta in etas:
             part = data.acceleration.sel(kind=kind, mass=1, eta=eta)

@@ -1,0 +1,224 @@
+"""A user's mistake: one line that names the thing, its value and what is expected."""
+
+from __future__ import annotations
+
+import json
+
+import netCDF4
+import pytest
+
+QUICK = ("--transient", "5", "--samples", "8")
+SWEEP = [
+    (["--eta", "0"], ["--eta 0:", "> 0"]),
+    (["--eta", "-1"], ["--eta -1:", "0 < FIRST"]),
+    (["--eta", "-1:2:0.5"], ["--eta -1:2:0.5:", "0 < FIRST"]),
+    (["--eta", "nan"], ["--eta nan:", "FIRST:LAST:STEP"]),
+    (["--eta", "1:inf:0.1"], ["--eta 1:inf:0.1:", "FIRST:LAST:STEP"]),
+    (["--eta", "1e7"], ["eta = 10000000.0", "<= eta <= 1e+06"]),
+    (["--eta", "abc"], ["--eta abc:", "not numbers", "FIRST:LAST:STEP"]),
+    (["--eta", "1,2,"], ["--eta 1,2,:", "not numbers"]),
+    (["--eta", "1:2"], ["--eta 1:2:", "FIRST:LAST:STEP"]),
+    (["--eta", "2:1:0.1"], ["--eta 2:1:0.1:", "FIRST <= LAST"]),
+    (["--eta", "1:2:0"], ["--eta 1:2:0:", "STEP > 0"]),
+    (["--eta", "1:2:1e-9999999"], ["--eta 1:2:1e-9999999:", "10000000 values"]),
+    (["--eta", "1,1", "--direction", "up"], ["eta", "1.0 twice"]),
+    (["--over", "e", "--eta", "1"], ["--over and --values", "both"]),
+    (["--over", "e", "--values", "0.1,0.2"], ["--over e", "--eta"]),
+    (["--over", "e", "--values", "0.1,0.2", "--eta", "1,2"], ["--eta 1,2", "2 values"]),
+    (["--over", "f", "--values", "0.1", "--eta", "1"], ["'f'", "no parameter"]),
+    (["--over", "e", "--values", "0.1,1.2", "--eta", "1"], ["e = 1.2", "0 <= e <= 1"]),
+    (["--set", "f=1"], ["f", "no parameter of a structure", "gamma"]),
+    (["--set", "e"], ["--set e", "NAME=VALUE"]),
+    (["--set", "e="], ["--set e=", "nothing is no number"]),
+    (["--set", "e=abc"], ["--set e=abc", "abc is no number"]),
+    (["--set", "e=0.1", "--set", "e=0.2"], ["--set e=0.2", "set twice"]),
+    (["--set", "e=1.2"], ["e = 1.2", "0 <= e <= 1"]),
+    (["--set", "e=nan"], ["e = nan", "0 <= e <= 1"]),
+    (["--set", "D=-0.01"], ["D = -0.01", "0 <= D"]),
+    (["--set", "gamma=0"], ["gamma = 0.0", "1e-09 <= gamma <= 1"]),
+    (["--set", "mu=0"], ["mu = 0.0", "<= mu <="]),
+    (["--set", "D=0.1", "--set", "D1=0.2"], ["D and D1", "one of them"]),
+    (["--structure", "nowhere.toml"], ["nowhere.toml", "no such file", "paper"]),
+    (["--samples", "0"], ["samples = 0", "from 1"]),
+    (["--transient", "-1"], ["transient = -1", "from 0"]),
+    (["--samples", "1000000000000"], ["samples = 1000000000000"]),
+    (["--jobs", "0"], ["jobs = 0", "from 1"]),
+    (["--tolerance", "0"], ["tolerance = 0.0", "> 0"]),
+    (["--tolerance", "nan"], ["tolerance = nan", "finite"]),
+    (["--fmu", "nowhere.fmu"], ["nowhere.fmu", "no such file"]),
+]
+SIMULATE = [
+    ([], ["excitation", "--eta", "--frequency"]),
+    (["--eta", "1,2"], ["--eta 1,2", "2 values"]),
+    (["--eta", "1", "--frequency", "2"], ["--eta", "alone"]),
+    (["--frequency", "2"], ["--frequency with --amplitude"]),
+    (["--frequency", "-2", "--amplitude", "1"], ["frequency = -2.0"]),
+    (["--eta", "1", "--periods", "0"], ["periods = 0", "from 1"]),
+    (["--eta", "1", "--points", "0"], ["points = 0", "from 1"]),
+    (["--eta", "1", "--start", "0,1"], ["--start 0,1", "four numbers"]),
+    (["--eta", "1", "--start", "0,-1,0,0"], ["start = ", "x2 >= x1"]),
+    (["--eta", "1", "--phase", "nan"], ["phase = nan", "<= phase <="]),
+]
+SPECTRA = [
+    (["--eta", "abc"], ["--eta abc", "not numbers"]),
+    (["--eta", "1", "--eta0", "1.3"], ["--eta", "--eta0"]),
+    (["--eta", "1", "--points", "10"], ["highest = 40", "points/2"]),
+    (["--eta", "1", "--periods", "0"], ["periods = 0"]),
+    (["--eta", "1", "--transient", "-1"], ["transient = -1"]),
+    (["--eta0", "1", "--voltage", "1"], ["--eta0 and --voltage"]),
+    (["--drive", "paper"], ["paper", "no drive", "[motor] and [box]"]),
+    (["--drive", "nowhere.toml"], ["nowhere.toml", "no such file"]),
+    (["--voltage", "nan"], ["voltage = nan"]),
+    (["--set", "box_mass=-1"], ["box_mass = -1.0", "<= box_mass"]),
+]
+COUPLE = [
+    (["--drive", "rig"], ["rig", "no such file", "quick"]),
+    (["--structure", "glued"], ["glued", "no such file"]),
+    (["--set", "x=1"], ["x", "no parameter"]),
+    (["--algorithm", "euler"], ["algorithm", "euler", "jacobi", "rollback"]),
+    (["--eta0", "1.2"], ["--eta0 1.2", "FIRST:LAST"]),
+    (["--eta0", "nan:2"], ["voltage = nan V", "finite"]),
+    (["--eta0", "1:1"], ["voltage", "two different ones"]),
+    (["--eta0", "1:2", "--voltage", "1:2"], ["--eta0 and --voltage", "one of them"]),
+    (["--rate", "0"], ["--rate 0"]),
+    (["--rate", "nan"], ["--rate nan", "expected"]),
+    (["--rate", "1e-9", "--step", "1e-3"], ["steps", "at most 1e+09"]),
+    (["--step", "-0.1"], ["step = -0.1 s", "0.0001 <= step <= 1"]),
+    (["--increment", "2"], ["increment = 2.0 V", "0 <= increment"]),
+    (["--settle", "-1"], ["settle = -1.0 s", "0 <= settle"]),
+    (["--fmu", "nowhere.fmu"], ["nowhere.fmu", "no such file"]),
+]
+PAPER = [
+    (["--figures", "4"], ["figures: 4", "expected some of", "12", "maps"]),
+    (["--figures", "5,,7"], ["figures: nothing"]),
+    (["--figures", "spectra", "--jobs", "0"], ["jobs = 0"]),
+]
+MISTAKES = [
+    (command, options, words)
+    for command, cases in (
+        ("sweep", SWEEP),
+        ("simulate", SIMULATE),
+        ("spectra", SPECTRA),
+        ("couple", COUPLE),
+        ("paper", PAPER),
+    )
+    for options, words in cases
+]
+
+
+@pytest.mark.parametrize(
+    ("command", "options", "words"),
+    MISTAKES,
+    ids=lambda v: v if isinstance(v, str) else " ".join(v),
+)
+def test_mistake(ask, tmp_path, command, options, words):
+    if command == "sweep" and not {"--eta", "--over"} & set(options):
+        options = ["--eta", "1", *options]
+    done = ask(command, *options)
+    assert done.out == ""
+    done.complaint(*words)
+    assert done.err.startswith("error: ")
+    assert list(tmp_path.iterdir()) == []
+
+
+SYNTAX = [
+    ([], ["COMMAND"]),
+    (["swep"], ["'swep'"]),
+    (["--eta", "1"], ["COMMAND"]),
+    (["sweep", "--bogus", "1"], ["--bogus"]),
+    (["spectra", "--eta0=1", "--volt", "1"], ["--volt"]),  # no abbreviations
+    (["sweep", "--samples", "1.5"], ["--samples", "'1.5'", "int"]),
+    (["sweep", "--direction", "sideways"], ["--direction", "'sideways'", "up"]),
+    (["couple", "--only", "glued"], ["--only", "'glued'", "bonded"]),
+]
+
+
+@pytest.mark.parametrize(("arguments", "words"), SYNTAX, ids=lambda value: " ".join(value))
+def test_what_is_no_command(ask, arguments, words):
+    done = ask(*arguments)
+    *usage, line = done.err.splitlines()
+    assert (done.code, done.out) == (2, "")
+    assert usage[0].startswith("usage: ")
+    assert "error: " in line and all(word in line for word in words), line
+
+
+@pytest.mark.parametrize("command", [("sweep", "--eta", "1"), ("couple",), ("paper", "--quick")])
+def test_output_that_is_a_file(ask, tmp_path, command):
+    (tmp_path / "results").write_text("mine")
+    ask(*command, output=tmp_path / "results" / "below").complaint("--output", "expected a folder")
+    assert (tmp_path / "results").read_text() == "mine"
+
+
+def test_a_foreign_fmu_is_refused(ask, tmp_path, exported):
+    shaker = exported / "fmi2-python" / "MotorShaker.fmu"
+    ask("sweep", "--eta", "1", "--fmu", shaker).complaint("MotorShaker", "expected TwoMass")
+    ask("couple", "--fmu", shaker, "--fmu", shaker).complaint("a second MotorShaker")
+    (tmp_path / "empty.fmu").touch()
+    ask("sweep", "--eta", "1", "--fmu", tmp_path / "empty.fmu").complaint("not readable")
+
+
+def test_a_wrong_file_is_named_with_section_and_key(ask, tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text("[structure]\nm1 = 1.0\nstiffness = 2.0\n")
+    ask("sweep", "--eta", "1", "--structure", path).complaint("own.toml", "stiffness")
+    path.write_text("[structure]\nm1 = \n")
+    ask("sweep", "--eta", "1", "--structure", path).complaint("own.toml")
+
+
+def not_netcdf(path):
+    path.write_bytes(b"garbage" * 1000)
+
+
+def netcdf_of_others(path):
+    with netCDF4.Dataset(path, "w") as data:
+        data.title = "of others"
+
+
+@pytest.mark.parametrize("make", [not_netcdf, netcdf_of_others, lambda path: path.mkdir()])
+def test_something_else_in_the_place_of_the_result(ask, tmp_path, make):
+    result = tmp_path / "results" / "orbit_e0.7_D0.005_list.nc"
+    result.parent.mkdir()
+    make(result)
+    before = result.read_bytes() if result.is_file() else b""
+    done = ask("sweep", "--eta", "1", *QUICK)
+    done.complaint(result, "not a result of this project", code=done.code)
+    assert done.code in (1, 2)
+    assert [path.name for path in result.parent.iterdir()] == [result.name]
+    assert (result.read_bytes() if result.is_file() else b"") == before
+
+
+def test_a_stale_result_is_refused_with_what_has_changed(ask, tmp_path):
+    asked = ("sweep", "--eta", "1", *QUICK)
+    assert ask(*asked).code == 0
+    (result,) = (tmp_path / "results").glob("*.nc")
+    with netCDF4.Dataset(result, "a") as data:
+        identity = json.loads(data.identity)
+        identity["code"]["orchestrate.response.respond"] = "older"
+        data.identity = json.dumps(identity)
+    before = result.read_bytes()
+    words = "stale", "response/respond.py", "--force", "--keep-stale"
+    ask(*asked).complaint(*words)
+    assert result.read_bytes() == before
+    kept = ask(*asked, "--keep-stale")
+    assert kept.code == 0 and "complete already" in kept.out
+    assert ask(*asked, "--force").code == 0
+    assert ask(*asked).code == 0
+
+
+def test_debug_shows_where_an_error_came_from(tmp_path):
+    from orchestrate.cli import main
+    from orchestrate.errors import InputError
+
+    for arguments in (["--debug", "sweep"], ["sweep", "--debug"]):
+        with pytest.raises(InputError, match="e = 2"):
+            main([*arguments, "--set", "e=2", "--output", str(tmp_path)])
+
+
+def test_no_scheduler(ask, tmp_path):
+    address = "tcp://127.0.0.1:1"
+    ask("sweep", "--eta", "1", "--cluster", address).complaint(f"cluster {address}", "no scheduler")
+    assert list((tmp_path / "results").glob("*.nc")) == []
+
+
+def test_undamped_resonance_is_a_failure_not_a_mistake(ask):
+    ask("sweep", "--eta", "1", "--set", "D=0", *QUICK).complaint("natural frequency", code=1)

@@ -1,0 +1,92 @@
+"""What the command line says of itself: it starts at once, and its examples can be typed."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from orchestrate import cli
+from orchestrate.cli.options import values_of
+
+from .commands import ROOT
+
+COMMANDS = ("build", "simulate", "sweep", "spectra", "couple", "paper")
+
+
+def help_of(*arguments):
+    with pytest.raises(SystemExit) as ended:
+        cli.main([*arguments, "--help"])
+    assert ended.value.code == 0
+
+
+def test_help_lists_commands_and_shipped_sets(capsys):
+    help_of()
+    out, err = capsys.readouterr()
+    assert err == "" and out.startswith("usage: ")
+    listed = [line.split()[0] for line in out.splitlines() if line.startswith(" ") and line.strip()]
+    assert {*COMMANDS, "paper", "quick", "beam"} <= set(listed)
+
+
+@pytest.mark.parametrize("called", ["/usr/bin/vibroimpact", "/somewhere/orchestrate/__main__.py"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_examples_can_be_typed_as_they_stand(capsys, monkeypatch, command, called):
+    monkeypatch.setattr(sys, "argv", [called])
+    help_of(command)
+    program = "vibroimpact" if called.endswith("vibroimpact") else "python -m orchestrate"
+    text = capsys.readouterr().out
+    assert text.startswith(f"usage: {program} {command}")
+    examples = [line.strip() for line in text.splitlines() if line.startswith(f"  {program} ")]
+    assert examples
+    for example in examples:
+        words = example.removeprefix(program).split("   ")[0].split()
+        arguments = cli.make_parser().parse_args(cli.with_negative_values(words))
+        assert callable(arguments.run)
+
+
+def test_it_starts_at_once():
+    command = [sys.executable, "-m", "orchestrate", "--help"]
+    times = []
+    for _ in range(3):
+        begin = time.perf_counter()
+        subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+        times.append(time.perf_counter() - begin)
+        if times[-1] < 0.5:
+            return
+    pytest.fail(f"it took {min(times):.2f} s")
+
+
+def test_what_is_slow_is_loaded_when_it_is_needed():
+    code = "import sys, orchestrate.cli; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    loaded = set(done.stdout.split())
+    assert not loaded & {"numpy", "xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "loky"}
+
+
+def test_the_default_range_has_7901_values_and_both_ends():
+    etas, is_range = values_of("--eta", "0.1:8.0:0.001")
+    assert is_range and (len(etas), etas[0], etas[-1]) == (7901, 0.1, 8.0)
+    assert list(etas) == [float(f"{n / 1000:.3f}") for n in range(100, 8001)]
+
+
+@given(st.integers(1, 10**7), st.integers(1, 10**5), st.integers(0, 300))
+def test_a_range_has_its_decimal_values_exactly(first, step, count):
+    def text(n):
+        return f"{n // 10000}.{n % 10000:04d}"
+
+    grid = [text(first + k * step) for k in range(count + 1)]
+    found, _ = values_of("--eta", f"{grid[0]}:{grid[-1]}:{text(step)}")
+    assert found == tuple(map(float, grid))
+
+
+def test_build(capsys, tmp_path, monkeypatch):
+    (tmp_path / "folder").write_text("mine")
+    code = cli.main(["build", "--folder", str(tmp_path / "folder")])
+    assert code == 1 and "expected a folder that can be written" in capsys.readouterr().err
+    monkeypatch.setattr("orchestrate.access.build", lambda folder: [tmp_path / "folder"])
+    assert cli.main(["build"]) == 0
+    assert capsys.readouterr().out == f"{tmp_path / 'folder'}  0 kB\n"

@@ -1,0 +1,91 @@
+"""A command ended by force goes on where it was: its results have the uninterrupted bytes."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import sys
+import time
+
+import pytest
+
+from orchestrate.cli import main
+
+from .commands import all_end, below, end, kill, wait_for
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups and /proc")
+INTERRUPTED = "interrupted: nothing computed is lost, the same command goes on from here"
+RUNS = {  # long enough to be ended by force, chaotic, so that a wrong start is seen
+    "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "2000", "--samples", "20"),
+    "couple": ("couple", "--only", "delaminated", "--eta0", "1.4:1.42", "--rate", "2e-5"),
+    "spectra": (
+        *("spectra", "--eta", "1.1:1.3:0.05", "--jobs", "1"),
+        *("--transient", "100000", "--periods", "16", "--points", "128"),
+    ),
+    "paper": ("paper", "--quick", "--figures", "maps"),
+}
+
+
+@pytest.fixture
+def uninterrupted(tmp_path, monkeypatch):
+    """Bytes of the results of a run, computed in one go in this process."""
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+
+    def results(name: str) -> dict[str, bytes]:
+        folder = tmp_path / "uninterrupted"
+        assert main([*RUNS[name], "--output", str(folder)]) == 0
+        return {path.name: path.read_bytes() for path in sorted(folder.glob("*.nc"))}
+
+    return results
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_kill_9_at_random_moments(commands, uninterrupted, name):
+    chance, kept, kills = random.Random(name), 0, 0
+    while kills < (2 if name == "sweep" else 1):
+        process = commands.start(*RUNS[name])
+        wait_for(lambda: commands.chunks() > kept, process, "another chunk was on disk")  # noqa: B023
+        time.sleep(chance.uniform(0.0, 0.2))
+        if kill(process).code != -signal.SIGKILL:
+            break  # it was done before
+        kills += 1
+        assert commands.chunks() >= kept or commands.results(), "chunks are lost"
+        kept = commands.chunks()
+    assert kills
+    commands.run(*RUNS[name]).success()
+    assert commands.results() == uninterrupted(name)
+    left = [
+        name for name in commands.files() if not name.endswith((".nc", ".png", ".pdf", ".html"))
+    ]
+    assert left == []
+
+
+def test_ctrl_c_is_one_line_and_leaves_nothing_behind(commands):
+    process = commands.start(*RUNS["sweep"])
+    wait_for(lambda: commands.chunks() >= 1, process, "a chunk was on disk")
+    started = list(below(process.pid))
+    assert kill(process, signal.SIGINT).complaint(code=130) == INTERRUPTED
+    assert all_end(started)
+    assert [path.name for path in commands.temporary.iterdir()] == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+def test_no_worker_outlives_the_main_process(commands, number):
+    process = commands.start(*RUNS["sweep"], "--jobs", "2")
+    wait_for(lambda: len(list(below(process.pid))) >= 2, process, "workers were there")
+    workers = list(below(process.pid))
+    os.kill(process.pid, number)
+    process.wait()
+    assert all_end(workers)
+
+
+def test_the_same_command_twice_at_once_spoils_nothing(commands, uninterrupted):
+    first = commands.start(*RUNS["sweep"])
+    wait_for(lambda: commands.chunks() >= 1, first, "a chunk was on disk")
+    second = commands.start(*RUNS["sweep"])
+    answers = [end(first), end(second)]
+    assert answers[0].code == 0
+    assert "Traceback" not in answers[1].err
+    assert answers[1].code == 0 or answers[1].complaint("another process", code=answers[1].code)
+    assert commands.results() == uninterrupted("sweep")

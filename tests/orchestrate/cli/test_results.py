@@ -1,0 +1,165 @@
+"""What commands leave: results that describe themselves, pictures; finished ones stay."""
+
+from __future__ import annotations
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib import image
+
+from orchestrate.access import OSCILLATOR, find
+from orchestrate.version import __version__
+
+SWEEP = ("sweep", "--eta", "1.28:1.31:0.005", "--transient", "20", "--samples", "12")
+NAME = "orbit_e0.7_D0.005_up"
+
+
+def fingerprint(folder):
+    """Bytes and times of all that is there."""
+    return {p.name: (p.read_bytes(), p.stat().st_mtime_ns) for p in folder.iterdir()}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return tmp_path / "results"
+
+
+def shows_something(path):
+    """Whether a picture has dots, frame and labels on white."""
+    grey = image.imread(path)[..., :3].mean(axis=2)
+    return min(grey.shape) > 300 and 0.001 < (grey < 0.5).mean() < 0.5
+
+
+def test_a_sweep(ask, folder):
+    done = ask(*SWEEP)
+    assert done.code == 0
+    assert sorted(fingerprint(folder)) == [f"{NAME}.nc", f"{NAME}.png"]
+    assert "largest xi_Rel: " in done.out and str(folder / f"{NAME}.png") in done.out
+    assert shows_something(folder / f"{NAME}.png")
+    data, fmu = xr.load_dataset(folder / f"{NAME}.nc"), find(OSCILLATOR)
+    assert data.xi_rel.dims == ("eta", "sample") and data.xi_rel.shape == (7, 12)
+    np.testing.assert_array_equal(data.sample, np.arange(21, 33))
+    about = {"e": 0.7, "d1": 0.01, "k2": 1.2, "transient": 20, "samples": 12, "direction": "up"}
+    about |= {"fmu_guid": fmu.guid, "fmu_model": fmu.name, "fmi_version": fmu.fmi_version}
+    assert {key: data.attrs[key] for key in about} == about
+    assert __version__ in data.attrs["source"] and data.attrs["call"].startswith("sweep(")
+    assert all(len(str(value)) < 4000 for value in data.attrs.values())
+    with netCDF4.Dataset(folder / f"{NAME}.nc") as found:
+        assert all(v.units and v.long_name for v in found.variables.values())
+
+
+def test_what_is_finished_stays_as_it_is(ask, folder):
+    ask(*SWEEP)
+    before = fingerprint(folder)
+    again = ask(*SWEEP)
+    assert again.code == 0 and f"{NAME}.nc: complete already" in again.out
+    assert fingerprint(folder) == before
+    (folder / f"{NAME}.png").unlink()
+    ask(*SWEEP)
+    assert fingerprint(folder).keys() == before.keys()
+    assert fingerprint(folder)[f"{NAME}.nc"] == before[f"{NAME}.nc"]
+
+
+def test_force_computes_the_same_bytes_anew(ask, folder, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    ask(*SWEEP)
+    before = fingerprint(folder)
+    assert ask(*SWEEP, "--force").code == 0
+    for name, (content, time) in fingerprint(folder).items():
+        assert content == before[name][0] and time != before[name][1]
+
+
+@pytest.mark.parametrize("option", [("--samples", "13"), ("--eta", "1.28:1.31:0.01")])
+def test_another_questions_result_is_not_replaced(ask, folder, option):
+    ask(*SWEEP)
+    before = fingerprint(folder)
+    ask(*SWEEP, *option).complaint(folder / f"{NAME}.nc", "another question", "force")
+    assert fingerprint(folder) == before
+
+
+def test_a_failed_picture_is_drawn_by_the_same_command(ask, folder):
+    picture = folder / f"{NAME}.png"
+    picture.mkdir(parents=True)  # stands for a full disk, or a kill, at that moment
+    ask(*SWEEP, "--force").complaint(picture, code=1)
+    picture.rmdir()
+    assert ask(*SWEEP).code == 0
+    assert picture.is_file()
+
+
+def test_a_list_is_taken_in_its_own_order(ask, folder):
+    ask("sweep", "--eta", "1.31, 1.28,2", "--transient", "3", "--samples", "2")
+    data = xr.load_dataset(folder / "orbit_e0.7_D0.005_list.nc")
+    assert data.eta.values.tolist() == [1.31, 1.28, 2.0]
+    assert data.attrs["direction"] == "given"
+
+
+def test_up_and_down_in_one_picture(ask, folder):
+    done = ask(*SWEEP, "--direction", "both")
+    data = xr.load_dataset(folder / "orbit_e0.7_D0.005_both.nc")
+    assert data.direction.values.tolist() == ["up", "down"]
+    assert "up and down differ" in done.out
+    assert shows_something(folder / "orbit_e0.7_D0.005_both.png")
+
+
+def test_over_another_parameter_of_an_own_structure(ask, folder, tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text("[structure]\nm1 = 1.5\nm2 = 1.2\nk1 = 8000.0\nk2 = 9000.0\nd1 = 1.0\n")
+    asked = ("--over", "e", "--values", "0.1:0.9:0.2", "--eta", "1.1", "--samples", "4")
+    assert ask("sweep", "--structure", path, "--set", "d2=2", *asked).code == 0
+    (result,) = folder.glob("*.nc")
+    data = xr.load_dataset(result)
+    assert data.xi_rel.dims == ("e", "sample")
+    assert {n: data.attrs[n] for n in ("m1", "d2")} == {"m1": 1.5, "d2": 2.0}
+
+
+def test_the_default_range_is_the_papers(ask, monkeypatch):
+    asked = {}
+
+    def sweep(structure, **question):
+        asked.update(question, structure=structure)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("orchestrate.sweep", sweep, raising=False)
+    assert ask("sweep").code == 130
+    assert list(asked["eta"]) == [float(f"{n / 1000:.3f}") for n in range(100, 8001)]
+    assert asked["structure"].label() == "e0.7_D0.005"
+
+
+def test_a_motion(ask, folder):
+    done = ask("simulate", "--eta", "0.4", "--transient", "50", "--periods", "2", "--points", "50")
+    assert "60 impacts" in done.out and "2 of them begin permanent contact" in done.out
+    assert shows_something(folder / "motion_e0.7_D0.005_eta0.4.png")
+    asked = ("--frequency", "80", "--amplitude", "0.001", "--periods", "2", "--set", "bonded=true")
+    done = ask("simulate", "--structure", "beam", *asked)
+    assert done.code == 0 and "0 impacts" in done.out
+
+
+def test_spectra(ask, folder):
+    short = ("--transient", "300", "--periods", "8", "--points", "256")
+    done = ask("spectra", "--eta", "1.047", *short)
+    assert "delaminated at eta = 1.047: largest line" in done.out
+    assert shows_something(folder / "spectra_e0.7_D0.005_eta1.047.png")
+
+
+@pytest.fixture
+def coupled(ask):
+    return ask("couple", "--eta0", "1.4:1.41", "--rate", "2e-4", "--settle", "50")
+
+
+def test_the_weak_drive(ask, folder, coupled):
+    assert coupled.code == 0, coupled.err
+    names = ("couple_quick.png", "couple_quick_bonded.nc", "couple_quick_delaminated.nc")
+    assert sorted(fingerprint(folder)) == list(names)
+    assert "bonded: " in coupled.out and "delaminated: " in coupled.out
+    data = xr.load_dataset(folder / "couple_quick_delaminated.nc")
+    assert data.sizes["revolution"] > 15
+    assert abs(data.attrs["missing_over_motor_work"]) < 1e-6
+    assert shows_something(folder / "couple_quick.png")
+
+
+def test_the_weak_drive_as_a_package(ask, tmp_path):
+    path = tmp_path / "weak_drive.ssp"
+    assert ask("couple", "--ssp", path).code == 0
+    assert path.stat().st_size > 1000
+    ask("couple", "--ssp", "/nowhere/x.ssp").complaint("/nowhere/x.ssp", code=1)
