@@ -11,6 +11,7 @@ from typing import Any
 from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
 
 import orchestrate
 
@@ -46,6 +47,7 @@ nb_execution_raise_on_error = True
 nb_merge_streams = True
 nb_output_stderr = "remove"  # progress bars
 
+autodoc_default_options = {"members": True, "show-inheritance": True}
 autodoc_typehints = "none"  # numpydoc's sections have the types
 autodoc_member_order = "bysource"
 python_maximum_signature_line_length = 80
@@ -69,6 +71,33 @@ def as_mathml_block(translator: Any, node: nodes.Element) -> None:
     raise nodes.SkipNode
 
 
+class Public(SphinxDirective):
+    """``.. public:: PLACE``: all that the public face has from there, so that none is left out."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Describe each name by its docstring."""
+        found = {name: getattr(orchestrate, name) for name in orchestrate.__all__}
+        place = f"orchestrate.{self.arguments[0]}"
+        names = [name for name, what in found.items() if is_from(what, place)]
+        text = "\n\n".join(f".. auto{kind_of(found[name])}:: {name}" for name in names)
+        return self.parse_text_to_nodes(f".. currentmodule:: orchestrate\n\n{text}\n")
+
+
+def is_from(what: Any, place: str) -> bool:
+    """Whether something public comes from a module or a package."""
+    return f"{getattr(what, '__module__', '')}.".startswith(f"{place}.")
+
+
+def kind_of(what: Any) -> str:
+    """What autodoc calls it."""
+    if not isinstance(what, type):
+        return "function"
+    return "exception" if issubclass(what, BaseException) else "class"
+
+
 def setup(app: Sphinx) -> None:
-    """Tell Sphinx about the formulas."""
+    """Tell Sphinx about the formulas and the public face."""
+    app.add_directive("public", Public)
     app.add_html_math_renderer("mathml", (as_mathml, None), (as_mathml_block, None))

@@ -8,7 +8,7 @@ import inspect
 import numpy as np
 
 VALUES = 6  # of a list, at most
-MOST = {"transient": 20, "periods": 60, "samples": 12, "starts": 4, "points": 64, "settle": 20}
+MOST = {"transient": 20, "periods": 60, "samples": 12, "starts": 4, "points": 128, "settle": 20}
 QUESTIONS = (
     *("simulate", "resonance", "sweep", "spectra", "map", "lyapunov", "attractors", "basin"),
     *("impact_statistics", "couple"),

@@ -43,16 +43,3 @@ def test_commands_run(page, words, folder, small, capsys):
         return
     write_files(folder)
     assert cli.main(list(words)) == 0, capsys.readouterr().err
-
-
-def test_code_fits_its_place():
-    """Lines of code are not wider than the page."""
-    pages = [page for page in PAGES if page.parent.name == "docs"]
-    wide = [
-        (page.name, line)
-        for page in pages
-        for text in (*python_blocks(page), *toml_files(page).values())
-        for line in text.splitlines()
-        if len(line) > 88
-    ]
-    assert wide == []

@@ -13,7 +13,8 @@ PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.glob("*.md")
 FENCE = re.compile(
     r"^(?P<fence>```+|~~~+) *(?P<kind>[^\n`]*)\n(?P<body>.*?)^(?P=fence) *$", re.M | re.S
 )
-COMMAND = re.compile(r"(?:[\w./]*/)?python3? -m orchestrate\b[^\n`]*|\bvibroimpact [a-z][^\n`]*")
+SPAN = re.compile(r"`([^`\n]+)`")
+COMMAND = re.compile(r"(?:[\w./]*/)?python3? -m orchestrate(?:\s.*)?$")
 PLACEHOLDER = re.compile(r"\b(?:COMMAND|QUESTION)\b|\.\.\.$")
 
 
@@ -62,13 +63,14 @@ def toml_files(page: Path) -> dict[str, str]:
 
 def commands(page: Path) -> list[list[str]]:
     """Command lines of this project, as arguments; without those that only show a form."""
-    text = page.read_text(encoding="utf-8").replace("\\\n", " ")
+    text = page.read_text(encoding="utf-8")
+    shown = [block.text for block in blocks(page) if block.kind in ("", "sh", "text")]
+    said = [line for part in shown for line in part.replace("\\\n", " ").splitlines()]
+    said += SPAN.findall(FENCE.sub("", text))
     found = []
-    for line in COMMAND.findall(text):
-        said = line.split("&&")[0].strip()
-        if PLACEHOLDER.search(said):
-            continue
-        words = shlex.split(said, comments=True)
-        first = words.index("orchestrate") if "orchestrate" in words else 0
-        found.append(words[first + 1 :])
+    for line in said:
+        command = COMMAND.search(line)
+        if command and not PLACEHOLDER.search(command[0]):
+            words = shlex.split(command[0].partition("&&")[0], comments=True)
+            found.append(words[words.index("orchestrate") + 1 :])
     return found
