@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, EventInstance, finder
 from ..errors import InputError
 from ..response.labels import variable
-from ..response.questions import Question, numbers, whole
+from ..response.questions import Question, checked_structure, numbers, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -22,7 +22,7 @@ from .border_curve import Border
 from .branch_walk import LIMIT, LONG, STUCK
 from .branches import begin_of, excitation_of
 from .continuation import NoConvergenceError, Root, Walk, corrected, held
-from .families import ACCELERATION, Family, Setting, check_names
+from .families import ACCELERATION, Family, Setting, check_names, knocking
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import solve, verdict
 from .orbits import FirstGuess, finite, told
@@ -242,6 +242,7 @@ def border(
     >>> curve.attrs["kind"], curve.e.values[[0, -1]]
     ('Neimark-Sacker', array([0.69, 0.71]))
     """
+    knocking(checked_structure(structure))
     names = tuple(over)
     check_names(names)
     if len(names) != 2 or names[0] != start.attrs.get("over"):

@@ -13,14 +13,14 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, EventInstance, finder
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import Question, numbers, whole
+from ..response.questions import Question, checked_structure, numbers, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .bifurcations import KINDS, Look
 from .branch_walk import Event, Leg, Pace, backwards, follow, leaving
 from .continuation import NoConvergenceError
-from .families import ACCELERATION, Setting, check_names
+from .families import ACCELERATION, Setting, check_names, knocking
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import solve, verdict
 from .orbits import FirstGuess, finite, from_result, orbit, told
@@ -270,6 +270,7 @@ def branch(
     array([2.64796105, 2.7855415 ])
     """
     check_names((over,))
+    knocking(checked_structure(structure))
     low_high = checked_limits(over, limits)
     given = excitation_of(start, over, told(eta, frequency, amplitude), low_high)
     if start is None:

@@ -80,6 +80,19 @@ class Setting:
         return Setting(structure, rest, self.over[:1], self.limits[:1], acceleration)
 
 
+def knocking(structure: Structure) -> Structure:
+    """A structure whose masses knock.
+
+    Raises
+    ------
+    InputError
+        Where they are glued.
+    """
+    if structure.bonded:
+        raise InputError("bonded = True: expected a structure whose masses knock")
+    return structure
+
+
 def check_names(over: tuple[str, ...]) -> None:
     """Whether these are parameters that can vary.
 

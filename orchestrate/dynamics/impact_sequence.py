@@ -255,7 +255,7 @@ class Ring:
             return np.full(4, complex(np.inf))
         if self.contact.any():
             found[np.argsort(np.abs(found))[:2]] = 0.0
-        return found[np.lexsort((found.imag, -np.abs(found).round(14)))]
+        return found[np.lexsort((found.imag, found.real.round(12), -np.abs(found).round(12)))]
 
     def dictated(self) -> float:
         """The multipliers' product, by Liouville's formula and e^2 for each impact."""

@@ -20,7 +20,7 @@ from ..running.runner import answer
 from ..structures import Structure
 from .closed_form import Floats
 from .continuation import NoConvergenceError
-from .families import ACCELERATION, Setting
+from .families import ACCELERATION, Setting, knocking
 from .guesses import Guess, close_returns, from_phases, from_state
 from .impact_sequence import IMPACT, PHASE, RELEASE, TURN
 from .impact_sequence import Sequence as ImpactSequence
@@ -310,6 +310,7 @@ def orbit(
     array([-3.3595, -0.5903, -0.5903, -0.1421])
     """
     given = one_point(structure, eta, frequency, amplitude)
+    knocking(structure)
     count = whole("period", period, 1, MOST_PERIODS)
     job = OrbitJob(
         name=f"orbit_{structure.label()}_{count}T",

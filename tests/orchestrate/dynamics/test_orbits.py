@@ -122,6 +122,32 @@ def test_lyapunov_exponents_are_those_of_the_multipliers(eta, period):
     assert told == pytest.approx(seen.exponent.item(), rel=5e-3)
 
 
+@pytest.mark.parametrize(
+    ("numbers", "eta"),
+    [
+        ({"D1": 0.005, "D2": 0.03, "mu": 0.5, "kappa": 1.4}, 0.35),  # f knows the velocity (18)
+        ({"D1": 0.01, "D2": 2.0}, 0.5),  # mass 2 overdamped
+        ({"e": 0.0}, 0.8),  # no chattering: every impact sticks, or both masses fly on together
+        ({"e": 1.0}, 1.5),
+    ],
+)
+def test_other_structures_are_run_through_by_the_fmu(numbers, eta):
+    found = known(eta, structure=Structure.nondimensional(**numbers))
+    assert found.fmu_same_impacts
+    assert found.fmu_return < 1e-13
+    assert found.permanent_contact == (numbers.get("e") != 1.0)
+
+
+def test_an_orbit_without_impacts():
+    """Where the box's acceleration holds the gap open the response is harmonic."""
+    found = orbit(PAPER, eta=1.5, box_acceleration=30.0)
+    assert not (found.node_kind.values >= 0).any()
+    assert found.fmu_same_impacts
+    assert found.fmu_return < 1e-10
+    decay = np.exp(-0.005 * 2.0 * np.pi / 1.5)
+    assert np.abs(multipliers(found)) == pytest.approx([decay] * 4)
+
+
 def test_an_attractor_found_by_simulation_is_the_orbit():
     """A stable orbit attracts the FMU from rest; an unstable one does not."""
     with EventInstance(find(OSCILLATOR).path) as instance:
@@ -195,11 +221,14 @@ def test_the_call_told_asks_it_again(guessed):
         ({"eta": 4.0, "period": 1, "guess": {"time": [1.0]}}, "guess"),
         ({"eta": 4.0, "guess": {"impact_time": [0.1, 9.0]}}, "impact_time"),
         ({"eta": 4.0, "guess": (0.0, -1.0, 0.0, 0.0)}, "guess"),
+        ({"eta": 1.0, "structure": PAPER.replace(D=0.0)}, "undamped resonance of mass 1"),
+        ({"eta": 1.0, "structure": PAPER.as_bonded()}, "bonded"),
+        ({"eta": 1.0, "structure": 7}, "structure = 7"),
     ],
 )
 def test_what_cannot_be_asked(question, words):
     with pytest.raises(InputError, match=words) as caught:
-        orbit(PAPER, **question)
+        orbit(**{"structure": PAPER, **question})
     assert "\n" not in str(caught.value)
     assert "expected" in str(caught.value)
 
