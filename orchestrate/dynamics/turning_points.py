@@ -122,22 +122,38 @@ def nearest(ring: Ring, turns: TurningPoints) -> tuple[float, int, float]:
 def weakest_force(ring: Ring) -> float:
     """How near permanent contact comes to an earlier release: the smallest -f (18) where f turns.
 
-    Infinite where there is no contact, or f has no turning point there that comes near to zero.
+    Infinite where there is no contact, or f does not turn there.
     """
     if not ring.contact.any():
         return np.inf
     segment, phase = looks(ring)
     inside = ring.contact[segment]
     segment, phase = segment[inside], phase[inside]
-    state = ring.states(segment, phase)
-    pressed = -ring.form.force(state[:, 0], state[:, 2])
-    middle = (segment[2:] == segment[:-2]) & (pressed[1:-1] < pressed[2:])
-    dips = np.flatnonzero(middle & (pressed[1:-1] <= pressed[:-2])) + 1
-    if not len(dips):
+    rate = pressing(ring, segment, phase)[1]
+    turned = (rate[1:] > 0.0) & (rate[:-1] <= 0.0) & (segment[1:] == segment[:-1])
+    if not turned.any():
         return np.inf
-    left, lowest, right = pressed[dips - 1], pressed[dips], pressed[dips + 1]
-    bend = left - 2.0 * lowest + right
-    return float((lowest - (right - left) ** 2 / (8.0 * np.where(bend > 0.0, bend, np.inf))).min())
+    low, high, segment = phase[:-1][turned], phase[1:][turned], segment[1:][turned]
+    found = 0.5 * (low + high)
+    for _ in range(REFINEMENTS):
+        _, rate, curvature = pressing(ring, segment, found)
+        step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
+        found = np.clip(found - ring.form.eta * step, low, high)
+    return float(pressing(ring, segment, found)[0].min())
+
+
+def pressing(ring: Ring, segment: NDArray[np.int_], phase: Floats) -> tuple[Floats, Floats, Floats]:
+    """-f (18) inside permanent contact, and its first two derivatives by tau."""
+    form, state = ring.form, ring.states(segment, phase)
+    position, velocity = state[:, 0], state[:, 2]
+    acceleration = form.field(state, phase, True)[:, 2]
+    jerk = form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
+    jerk -= form.stiffness[2] * velocity
+    return (
+        -form.force(position, velocity),
+        -form.force(velocity, acceleration),
+        -form.force(acceleration, jerk),
+    )
 
 
 def phase_zero(ring: Ring) -> Floats:
