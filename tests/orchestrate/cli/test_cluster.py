@@ -1,0 +1,79 @@
+"""A command on the workers of a Dask scheduler: the same bytes as here, though a worker is lost."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO
+
+import pytest
+
+from orchestrate.cli import main
+
+from .commands import PATIENCE, ROOT, end, wait_for
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups")
+RUN = ("paper", "--quick", "--figures", "maps")
+PLACE = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory")
+Dask = tuple[subprocess.Popen[bytes], IO[str]]
+
+
+def start(folder: Path, name: str, *arguments: str) -> Dask:
+    """A process of Dask, and its log."""
+    log = (folder / f"{name}.log").open("w+")
+    command = [sys.executable, "-m", "dask", *arguments]
+    streams = {"stdout": log, "stderr": subprocess.STDOUT}
+    return subprocess.Popen(command, cwd=ROOT, start_new_session=True, **streams), log
+
+
+def read(dask: Dask, pattern: str) -> str:
+    """Wait until a log has what a pattern describes."""
+    stop = time.monotonic() + PATIENCE
+    while True:
+        dask[1].seek(0)
+        found = re.search(pattern, text := dask[1].read())
+        if found:
+            return found.group()
+        assert time.monotonic() < stop and dask[0].poll() is None, text
+        time.sleep(0.05)
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """Address of a scheduler on loopback, and its two workers."""
+    pytest.importorskip("distributed")
+    options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    started = [start(tmp_path, "scheduler", "scheduler", *options)]
+    try:
+        address = read(started[0], r"tcp://127\.0\.0\.1:\d+")
+        for name in ("one", "two"):
+            started.append(start(tmp_path, name, "worker", address, *PLACE, str(tmp_path)))
+        for dask in started[1:]:
+            read(dask, "Registered to")
+        yield address, [process for process, _ in started[1:]]
+    finally:
+        for process, log in started:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            log.close()
+
+
+def test_a_lost_worker_loses_nothing(commands, cluster, tmp_path, monkeypatch):
+    address, workers = cluster
+    process = commands.start(*RUN, "--cluster", address)
+    wait_for(lambda: commands.chunks() >= 2, process, "two chunks were on disk")
+    os.kill(workers[0].pid, signal.SIGKILL)
+    done = end(process)
+    assert done.code == 0, done.err
+    assert workers[1].poll() is None
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    assert main([*RUN, "--output", str(tmp_path / "here")]) == 0
+    here = {path.name: path.read_bytes() for path in (tmp_path / "here").glob("*.nc")}
+    assert commands.results() == here and len(here) == 3

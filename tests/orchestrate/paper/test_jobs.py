@@ -1,0 +1,119 @@
+"""The paper's own jobs: curves, limits over gamma, and what is derived from other results."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from orchestrate.access import OSCILLATOR, find, finder
+from orchestrate.dynamics.attractors import AttractorsJob
+from orchestrate.dynamics.basins import Side
+from orchestrate.dynamics.clusters import Telling
+from orchestrate.paper.basin import EvenBasinJob
+from orchestrate.paper.cases import CASES
+from orchestrate.paper.curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
+from orchestrate.paper.gamma import GammaJob
+from orchestrate.paper.spectra import PeakSpectraJob
+from orchestrate.response.sweep import SweepJob
+from orchestrate.running.runner import gather
+from orchestrate.structures import Excitation
+
+PAPER = CASES["elastic"]
+DAMPED = CASES["damped"]
+
+
+@pytest.fixture(scope="module")
+def swept(exported):
+    """Sweeps of the damped structure: past its main peak, and up to a peak that it does not reach."""
+    short = {"structure": DAMPED, "transient": 60, "samples": 20}
+    peak = SweepJob(name="peak", eta=tuple(np.arange(1.03, 1.1, 0.01).round(3)), **short)
+    rising = SweepJob(name="rising", eta=(1.85, 1.9), **short)
+    return peak, rising
+
+
+def ask(*jobs):
+    """The last job's result."""
+    return gather(jobs, {"progress": False, "jobs": 1}, finder({}))[-1]
+
+
+def curves(kind, sweep, **more):
+    return kind(
+        name="curves",
+        sweeps=(sweep.name,),
+        structures=(sweep.structure,),
+        **{"skip": 5, "keep": 2, "points": 50, **more},
+    )
+
+
+def test_curves_at_frequencies_and_peaks(swept):
+    sweep = swept[0]
+    found = ask(sweep, curves(CurvesAtFrequencies, sweep, etas=(1.05, 1.09)))
+    assert found.eta.values.tolist() == [1.05, 1.09]
+    assert found.panel_of.values.tolist() == sorted(found.panel_of.values)
+    at_peak = ask(sweep, curves(CurvesAtPeaks, sweep))
+    assert at_peak.eta.values.tolist() == [1.06]
+    state = at_peak.state.values
+    assert (state[:, 1] - state[:, 0] >= -1e-6).all()
+    assert (at_peak.kind.values == 0).any()
+    assert at_peak.D.values.tolist() == [0.05]
+
+
+def test_a_window_without_a_peak_is_followed_beyond_the_sweep(swept):
+    sweep = swept[1]
+    job = curves(CurvesInWindows, sweep, windows=1)
+    panel = job.panels([ask(sweep)])[0]
+    assert panel.multiplicity == -1 and panel.eta == 1.9
+    settled = job.settled(find(OSCILLATOR).path, panel)
+    assert (settled.multiplicity, settled.eta) == (1, pytest.approx(2.054, abs=0.0015))
+
+
+def test_the_limit_of_permanent_contact_does_not_depend_on_gamma(exported):
+    job = GammaJob(
+        name="gamma",
+        structures=(PAPER,),
+        ranges=((0.415, 0.421),),
+        gammas=(1e-4, 1e-2),
+        transient=100,
+        samples=10,
+    )
+    table = job.work({OSCILLATOR: find(OSCILLATOR).path}, job.items({})[:1], None)
+    other = job.work({OSCILLATOR: find(OSCILLATOR).path}, job.items({})[1:], None)
+    assert table["last"].tolist() == other["last"].tolist() == [0.417]
+
+
+def test_spectra_at_the_peak(swept):
+    sweep = swept[0]
+    job = PeakSpectraJob(name="spectra", sweep=sweep.name, structure=DAMPED, others=(0.4,))
+    asked = job.question({sweep.name: ask(sweep)})
+    assert asked.eta == (1.06, 0.4) and asked.count() == job.count()
+
+
+def test_basins_where_starts_are_shared(exported):
+    sweep = SweepJob(name="sweep", structure=PAPER, eta=(1.29, 1.315), transient=60, samples=20)
+    telling = Telling(transient=100, settle=100.0)
+    starts = AttractorsJob(
+        name="starts",
+        structure=PAPER,
+        eta=(1.29, 1.315),
+        starts=12,
+        seed=2026,
+        follows="sweep",
+        telling=telling,
+    )
+    plane = EvenBasinJob(
+        name="basin",
+        structure=PAPER,
+        excitation=Excitation.nondimensional(1.0, PAPER),
+        x=Side("x2", 0.0, 3.0, 4),
+        y=Side("v2", -3.0, 3.0, 3),
+        telling=telling,
+        attractors="starts",
+        sweep="sweep",
+    )
+    found = ask(sweep, starts, plane)
+    gap = float(ask(sweep).xi_rel_max.sel(eta=float(found.eta)))
+    assert found.x2.values.tolist() == pytest.approx(np.linspace(0.0, 3.0 * gap, 4))
+    assert found.attractor_of.shape == (3, 4)
+    assert replace(plane, low=1.3).frequency({"starts": ask(sweep, starts)}) == 1.315

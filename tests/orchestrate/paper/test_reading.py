@@ -1,0 +1,62 @@
+"""What is read off the results: runs, windows, edges, peaks, and what rounds to a printed number."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from orchestrate.paper.claims.claim import NO, PARTLY, YES, half_unit, holds, limit_at, number_at
+from orchestrate.paper.claims.results import impacts_in_response, kind, lower_edge, upper_edge
+from orchestrate.paper.windows import longest, relative_peak, runs, window
+
+
+def sweep_of(multiplicity, impacts, gaps):
+    """A sweep's dataset from lists, eta = 1, 2, ..."""
+    along = {"multiplicity": multiplicity, "impacts_per_period": impacts, "xi_rel_max": gaps}
+    variables = {name: ("eta", np.array(values)) for name, values in along.items()}
+    samples = (("eta", "sample"), np.zeros((len(gaps), 200)))
+    etas = np.arange(1.0, len(gaps) + 1)
+    return xr.Dataset({**variables, "xi_rel": samples}, {"eta": etas})
+
+
+def test_runs():
+    assert runs([0, 1, 1, 0, 1]) == [(1, 2), (4, 4)]
+    assert longest([0, 1, 1, 0, 1]) == (1, 2)
+    assert longest([0, 0]) is None and runs([]) == []
+
+
+def test_windows_and_their_peaks():
+    impacts = [0.5, 0.5, 0.5, 0.5, 1.0, 1.0, 0.5]
+    sweep = sweep_of([2, 2, 2, 2, 2, 1, 2], impacts, [9.0, 1.0, 3.0, 2.0, 8.0, 7.0, 9.0])
+    assert window(sweep, 2) == (1.0, 4.0)
+    assert relative_peak(sweep, 2) == 3.0  # not the higher end
+    assert window(sweep, 3) is None and relative_peak(sweep, 3) is None
+    assert relative_peak(sweep, 1) is None
+
+
+def test_edges():
+    sweep = sweep_of([1, 1, 2, 2, 0], [1.0, 1.0, 1.5, 1.5, 1.5], [1.0] * 5)
+    assert impacts_in_response(sweep).tolist() == [1, 1, 3, 3, 0]
+    assert upper_edge(sweep, kind(sweep, 1, 1), 1.0) == (2.0, 3.0)
+    assert lower_edge(sweep, kind(sweep, 2, 3), 4.0) == (2.0, 3.0)
+    assert all(map(math.isnan, upper_edge(sweep, kind(sweep, 1, 1), 4.0)))
+
+
+def test_what_rounds_to_a_printed_number():
+    assert half_unit("0.43") == pytest.approx(0.005) and half_unit("1.1") == pytest.approx(0.05)
+    assert number_at(21.558, "21.56", 3).verdict == YES
+    assert number_at(1.047, "1.045", 3).verdict == NO
+    assert limit_at((1.224, 1.225), "1.23").verdict == YES
+    assert limit_at((1.223, 1.224), "1.23").verdict == NO
+    assert limit_at((0.436, 0.437), "0.43").verdict == NO
+    assert limit_at((math.nan, math.nan), "0.43").verdict == NO
+
+
+@pytest.mark.parametrize(
+    ("parts", "verdict"), [([True], YES), ([True, False], PARTLY), ([False], NO)]
+)
+def test_what_holds_in_part(parts, verdict):
+    assert holds(parts, "").verdict == verdict
