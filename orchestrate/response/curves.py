@@ -87,7 +87,7 @@ def trace(
     first, last = transient * span, (transient + periods) * span
     with EventInstance(fmu) as instance:
         begin(instance, *point, start)
-        instance.impacts(0.0, first)  # past the transient; faster than advance
+        instance.advance(0.0, first)
         impacts = instance.impacts(first, last)
     with Instance(fmu) as instance:
         begin(instance, *point, start)
