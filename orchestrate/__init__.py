@@ -12,9 +12,10 @@ What is described
     numbers, in Python or in TOML files.
 What is asked
     :func:`simulate`, :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`,
-    :func:`attractors`, :func:`basin`, :func:`impact_statistics`; :func:`couple`,
-    :func:`jump_voltages` and :func:`drive_spectra` for the weak drive, :func:`write_ssp` for other
-    tools.
+    :func:`attractors`, :func:`basin`, :func:`impact_statistics`; :func:`orbit`, :func:`branch`,
+    :func:`border` for what is periodic; :func:`couple`,
+    :func:`jump_voltages`, :func:`drive_branch` and :func:`drive_spectra` for the weak drive,
+    :func:`write_ssp` for other tools.
 What is answered
     An :class:`xarray.Dataset` with units, long names, all parameters, and where it comes from.
 
@@ -32,8 +33,11 @@ from .version import __version__
 if TYPE_CHECKING:
     from .dynamics.attractors import attractors
     from .dynamics.basins import basin
+    from .dynamics.borders import border
+    from .dynamics.branches import branch
     from .dynamics.impact_statistics import impact_statistics
     from .dynamics.lyapunov import lyapunov
+    from .dynamics.orbits import orbit
     from .dynamics.parameter_map import map
     from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
     from .response.simulate import simulate
@@ -41,6 +45,7 @@ if TYPE_CHECKING:
     from .response.sweep import sweep
     from .structures import Drive, Excitation, Structure
     from .weak_drive.couple import couple
+    from .weak_drive.drive_branch import drive_branch
     from .weak_drive.drive_spectra import drive_spectra
     from .weak_drive.jump_voltages import jump_voltages
     from .weak_drive.ssp import write_ssp
@@ -58,12 +63,16 @@ __all__ = [
     "__version__",
     "attractors",
     "basin",
+    "border",
+    "branch",
     "couple",
+    "drive_branch",
     "drive_spectra",
     "impact_statistics",
     "jump_voltages",
     "lyapunov",
     "map",
+    "orbit",
     "simulate",
     "spectra",
     "sweep",
@@ -82,8 +91,12 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "dynamics.lyapunov": ("lyapunov",),
     "dynamics.attractors": ("attractors",),
     "dynamics.basins": ("basin",),
+    "dynamics.orbits": ("orbit",),
+    "dynamics.branches": ("branch",),
+    "dynamics.borders": ("border",),
     "dynamics.impact_statistics": ("impact_statistics",),
     "weak_drive.couple": ("couple",),
+    "weak_drive.drive_branch": ("drive_branch",),
     "weak_drive.drive_spectra": ("drive_spectra",),
     "weak_drive.jump_voltages": ("jump_voltages",),
     "weak_drive.ssp": ("write_ssp",),
