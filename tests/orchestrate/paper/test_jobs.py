@@ -26,7 +26,7 @@ DAMPED = CASES["damped"]
 
 @pytest.fixture(scope="module")
 def swept(exported):
-    """Sweeps of the damped structure: past its main peak, and up to a peak that it does not reach."""
+    """Sweeps of the damped structure: past its main peak, and towards a peak not reached."""
     short = {"structure": DAMPED, "transient": 60, "samples": 20}
     peak = SweepJob(name="peak", eta=tuple(np.arange(1.03, 1.1, 0.01).round(3)), **short)
     rising = SweepJob(name="rising", eta=(1.85, 1.9), **short)

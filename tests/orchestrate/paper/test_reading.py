@@ -1,4 +1,4 @@
-"""What is read off the results: runs, windows, edges, peaks, and what rounds to a printed number."""
+"""What is read off the results: runs, windows, edges, peaks, what rounds to a printed number."""
 
 from __future__ import annotations
 

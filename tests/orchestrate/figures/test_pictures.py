@@ -1,0 +1,209 @@
+"""Each picture shows what its dataset holds, and leaves the user's matplotlib alone."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate.errors import StoreError
+from orchestrate.figures import (
+    attractors,
+    basin,
+    drive_spectra,
+    labels,
+    lyapunov,
+    maps,
+    motion,
+    orbit_diagram,
+    phase_curves,
+    phase_grid,
+    spectra,
+    time_histories,
+    weak_drive,
+)
+from orchestrate.figures.files import save
+from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spectra
+
+from .drawing import sweep as small_sweep
+
+PAPER = orchestrate.Structure.nondimensional()
+QUICK = (orchestrate.Structure.from_file("quick"), orchestrate.Drive.from_file("quick"))
+HERE = {"progress": False, "jobs": 1}
+
+
+def drawn(axes) -> list[np.ndarray]:
+    """Points of all lines of a panel."""
+    return [line.get_xydata() for line in axes.lines if len(line.get_xydata())]
+
+
+def texts(axes) -> list[str]:
+    """Texts of a panel's legend."""
+    legend = axes.get_legend()
+    return [text.get_text() for text in legend.get_texts()] if legend else []
+
+
+def test_our_pictures_leave_theirs_alone(tmp_path):
+    root = Path(__file__).resolve().parents[3]
+    command = [sys.executable, "-m", "tests.orchestrate.figures.drawing", str(tmp_path)]
+    environment = {**os.environ, "MPLBACKEND": "agg"}
+    done = subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    names = [f"{name}.{kind}" for name in ("orbit", "scheme", "shaker") for kind in ("png", "pdf")]
+    assert all((tmp_path / name).stat().st_size > 1000 for name in names)
+
+
+def test_the_same_figure_is_the_same_bytes(tmp_path):
+    for name in ("one", "two"):
+        save(orbit_diagram.draw(small_sweep()), tmp_path / name, ("png", "pdf", "svg"))
+    for kind in ("png", "pdf", "svg"):
+        assert (tmp_path / f"one.{kind}").read_bytes() == (tmp_path / f"two.{kind}").read_bytes()
+
+
+def test_a_picture_is_written_whole_or_not_at_all(tmp_path):
+    (tmp_path / "there.png").mkdir()
+    with pytest.raises(StoreError, match=r"there\.png"):
+        save(orbit_diagram.draw(small_sweep()), tmp_path / "there")
+    assert [path.name for path in tmp_path.iterdir()] == ["there.png"]
+
+
+def test_an_orbit_diagram():
+    data = small_sweep()
+    top, bottom = orbit_diagram.draw(data, "$e = 0.7$").axes
+    assert top.get_title(loc="left") == "$e = 0.7$, $n = 11(1)12$"
+    assert sorted(drawn(top)[0][:, 1]) == sorted(data.xi_rel.values.ravel())
+    assert drawn(bottom)[0].tolist() == [[1.0, 1.0], [1.1, 2.0], [1.2, 1.0]]
+    data.xi_rel[:] = 0.0
+    orbit_diagram.draw(data)  # nothing can be shown on a logarithmic axis
+
+
+def test_up_and_down_in_one_diagram(exported):
+    asked = {"eta": [1.28, 1.3], "transient": 5, "samples": 4, "direction": "both"}
+    top, bottom = orbit_diagram.draw(orchestrate.sweep(PAPER, **asked, **HERE)).axes
+    assert texts(top) == ["up", "down"] and len(bottom.lines) == 2
+
+
+def curves(panels: int) -> xr.Dataset:
+    """Something that looks like the paper's curves."""
+    count = 40
+    tau = np.tile(np.linspace(0.0, 8.0 * np.pi, count), panels)
+    state = np.stack([np.sin(tau), np.sin(tau) + 0.5, np.cos(tau), np.cos(tau)], axis=1)
+    flags = {"flag_values": [0, 1, 2], "flag_meanings": "separate_motion a_sequence contact"}
+    variables = {
+        "tau": ("point", tau),
+        "state": (("point", "coordinate"), state),
+        "kind": ("point", np.arange(len(tau)) % 3, flags),
+        "panel_of": ("point", np.repeat(np.arange(panels), count)),
+        **{name: ("panel", np.full(panels, 0.5)) for name in ("e", "D", "eta")},
+        "multiplicity": ("panel", np.arange(panels)),
+    }
+    return xr.Dataset(variables)
+
+
+def test_curves():
+    left, right = phase_curves.draw_states(curves(1)).axes
+    assert texts(right) == ["separate motion", "a sequence", "contact"]
+    assert len(left.lines) == 6
+    three = phase_curves.draw_masses(curves(3)).axes
+    assert len(three) == 3 and three[0].get_xlim() == three[2].get_xlim()
+    grid = phase_grid.draw(curves(6), columns=4).axes
+    assert [axes.get_visible() for axes in grid] == [True] * 6 + [False] * 2
+    assert grid[0].get_title(loc="left").endswith("not periodic")
+    assert grid[2].get_title(loc="left").endswith("$2T$")
+    *histories, excitation = time_histories.draw(curves(2)).axes
+    assert len(histories) == 2
+    assert np.abs(drawn(excitation)[0][:, 1]).max() == pytest.approx(1.0, abs=0.01)
+
+
+def test_exponents(exported):
+    asked = {"transient": 50, "periods": 300, **HERE}
+    data = orchestrate.lyapunov(PAPER, eta=[0.8, 1.047], **asked)
+    (plane,) = lyapunov.draw(data, titles=("paper",)).axes
+    assert texts(plane) == ["chaotic", "neutral", "periodic"]
+    assert plane.get_title(loc="left") == "paper"
+
+
+def test_attractors_and_basins(exported):
+    asked = {"transient": 60, "settle": 60.0, **HERE}
+    found = orchestrate.attractors(PAPER, eta=[1.1, 1.315], starts=4, **asked)
+    top, bottom = attractors.draw(found).axes
+    assert top.get_yscale() == "log" and len(bottom.lines) == 1
+    plane = {"x": ("x_rel", 0.0, 1.3, 4), "y": ("v_rel", -1.3, 1.3, 4)}
+    data = orchestrate.basin(PAPER, eta=1.315, **plane, **asked)
+    (axes,) = basin.draw(data, "here", ("gap", "")).axes
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("gap", "v_rel")
+    assert len(texts(axes)) == data.sizes["attractor"] and "%" in texts(axes)[0]
+
+
+def test_maps(exported):
+    asked = {"transient": 30, "settle": 10.0, "samples": 8, **HERE}
+    one = orchestrate.map(PAPER, eta=[0.9, 1.0, 1.1], D=[0.01, 0.02, 0.04], **asked)
+    two = orchestrate.map(PAPER, eta=[0.9, 1.0, 1.1], e=[0.3, 0.5, 0.7], **asked)
+    figure = maps.draw(one, two)
+    planes = [axes for axes in figure.axes if axes.get_xlabel()]
+    assert len(planes) == 8
+    assert [plane.get_yscale() for plane in planes[::4]] == ["log", "linear"]
+    assert planes[0].get_ylabel() == "$D$"
+
+
+def test_a_motion(exported):
+    data = orchestrate.simulate(PAPER, eta=0.4, periods=2, points=40, transient=20, **HERE)
+    top, middle, bottom = motion.draw(data, "here").axes
+    assert texts(middle) == [f"{data.sizes['impact']} impacts"]
+    assert drawn(top)[0][:, 1].tolist() == data.x1.values.tolist()
+    assert drawn(bottom)[0][:, 1].max() > 0.0
+
+
+def test_spectra(exported):
+    data = orchestrate.spectra(PAPER, eta=[1.047], transient=50, periods=4, points=128, **HERE)
+    (plane,) = spectra.draw(data).axes
+    assert len(plane.lines) == 3
+    assert plane.get_title(loc="left") == r"$\eta = 1.047$"
+
+
+def test_spectra_of_the_weak_drive(exported):
+    asked = {"voltage": 1.3, "begin": 1.29, "hold": 10.0, "revolutions": 4, "points": 64, **HERE}
+    upper, lower = drive_spectra.draw(ask_drive_spectra(*QUICK, **asked)).axes
+    assert upper.get_title(loc="left").startswith("bonded")
+    assert lower.get_title(loc="left").startswith("delaminated")
+
+
+def coupled(jumps: bool) -> xr.Dataset:
+    """A run of the weak drive, with or without jumps."""
+    asked = {"voltage": (1.4, 1.42), "rate": 2e-4, "settle": 20.0, **HERE}
+    data = orchestrate.couple(*QUICK, **asked)
+    if jumps:
+        data.jumps[:], data.jump_speed[:] = data.voltage[5:7].values, data.speed[5:7].values
+    return data
+
+
+@pytest.mark.parametrize("jumps", [False, True])
+def test_the_weak_drive(exported, jumps):
+    data = coupled(jumps)
+    theory = xr.Dataset({"voltage": ("speed", [1.4, 1.5]), "amplitude": ("speed", [1.0, 2.0])})
+    theory = theory.assign_coords(speed=[1.2, 1.3])
+    figure = weak_drive.draw({"bonded": data, "delaminated": data}, theory)
+    assert "averaged theory, bonded" in texts(figure.axes[0])
+    marks = [text.get_text().strip() for text in figure.axes[0].texts]
+    assert marks == [f"{value:.4f}" for value in data.jumps.values] * 2 if jumps else marks == []
+    histories = figure.axes[4]
+    assert bool(drawn(histories)) == jumps
+
+
+def test_a_constant_voltage_has_no_way_back(exported):
+    data = orchestrate.couple(*QUICK, voltage=1.4, duration=60.0, **HERE)
+    assert [name for _, _, name in weak_drive.ways(data)] == ["there"]
+    weak_drive.draw({"delaminated": data})
+
+
+def test_names():
+    assert labels.kind_of(0) == "not periodic"
+    assert [labels.kind_of(n) for n in (1, 3)] == ["$T$", "$3T$"]
+    assert labels.symbol("kappa") == r"$\kappa$" and labels.symbol("a_thing") == "a thing"
+    assert labels.parameters_text({"e": 0.7, "omega": 75.0}) == r"$e$ = 0.7, $\omega$ = 75 rad/s"
