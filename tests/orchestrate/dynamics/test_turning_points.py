@@ -1,4 +1,4 @@
-"""Amplitudes of orbits against the FMU's, and the contact force's derivatives against differences."""
+"""Amplitudes of orbits against the FMU's; the contact force's derivatives by differences."""
 
 import numpy as np
 import pytest
