@@ -1,3 +1,4 @@
-"""The numbers of the FMUs: plain functions on floats in a flat memory, the same bits in pure Python
-and compiled.
+"""The numbers of the FMUs: plain functions on floats in a flat memory.
+
+The same source runs in pure Python and compiled, with the same bits.
 """

@@ -1,3 +1,4 @@
-"""The models as the world sees them: a folder each with variable table, texts, documentation and
-reference results.
+"""The models as the world sees them.
+
+A folder each with variable table, texts, documentation and reference results.
 """

@@ -1,3 +1,4 @@
-"""What travels inside the FMUs around kernel and model: the Python slave, and the C shim of the
-native forms.
+"""What travels inside the FMUs around kernel and model.
+
+The Python slave, and the C shim of the native forms.
 """

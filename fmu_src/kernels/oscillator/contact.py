@@ -14,9 +14,7 @@ HIGHEST = 5
 
 
 def contact_force(m, x, v):
-    """The f of (18): the acceleration with which the gap would open at displacement ``x`` and
-    common velocity ``v``.
-    """
+    """The f of (18): the gap's acceleration at displacement ``x`` and common velocity ``v``."""
     return m[at.FORCE_V] * v + m[at.FORCE_X] * x
 
 
@@ -42,8 +40,7 @@ def forcing_derivative(m, order, sine, cosine, cubic):
 
 
 def first_derivative(m, x, v, lowest):
-    """First derivative of f, from order ``lowest`` on, that does not vanish in common motion from
-    (x, v).
+    """First derivative of f, from order ``lowest`` on, that does not vanish from (x, v) on.
 
     Returns
     -------

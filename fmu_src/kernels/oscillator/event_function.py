@@ -31,8 +31,9 @@ def set_gap(m):
 
 
 def set_contact_force(m):
-    """Event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 - omega_2^2)
-    xi_3`` (18).
+    """Event function of permanent contact: minus the force of (18).
+
+    ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 - omega_2^2) xi_3``.
     """
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     h_cos, h_sin, eta = m[at.HARMONIC_3], m[at.HARMONIC_3 + 1], m[at.ETA]
@@ -60,8 +61,9 @@ def set_bounds(m, branch_a):
 
 
 def bounds(m, branch_a, order):
-    """Bounds of the event function's derivative of an order >= 4, at all later times: steady part,
-    free parts A and B at tau = 0.
+    """Bounds of the event function's derivative of an order >= 4, at all later times.
+
+    Steady part, and free parts A and B at tau = 0.
     """
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     for _ in range(order):
@@ -91,8 +93,9 @@ def free_part(m, b, c, w, C, S):
 
 
 def evaluate(m, tau):
-    """The event function at ``tau``: value, four derivatives, and a bound of the fifth from there
-    on.
+    """The event function at ``tau``: value, four derivatives, and a bound of the fifth.
+
+    The bound holds from there on.
 
     Returns
     -------

@@ -90,8 +90,9 @@ def cubic_at(m, age):
 
 
 def set_cubic_response(m, b, response, cubic):
-    """The cubic that solves (6) for a cubic forcing: value and three derivatives, by comparing
-    coefficients.
+    """The cubic that solves (6) for a cubic forcing: value and three derivatives.
+
+    By comparing coefficients.
     """
     w, twice = m[b + at.OMEGA_SQUARED], 2.0 * m[b + at.DAMPING]
     q3 = cubic[3] / w

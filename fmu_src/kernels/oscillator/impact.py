@@ -9,8 +9,9 @@ def common_velocity(m, v1, v2):
 
 
 def restitution(m, v1, v2):
-    """Velocities after an impact, (15) with ``(1+e)/(1+mu)`` in its second line: momentum kept, gap
-    velocity times -e.
+    """Velocities after an impact, (15): momentum kept, gap velocity times -e.
+
+    With ``(1+e)/(1+mu)`` in its second line.
     """
     common = common_velocity(m, v1, v2)
     part = m[at.E] * (v1 - v2) / (1.0 + m[at.MU])
@@ -36,8 +37,10 @@ def sticks(m, separation, force):
 
 
 def count_impact(m, time, closing, lost):
-    """Enter an impact into the energy balance; ``closing`` is the velocity before it (m per unit of
-    tau), ``lost`` the part of its square that is lost.
+    """Enter an impact into the energy balance.
+
+    ``closing`` is the velocity before it (m per unit of tau), ``lost`` the part of its square that
+    is lost.
     """
     m[at.IMPACT_COUNT] += 1.0
     m[at.IMPACT_TIME] = time

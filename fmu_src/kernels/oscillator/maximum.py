@@ -1,5 +1,6 @@
-"""The largest gap over a piece of flight: from summit to summit, with the certified steps of the
-root finder.
+"""The largest gap over a piece of flight.
+
+From summit to summit, with the certified steps of the root finder.
 """
 
 from . import memory as at
@@ -10,8 +11,9 @@ SMALLEST = 1e-9  # least progress, in tau: a summit is flat, nothing is lost
 
 
 def climb(h1, h2, h3, h4, bound, reach):
-    """A step towards the next summit, and whether it ends there: height is of second order in the
-    summit's place, 1e-9 of it will do.
+    """A step towards the next summit, and whether it ends there.
+
+    Height is of second order in the summit's place: 1e-9 of it will do.
     """
     root = parabola_root(h1, h2, h3)
     if root < reach and (abs(h4) + bound * root) * root * root * root <= -6e-9 * reach * (
@@ -24,8 +26,7 @@ def climb(h1, h2, h3, h4, bound, reach):
 
 
 def largest_gap(m, start, stop, highest):
-    """The larger of ``highest`` and the largest gap in ``start <= tau <= stop`` of the present
-    flight.
+    """The larger of ``highest`` and the present flight's largest gap in ``start <= tau <= stop``.
 
     Climbing, the walk goes to the first root of the gap's slope; elsewhere to the first point that
     rises above what is known.

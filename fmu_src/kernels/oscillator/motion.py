@@ -56,8 +56,9 @@ def common_position(m, x1, x2):
 
 
 def move_origin(m, tau):
-    """Let a new state begin ``tau`` after the start of the present one, (5), without losing digits
-    over millions of states.
+    """Let a new state begin ``tau`` after the start of the present one, (5).
+
+    Without losing digits over millions of states.
     """
     total = m[at.ORIGIN] + tau
     part = total - m[at.ORIGIN]
@@ -213,8 +214,9 @@ def find_end(m, tau):
 
 
 def leave_rising(m, h1, h2, h3, h4):
-    """Leave a start on the boundary with the event function's derivatives, ``h1 > 0``, or ``h1 = 0
-    < h2``: no root lies before CLEAR.
+    """Leave a start on the boundary: no root of the event function lies before CLEAR.
+
+    Its derivatives are given: ``h1 > 0``, or ``h1 = 0 < h2``.
     """
     step, found = step_from(0.0, h1, h2, h3, h4, bound_at_start(m), 0.0, longest_step(m))
     m[at.CLEAR] = step

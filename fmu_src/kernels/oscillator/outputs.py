@@ -32,8 +32,9 @@ def momentum(m):
 
 
 def write_impulse(m, h, momentum_before, moment_before, turn_before):
-    """Integrals of the force on the box over a step of ``h`` seconds, by momentum: impacts are
-    internal and drop out.
+    """Integrals of the force on the box over a step of ``h`` seconds, by momentum.
+
+    Impacts are internal and drop out.
 
     ``box_force = -P' - (m1 + m2) y''`` with P the momentum relative to the box and y'' its
     acceleration, so the integral is a difference of momenta, its moment a difference of

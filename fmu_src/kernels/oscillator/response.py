@@ -112,8 +112,9 @@ def displacement(m, b, harmonic, free, cubic, tau, C, S, sine, cosine):
 
 
 def set_free(m, b, harmonic, free, cubic, x, v, sine, cosine):
-    """Free amplitudes c and v + D c from the initial conditions (9): alpha_i and nu_i beta_i of
-    (11).
+    """Free amplitudes c and v + D c from the initial conditions (9).
+
+    They are alpha_i and nu_i beta_i of (11).
     """
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0

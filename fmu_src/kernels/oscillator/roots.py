@@ -39,8 +39,9 @@ def lowest_curvature(h2, h3, h4, bound, s):
 
 
 def clear_step(h0, h1, h2, h3, h4, bound, reach):
-    """A step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120`` stays
-    positive.
+    """A step over which a quintic, the lower bound of the event function, stays positive.
+
+    It is ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120``.
 
     For every trial s, ``min(s, first root of the parabola below the quintic up to s)`` is safe;
     trials close in on the s where both agree.
@@ -87,8 +88,9 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
 
 
 def walk(m, target):
-    """Walk on until the state's end is found or no root lies before ``target``; ends early when the
-    step's work is used up.
+    """Walk on until the state's end is found or no root lies before ``target``.
+
+    Ends early when the step's work is used up.
     """
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
         tau = m[at.CLEAR]
@@ -108,8 +110,9 @@ def walk(m, target):
 
 
 def lifted(m, tau, h0, h1):
-    """A value of the event function that is not positive, or a positive one where it is zero but
-    for rounding and no crossing is in sight.
+    """A value of the event function at a point where it is not clearly positive.
+
+    It may not be positive, or be zero but for rounding with no crossing in sight.
 
     Near a start on the boundary the event function may be smaller than the rounding of its terms
     for a while; the side was decided when the state began, and holds until the event function is
@@ -122,8 +125,9 @@ def lifted(m, tau, h0, h1):
 
 
 def renewal_age(m):
-    """The age at which a state is written anew: the angles of (10) stay small, and with them their
-    rounding.
+    """The age at which a state is written anew.
+
+    The angles of (10) stay small, and with them their rounding.
     """
     return 1024.0 / max(m[at.FASTEST], m[at.ETA])
 
@@ -170,8 +174,9 @@ def step_from(h0, h1, h2, h3, h4, bound, tau, reach):
 
 
 def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
-    """The root, where the quartic without the bound gives it to within ``accuracy`` and it is
-    certainly the first; else 0.
+    """The root by the quartic without the bound, where that is certain; else 0.
+
+    It is within ``accuracy`` then, and certainly the first.
 
     The step before it is clear; from there on the slope is certainly negative, so there is no other
     root.

@@ -16,8 +16,9 @@ ENOUGH = 1e-9  # relative: the next step of Newton's method would be its square
 
 
 def series_order(m, slope, curvature):
-    """How many terms a flight needs that begins with a gap velocity and acceleration: 4 where it is
-    not short.
+    """How many terms a flight needs that begins with a gap velocity and acceleration.
+
+    4 where it is not short.
     """
     if curvature >= 0.0:
         return 4
@@ -32,8 +33,9 @@ def series_order(m, slope, curvature):
 
 
 def set_series(m, x, v, slope, order):
-    """Coefficients of xi_1 and of the gap from ``gap = 0, gap' = slope`` at displacement ``x``,
-    velocity ``v`` of mass 1.
+    """Coefficients of xi_1 and of the gap from ``gap = 0, gap' = slope``.
+
+    At displacement ``x`` and velocity ``v`` of mass 1.
     """
     m[at.SERIES_X] = x
     m[at.SERIES_X + 1] = v
@@ -64,8 +66,9 @@ def set_series(m, x, v, slope, order):
 
 
 def short_flight(m, order, bound):
-    """Duration of a short flight, where it is certain: its gap is concave throughout, so it has one
-    root; else 0.
+    """Duration of a short flight, where it is certain; else 0.
+
+    Its gap is concave throughout, so it has one root.
 
     Parameters
     ----------

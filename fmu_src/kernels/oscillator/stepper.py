@@ -1,5 +1,6 @@
-"""The two entry points: an instance is one flat memory, initialised once and then advanced from one
-communication point to the next.
+"""The two entry points: initialise once, then advance from one communication point to the next.
+
+An instance is one flat memory.
 """
 
 from ..numerics.elementary import TWO_PI, fraction
@@ -68,8 +69,9 @@ def local_time(m, time):
 
 
 def advance(m, time):
-    """Advance to the communication point ``time`` (s) with the inputs in ``m``, or to the first
-    impact where STOP_AT_IMPACT is set.
+    """Advance to the communication point ``time`` (s) with the inputs in ``m``.
+
+    Or to the first impact where STOP_AT_IMPACT is set.
 
     Returns
     -------
@@ -119,8 +121,9 @@ def finite(m):
 
 
 def renew_segment(m, now):
-    """Begin a segment with the present inputs, ``now`` after the present state's start; positions
-    and phase are continuous.
+    """Begin a segment with the present inputs, ``now`` after the present state's start.
+
+    Positions and phase are continuous.
     """
     x1, v1, x2, v2 = state_at(m, now)
     goes_on = now > 0.0 and m[at.MODE] != at.GLUED and inside(m, now)
@@ -138,16 +141,18 @@ def renew_segment(m, now):
 
 
 def inside(m, tau):
-    """Whether the event function has not been crossed, positive or zero but for rounding: gap and
-    contact force do not jump with the inputs.
+    """Whether the event function has not been crossed: positive, or zero but for rounding.
+
+    Gap and contact force do not jump with the inputs.
     """
     h0, h1, _, _, _, _ = evaluate(m, tau)
     return h0 > 0.0 or lifted(m, tau, h0, h1) > 0.0
 
 
 def run_samples(m, start, time, now):
-    """Run to ``time``, keeping the states at equal parts of the step on the way; returns the
-    present state's age there.
+    """Run to ``time``, keeping the states at equal parts of the step on the way.
+
+    Returns the present state's age there.
 
     Where the step stops at an impact, the samples that are left show the state there.
     """

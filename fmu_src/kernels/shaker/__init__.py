@@ -1,11 +1,10 @@
-"""The shaker kernel: a box on a spring and a damper, shaken by a motor of limited power with an
-unbalance.
+"""The shaker kernel: a box on springs, shaken by a motor of limited power with an unbalance.
 
 Standard library and the elementary functions of :mod:`..numerics` only, plain floats in one flat
-memory, under the same rules as that kernel: the same source runs in any Python 3.9+, compiles under
-Numba as it stands, and gives the same bits everywhere. Unlike it, this one has no closed form: box
-and rotor are integrated by a Runge-Kutta formula of order 8, so the result belongs to the
-communication points, within the formula's tolerance.
+memory, under the same rules as the oscillator's kernel: the same source runs in any Python 3.9+,
+compiles under Numba as it stands, and gives the same bits everywhere. Unlike that one, this has no
+closed form: box and rotor are integrated by a Runge-Kutta formula of order 8, so the result belongs
+to the communication points, within the formula's tolerance.
 
 ====================  =====================================================================
 module                idea

@@ -1,5 +1,6 @@
-"""Box and rotor as one right-hand side: a mass matrix of two rows, the motor's circuit, and the
-energies they exchange.
+"""Box and rotor as one right-hand side.
+
+A mass matrix of two rows, the motor's circuit, and the energies they exchange.
 
 With S = unbalance_mass unbalance_radius, position y, angle phi, speed w, current i:
 

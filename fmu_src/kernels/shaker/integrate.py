@@ -36,8 +36,9 @@ TINY, MANY = 1e-300, 1e6
 
 
 def stages(m, t, h):
-    """All stages of a sub-step of length ``h`` that begins ``t`` after the communication step did;
-    its end is in NEXT.
+    """All stages of a sub-step of length ``h``; its end is in NEXT.
+
+    It begins ``t`` after the communication step did.
     """
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s]
@@ -81,8 +82,9 @@ def stages(m, t, h):
 
 
 def scale(m, state, h):
-    """What an error of a state is measured by: its own size, and what the other states make of it
-    within the sub-step.
+    """What an error of a state is measured by.
+
+    Its own size, and what the other states make of it within the sub-step.
     """
     size = max(abs(m[at.STATE + state]), abs(m[at.NEXT + state]))
     speed = max(abs(m[at.STATE + at.ROTATION_SPEED]), abs(m[at.NEXT + at.ROTATION_SPEED]))
@@ -104,8 +106,9 @@ def scale(m, state, h):
 
 
 def error(m, h):
-    """Estimated error of the sub-step over what is allowed; Hairer's combination of the estimates
-    of order 5 and 3.
+    """Estimated error of the sub-step over what is allowed.
+
+    Hairer's combination of the estimates of order 5 and 3.
     """
     sum_5, sum_3 = 0.0, 0.0
     for state in range(at.CONTROLLED):
@@ -133,8 +136,9 @@ def accept(m):
 
 
 def factor(ratio):
-    """How much longer the next sub-step may be, for an error ``ratio`` of this one: its eighth
-    root, by square roots.
+    """How much longer the next sub-step may be, for an error ``ratio`` of this one.
+
+    Its eighth root, by square roots.
     """
     if ratio < 1e-8:
         return LARGEST

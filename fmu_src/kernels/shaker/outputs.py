@@ -1,5 +1,6 @@
-"""What an importer sees at a communication point: the states reached, and what follows from them
-with the inputs as set now.
+"""What an importer sees at a communication point.
+
+The states reached, and what follows from them with the inputs as set now.
 """
 
 from ..numerics.elementary import sincos_turns
@@ -40,8 +41,9 @@ def write(m):
 
 
 def jerk(m, sine, cosine, box, rotor):
-    """Time derivative of the box's acceleration: the equations differentiated once, with the
-    voltage constant.
+    """Time derivative of the box's acceleration.
+
+    The equations differentiated once, with the voltage constant.
     """
     unbalance, speed = m[at.UNBALANCE], m[at.STATE + at.ROTATION_SPEED]
     constant = m[at.MOTOR_CONSTANT]

@@ -1,5 +1,6 @@
-"""The entry points: an instance is one flat memory, initialised once and then advanced from one
-communication point to the next.
+"""The entry points: initialise once, then advance from one communication point to the next.
+
+An instance is one flat memory.
 """
 
 import math

@@ -1,5 +1,6 @@
-"""The explicit Runge-Kutta formula of order 8 with 12 stages by Dormand and Prince, with error
-estimates of order 5 and 3.
+"""The explicit Runge-Kutta formula of order 8 with 12 stages by Dormand and Prince.
+
+With error estimates of order 5 and 3.
 
 E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, 2nd edition,
 section II.10 (DOP853). Written out, because a compiled kernel cannot look into a table by an index

@@ -1,5 +1,6 @@
-"""The variable table of ``TwoMassImpactOscillator``. Standard library only: it travels inside the
-FMU.
+"""The variable table of ``TwoMassImpactOscillator``.
+
+Standard library only: it travels inside the FMU.
 """
 
 from __future__ import annotations
