@@ -67,7 +67,7 @@ def as_mathml_block(translator: Any, node: nodes.Element) -> None:
     number = f'<span class="eqno">({node["number"]})</span>' if node.get("number") else ""
     formula = tex2mathml(node.astext(), as_block=True)
     anchor = node["ids"][0] if node.get("ids") else ""
-    translator.body.append(f'<div class="math" id="{anchor}">{number}{formula}</div>')
+    translator.body.append(f'<div class="math" id="{anchor}"><div>{formula}</div>{number}</div>')
     raise nodes.SkipNode
 
 
