@@ -42,6 +42,8 @@ def add_parser(commands: Commands) -> None:
     only = "one of both (default: both)"
     parser.add_argument("--only", choices=("bonded", "delaminated"), help=only)
     add_schedule(parser)
+    branches = "compute the branches of stationary motions too, and draw them under the ramps"
+    parser.add_argument("--branches", action="store_true", help=branches)
     add_running(parser, several=True)
     package = "write the coupled system for other tools instead"
     parser.add_argument("--ssp", type=Path, metavar="FILE", help=package)
@@ -173,13 +175,16 @@ def run(arguments: argparse.Namespace) -> None:
     fresh = any(not (arguments.output / f"{job.name}.nc").exists() for job in jobs)
     paths = answer_all(jobs, arguments.output, RunOptions.of(running), finder(running))
     results = {job.name.rpartition("_")[2]: load(paths[job.name]) for job in jobs}
+    name = Path(arguments.drive).stem
     picture = draw_if_missing(
-        arguments.output / f"couple_{Path(arguments.drive).stem}.png",
+        arguments.output / f"couple_{name}.png",
         fresh or arguments.force,
-        lambda: picture_of(results, structure, drive),
+        lambda: picture_of(
+            results, structure, drive, branches_of(arguments, structure, drive), name
+        ),
     )
-    for name, data in results.items():
-        report(name, data)
+    for state, data in results.items():
+        report(state, data)
     for path in (*paths.values(), picture):
         print(path)
 
@@ -228,7 +233,47 @@ def write_package(
     )
 
 
-def picture_of(results: dict[str, xr.Dataset], structure: Structure, drive: Drive) -> Any:
+def branches_of(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive
+) -> xr.Dataset | None:
+    """The branches, where they are asked for; their bifurcations are told."""
+    from ..weak_drive.drive_branch import drive_branch
+
+    if not arguments.branches:
+        return None
+    store = arguments.output / f"branches_{Path(arguments.drive).stem}.nc"
+    running = running_of(arguments, store)
+    running["fmu"] = own_fmus(arguments.fmu)
+    found = drive_branch(structure, drive, **running)
+    for kind, name, volts in zip(
+        *(found[f"point_{of}"].values for of in ("kind", "structure", "voltage")), strict=True
+    ):
+        print(f"{name}: {kind} at {volts:.4f} V")
+    return found
+
+
+def title_of_runs(results: dict[str, xr.Dataset], name: str) -> str:
+    """Set, volts and rate of the runs, for the picture."""
+    import numpy as np
+
+    data = next(iter(results.values()))
+    volts, change = data.voltage.values, data.voltage.diff("revolution").values
+    rates = abs(change) / data.time.diff("revolution").values
+    low, high, rate = (
+        volts.min(),
+        volts.max(),
+        float(np.median(rates[rates > 0.0])) if rates.any() else 0.0,
+    )
+    return f"{name}: {low:.4g} V to {high:.4g} V, {rate:.2g} V/s"
+
+
+def picture_of(
+    results: dict[str, xr.Dataset],
+    structure: Structure,
+    drive: Drive,
+    branches: xr.Dataset | None,
+    name: str,
+) -> Any:
     """All runs and the averaged theory."""
     import numpy as np
     import xarray as xr
@@ -240,7 +285,8 @@ def picture_of(results: dict[str, xr.Dataset], structure: Structure, drive: Driv
     volts = averaged.no_load_speed(structure, drive, Omega) * drive.volts(structure)
     amplitude = averaged.amplitude(structure, drive, Omega) * drive.length
     along = {"voltage": ("speed", volts), "amplitude": ("speed", amplitude)}
-    return draw(results, xr.Dataset(along, {"speed": Omega * structure.omega}))
+    theory = xr.Dataset(along, {"speed": Omega * structure.omega})
+    return draw(results, theory, branches, title_of_runs(results, name))
 
 
 def report(name: str, data: xr.Dataset) -> None:

@@ -22,10 +22,16 @@ SINKS = {
 WINDOW = 10  # revolutions that powers and impacts are averaged over
 AROUND = 500.0  # time shown before and after a jump, in 1/omega
 THEORY = "averaged theory, bonded"
+HISTORIES = {"speed": "mean speed in rad/s", "amplitude": "amplitude of $x_1$ in m"}
 
 
 @in_our_look
-def draw(runs: Mapping[str, xr.Dataset], theory: xr.Dataset | None = None) -> Figure:
+def draw(
+    runs: Mapping[str, xr.Dataset],
+    theory: xr.Dataset | None = None,
+    branches: xr.Dataset | None = None,
+    title: str = "",
+) -> Figure:
     """Draw runs of one drive.
 
     Parameters
@@ -34,8 +40,12 @@ def draw(runs: Mapping[str, xr.Dataset], theory: xr.Dataset | None = None) -> Fi
         ``"bonded"`` and ``"delaminated"``, or one of them; of :func:`orchestrate.couple`.
     theory : xarray.Dataset, optional
         ``voltage``, ``speed`` and ``amplitude`` of the averaged theory, over ``speed``.
+    branches : xarray.Dataset, optional
+        Of :func:`orchestrate.drive_branch`: unstable motions are dashed.
+    title : str
+        What is shown: set, rate, volts.
     """
-    figure, axes = panels(3, 2, (13, 13))
+    figure, axes = panels(4, 2, (13, 17))
     for name, data in runs.items():
         for part, style, way in ways(data):
             label = f"{name}, {way}"
@@ -44,13 +54,19 @@ def draw(runs: Mapping[str, xr.Dataset], theory: xr.Dataset | None = None) -> Fi
             axes[1].plot(data.speed[part], data.amplitude[part], style, **line)
             if name == "delaminated":
                 draw_impacts(axes[2], data.isel(revolution=part), way)
-        mark_jumps(axes[0], data, COLOURS[name])
-    for panel, jump in zip(axes[4:], ("up", "down"), strict=True):
-        draw_histories(panel, runs, jump)
+        mark_jumps(axes[0], data, name)
+    for panel, jump in zip(axes[4:6], ("up", "down"), strict=True):
+        draw_histories(panel, runs, jump, "speed")
+    for panel, jump in zip(axes[6:], ("up", "down"), strict=True):
+        draw_histories(panel, runs, jump, "amplitude")
     if theory is not None:
         dotted: Any = {"linewidth": 1.0, "label": THEORY}
         axes[0].plot(theory.voltage, theory.speed, "k:", **dotted)
         axes[1].plot(theory.speed, theory.amplitude, "k:", **dotted)
+    if branches is not None:
+        draw_branches(axes, branches.sel(structure=list(runs)))
+    if title:
+        figure.suptitle(title)
     name = list(runs)[-1]
     draw_powers(axes[3], runs[name], name)
     label_axes(axes)
@@ -69,6 +85,22 @@ def ways(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
     return [way for way in found if way[0].size]
 
 
+def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
+    """Stationary motions, thin and pale under the ramps: dashed where they are unstable."""
+    for name in branches.structure.values:
+        branch = branches.sel(structure=name)
+        stable, speed = branch.stable.values, branch.speed.values
+        known = np.isfinite(branch.voltage.values)
+        for part, style, what in ((stable, "-", "stable"), (known & ~stable, ":", "unstable")):
+            line: Any = {"color": COLOURS[name], "linewidth": 3.0, "alpha": 0.35, "zorder": 1}
+            line["label"] = f"{name}, branch, {what}"
+            voltage, amplitude = (
+                np.where(part, branch[of].values, np.nan) for of in ("voltage", "amplitude")
+            )
+            axes[0].plot(voltage, speed, style, **line)
+            axes[1].plot(speed, amplitude, style, **line)
+
+
 def mean_of(values: np.ndarray) -> np.ndarray:
     """The running mean."""
     return np.convolve(values, np.full(WINDOW, 1.0 / WINDOW), "valid")
@@ -83,40 +115,41 @@ def draw_impacts(axes: Axes, data: xr.Dataset, way: str) -> None:
         label = f"delaminated, {way}, mean of {WINDOW}"
         line: Any = {"color": colour, "linewidth": 1.2, "label": label}
         axes.plot(mean_of(speed), mean_of(count), style, **line)
-    axes.set_yscale("log")
+    if count.size and count.max() > 10.0:
+        axes.set_yscale("log")
 
 
-def mark_jumps(axes: Axes, data: xr.Dataset, colour: str) -> None:
+def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
     """The voltages at which the speed jumps, with their values."""
+    colour = COLOURS[name]
     for jump, place in (("up", 0.06), ("down", 0.94)):
         value = float(data.jumps.sel(jump=jump))
         if np.isfinite(value):
             axes.axvline(value, color=colour, linewidth=0.6, alpha=0.6)
             where: Any = {"transform": axes.get_xaxis_transform(), "rotation": 90, "fontsize": 8}
             side: Any = {"verticalalignment": "bottom" if jump == "up" else "top"}
+            side["horizontalalignment"] = "left" if name == "bonded" else "right"
             axes.text(value, place, f" {value:.4f}", color=colour, **where, **side)
 
 
-def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str) -> None:
-    """Speed, and amplitude on an axis of its own, over time around a jump."""
-    amplitudes = axes.twinx()
-    amplitudes.grid(False)
+def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str, what: str) -> None:
+    """Speed or amplitude over time around a jump; words where there is none."""
+    found = False
     for name, data in runs.items():
         voltage, speed = (float(data[of].sel(jump=jump)) for of in ("jumps", "jump_speed"))
         if not np.isfinite(voltage):
             continue
+        found = True
         away = np.abs(data.voltage.values - voltage) + np.abs(data.speed.values - speed)
         row = int(np.argmin(away))
         span = AROUND * float(data.Omega[row] / data.speed[row])
         time = data.time.values - float(data.time[row])
         near = np.abs(time) < span
-        line: Any = {"color": COLOURS[name]}
-        axes.plot(time[near], data.speed.values[near], **line, label=f"{name}: speed")
-        line |= {"linewidth": 0.8, "linestyle": "--", "label": f"{name}: amplitude"}
-        amplitudes.plot(time[near], data.amplitude.values[near], **line)
-        axes.plot([], [], **line)
-    amplitudes.set_ylabel("amplitude of $x_1$ in m")
-    axes.set(xlabel=f"time from the jump {jump} in s", ylabel="mean speed in rad/s")
+        axes.plot(time[near], data[what].values[near], color=COLOURS[name], label=name)
+    if not found:
+        place: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
+        axes.text(0.5, 0.5, f"no jump {jump}", **place)
+    axes.set(xlabel=f"time from the jump {jump} in s", ylabel=HISTORIES[what])
 
 
 def draw_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
@@ -145,10 +178,9 @@ def label_axes(axes: Sequence[Axes]) -> None:
     axes[1].set(xlabel=speed, ylabel="amplitude of $x_1$ in m")
     axes[2].set(xlabel=speed, ylabel="impacts in a revolution")
     axes[3].set(xlabel=speed, ylabel="power in W")
-    for index, panel in enumerate(axes):
+    for panel in axes:
         if panel.get_legend_handles_labels()[0]:
-            place: Any = "center right" if index >= 4 else "best"  # two scales confuse "best"
-            panel.legend(loc=place, fontsize=7)
+            panel.legend(loc="best", fontsize=7)
 
 
 def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:

@@ -130,6 +130,7 @@ class CoupleJob(Job):
         structure, drive = self.structure, self.drive
         volts = drive.volts(structure)
         trend, time = self.schedule.trend(table["time"]), table["time"] * structure.omega
+        folds = averaged.folds(structure, drive)
         found, reasons, lags = [], [], [math.nan, math.nan]
         for up in (True, False):
             rows = np.flatnonzero(trend > 0 if up else trend < 0)
@@ -137,10 +138,9 @@ class CoupleJob(Job):
             jump = find_jump(way, drive.b(structure), up)
             resonance = averaged.resonance(structure, drive)
             found.append(None if jump is None else Jump._make(int(rows[i]) for i in jump))
-            reasons.append("" if jump else why_none(way, up, resonance))
+            reasons.append("" if jump else why_none(way, up, resonance, bool(folds)))
         columns = jump_columns(table, found)
         if structure.bonded:
-            folds = averaged.folds(structure, drive)
             theory = [folds[0].eta0, folds[-1].eta0] if folds else [math.nan, math.nan]
             text = "voltage at which the speed jumps, by the averaged theory"
             ends = [volts * value for value in theory]

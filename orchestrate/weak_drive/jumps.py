@@ -131,7 +131,7 @@ def half_slip(slip: np.ndarray, before: int, up: bool) -> int | None:
     return before + int(after[0]) if after.size else None
 
 
-def why_none(way: Way, up: bool, resonance: float) -> str:
+def why_none(way: Way, up: bool, resonance: float, has_folds: bool) -> str:
     """Why there is no jump.
 
     Parameters
@@ -140,6 +140,8 @@ def why_none(way: Way, up: bool, resonance: float) -> str:
     up : bool
     resonance : float
         Speed of the resonance over omega.
+    has_folds : bool
+        Whether the averaged theory, bonded, has folds.
     """
     if not len(way.time):
         return f"the voltage does not {'rise' if up else 'fall'}"
@@ -152,4 +154,6 @@ def why_none(way: Way, up: bool, resonance: float) -> str:
         return "the ramp ends within a jump"
     if (last > resonance) != up:
         return f"ends {'below' if up else 'beyond'} the resonance"
+    if has_folds:
+        return "too fast a ramp to tell a jump: the averaged theory has a fold"
     return "no fold: the speed follows the voltage through the resonance"

@@ -47,6 +47,13 @@ def test_a_motor_without_folds():
     assert all("no fold" in text for text in found.no_jump.values)
 
 
+def test_a_ramp_too_fast_to_tell():
+    """There is a fold, so it is not said that there is none."""
+    found = run(QUICK.as_bonded(), (1.26, 1.75), 2e-3, back=False)
+    assert np.isnan(found.jumps[0]) and found.averaged_jumps[0] > 1.58
+    assert "too fast" in str(found.no_jump.values[0])
+
+
 def way(speed, rate):
     """A ramp from 1.2 to 1.6 and the speed over its voltage, a revolution each 5/omega."""
     time = np.arange(0.0, 0.4 / rate, 5.0)
