@@ -1,4 +1,4 @@
-"""How the manual is built: ``python -m sphinx -W docs site`` makes it, without network.
+"""How the manual is built: ``python -m sphinx -W docs site/html`` makes it, without network.
 
 Pages are MyST Markdown; those with code cells are run when the manual is built. The reference comes
 from the docstrings. Formulas become MathML, which browsers show without any script.
@@ -26,7 +26,6 @@ extensions = [
     "numpydoc",
     "sphinx_copybutton",
 ]
-exclude_patterns = ["site"]
 nitpicky = False
 
 html_theme = "furo"

@@ -13,6 +13,7 @@ import pytest
 import orchestrate
 from orchestrate import cli
 
+from ..exports import once
 from .written import DOCS
 
 KERNEL = "fmu_src.kernels.oscillator"
@@ -20,8 +21,13 @@ KERNEL = "fmu_src.kernels.oscillator"
 
 @pytest.fixture(scope="session")
 def site(exported, tmp_path_factory):
-    """The manual, built in a process of its own as its users do."""
-    place = tmp_path_factory.mktemp("site")
+    """The manual, built in a process of its own as its users do, once for all workers."""
+    return once(tmp_path_factory, "manual", lambda: built(tmp_path_factory.mktemp("manual")))
+
+
+def built(folder):
+    """Build it."""
+    place = folder / "html"
     command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", DOCS, place]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
@@ -34,20 +40,17 @@ def inventory(site):
     return {line.split()[0] for line in zlib.decompress(packed).decode().splitlines() if line}
 
 
-@pytest.mark.xdist_group("site")
 def test_the_public_face_is_described(site):
     names = {f"orchestrate.{name}" for name in orchestrate.__all__ if not name.startswith("_")}
     assert names - inventory(site) == set()
 
 
-@pytest.mark.xdist_group("site")
 def test_every_command_has_its_help(site):
     page = (site / "commands.html").read_text(encoding="utf-8")
     names = [command.__name__.rpartition(".")[2] for command in cli.COMMANDS]
     assert [name for name in names if f">{name}<" not in page] == []
 
 
-@pytest.mark.xdist_group("site")
 def test_nothing_comes_from_elsewhere(site):
     """No script, style, font or picture is taken from the network."""
     outside = re.compile(r'(?:<script[^>]* src|<link[^>]* href|<img[^>]* src)="(https?:[^"]*)"')
