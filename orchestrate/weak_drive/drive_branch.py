@@ -287,7 +287,7 @@ def drive_branch(
     >>> from orchestrate import Drive, Structure, drive_branch
     >>> quick = Structure.from_file("quick"), Drive.from_file("quick")
     >>> found = drive_branch(*quick, speed=(1.26, 1.34), count=6, progress=False)
-    >>> bool(found.voltage.sel(structure="bonded").argmax() == 3)
+    >>> bool(found.voltage.values[0].argmax() == 3)
     True
     """
     checked_motor(drive)
