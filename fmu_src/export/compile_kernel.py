@@ -139,7 +139,9 @@ def emit_object(text, platform):
     machine = llvm.Target.from_triple(platform.triple).create_target_machine(
         cpu=CPU, opt=3, reloc="pic", codemodel="default"
     )
-    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
+    tuning = llvm.create_pipeline_tuning_options(speed_level=3)
+    tuning.slp_vectorization = True  # two numbers at a time, each with its own bits
+    builder = llvm.create_pass_builder(machine, tuning)
     for _ in range(2):  # the second round sees that no error path is left
         builder.getModulePassManager().run(module, builder)
     needed = [

@@ -6,7 +6,7 @@ from ..numerics.elementary import TWO_PI, fraction
 from . import memory as at
 from .event_function import evaluate
 from .excitation import begin_segment, inputs_changed
-from .maximum import largest_gap
+from .maximum import watch
 from .motion import begin, begin_common, begin_flight, end_state, move_origin, set_turn, state_at
 from .outputs import momentum, write, write_impulse
 from .parameters import derive
@@ -29,6 +29,8 @@ def initialize(m, time):
     m[at.START_TIME] = time
     m[at.TIME] = time
     for i in range(at.ORIGIN, at.START_TIME):
+        m[i] = 0.0
+    for i in range(at.BEGIN, at.SIZE):
         m[i] = 0.0
     for i in range(at.IMPACT_COUNT, at.SAMPLE_COUNT):
         m[i] = 0.0
@@ -168,17 +170,19 @@ def keep_sample(m, i, tau):
     m[at.X2_SAMPLE + i] = x2
     m[at.V1_SAMPLE + i] = m[at.OMEGA] * v1
     m[at.V2_SAMPLE + i] = m[at.OMEGA] * v2
+    if m[at.X_REL_MAX_ON] != 0.0 and x2 - x1 > m[at.X_REL_MAX]:
+        m[at.X_REL_MAX] = x2 - x1
 
 
 def run_states(m, time, now):
     """Run through all states that end by ``time``; returns the present state's age there."""
-    watch = m[at.X_REL_MAX_ON] != 0.0
+    watching = m[at.X_REL_MAX_ON] != 0.0
     while True:
         tau = local_time(m, time)
-        walk(m, tau)
-        stop = tau if m[at.END] > tau else m[at.END]
-        if watch and m[at.MODE] == at.FLIGHT:
-            m[at.X_REL_MAX] = largest_gap(m, now, stop, m[at.X_REL_MAX])
+        if watching and m[at.MODE] == at.FLIGHT:
+            watch(m, now, tau)
+        else:
+            walk(m, tau)
         if m[at.END_KIND] == at.END_OPEN or m[at.END] > tau or m[at.WORK] >= m[at.WORK_LIMIT]:
             return tau
         impacts = m[at.IMPACT_COUNT]
