@@ -6,6 +6,7 @@ from . import memory as at
 from .event_function import evaluate
 from .hermite import has_summit, interval_is_below
 from .roots import accuracy, clear_from_node, clear_step, creep, glide, next_step, parabola_root
+from .series import taylor
 
 SMALLEST = 1e-9  # least progress, in tau: a summit is flat, nothing is lost
 
@@ -16,7 +17,9 @@ def watch(m, start, target):
     """
     if m[at.SERIES] != 0.0:
         stop = target if target < m[at.END] else m[at.END]
-        if (m[at.BEGIN + 3] - m[at.BEGIN + 1]) * stop > m[at.X_REL_MAX]:  # the gap is concave
+        # a concave gap stays below its tangents at both ends
+        rise, fall = m[at.SERIES_GAP + 1], -taylor(m, at.SERIES_GAP + 1, m[at.END])
+        if rise * fall * m[at.END] > (rise + fall) * m[at.X_REL_MAX]:
             m[at.X_REL_MAX] = largest_gap(m, start, stop, m[at.X_REL_MAX])
         return
     tau = start
@@ -78,7 +81,9 @@ def largest_gap(m, start, stop, highest):
         if h1 > 0.0 and not summit:
             step, summit = climb(h1, h2, h3, h4, bound, reach)
         elif highest > h0:
-            step, _ = next_step(highest - h0, -h1, -h2, -h3, -h4, bound, tau, reach, accuracy(m, tau))
+            step, _ = next_step(
+                highest - h0, -h1, -h2, -h3, -h4, bound, tau, reach, accuracy(m, tau)
+            )
             summit = False
         else:
             scale = 1.0 / bound if bound > 0.0 else 1.0

@@ -64,6 +64,7 @@ TIME = slot()  # communication point reached, s (the independent variable)
 # -- constants derived from the parameters ---------------------------------------------------------
 OMEGA = slot()  # (2)
 MU = slot()
+SHARE = slot()  # 1/(1 + mu), the part of mass 1 in both
 FORCE_V = slot()  # 2 (D1 - D2), and
 FORCE_X = slot()  # omega1^2 - omega2^2: the coefficients of (18)
 FASTEST = slot()  # largest omega_i
@@ -77,7 +78,7 @@ NU_TURNS = inside()  # the same in turns
 ENVELOPE_RATE = inside()  # r and s of |e^{-D t} cos| <= e^{-r t}, |e^{-D t} sin/nu| <= s e^{-r t}
 ENVELOPE_SINE = inside()
 SIXTH = inside(4)  # sixth derivatives of a free part's displacement and velocity, by both
-STEP_ON = inside(4)  # both one spacing of nodes later, by both
+STEP_ON = inside(4)  # both one spacing of nodes later, by displacement and by velocity
 BRANCH_1 = slot(inside.used)
 BRANCH_2 = slot(inside.used)
 BRANCH_3 = slot(inside.used)
@@ -98,6 +99,8 @@ SPACING = slot()  # of the nodes, in tau; a few bits long, so that ages of nodes
 HALF_SPACING = slot()
 HERMITE = slot(3)  # h/5, h^2/20, h^6/28800
 STEEP = slot()  # some branch decays too fast for a polynomial over half a spacing
+RATE = slot()  # at least every rate of change of a flight, and its inverse
+RATE_INVERSE = slot()
 NODE_ETA = slot()  # eta; 0 where there is no harmonic forcing
 NODE_COSINE = slot()  # of eta times the spacing
 NODE_SINE = slot()
@@ -145,7 +148,7 @@ RIGHT_VALUES = slot(3)
 REMAINDER = slot()  # what a quintic between nodes may miss: bound of the sixth derivative, scaled
 SERIES = slot()  # order of the Taylor series that describe a short flight; 0: the closed form does
 SERIES_X = slot(SERIES_LONGEST + 1)  # derivatives of xi_1 at its start
-SERIES_GAP = slot(SERIES_LONGEST + 1)  # and of the gap
+SERIES_GAP = slot(SERIES_LONGEST + 5)  # and of the gap; zeros after the last
 SERIES_BOUND = slot()  # of the gap's fifth derivative
 SIZE = slot.used
 

@@ -33,6 +33,11 @@ def state_at(m, tau):
         gap, slope = taylor(m, at.SERIES_GAP, tau), taylor(m, at.SERIES_GAP + 1, tau)
         return x1, v1, x1 + gap if gap > 0.0 else x1, v1 + slope
     x_a, v_a, x_b, v_b, cosine, sine = phasors_at(m, tau)
+    return moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine)
+
+
+def moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine):
+    """Displacements and velocities from all phasors."""
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
         x2, v2 = displacement(m, at.HARMONIC_2, at.CUBIC_B, tau, x_b, v_b, sine, cosine)
@@ -43,9 +48,22 @@ def state_at(m, tau):
     return x3, v3, x3, v3
 
 
+def state_and_phase_at(m, tau):
+    """:func:`state_at`, and cosine and sine of the excitation's phase there."""
+    if tau != 0.0 and m[at.SERIES] == 0.0 and m[at.NODE_ETA] != 0.0:
+        x_a, v_a, x_b, v_b, cosine, sine = phasors_at(m, tau)
+        x1, v1, x2, v2 = moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine)
+        return x1, v1, x2, v2, cosine, sine
+    x1, v1, x2, v2 = state_at(m, tau)
+    cosine, sine = m[at.COSINE], m[at.SINE]
+    if tau != 0.0 and m[at.NODE_ETA] != 0.0:
+        sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
+    return x1, v1, x2, v2, cosine, sine
+
+
 def common_position(m, x1, x2):
     """The centre of mass, where both masses are put at an impact: they differ by rounding alone."""
-    return (x1 + m[at.MU] * x2) / (1.0 + m[at.MU])
+    return (x1 + m[at.MU] * x2) * m[at.SHARE]
 
 
 def move_origin(m, tau):
@@ -171,10 +189,10 @@ def leave_impact(m, x, v1, v2):
     found at once.
     """
     slope = v2 - v1
-    damped = 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
-    order = series_order(m, slope, contact_force(m, x, v1) - damped)
-    set_series(m, x, v1, slope, order)
+    curvature = contact_force(m, x, v1) - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
+    order = series_order(m, slope, curvature)
     if order > 4:
+        set_series(m, x, v1, slope, order)
         duration = short_flight(m, order)
         if duration > 0.0:
             m[at.MODE] = at.FLIGHT
@@ -185,20 +203,23 @@ def leave_impact(m, x, v1, v2):
             m[at.END_KIND] = at.END_EVENT
             return
     begin_flight(m, x, v1, x, v2)
-    leave_boundary(
-        m, slope, m[at.SERIES_GAP + 2], m[at.SERIES_GAP + 3], m[at.SERIES_GAP + 4]
-    )
+    if not leave_clear(m, slope, curvature):
+        set_series(m, x, v1, slope, 8)
+        creep_away(m, slope, curvature, m[at.SERIES_GAP + 3], m[at.SERIES_GAP + 4])
 
 
-def leave_boundary(m, h1, h2, h3, h4):
-    """Leave a start on the boundary with the event function's derivatives, ``h1 > 0``, or ``h1 = 0
-    < h2``: no root lies before CLEAR.
+def leave_clear(m, h1, h2):
+    """Whether a part of the first interval is seen to be clear from a start on the boundary with the
+    event function's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``; CLEAR moves there.
     """
     m[at.LEFT_VALUES] = 0.0
     m[at.LEFT_VALUES + 1] = h1
     m[at.LEFT_VALUES + 2] = h2
-    if clear_from_node(m):
-        return
+    return clear_from_node(m)
+
+
+def creep_away(m, h1, h2, h3, h4):
+    """A certified step from such a start, or the root."""
     _, _, _, _, _, bound = evaluate(m, 0.0)
     reach = m[at.RIGHT_AGE]
     step, found = step_from(0.0, h1, h2, h3, h4, bound, 0.0, reach, accuracy(m, 0.0))
@@ -227,11 +248,10 @@ def leave(m, order, value):
         m[at.CLEAR] = INFINITE
         return
     _, _, h2, h3, h4, _ = evaluate(m, 0.0)
-    if order == 1:
-        leave_boundary(m, value, h2, h3, h4)
-        return
-    if order == 2:
-        leave_boundary(m, 0.0, value, h3, h4)
+    if order <= 2:
+        h1, h2 = (value, h2) if order == 1 else (0.0, value)
+        if not leave_clear(m, h1, h2):
+            creep_away(m, h1, h2, h3, h4)
         return
     bound = derivative_bound(m, order + 1)
     # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of

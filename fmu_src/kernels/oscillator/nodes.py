@@ -26,6 +26,9 @@ def set_grid(m):
     if m[at.SPACING] != 0.0 and eta == m[at.NODE_ETA]:
         return
     m[at.NODE_ETA] = eta
+    damping = max(m[at.BRANCH_1 + at.DAMPING], m[at.BRANCH_2 + at.DAMPING])
+    m[at.RATE] = max(eta, m[at.FASTEST] + 2.0 * damping)  # 2 D/rate + (omega/rate)^2 <= 1
+    m[at.RATE_INVERSE] = 1.0 / m[at.RATE]
     h = spacing(min(max(m[at.FASTEST], eta), FASTEST_TAKEN))
     sine, cosine = sincos_turns(m[at.ETA_TURNS] * h if eta != 0.0 else 0.0)
     m[at.NODE_COSINE] = cosine
@@ -45,22 +48,22 @@ def set_grid(m):
 
 
 def spacing(fastest):
-    """At most ANGLE over the fastest, five bits long."""
+    """At most ANGLE over the fastest, eight bits long."""
     longest = ANGLE / fastest
     unit = 1.0
     while unit > longest:
         unit *= 0.5
     while 2.0 * unit <= longest:
         unit *= 2.0
-    return math.floor(longest / unit * 16.0) * 0.0625 * unit
+    return math.floor(longest / unit * 128.0) * 0.0078125 * unit
 
 
 def set_turn_constants(m, b, h):
     """A branch's rotation over one spacing."""
     xx, xv, vx, vv = turn_by(m, b, h)
     m[b + at.STEP_ON] = xx
-    m[b + at.STEP_ON + 1] = xv
-    m[b + at.STEP_ON + 2] = vx
+    m[b + at.STEP_ON + 1] = vx
+    m[b + at.STEP_ON + 2] = xv
     m[b + at.STEP_ON + 3] = vv
     if 0.5 * h * m[b + at.DAMPING] > STEEPEST:
         m[at.STEEP] = 1.0
@@ -115,10 +118,10 @@ def turned(m, x, v, x_b, v_b, cosine, sine):
     """All phasors one spacing later."""
     a, b = branch_a(m) + at.STEP_ON, at.BRANCH_2 + at.STEP_ON
     return (
-        x * m[a] + v * m[a + 1],
-        x * m[a + 2] + v * m[a + 3],
-        x_b * m[b] + v_b * m[b + 1],
-        x_b * m[b + 2] + v_b * m[b + 3],
+        x * m[a] + v * m[a + 2],
+        x * m[a + 1] + v * m[a + 3],
+        x_b * m[b] + v_b * m[b + 2],
+        x_b * m[b + 1] + v_b * m[b + 3],
         cosine * m[at.NODE_COSINE] - sine * m[at.NODE_SINE],
         sine * m[at.NODE_COSINE] + cosine * m[at.NODE_SINE],
     )
@@ -196,10 +199,18 @@ def phasors_at(m, tau):
     node, t = at.LEFT, tau - m[at.LEFT_AGE]
     if t > m[at.HALF_SPACING] and m[at.STEEP] == 0.0:
         node, t = at.RIGHT, tau - m[at.RIGHT_AGE]
-    x_a, v_a = turned_part(m, branch_a(m), node, t)
-    x_b, v_b = 0.0, 0.0
-    if m[at.MODE] == at.FLIGHT:
-        x_b, v_b = turned_part(m, at.BRANCH_2, node + 2, t)
+    a, b = branch_a(m), at.BRANCH_2
+    if m[at.STEEP] != 0.0:
+        x_a, v_a = from_start(m, a, node, t)
+        x_b, v_b = from_start(m, b, node + 2, t) if m[at.MODE] == at.FLIGHT else (0.0, 0.0)
+    else:
+        decay = small_decay(m[a + at.DAMPING] * t)
+        x_a, v_a = turned_part(m, a, node, t, decay)
+        x_b, v_b = 0.0, 0.0
+        if m[at.MODE] == at.FLIGHT:
+            if m[a + at.DAMPING] != m[b + at.DAMPING]:
+                decay = small_decay(m[b + at.DAMPING] * t)
+            x_b, v_b = turned_part(m, b, node + 2, t, decay)
     cosine, sine = m[node + 4], m[node + 5]
     if m[at.NODE_ETA] != 0.0:
         angle = m[at.NODE_ETA] * t
@@ -209,12 +220,9 @@ def phasors_at(m, tau):
     return x_a, v_a, x_b, v_b, cosine, sine
 
 
-def turned_part(m, b, free, t):
-    """A free part over a part of a spacing."""
-    if m[at.STEEP] != 0.0:
-        return from_start(m, b, free, t)
+def turned_part(m, b, free, t, decay):
+    """A free part over a part of a spacing, in which it decays by ``e^{-D t}``."""
     x, v = m[free], m[free + 1]
-    decay = small_decay(m[b + at.DAMPING] * t)
     cosine, sine = small_rotation(m[b + at.NU_SQUARED] * t * t)
     C, S = decay * cosine, decay * sine * t
     damped = m[b + at.DAMPING] * S

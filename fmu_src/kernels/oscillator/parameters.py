@@ -25,6 +25,7 @@ def derive(m):
         damping_2 = damping_1
     m[at.OMEGA] = omega
     m[at.MU] = mu
+    m[at.SHARE] = 1.0 / (1.0 + mu)
     m[at.FORCE_V] = 2.0 * (damping_1 - damping_2)  # (18)
     m[at.FORCE_X] = 1.0 - omega_2_squared
     set_branch(m, at.BRANCH_1, damping_1, 1.0)

@@ -18,8 +18,12 @@ from .nodes import put, renewed, starts_block, turned
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
 TRIALS = 3
-CLOSE = 0.00390625  # relative change of the slope up to a root that two steps of Newton's method find
-LONGEST = 1024.0  # nodes after which a state is written anew: its angles and their rounding stay small
+CLOSE = (
+    0.00390625  # relative change of the slope up to a root that two steps of Newton's method find
+)
+LONGEST = (
+    1024.0  # nodes after which a state is written anew: its angles and their rounding stay small
+)
 
 
 def parabola_root(h0, h1, h2):

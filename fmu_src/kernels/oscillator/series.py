@@ -15,19 +15,13 @@ SHORTER = 0.02  # and eight terms
 ENOUGH = 2e-8  # relative: the next step of Newton's method would be a small part of its square
 
 
-def fastest_rate(m):
-    """At least every rate of change of a flight: then ``2 D/rate + (omega/rate)^2 <= 1``."""
-    damping = max(m[at.BRANCH_1 + at.DAMPING], m[at.BRANCH_2 + at.DAMPING])
-    return max(m[at.NODE_ETA], m[at.FASTEST] + 2.0 * damping)
-
-
 def series_order(m, slope, curvature):
     """How many terms a flight needs that begins with a gap velocity and acceleration: 4 where it is
     not short.
     """
     if curvature >= 0.0:
         return 4
-    angle = 2.0 * slope * fastest_rate(m)
+    angle = 2.0 * slope * m[at.RATE]
     if angle > SHORT * -curvature:
         return 4
     return 8 if angle <= SHORTER * -curvature else at.SERIES_LONGEST
@@ -42,8 +36,7 @@ def fifth_bound(m):
     omega_2^2|) Z`` times as much; with ``V = gap'/R + 1.35 W/R^2`` its derivatives are below 1.35,
     1.35, 2.35, 4.1, 6.6 and 9.8 times ``R^k V``.
     """
-    rate = fastest_rate(m)
-    part = 1.0 / rate
+    rate, part = m[at.RATE], m[at.RATE_INVERSE]
     forcing = abs(m[at.FORCING])
     if m[at.CUBIC_PRESENT] != 0.0:
         cubic_0, cubic_1, cubic_2, cubic_3 = cubic_at(m, m[at.SEGMENT_AGE])
@@ -76,6 +69,9 @@ def set_series(m, x, v, slope, order):
         for k in range(7, 11):
             set_derivatives(m, k + 2, drive)
             drive, drive_next = drive_next, square * drive
+    else:
+        for k in range(9, at.SERIES_LONGEST + 1):
+            m[at.SERIES_GAP + k] = 0.0
 
 
 def set_derivatives(m, k, drive):
@@ -83,9 +79,7 @@ def set_derivatives(m, k, drive):
     one, two = at.BRANCH_1, at.BRANCH_2
     x, v = m[at.SERIES_X + k - 2], m[at.SERIES_X + k - 1]
     gap, slope = m[at.SERIES_GAP + k - 2], m[at.SERIES_GAP + k - 1]
-    m[at.SERIES_X + k] = drive - (
-        2.0 * m[one + at.DAMPING] * v + m[one + at.OMEGA_SQUARED] * x
-    )
+    m[at.SERIES_X + k] = drive - (2.0 * m[one + at.DAMPING] * v + m[one + at.OMEGA_SQUARED] * x)
     m[at.SERIES_GAP + k] = (m[at.FORCE_V] * v + m[at.FORCE_X] * x) - (
         2.0 * m[two + at.DAMPING] * slope + m[two + at.OMEGA_SQUARED] * gap
     )
@@ -148,34 +142,35 @@ def taylor(m, first, tau):
     """Value of a series with the derivatives from ``first`` on."""
     t2 = tau * tau
     t4 = t2 * t2
-    value = ((m[first] + tau * m[first + 1]) + t2 * (m[first + 2] * 0.5 + tau * m[first + 3] * (1.0 / 6.0)))
+    value = (m[first] + tau * m[first + 1]) + t2 * (
+        m[first + 2] * 0.5 + tau * m[first + 3] * (1.0 / 6.0)
+    )
     value += t4 * (
         (m[first + 4] * (1.0 / 24.0) + tau * m[first + 5] * (1.0 / 120.0))
         + t2 * (m[first + 6] * (1.0 / 720.0) + tau * m[first + 7] * (1.0 / 5040.0))
     )
     if m[at.SERIES] > 8.0:
-        value += t4 * t4 * (
-            (m[first + 8] * (1.0 / 40320.0) + tau * m[first + 9] * (1.0 / 362880.0))
-            + t2 * (m[first + 10] * (1.0 / 3628800.0) + tau * m[first + 11] * (1.0 / 39916800.0))
+        value += (
+            t4
+            * t4
+            * (
+                (m[first + 8] * (1.0 / 40320.0) + tau * m[first + 9] * (1.0 / 362880.0))
+                + t2
+                * (m[first + 10] * (1.0 / 3628800.0) + tau * m[first + 11] * (1.0 / 39916800.0))
+            )
         )
     return value
 
 
 def gap_at(m, tau):
     """The gap and its first four derivatives."""
-    order = int(m[at.SERIES])
-    return (
-        short_taylor(m, 0, order, tau),
-        short_taylor(m, 1, order, tau),
-        short_taylor(m, 2, order, tau),
-        short_taylor(m, 3, order, tau),
-        short_taylor(m, 4, order, tau),
-    )
-
-
-def short_taylor(m, first, order, tau):
-    """A derivative of the gap from the others up to an order."""
-    value = 0.0
-    for k in range(order, first - 1, -1):
-        value = value * tau / (k - first + 1.0) + m[at.SERIES_GAP + k]
-    return value
+    h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
+    power = 1.0  # tau^k/k!
+    for k in range(int(m[at.SERIES]) + 1):
+        h0 += power * m[at.SERIES_GAP + k]
+        h1 += power * m[at.SERIES_GAP + k + 1]
+        h2 += power * m[at.SERIES_GAP + k + 2]
+        h3 += power * m[at.SERIES_GAP + k + 3]
+        h4 += power * m[at.SERIES_GAP + k + 4]
+        power *= tau / (k + 1.0)
+    return h0, h1, h2, h3, h4

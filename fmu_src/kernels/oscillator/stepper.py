@@ -2,7 +2,7 @@
 communication point to the next.
 """
 
-from ..numerics.elementary import TWO_PI, fraction
+from ..numerics.elementary import TWO_PI
 from . import memory as at
 from .event_function import evaluate
 from .excitation import begin_segment, inputs_changed
@@ -90,12 +90,14 @@ def advance(m, time):
     )
     momentum_before, moment_before = momentum(m)
     now = local_time(m, m[at.TIME])
-    turn = fraction(m[at.TURN] + m[at.ETA_TURNS] * now)
     if inputs_changed(m):
         code = renew_segment(m, now)
         if code != at.OK:
             return code
         now = 0.0
+        m[at.PHASE_COSINE] = m[at.COSINE]
+        m[at.PHASE_SINE] = m[at.SINE]
+    cosine, sine = m[at.PHASE_COSINE], m[at.PHASE_SINE]
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     tau = run_samples(m, before, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:
@@ -108,15 +110,19 @@ def advance(m, time):
     write(m, tau)
     if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
         m[at.X_REL_MAX] = m[at.X_REL]
-    write_impulse(m, h, momentum_before, moment_before, turn)
+    write_impulse(m, h, momentum_before, moment_before, cosine, sine)
     return finite(m)
 
 
 def finite(m):
     """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
-    total = 0.0
-    for i in range(at.X1, at.CONTACT_COUNT):
-        total += m[i]
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0  # four sums side by side: one after the other would take long
+    for i in range(at.X1, at.CONTACT_COUNT, 4):
+        a += m[i]
+        b += m[i + 1]
+        c += m[i + 2]
+        d += m[i + 3]
+    total = (a + b) + (c + d)
     return at.OK if total - total == 0.0 else at.NOT_FINITE
 
 

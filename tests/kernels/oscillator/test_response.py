@@ -14,8 +14,8 @@ from scipy.integrate import solve_ivp
 from fmu_src.kernels.numerics.elementary import TWO_PI, sincos_turns
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.excitation import cubic_at, set_cubic_response, set_harmonic
-from fmu_src.kernels.oscillator.parameters import set_branch
 from fmu_src.kernels.oscillator.nodes import from_start
+from fmu_src.kernels.oscillator.parameters import set_branch
 from fmu_src.kernels.oscillator.response import basis, displacement, set_free
 
 from . import truth
