@@ -1,10 +1,11 @@
 """The event function between two nodes: a quintic through both, and what it may miss.
 
-The quintic that shares value and two derivatives with the event function at both ends of an interval
-of length h misses at most ``B6 s^3 (1-s)^3 h^6/720``, B6 a bound of the sixth derivative, s in [0, 1].
-As ``s (1-s) <= 1/4`` that is at most ``r (b_2(s) + b_3(s))`` with ``r = B6 h^6/28800`` and the Bernstein
-polynomials b_2, b_3 of degree five: lowering two Bernstein coefficients by r gives a quintic below the
-event function, and where no coefficient of it is negative there is no root.
+The quintic that shares value and two derivatives with the event function at both ends of an
+interval of length h misses at most ``B6 s^3 (1-s)^3 h^6/720``, B6 a bound of the sixth derivative,
+s in [0, 1]. As ``s (1-s) <= 1/4`` that is at most ``r (b_2(s) + b_3(s))`` with ``r = B6 h^6/28800``
+and the Bernstein polynomials b_2, b_3 of degree five: lowering two Bernstein coefficients by r
+gives a quintic below the event function, and where no coefficient of it is negative there is no
+root.
 """
 
 import math
@@ -101,7 +102,7 @@ def clear_part(m):
 
 
 def crossing(b0, b1, b2, b3, b4, b5):
-    """Slightly before the last root of a quintic that is negative at 1; 0 where that is not seen."""
+    """Slightly before the last root of a quintic that is negative at 1; 0 where none is seen."""
     a1, a2 = 5.0 * (b1 - b0), 10.0 * ((b2 - b1) - (b1 - b0))
     a3 = 10.0 * ((b3 - b0) - 3.0 * (b2 - b1))
     a4 = 5.0 * ((b4 + b0) - 4.0 * (b3 + b1) + 6.0 * b2)

@@ -209,8 +209,8 @@ def leave_impact(m, x, v1, v2):
 
 
 def leave_clear(m, h1, h2):
-    """Whether a part of the first interval is seen to be clear from a start on the boundary with the
-    event function's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``; CLEAR moves there.
+    """Whether a part of the first interval is seen to be clear from a start on the boundary with
+    the event function's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``; CLEAR moves there.
     """
     m[at.LEFT_VALUES] = 0.0
     m[at.LEFT_VALUES + 1] = h1

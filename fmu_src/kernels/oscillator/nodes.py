@@ -1,11 +1,11 @@
 """The nodes of a state: phasors rotated by constants from node to node, by a polynomial between.
 
-A free part is the pair of its displacement and velocity (x, v): an age t later it is ``((C + D S) x +
-S v, (C - D S) v - omega^2 S x)``, whatever the damping, with C and S of (10) at t. So is the excitation
-the pair of its cosine and sine. Nodes lie at
-multiples of a spacing after the state's start; from one to the next all pairs rotate by constants,
-and every 32 nodes they are made anew from the closed form, so that rounding does not grow. A pair at
-a node depends on the node alone, never on how it was reached.
+A free part is the pair of its displacement and velocity (x, v): an age t later it is ``((C + D S) x
++ S v, (C - D S) v - omega^2 S x)``, whatever the damping, with C and S of (10) at t. So is the
+excitation the pair of its cosine and sine. Nodes lie at multiples of a spacing after the state's
+start; from one to the next all pairs rotate by constants, and every 32 nodes they are made anew
+from the closed form, so that rounding does not grow. A pair at a node depends on the node alone,
+never on how it was reached.
 """
 
 import math

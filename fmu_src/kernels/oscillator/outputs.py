@@ -39,8 +39,8 @@ def write_impulse(m, h, momentum_before, moment_before, cosine, sine):
 
     ``box_force = -P' - (m1 + m2) y''`` with P the momentum relative to the box and y'' its
     acceleration, so the integral is a difference of momenta, its moment a difference of
-    displacements, and what the box's motion adds is known in closed form. ``cosine`` and ``sine`` are
-    those of the phase before the step.
+    displacements, and what the box's motion adds is known in closed form. ``cosine`` and ``sine``
+    are those of the phase before the step.
     """
     after, moment_after = momentum(m)
     mass = m[at.M1] + m[at.M2]

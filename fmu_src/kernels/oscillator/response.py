@@ -87,8 +87,8 @@ def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):
 
 
 def set_free(m, harmonic, free, cubic, x, v, sine, cosine):
-    """Displacement and velocity of the free part from the initial conditions (9): alpha_i and beta_i
-    of (11).
+    """Displacement and velocity of the free part from the initial conditions (9): alpha_i and
+    beta_i of (11).
     """
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0

@@ -150,7 +150,7 @@ def glide(m, target, ceiling):
 
 
 def clear_from_node(m):
-    """Whether part of the present interval is seen to be clear from its start; CLEAR moves there."""
+    """Whether a part of the present interval is seen to be clear; CLEAR moves to its end."""
     if not interval_is_clear(m):
         if m[at.RIGHT_VALUES] > 0.0:
             set_remainder(m)

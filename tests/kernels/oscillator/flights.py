@@ -1,8 +1,8 @@
 """Adversarial flights by the seed, the kernel's ends of them, and a dense search of its own.
 
-Run as a program (``python -m tests.kernels.oscillator.flights SEED COUNT``) the kernel and the search
-are compiled, and a million flights take minutes. Nothing in the search comes from the kernel: each
-mass is a sum of complex exponentials by Newton's law, in SI units, omega = 1.
+Run as a program (``python -m tests.kernels.oscillator.flights SEED COUNT``) the kernel and the
+search are compiled, and a million flights take minutes. Nothing in the search comes from the
+kernel: each mass is a sum of complex exponentials by Newton's law, in SI units, omega = 1.
 """
 
 from __future__ import annotations

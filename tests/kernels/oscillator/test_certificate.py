@@ -1,4 +1,4 @@
-"""No root is missed: adversarial flights against a dense search of its own, and in high precision."""
+"""No root is missed: adversarial flights against a dense search, and in high precision."""
 
 import subprocess
 import sys
