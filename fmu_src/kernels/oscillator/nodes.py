@@ -197,20 +197,9 @@ def phasors_at(m, tau):
     if tau < m[at.LEFT_AGE] or tau > m[at.RIGHT_AGE]:
         seek(m, tau)
     node, t = at.LEFT, tau - m[at.LEFT_AGE]
-    if t > m[at.HALF_SPACING] and m[at.STEEP] == 0.0:
+    if t > m[at.HALF_SPACING]:
         node, t = at.RIGHT, tau - m[at.RIGHT_AGE]
-    a, b = branch_a(m), at.BRANCH_2
-    if m[at.STEEP] != 0.0:
-        x_a, v_a = from_start(m, a, node, t)
-        x_b, v_b = from_start(m, b, node + 2, t) if m[at.MODE] == at.FLIGHT else (0.0, 0.0)
-    else:
-        decay = small_decay(m[a + at.DAMPING] * t)
-        x_a, v_a = turned_part(m, a, node, t, decay)
-        x_b, v_b = 0.0, 0.0
-        if m[at.MODE] == at.FLIGHT:
-            if m[a + at.DAMPING] != m[b + at.DAMPING]:
-                decay = small_decay(m[b + at.DAMPING] * t)
-            x_b, v_b = turned_part(m, b, node + 2, t, decay)
+    x_a, v_a, x_b, v_b = free_parts(m, node, t) if m[at.STEEP] == 0.0 else steep_parts(m, tau)
     cosine, sine = m[node + 4], m[node + 5]
     if m[at.NODE_ETA] != 0.0:
         angle = m[at.NODE_ETA] * t
@@ -218,6 +207,29 @@ def phasors_at(m, tau):
         s *= angle
         cosine, sine = cosine * c - sine * s, sine * c + cosine * s
     return x_a, v_a, x_b, v_b, cosine, sine
+
+
+def steep_parts(m, tau):
+    """Both free parts where one decays steeply: from the node before, by elementary functions."""
+    t = tau - m[at.LEFT_AGE]
+    x_a, v_a = from_start(m, branch_a(m), at.LEFT, t)
+    if m[at.MODE] != at.FLIGHT:
+        return x_a, v_a, 0.0, 0.0
+    x_b, v_b = from_start(m, at.BRANCH_2, at.LEFT + 2, t)
+    return x_a, v_a, x_b, v_b
+
+
+def free_parts(m, node, t):
+    """Both free parts at most half a spacing from a node."""
+    a, b = branch_a(m), at.BRANCH_2
+    decay = small_decay(m[a + at.DAMPING] * t)
+    x_a, v_a = turned_part(m, a, node, t, decay)
+    if m[at.MODE] != at.FLIGHT:
+        return x_a, v_a, 0.0, 0.0
+    if m[a + at.DAMPING] != m[b + at.DAMPING]:
+        decay = small_decay(m[b + at.DAMPING] * t)
+    x_b, v_b = turned_part(m, b, node + 2, t, decay)
+    return x_a, v_a, x_b, v_b
 
 
 def turned_part(m, b, free, t, decay):

@@ -21,6 +21,7 @@ TRIALS = 3
 CLOSE = (
     0.00390625  # relative change of the slope up to a root that two steps of Newton's method find
 )
+CONVERGED = 1e-8  # relative: the next step of Newton's method would be its square
 LONGEST = (
     1024.0  # nodes after which a state is written anew: its angles and their rounding stay small
 )
@@ -265,7 +266,7 @@ def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
     root.
     """
     root = step
-    slope = -1.0
+    slope, change = -1.0, 0.0
     square = step * step
     if bound * square * square * step > 240.0 * (abs(h1) + abs(h2) * step) * accuracy:
         return 0.0
@@ -276,12 +277,14 @@ def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
         slope = h1 + root * (h2 + root * (h3 * 0.5 + root * h4 * (1.0 / 6.0)))
         if slope >= 0.0:
             return 0.0
-        root -= value / slope
+        change = value / slope
+        root -= change
     square = root * root
     if (
         bound * square * square * root > -120.0 * slope * accuracy
         or root < step
         or root > 1.5 * step
+        or abs(change) > CONVERGED * root
     ):
         return 0.0
     rise = (

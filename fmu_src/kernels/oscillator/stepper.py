@@ -131,7 +131,7 @@ def renew_segment(m, now):
     and phase are continuous.
     """
     x1, v1, x2, v2 = state_at(m, now)
-    goes_on = now > 0.0 and m[at.MODE] != at.GLUED and inside(m, now)
+    goes_on = now > 0.0 and m[at.MODE] != at.GLUED and (x2 > x1 or inside(m, now))
     move_origin(m, now)
     code = begin_segment(m)
     if code != at.OK:
