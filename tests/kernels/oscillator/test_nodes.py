@@ -28,12 +28,16 @@ def test_they_are_those_of_the_closed_form(values, ages):
     m = flight(-0.9, 0.95, 0.7, 0.24, **values)
     size = max(1.0, *(abs(m[i]) for i in range(at.FREE_A, at.FREE_A + 4)))
     rate = m[at.RATE]
-    for age in ages:
+    for age in (0.45 * m[at.SPACING], 0.55 * m[at.SPACING], 0.999 * m[at.SPACING], *ages):
         found, expected = nodes.phasors_at(m, age), closed_form(m, age)
         for k in range(6):
-            unit = rate if k in (1, 3) else 1.0
             error = abs(found[k] - expected[k])
-            assert error <= 4e-15 * (size if k < 4 else 1.0) * unit * (8.0 + rate * age), k
+            if k >= 4:
+                assert error <= 1e-15 * (8.0 + m[at.ETA] * age), k
+            else:
+                assert error <= 4e-15 * size * (rate if k in (1, 3) else 1.0) * (
+                    8.0 + rate * age
+                ), k
 
 
 @examples(40)
