@@ -145,6 +145,7 @@ def emit_object(text: str, platform: Platform) -> bytes:
     module.triple = platform.triple
     module.data_layout = str(machine.target_data)
     options = llvm.create_pipeline_tuning_options(speed_level=3)
+    options.slp_vectorization = True  # two numbers at a time, each with its own bits
     builder = llvm.create_pass_builder(machine, options)
     for _ in range(2):  # the second round sees that no error path is left
         builder.getModulePassManager().run(module, builder)

@@ -16,8 +16,10 @@ module                    the paper's equations
 :mod:`.parameters`        m, k, d <-> mu, kappa, D, omega_i                            (2) (7) (8)
 :mod:`.excitation`        the box's motion over one step, right-hand side of            (6)
 :mod:`.response`          closed-form oscillator                                   (9)-(11)
+:mod:`.nodes`             the same by phasors, from node to node of a grid                  (10)
 :mod:`.series`            short flights, relative to the gap itself                    (6)
 :mod:`.event_function`    gap (13) and contact force (18) as one kind of signal, and its bounds
+:mod:`.hermite`           a quintic between two nodes, and what it may miss         (13) (19)
 :mod:`.roots`             certified first root                                      (13) (19)
 :mod:`.impact`            restitution, end of chattering                          (15)-(17)
 :mod:`.contact`           contact force, the side on which a state begins         (18)-(20)

@@ -6,16 +6,9 @@ each derivative: written so, one root finder serves both, and every derivative i
 form for all later times.
 """
 
-from ..numerics.elementary import sincos_turns
 from . import memory as at
-from .response import bases, basis
+from .nodes import branch_a, phasors_at, start_nodes
 from .series import gap_at
-
-
-def free_derivative(m, b, c, w):
-    """Coefficients of the derivative of ``c C + w S``."""
-    damping = m[b + at.DAMPING]
-    return w - damping * c, -(m[b + at.NU_SQUARED] * c + damping * w)
 
 
 def set_gap(m):
@@ -27,13 +20,11 @@ def set_gap(m):
     if m[at.CUBIC_PRESENT] != 0.0:
         for i in range(4):
             m[at.EVENT_CUBIC + i] = m[at.CUBIC_B + i] - m[at.CUBIC_A + i]
-    set_bounds(m, at.BRANCH_1)
 
 
 def set_contact_force(m):
-    """Event function of permanent contact: minus the force of (18).
-
-    ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 - omega_2^2) xi_3``.
+    """Event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 - omega_2^2)
+    xi_3`` (18).
     """
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     h_cos, h_sin, eta = m[at.HARMONIC_3], m[at.HARMONIC_3 + 1], m[at.ETA]
@@ -43,59 +34,126 @@ def set_contact_force(m):
         for i in range(3):
             m[at.EVENT_CUBIC + i] = p * m[at.CUBIC_A + i + 1] + q * m[at.CUBIC_A + i]
         m[at.EVENT_CUBIC + 3] = q * m[at.CUBIC_A + 3]
-    c, w = m[at.FREE_A], m[at.FREE_A + 1]
-    c_dot, w_dot = free_derivative(m, at.BRANCH_3, c, w)
-    m[at.EVENT_FREE_A] = p * c_dot + q * c
-    m[at.EVENT_FREE_A + 1] = p * w_dot + q * w
+    x, v = force_phasor(m, m[at.FREE_A], m[at.FREE_A + 1])
+    m[at.EVENT_FREE_A] = x
+    m[at.EVENT_FREE_A + 1] = v
     m[at.EVENT_FREE_B] = 0.0
     m[at.EVENT_FREE_B + 1] = 0.0
-    set_bounds(m, at.BRANCH_3)
 
 
-def set_bounds(m, branch_a):
-    """Bounds of the fifth derivative: the steady part, and the free parts at tau = 0."""
-    steady, a, b = bounds(m, branch_a, 5)
-    m[at.BOUND] = steady
-    m[at.BOUND + 1] = a
-    m[at.BOUND + 2] = b
+def force_phasor(m, x, v):
+    """Free part of minus the contact force from that of the displacement."""
+    p, q = -m[at.FORCE_V], -m[at.FORCE_X]
+    return p * v + q * x, p * acceleration(m, at.BRANCH_3, x, v) + q * v
 
 
-def bounds(m, branch_a, order):
-    """Bounds of the event function's derivative of an order >= 4, at all later times.
+def acceleration(m, b, x, v):
+    """Of a free part: ``x'' = -2 D x' - omega^2 x``."""
+    return -(2.0 * m[b + at.DAMPING] * v + m[b + at.OMEGA_SQUARED] * x)
 
-    Steady part, and free parts A and B at tau = 0.
+
+def bounds(m, order):
+    """Bounds of the event function's derivative of an order >= 4, at all later times: steady part,
+    free parts A and B at tau = 0.
     """
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     for _ in range(order):
         steady *= m[at.ETA]
-    a = free_bound(m, branch_a, at.EVENT_FREE_A, order)
+    a = free_bound(m, branch_a(m), at.EVENT_FREE_A, order)
     b = free_bound(m, at.BRANCH_2, at.EVENT_FREE_B, order) if m[at.MODE] == at.FLIGHT else 0.0
     return steady, a, b
 
 
 def free_bound(m, b, free, order):
-    """Bound of a free part's derivative at tau = 0; it decays with the branch's envelope."""
-    c, w = m[free], m[free + 1]
+    """Bound of a free part's derivative from the state's start on."""
+    x, v = m[free], m[free + 1]
     for _ in range(order):
-        c, w = free_derivative(m, b, c, w)
-    return abs(c) + m[b + at.ENVELOPE_SINE] * abs(w)
+        x, v = v, acceleration(m, b, x, v)
+    return envelope(m, b, x, v)
 
 
-def free_part(m, b, c, w, C, S):
-    """A free part and its first four derivatives: ``x'' = -2 D x' - omega^2 x``."""
+def envelope(m, b, x, v):
+    """Bound of a free part from now on."""
+    return abs(x) + m[b + at.ENVELOPE_SINE] * abs(v + m[b + at.DAMPING] * x)
+
+
+def begin_nodes(m):
+    """Set the state's first interval: the event function at both ends, and the remainder."""
+    start_nodes(m)
+    set_values(m, at.LEFT_VALUES, at.LEFT, 0.0)
+    set_values(m, at.RIGHT_VALUES, at.RIGHT, m[at.RIGHT_AGE])
+    set_remainder(m)
+
+
+def set_values(m, slot, node, tau):
+    """Put the event function and two derivatives at a node to ``slot``."""
+    h0, h1, h2 = values(
+        m, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5], tau
+    )
+    m[slot] = h0
+    m[slot + 1] = h1
+    m[slot + 2] = h2
+
+
+def set_remainder(m):
+    """What the quintic between two nodes may miss from the node to the left on."""
+    steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
+    square = m[at.NODE_ETA] * m[at.NODE_ETA]
+    bound = steady * (square * square * square)
+    x, v = m[at.LEFT], m[at.LEFT + 1]
+    if m[at.MODE] == at.FLIGHT:
+        bound += sixth_bound(m, at.BRANCH_2, m[at.LEFT + 2], m[at.LEFT + 3])
+    else:
+        x, v = force_phasor(m, x, v)
+    m[at.REMAINDER] = (bound + sixth_bound(m, branch_a(m), x, v)) * m[at.HERMITE + 2]
+
+
+def sixth_bound(m, b, x, v):
+    """Bound of the sixth derivative of a free part from now on."""
+    sixth = b + at.SIXTH
+    return envelope(m, b, m[sixth] * x + m[sixth + 1] * v, m[sixth + 2] * x + m[sixth + 3] * v)
+
+
+def values(m, x, v, x_b, v_b, cosine, sine, tau):
+    """The event function and two derivatives from all phasors."""
+    if m[at.MODE] == at.FLIGHT:
+        h0, h1 = x_b - x, v_b - v
+        h2 = acceleration(m, at.BRANCH_2, x_b, v_b) - acceleration(m, at.BRANCH_1, x, v)
+    else:
+        h0, h1 = force_phasor(m, x, v)
+        h2 = acceleration(m, at.BRANCH_3, h0, h1)
+    eta = m[at.NODE_ETA]
+    u = m[at.EVENT_HARMONIC] * cosine + m[at.EVENT_HARMONIC + 1] * sine
+    h0 += u
+    h1 += eta * (m[at.EVENT_HARMONIC + 1] * cosine - m[at.EVENT_HARMONIC] * sine)
+    h2 -= eta * eta * u
+    if m[at.CUBIC_PRESENT] != 0.0:
+        q0, q1, q2 = cubic_values(m, tau)
+        h0, h1, h2 = h0 + q0, h1 + q1, h2 + q2
+    return h0, h1, h2
+
+
+def cubic_values(m, tau):
+    """The event function's cubic and two derivatives."""
+    q1, q2, q3 = m[at.EVENT_CUBIC + 1], m[at.EVENT_CUBIC + 2], m[at.EVENT_CUBIC + 3]
+    value = m[at.EVENT_CUBIC] + tau * (q1 + 0.5 * tau * (q2 + tau * q3 * (1.0 / 3.0)))
+    return value, q1 + tau * (q2 + 0.5 * tau * q3), q2 + tau * q3
+
+
+def free_part(m, b, x, v):
+    """A free part, its first four derivatives and a bound of the fifth from now on."""
     twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
-    c_dot, w_dot = free_derivative(m, b, c, w)
-    x0 = c * C + w * S
-    x1 = c_dot * C + w_dot * S
-    x2 = -(twice * x1 + square * x0)
-    x3 = -(twice * x2 + square * x1)
-    return x0, x1, x2, x3, -(twice * x3 + square * x2)
+    x2 = -(twice * v + square * x)
+    x3 = -(twice * x2 + square * v)
+    x4 = -(twice * x3 + square * x2)
+    x5 = -(twice * x4 + square * x3)
+    x6 = -(twice * x5 + square * x4)
+    return x, v, x2, x3, x4, envelope(m, b, x5, x6)
 
 
 def evaluate(m, tau):
-    """The event function at ``tau``: value, four derivatives, and a bound of the fifth.
-
-    The bound holds from there on.
+    """The event function at ``tau``: value, four derivatives, and a bound of the fifth from there
+    on.
 
     Returns
     -------
@@ -104,49 +162,34 @@ def evaluate(m, tau):
     m[at.WORK] += 1.0
     if m[at.SERIES] != 0.0:
         h0, h1, h2, h3, h4 = gap_at(m, tau)
-        return h0, h1, h2, h3, h4, m[at.BOUND] + m[at.BOUND + 1] + m[at.BOUND + 2]
+        return h0, h1, h2, h3, h4, m[at.SERIES_BOUND]
+    x, v, x_b, v_b, cosine, sine = phasors_at(m, tau)
     if m[at.MODE] == at.FLIGHT:
-        C_1, S_1, decay, C_2, S_2, decay_2 = bases(m, tau)
-        h0, h1, h2, h3, h4 = free_part(
-            m, at.BRANCH_1, m[at.EVENT_FREE_A], m[at.EVENT_FREE_A + 1], C_1, S_1
-        )
-        b0, b1, b2, b3, b4 = free_part(
-            m, at.BRANCH_2, m[at.EVENT_FREE_B], m[at.EVENT_FREE_B + 1], C_2, S_2
-        )
-        h0, h1, h2, h3, h4 = h0 + b0, h1 + b1, h2 + b2, h3 + b3, h4 + b4
-        bound = m[at.BOUND] + decay * m[at.BOUND + 1] + decay_2 * m[at.BOUND + 2]
+        a0, a1, a2, a3, a4, bound_a = free_part(m, at.BRANCH_1, x, v)
+        h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_2, x_b, v_b)
+        h0, h1, h2, h3, h4, bound = h0 - a0, h1 - a1, h2 - a2, h3 - a3, h4 - a4, bound + bound_a
     else:
-        C_1, S_1, decay = basis(m, at.BRANCH_3, tau)
-        h0, h1, h2, h3, h4 = free_part(
-            m, at.BRANCH_3, m[at.EVENT_FREE_A], m[at.EVENT_FREE_A + 1], C_1, S_1
-        )
-        bound = m[at.BOUND] + decay * m[at.BOUND + 1]
-    if m[at.FORCING] != 0.0:
-        eta = m[at.ETA]
-        s, c = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
-        u0 = m[at.EVENT_HARMONIC] * c + m[at.EVENT_HARMONIC + 1] * s
-        u1 = eta * (m[at.EVENT_HARMONIC + 1] * c - m[at.EVENT_HARMONIC] * s)
+        x, v = force_phasor(m, x, v)
+        h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_3, x, v)
+    if m[at.NODE_ETA] != 0.0:
+        eta = m[at.NODE_ETA]
         square = eta * eta
+        h_cos, h_sin = m[at.EVENT_HARMONIC], m[at.EVENT_HARMONIC + 1]
+        u0 = h_cos * cosine + h_sin * sine
+        u1 = eta * (h_sin * cosine - h_cos * sine)
         u2 = square * u0
-        h0 += u0
-        h1 += u1
-        h2 -= u2
-        h3 -= square * u1
-        h4 += square * u2
+        h0, h1, h2, h3, h4 = h0 + u0, h1 + u1, h2 - u2, h3 - square * u1, h4 + square * u2
+        bound += (abs(h_cos) + abs(h_sin)) * (square * square * eta)
     if m[at.CUBIC_PRESENT] != 0.0:
-        q2, q3 = m[at.EVENT_CUBIC + 2], m[at.EVENT_CUBIC + 3]
-        h0 += m[at.EVENT_CUBIC] + tau * (m[at.EVENT_CUBIC + 1] + 0.5 * tau * (q2 + tau * q3 / 3.0))
-        h1 += m[at.EVENT_CUBIC + 1] + tau * (q2 + 0.5 * tau * q3)
-        h2 += q2 + tau * q3
-        h3 += q3
+        q0, q1, q2 = cubic_values(m, tau)
+        h0, h1, h2, h3 = h0 + q0, h1 + q1, h2 + q2, h3 + m[at.EVENT_CUBIC + 3]
     return h0, h1, h2, h3, h4, bound
 
 
 def rounding(m, tau):
     """What the event function's terms at ``tau`` may lose by rounding."""
     size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
-    branch_a = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
-    size += free_bound(m, branch_a, at.EVENT_FREE_A, 0) + free_bound(
+    size += free_bound(m, branch_a(m), at.EVENT_FREE_A, 0) + free_bound(
         m, at.BRANCH_2, at.EVENT_FREE_B, 0
     )
     if m[at.CUBIC_PRESENT] != 0.0:

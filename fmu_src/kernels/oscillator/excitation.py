@@ -9,6 +9,7 @@ import math
 
 from ..numerics.elementary import TWO_PI
 from . import memory as at
+from .nodes import set_grid
 
 # (|i eta - lambda| / omega_i)^2 below which an undamped response has no usable closed form
 NEAR_RESONANCE = 1e-12
@@ -52,6 +53,7 @@ def begin_segment(m):
             if i > 0:
                 m[at.CUBIC_ON] = 1.0
     m[at.SEGMENT_AGE] = 0.0
+    set_grid(m)
     bonded = m[at.BONDED] != 0.0
     if not bonded and set_harmonic(m, at.BRANCH_1, at.HARMONIC_1):
         return at.RESONANCE_1

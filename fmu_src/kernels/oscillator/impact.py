@@ -5,7 +5,7 @@ from . import memory as at
 
 def common_velocity(m, v1, v2):
     """Velocity of both masses after a perfectly plastic impact: momentum is kept."""
-    return (v1 + m[at.MU] * v2) / (1.0 + m[at.MU])
+    return (v1 + m[at.MU] * v2) * m[at.SHARE]
 
 
 def restitution(m, v1, v2):
@@ -14,7 +14,7 @@ def restitution(m, v1, v2):
     With ``(1+e)/(1+mu)`` in its second line.
     """
     common = common_velocity(m, v1, v2)
-    part = m[at.E] * (v1 - v2) / (1.0 + m[at.MU])
+    part = m[at.E] * (v1 - v2) * m[at.SHARE]
     return common - m[at.MU] * part, common + part
 
 
@@ -46,5 +46,5 @@ def count_impact(m, time, closing, lost):
     m[at.IMPACT_TIME] = time
     velocity = closing * m[at.OMEGA]
     m[at.IMPACT_VELOCITY] = velocity
-    reduced_mass = m[at.M2] / (1.0 + m[at.MU])
+    reduced_mass = m[at.M2] * m[at.SHARE]
     m[at.IMPACT_ENERGY] += 0.5 * reduced_mass * velocity * velocity * lost

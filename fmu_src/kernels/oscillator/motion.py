@@ -9,12 +9,13 @@ first derivative that does not vanish.
 from ..numerics.elementary import fraction, sincos_turns
 from . import memory as at
 from .contact import contact_force, first_derivative
-from .event_function import bounds, evaluate, set_contact_force, set_gap
+from .event_function import begin_nodes, bounds, evaluate, set_contact_force, set_gap
 from .excitation import cubic_at, set_cubic_response
 from .impact import common_velocity, count_impact, restitution, sticks
-from .response import bases, basis, displacement, set_free
-from .roots import INFINITE, longest_step, step_from
-from .series import polynomial, series_order, set_series, short_flight
+from .nodes import phasors_at
+from .response import displacement, set_free
+from .roots import INFINITE, accuracy, clear_from_node, step_from
+from .series import series_order, set_series, short_flight, taylor
 
 
 def state_at(m, tau):
@@ -28,37 +29,46 @@ def state_at(m, tau):
     if tau == 0.0:  # exactly what the state began with: a start from rest is at rest
         return m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
     if m[at.SERIES] != 0.0:
-        x1, v1 = polynomial(m, at.SERIES_X, tau)
-        gap, slope = polynomial(m, at.SERIES_GAP, tau)
+        x1, v1 = taylor(m, at.SERIES_X, tau), taylor(m, at.SERIES_X + 1, tau)
+        gap, slope = taylor(m, at.SERIES_GAP, tau), taylor(m, at.SERIES_GAP + 1, tau)
         return x1, v1, x1 + gap if gap > 0.0 else x1, v1 + slope
-    sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
+    x_a, v_a, x_b, v_b, cosine, sine = phasors_at(m, tau)
+    return moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine)
+
+
+def moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine):
+    """Displacements and velocities from all phasors."""
     if m[at.MODE] == at.FLIGHT:
-        C_1, S_1, _, C_2, S_2, _ = bases(m, tau)
-        x1, v1 = displacement(
-            m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, tau, C_1, S_1, sine, cosine
-        )
-        x2, v2 = displacement(
-            m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, tau, C_2, S_2, sine, cosine
-        )
+        x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
+        x2, v2 = displacement(m, at.HARMONIC_2, at.CUBIC_B, tau, x_b, v_b, sine, cosine)
         if x2 < x1:  # by rounding, at the very end of a flight
             x1 = x2 = common_position(m, x1, x2)
         return x1, v1, x2, v2
-    C, S, _ = basis(m, at.BRANCH_3, tau)
-    x3, v3 = displacement(
-        m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, tau, C, S, sine, cosine
-    )
+    x3, v3 = displacement(m, at.HARMONIC_3, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
     return x3, v3, x3, v3
+
+
+def state_and_phase_at(m, tau):
+    """:func:`state_at`, and cosine and sine of the excitation's phase there."""
+    if tau != 0.0 and m[at.SERIES] == 0.0 and m[at.NODE_ETA] != 0.0:
+        x_a, v_a, x_b, v_b, cosine, sine = phasors_at(m, tau)
+        x1, v1, x2, v2 = moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine)
+        return x1, v1, x2, v2, cosine, sine
+    x1, v1, x2, v2 = state_at(m, tau)
+    cosine, sine = m[at.COSINE], m[at.SINE]
+    if tau != 0.0 and m[at.NODE_ETA] != 0.0:
+        sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * tau)
+    return x1, v1, x2, v2, cosine, sine
 
 
 def common_position(m, x1, x2):
     """The centre of mass, where both masses are put at an impact: they differ by rounding alone."""
-    return (x1 + m[at.MU] * x2) / (1.0 + m[at.MU])
+    return (x1 + m[at.MU] * x2) * m[at.SHARE]
 
 
 def move_origin(m, tau):
-    """Let a new state begin ``tau`` after the start of the present one, (5).
-
-    Without losing digits over millions of states.
+    """Let a new state begin ``tau`` after the start of the present one, (5), without losing digits
+    over millions of states.
     """
     total = m[at.ORIGIN] + tau
     part = total - m[at.ORIGIN]
@@ -102,25 +112,17 @@ def begin(m, x1, v1, x2, v2, lowest):
     if v1 > v2:
         v1, v2 = collide(m, x, v1, v2)
     if v2 > v1:
-        begin_flight(m, x, v1, x, v2)
-        leave_impact(m, x, v1, v2 - v1)
+        leave_impact(m, x, v1, v2)
         return
     order, value = first_derivative(m, x, v1, lowest)
     if value > 0.0:
         begin_flight(m, x, v1, x, v1)
-        _, _, _, h3, h4, _ = evaluate(m, 0.0)
-        leave(m, order + 2, value, h3, h4)
+        leave(m, order + 2, value)
         return
     if m[at.MODE] == at.FLIGHT:
         m[at.CONTACT_COUNT] += 1.0
     begin_common(m, at.CONTACT, x, v1)
-    h2, h3, h4 = 0.0, 0.0, 0.0
-    if order > 0:
-        _, _, h2, h3, h4, _ = evaluate(m, 0.0)
-    if order == 1:
-        leave_rising(m, -value, h2, h3, h4)
-    else:
-        leave(m, order, -value, h3, h4)
+    leave(m, order, -value)
 
 
 def collide(m, x, v1, v2):
@@ -143,10 +145,19 @@ def begin_flight(m, x1, v1, x2, v2):
         cubic = cubic_at(m, m[at.SEGMENT_AGE])
         set_cubic_response(m, at.BRANCH_1, at.CUBIC_A, cubic)
         set_cubic_response(m, at.BRANCH_2, at.CUBIC_B, cubic)
-    set_free(m, at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
-    set_free(m, at.BRANCH_2, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
+    set_free(m, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
+    set_free(m, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
     set_gap(m)
     open_end(m, x1, v1, x2, v2)
+    begin_nodes(m)
+    gap, slope = x2 - x1, v2 - v1
+    m[at.LEFT_VALUES] = gap
+    m[at.LEFT_VALUES + 1] = slope
+    m[at.LEFT_VALUES + 2] = (
+        contact_force(m, x1, v1)
+        - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
+        - m[at.BRANCH_2 + at.OMEGA_SQUARED] * gap
+    )
 
 
 def begin_common(m, mode, x, v):
@@ -155,9 +166,10 @@ def begin_common(m, mode, x, v):
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:
         set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.SEGMENT_AGE]))
-    set_free(m, at.BRANCH_3, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
+    set_free(m, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
     set_contact_force(m)
     open_end(m, x, v, x, v)
+    begin_nodes(m)
 
 
 def open_end(m, x1, v1, x2, v2):
@@ -172,60 +184,53 @@ def open_end(m, x1, v1, x2, v2):
     m[at.END_KIND] = at.END_OPEN
 
 
-def leave_impact(m, x, v1, slope):
-    """Leave an impact; a short flight's end is found at once.
-
-    Parameters
-    ----------
-    m : flat memory
-        With the new flight's event function.
-    x, v1, slope : float
-        Common displacement, velocity of mass 1, and gap velocity > 0.
+def leave_impact(m, x, v1, v2):
+    """Leave an impact at displacement ``x`` with velocities ``v2 > v1``; a short flight's end is
+    found at once.
     """
-    order = series_order(
-        m, slope, contact_force(m, x, v1) - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
-    )
-    set_series(m, x, v1, slope, order)
+    slope = v2 - v1
+    curvature = contact_force(m, x, v1) - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
+    order = series_order(m, slope, curvature)
     if order > 4:
-        duration = short_flight(m, order, bound_at_start(m))
+        set_series(m, x, v1, slope, order)
+        duration = short_flight(m, order)
         if duration > 0.0:
+            m[at.MODE] = at.FLIGHT
+            open_end(m, x, v1, x, v2)
             m[at.SERIES] = order
-            find_end(m, duration)
+            m[at.CLEAR] = duration
+            m[at.END] = duration
+            m[at.END_KIND] = at.END_EVENT
             return
-    leave_rising(
-        m,
-        slope,
-        2.0 * m[at.SERIES_GAP + 2],
-        6.0 * m[at.SERIES_GAP + 3],
-        24.0 * m[at.SERIES_GAP + 4],
-    )
+    begin_flight(m, x, v1, x, v2)
+    if not leave_clear(m, slope, curvature):
+        set_series(m, x, v1, slope, 8)
+        creep_away(m, slope, curvature, m[at.SERIES_GAP + 3], m[at.SERIES_GAP + 4])
 
 
-def bound_at_start(m):
-    """Bound of the event function's fifth derivative over the whole state."""
-    return m[at.BOUND] + m[at.BOUND + 1] + m[at.BOUND + 2]
-
-
-def find_end(m, tau):
-    """The state ends on the event function's first root, at ``tau``."""
-    m[at.CLEAR] = tau
-    m[at.END] = tau
-    m[at.END_KIND] = at.END_EVENT
-
-
-def leave_rising(m, h1, h2, h3, h4):
-    """Leave a start on the boundary: no root of the event function lies before CLEAR.
-
-    Its derivatives are given: ``h1 > 0``, or ``h1 = 0 < h2``.
+def leave_clear(m, h1, h2):
+    """Whether a part of the first interval is seen to be clear from a start on the boundary with
+    the event function's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``; CLEAR moves there.
     """
-    step, found = step_from(0.0, h1, h2, h3, h4, bound_at_start(m), 0.0, longest_step(m))
+    m[at.LEFT_VALUES] = 0.0
+    m[at.LEFT_VALUES + 1] = h1
+    m[at.LEFT_VALUES + 2] = h2
+    return clear_from_node(m)
+
+
+def creep_away(m, h1, h2, h3, h4):
+    """A certified step from such a start, or the root."""
+    _, _, _, _, _, bound = evaluate(m, 0.0)
+    reach = m[at.RIGHT_AGE]
+    step, found = step_from(0.0, h1, h2, h3, h4, bound, 0.0, reach, accuracy(m, 0.0))
     m[at.CLEAR] = step
     if found:
-        find_end(m, step)
+        m[at.END] = step
+        m[at.END_KIND] = at.END_EVENT
 
 
-def leave(m, order, value, h3, h4):
-    """Leave a start on the boundary where the event function's first derivative vanishes too.
+def leave(m, order, value):
+    """Leave a start on the boundary where the event function vanishes.
 
     Parameters
     ----------
@@ -236,27 +241,28 @@ def leave(m, order, value, h3, h4):
         itself does not, -1 if all vanish.
     value : float
         That derivative, > 0.
-    h3, h4 : float
-        The third and fourth derivative; looked at where ``order`` is 2.
     """
     if order == 0:
         return
     if order < 0:
         m[at.CLEAR] = INFINITE
         return
-    if order == 2:
-        leave_rising(m, 0.0, value, h3, h4)
+    _, _, h2, h3, h4, _ = evaluate(m, 0.0)
+    if order <= 2:
+        h1, h2 = (value, h2) if order == 1 else (0.0, value)
+        if not leave_clear(m, h1, h2):
+            creep_away(m, h1, h2, h3, h4)
         return
-    branch = at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
-    bound = derivative_bound(m, branch, order + 1)
+    bound = derivative_bound(m, order + 1)
     # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of
     # zero
-    m[at.CLEAR] = 0.5 * (order + 1) * value / bound if bound > 0.0 else INFINITE
+    step = 0.5 * (order + 1) * value / bound if bound > 0.0 else INFINITE
+    m[at.CLEAR] = min(step, m[at.RIGHT_AGE])
 
 
-def derivative_bound(m, branch, order):
+def derivative_bound(m, order):
     """Bound of the event function's derivative of an order over the whole state."""
-    steady, a, b = bounds(m, branch, order)
+    steady, a, b = bounds(m, order)
     return steady + a + b
 
 

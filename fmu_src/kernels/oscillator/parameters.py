@@ -25,11 +25,13 @@ def derive(m):
         damping_2 = damping_1
     m[at.OMEGA] = omega
     m[at.MU] = mu
+    m[at.SHARE] = 1.0 / (1.0 + mu)
     m[at.FORCE_V] = 2.0 * (damping_1 - damping_2)  # (18)
     m[at.FORCE_X] = 1.0 - omega_2_squared
     set_branch(m, at.BRANCH_1, damping_1, 1.0)
     set_branch(m, at.BRANCH_2, damping_2, omega_2_squared)
     set_branch(m, at.BRANCH_3, damping_3, (1.0 + kappa) / (1.0 + mu))
+    m[at.SPACING] = 0.0  # the nodes are to be set anew
     m[at.FASTEST] = max(1.0, math.sqrt(omega_2_squared))  # omega_3 lies between
 
 
@@ -58,3 +60,9 @@ def set_branch(m, b, damping, omega_squared):
     m[b + at.NU_TURNS] = nu / TWO_PI
     m[b + at.ENVELOPE_RATE] = rate
     m[b + at.ENVELOPE_SINE] = sine
+    for i in range(2):
+        x, v = 1.0 - i, 1.0 * i
+        for _ in range(6):
+            x, v = v, -(2.0 * damping * v + omega_squared * x)
+        m[b + at.SIXTH + i] = x
+        m[b + at.SIXTH + 2 + i] = v

@@ -1,6 +1,6 @@
 """The closed-form linear oscillator, (9)-(11).
 
-The free part is ``c C(tau) + (v + D c) S(tau)`` with ``C = e^{-D tau} cos nu tau`` and ``S = e^{-D
+The free part is ``x C(tau) + (v + D x) S(tau)`` with ``C = e^{-D tau} cos nu tau`` and ``S = e^{-D
 tau} sin(nu tau)/nu``; c and v are the initial conditions (9) less the forced response. C and S go
 over continuously into critical damping (``e^{-D tau}``, ``tau e^{-D tau}``) and overdamping (cosh,
 sinh).
@@ -29,8 +29,8 @@ def basis(m, b, tau):
     rate = m[b + at.ENVELOPE_RATE]
     if nu_squared > 0.0:
         decay = exp_decay(damping * tau)
-        C, S = rotation(m, b, tau, decay)
-        return C, S, decay if rate == damping else exp_decay(rate * tau)
+        s, c = sincos_turns(m[b + at.NU_TURNS] * tau)
+        return decay * c, decay * s / nu, decay if rate == damping else exp_decay(rate * tau)
     x = nu * tau
     if x < 0.5:  # sinh(x)/x by its series: the difference of exponentials would cancel
         y = x * x
@@ -51,47 +51,25 @@ def basis(m, b, tau):
     return 0.5 * slow * (1.0 + fast), 0.5 * slow * (1.0 - fast) / nu, exp_decay(rate * tau)
 
 
-def rotation(m, b, tau, decay):
-    """C and S of an underdamped branch whose ``e^{-D tau}`` is known."""
-    s, c = sincos_turns(m[b + at.NU_TURNS] * tau)
-    return decay * c, decay * s / m[b + at.NU]
-
-
-def shares_decay(m):
-    """Whether branches 1 and 2 are underdamped alike: one exponential serves both."""
-    same = m[at.BRANCH_1 + at.DAMPING] == m[at.BRANCH_2 + at.DAMPING]
-    return same and m[at.BRANCH_2 + at.NU_SQUARED] > 0.0 and m[at.BRANCH_1 + at.NU_SQUARED] > 0.0
-
-
-def bases(m, tau):
-    """:func:`basis` of branch 1 and of branch 2."""
-    C_1, S_1, decay_1 = basis(m, at.BRANCH_1, tau)
-    if shares_decay(m):
-        C_2, S_2 = rotation(m, at.BRANCH_2, tau, decay_1)
-        return C_1, S_1, decay_1, C_2, S_2, decay_1
-    C_2, S_2, decay_2 = basis(m, at.BRANCH_2, tau)
-    return C_1, S_1, decay_1, C_2, S_2, decay_2
-
-
 def cubic_value(m, response, tau):
     """Value and first derivative of a cubic kept as value and derivatives at its start."""
     q1, q2, q3 = m[response + 1], m[response + 2], m[response + 3]
-    value = m[response] + tau * (q1 + 0.5 * tau * (q2 + tau * q3 / 3.0))
+    value = m[response] + tau * (q1 + 0.5 * tau * (q2 + tau * q3 * (1.0 / 3.0)))
     return value, q1 + tau * (q2 + 0.5 * tau * q3)
 
 
-def displacement(m, b, harmonic, free, cubic, tau, C, S, sine, cosine):
+def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):
     """Displacement and velocity of one oscillator (10).
 
     Parameters
     ----------
     m : flat memory
-    b, harmonic, free, cubic : int
-        First slots of the branch, its forced amplitudes, free amplitudes and response to the cubic.
+    harmonic, cubic : int
+        First slots of the oscillator's forced amplitudes and response to the cubic.
     tau : float
         Time since the state's start.
-    C, S : float
-        The branch's :func:`basis` there.
+    x, v : float
+        The free part there.
     sine, cosine : float
         Of the excitation's phase there.
 
@@ -100,26 +78,21 @@ def displacement(m, b, harmonic, free, cubic, tau, C, S, sine, cosine):
     xi, xi' : float
         m, and m per unit of tau.
     """
-    c, w = m[free], m[free + 1]
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0
     if m[at.CUBIC_PRESENT] != 0.0:
         q, q_dot = cubic_value(m, cubic, tau)
-    damping = m[b + at.DAMPING]
-    x = h_cos * cosine + h_sin * sine + q + (c * C + w * S)
-    v = m[at.ETA] * (h_sin * cosine - h_cos * sine) + q_dot
-    return x, v + ((w - damping * c) * C - (m[b + at.NU_SQUARED] * c + damping * w) * S)
+    forced = m[at.ETA] * (h_sin * cosine - h_cos * sine)
+    return h_cos * cosine + h_sin * sine + q + x, forced + q_dot + v
 
 
-def set_free(m, b, harmonic, free, cubic, x, v, sine, cosine):
-    """Free amplitudes c and v + D c from the initial conditions (9).
-
-    They are alpha_i and nu_i beta_i of (11).
+def set_free(m, harmonic, free, cubic, x, v, sine, cosine):
+    """Displacement and velocity of the free part from the initial conditions (9): alpha_i and
+    beta_i of (11).
     """
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0
     if m[at.CUBIC_PRESENT] != 0.0:
         q, q_dot = m[cubic], m[cubic + 1]
-    c = x - (h_cos * cosine + h_sin * sine) - q
-    m[free] = c
-    m[free + 1] = v - m[at.ETA] * (h_sin * cosine - h_cos * sine) - q_dot + m[b + at.DAMPING] * c
+    m[free] = x - (h_cos * cosine + h_sin * sine) - q
+    m[free + 1] = v - m[at.ETA] * (h_sin * cosine - h_cos * sine) - q_dot

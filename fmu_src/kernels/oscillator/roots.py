@@ -11,11 +11,20 @@ lie: it goes on where it was left.
 import math
 
 from . import memory as at
-from .event_function import evaluate, rounding
+from .event_function import evaluate, rounding, set_remainder, values
+from .hermite import clear_part, interval_is_clear, is_below, is_clear
+from .nodes import put, renewed, starts_block, turned
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
 TRIALS = 3
+CLOSE = (
+    0.00390625  # relative change of the slope up to a root that two steps of Newton's method find
+)
+CONVERGED = 1e-8  # relative: the next step of Newton's method would be its square
+LONGEST = (
+    1024.0  # nodes after which a state is written anew: its angles and their rounding stay small
+)
 
 
 def parabola_root(h0, h1, h2):
@@ -39,9 +48,8 @@ def lowest_curvature(h2, h3, h4, bound, s):
 
 
 def clear_step(h0, h1, h2, h3, h4, bound, reach):
-    """A step over which a quintic, the lower bound of the event function, stays positive.
-
-    It is ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120``.
+    """A step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120`` stays
+    positive.
 
     For every trial s, ``min(s, first root of the parabola below the quintic up to s)`` is safe;
     trials close in on the s where both agree.
@@ -88,31 +96,95 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
 
 
 def walk(m, target):
-    """Walk on until the state's end is found or no root lies before ``target``.
-
-    Ends early when the step's work is used up.
+    """Walk on until the state's end is found or no root lies before ``target``; ends early when the
+    step's work is used up.
     """
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
-        tau = m[at.CLEAR]
-        renewal = renewal_age(m)
-        if tau >= renewal:
-            m[at.END] = renewal
-            m[at.END_KIND] = at.END_RENEWAL
-            return
-        h0, h1, h2, h3, h4, bound = evaluate(m, tau)
-        if h0 <= 0.0:
-            h0 = lifted(m, tau, h0, h1)
-        step, found = next_step(h0, h1, h2, h3, h4, bound, tau, longest_step(m))
-        if found:
-            m[at.END] = tau + step
-            m[at.END_KIND] = at.END_EVENT
-        m[at.CLEAR] = tau + step
+        if m[at.CLEAR] >= m[at.RIGHT_AGE]:
+            glide(m, target, INFINITE)
+        elif m[at.CLEAR] != m[at.LEFT_AGE] or not clear_from_node(m):
+            creep(m)
+
+
+def glide(m, target, ceiling):
+    """On from node to node, not beyond ``target``, while the intervals between are clear and the
+    event function stays below ``ceiling`` in them; after many nodes the state is written anew.
+    """
+    x, v, x_b, v_b = m[at.RIGHT], m[at.RIGHT + 1], m[at.RIGHT + 2], m[at.RIGHT + 3]
+    cosine, sine = m[at.RIGHT + 4], m[at.RIGHT + 5]
+    r0, r1, r2 = m[at.RIGHT_VALUES], m[at.RIGHT_VALUES + 1], m[at.RIGHT_VALUES + 2]
+    node, age, low, h = m[at.NODE], m[at.RIGHT_AGE], m[at.REMAINDER], m[at.SPACING]
+    begun = node
+    stop = node + (m[at.WORK_LIMIT] - m[at.WORK])
+    clear, below = True, True
+    while clear and below and age <= target and node < stop and node + 1.0 < LONGEST:
+        node += 1.0
+        old_x, old_v, old_x_b, old_v_b, old_cosine, old_sine = x, v, x_b, v_b, cosine, sine
+        l0, l1, l2 = r0, r1, r2
+        left = age
+        age = (node + 1.0) * h
+        if starts_block(node + 1.0):
+            x, v, x_b, v_b, cosine, sine = renewed(m, age)
+        else:
+            x, v, x_b, v_b, cosine, sine = turned(m, x, v, x_b, v_b, cosine, sine)
+        r0, r1, r2 = values(m, x, v, x_b, v_b, cosine, sine, age)
+        clear = is_clear(m, l0, l1, l2, r0, r1, r2, low)
+        if ceiling < INFINITE:
+            below = is_below(m, l0, l1, l2, r0, r1, r2, low, ceiling)
+    m[at.WORK] += node - begun
+    if node == begun:
+        m[at.END] = age
+        m[at.END_KIND] = at.END_RENEWAL
+        return
+    m[at.NODE] = node
+    m[at.LEFT_AGE] = left
+    m[at.RIGHT_AGE] = age
+    m[at.CLEAR] = age if clear else left
+    put(m, at.LEFT, old_x, old_v, old_x_b, old_v_b, old_cosine, old_sine)
+    put(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
+    m[at.LEFT_VALUES] = l0
+    m[at.LEFT_VALUES + 1] = l1
+    m[at.LEFT_VALUES + 2] = l2
+    m[at.RIGHT_VALUES] = r0
+    m[at.RIGHT_VALUES + 1] = r1
+    m[at.RIGHT_VALUES + 2] = r2
+
+
+def clear_from_node(m):
+    """Whether a part of the present interval is seen to be clear; CLEAR moves to its end."""
+    if not interval_is_clear(m):
+        if m[at.RIGHT_VALUES] > 0.0:
+            set_remainder(m)
+        if m[at.RIGHT_VALUES] <= 0.0 or not interval_is_clear(m):
+            part = clear_part(m)
+            m[at.CLEAR] = m[at.LEFT_AGE] + part * m[at.SPACING]
+            return m[at.CLEAR] > m[at.LEFT_AGE]
+    m[at.CLEAR] = m[at.RIGHT_AGE]
+    return True
+
+
+def creep(m):
+    """One certified step inside the present interval, or the root."""
+    tau = m[at.CLEAR]
+    reach = m[at.RIGHT_AGE] - tau
+    h0, h1, h2, h3, h4, bound = evaluate(m, tau)
+    if h0 <= 0.0:
+        h0 = lifted(m, tau, h0, h1)
+    step, found = next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy(m, tau))
+    if found:
+        m[at.END] = tau + step
+        m[at.END_KIND] = at.END_EVENT
+    m[at.CLEAR] = m[at.RIGHT_AGE] if step >= reach else tau + step
+
+
+def accuracy(m, tau):
+    """What a root's age is to be accurate to: its rounding."""
+    return EPS * (tau + 4.0 * m[at.SPACING])
 
 
 def lifted(m, tau, h0, h1):
-    """A value of the event function at a point where it is not clearly positive.
-
-    It may not be positive, or be zero but for rounding with no crossing in sight.
+    """A value of the event function that is not positive, or a positive one where it is zero but
+    for rounding and no crossing is in sight.
 
     Near a start on the boundary the event function may be smaller than the rounding of its terms
     for a while; the side was decided when the state began, and holds until the event function is
@@ -124,20 +196,7 @@ def lifted(m, tau, h0, h1):
     return 2.0 * floor
 
 
-def renewal_age(m):
-    """The age at which a state is written anew.
-
-    The angles of (10) stay small, and with them their rounding.
-    """
-    return 1024.0 / max(m[at.FASTEST], m[at.ETA])
-
-
-def longest_step(m):
-    """Beyond a radian or so of the fastest oscillation the quintic says nothing."""
-    return 6.0 / max(m[at.FASTEST], m[at.ETA])
-
-
-def next_step(h0, h1, h2, h3, h4, bound, tau, reach):
+def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
     """One step of the walk, and whether it ends on the root.
 
     Parameters
@@ -145,10 +204,11 @@ def next_step(h0, h1, h2, h3, h4, bound, tau, reach):
     h0, h1, h2, h3, h4, bound : float
         As in :func:`clear_step`; any sign of h0.
     tau : float
-        Where the walk stands. The accuracy wanted is the rounding of a time of the size of ``tau +
-        reach``.
+        Where the walk stands.
     reach : float
         Longest step wanted, > 0.
+    accuracy : float
+        Wanted of the root's place.
 
     Returns
     -------
@@ -157,32 +217,56 @@ def next_step(h0, h1, h2, h3, h4, bound, tau, reach):
     """
     if h0 <= 0.0:
         return 0.0, True
-    return step_from(h0, h1, h2, h3, h4, bound, tau, reach)
+    if h1 < 0.0:
+        root = close_root(h0, h1, h2, h3, h4, bound, accuracy)
+        if 0.0 < root < reach:
+            return root, True
+    return step_from(h0, h1, h2, h3, h4, bound, tau, reach, accuracy)
 
 
-def step_from(h0, h1, h2, h3, h4, bound, tau, reach):
+def step_from(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
     """As :func:`next_step`, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
     # powers of time only: scaled amplitudes take the same steps
     scale = 1.0 / bound if bound > 0.0 else 1.0
     h0, h1, h2 = h0 * scale, h1 * scale, h2 * scale
     h3, h4, bound = h3 * scale, h4 * scale, bound * scale
     step = clear_step(h0, h1, h2, h3, h4, bound, reach)
-    root = taylor_root(h0, h1, h2, h3, h4, bound, step, EPS * (tau + reach))
-    if root > 0.0:
+    root = taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy)
+    if 0.0 < root < reach:
         return root, True
     return step, step <= EPS * tau
 
 
-def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
-    """The root by the quartic without the bound, where that is certain; else 0.
+def close_root(h0, h1, h2, h3, h4, bound, accuracy):
+    """The root a short way ahead, where the quartic gives it to within ``accuracy``; else 0.
 
-    It is within ``accuracy`` then, and certainly the first.
+    So short that the slope, negative here, cannot turn before it: there is no other root.
+    """
+    root = -h0 / h1
+    near = 1.125 * root
+    square = near * near
+    fifth = bound * square * square * (1.0 / 24.0)
+    turn = near * (abs(h2) + near * (abs(h3) * 0.5 + near * abs(h4) * (1.0 / 6.0))) + fifth
+    if turn > CLOSE * -h1 or fifth * near > -5.0 * accuracy * h1:
+        return 0.0
+    for _ in range(2):
+        value = h0 + root * (
+            h1 + root * (h2 * 0.5 + root * (h3 * (1.0 / 6.0) + root * h4 * (1.0 / 24.0)))
+        )
+        slope = h1 + root * (h2 + root * (h3 * 0.5 + root * h4 * (1.0 / 6.0)))
+        root -= value / slope
+    return root
+
+
+def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
+    """The root, where the quartic without the bound gives it to within ``accuracy`` and it is
+    certainly the first; else 0.
 
     The step before it is clear; from there on the slope is certainly negative, so there is no other
     root.
     """
     root = step
-    slope = -1.0
+    slope, change = -1.0, 0.0
     square = step * step
     if bound * square * square * step > 240.0 * (abs(h1) + abs(h2) * step) * accuracy:
         return 0.0
@@ -193,12 +277,14 @@ def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
         slope = h1 + root * (h2 + root * (h3 * 0.5 + root * h4 * (1.0 / 6.0)))
         if slope >= 0.0:
             return 0.0
-        root -= value / slope
+        change = value / slope
+        root -= change
     square = root * root
     if (
         bound * square * square * root > -120.0 * slope * accuracy
         or root < step
         or root > 1.5 * step
+        or abs(change) > CONVERGED * root
     ):
         return 0.0
     rise = (

@@ -12,63 +12,82 @@ from .excitation import cubic_at
 # of a radian of the fastest change: from here on twelve terms leave more than the rounding
 SHORT = 0.2
 SHORTER = 0.02  # and eight terms
-ENOUGH = 1e-9  # relative: the next step of Newton's method would be its square
+ENOUGH = 2e-8  # relative: the next step of Newton's method would be a small part of its square
 
 
 def series_order(m, slope, curvature):
-    """How many terms a flight needs that begins with a gap velocity and acceleration.
-
-    4 where it is not short.
+    """How many terms a flight needs that begins with a gap velocity and acceleration: 4 where it is
+    not short.
     """
     if curvature >= 0.0:
         return 4
-    fastest = max(
-        m[at.ETA],
-        m[at.FASTEST] + 2.0 * max(m[at.BRANCH_1 + at.DAMPING], m[at.BRANCH_2 + at.DAMPING]),
-    )
-    angle = 2.0 * slope * fastest
+    angle = 2.0 * slope * m[at.RATE]
     if angle > SHORT * -curvature:
         return 4
     return 8 if angle <= SHORTER * -curvature else at.SERIES_LONGEST
 
 
-def set_series(m, x, v, slope, order):
-    """Coefficients of xi_1 and of the gap from ``gap = 0, gap' = slope``.
+def fifth_bound(m):
+    """Bound of the gap's fifth derivative up to 0.3 of the fastest rate's radian after the start.
 
-    At displacement ``x`` and velocity ``v`` of mass 1.
+    With R the rate and ``Z = |xi_1| + |xi_1'|/R + |forcing|/R^2`` at the start, all growth up to
+    there is below ``e^0.3 < 1.35``, so (6) gives ``|xi_1^(k)| <= (k + 1) R^k Z``, k = 2, 3, 4, to
+    begin with 1.35 Z. The gap's own equation is driven by ``W = (|2 (D_1 - D_2)| R + |omega_1^2 -
+    omega_2^2|) Z`` times as much; with ``V = gap'/R + 1.35 W/R^2`` its derivatives are below 1.35,
+    1.35, 2.35, 4.1, 6.6 and 9.8 times ``R^k V``.
+    """
+    rate, part = m[at.RATE], m[at.RATE_INVERSE]
+    forcing = abs(m[at.FORCING])
+    if m[at.CUBIC_PRESENT] != 0.0:
+        cubic_0, cubic_1, cubic_2, cubic_3 = cubic_at(m, m[at.SEGMENT_AGE])
+        growth = abs(cubic_1) + part * (abs(cubic_2) + part * abs(cubic_3))
+        forcing += 1.35 * (abs(cubic_0) + part * growth)
+    size = abs(m[at.SERIES_X]) + part * (abs(m[at.SERIES_X + 1]) + part * forcing)
+    drive = (abs(m[at.FORCE_V]) * rate + abs(m[at.FORCE_X])) * size
+    square = rate * rate
+    return 10.0 * square * square * (m[at.SERIES_GAP + 1] + 1.35 * part * drive)
+
+
+def set_series(m, x, v, slope, order):
+    """Derivatives of xi_1 and of the gap from ``gap = 0, gap' = slope`` at displacement ``x``,
+    velocity ``v`` of mass 1: at least as many as a series of an order needs.
     """
     m[at.SERIES_X] = x
     m[at.SERIES_X + 1] = v
     m[at.SERIES_GAP] = 0.0
     m[at.SERIES_GAP + 1] = slope
-    m[at.SERIES_DRIVE] = m[at.FORCING] * m[at.SINE]
-    m[at.SERIES_DRIVE + 1] = m[at.FORCING] * m[at.ETA] * m[at.COSINE]
-    twice_1, square_1 = 2.0 * m[at.BRANCH_1 + at.DAMPING], m[at.BRANCH_1 + at.OMEGA_SQUARED]
-    twice_2, square_2 = 2.0 * m[at.BRANCH_2 + at.DAMPING], m[at.BRANCH_2 + at.OMEGA_SQUARED]
-    force_v, force_x = m[at.FORCE_V], m[at.FORCE_X]
-    eta_squared = m[at.ETA] * m[at.ETA]
+    square = -m[at.ETA] * m[at.ETA]
+    drive, drive_next = m[at.FORCING] * m[at.SINE], m[at.FORCING] * m[at.ETA] * m[at.COSINE]
     cubic_0, cubic_1, cubic_2, cubic_3 = 0.0, 0.0, 0.0, 0.0
     if m[at.CUBIC_PRESENT] != 0.0:
         cubic_0, cubic_1, cubic_2, cubic_3 = cubic_at(m, m[at.SEGMENT_AGE])
-        cubic_2, cubic_3 = 0.5 * cubic_2, cubic_3 / 6.0
-    for k in range(order - 1):
-        drive = m[at.SERIES_DRIVE + k] + cubic_0
+    for k in range(7):
+        set_derivatives(m, k + 2, drive + cubic_0)
+        drive, drive_next = drive_next, square * drive
         cubic_0, cubic_1, cubic_2, cubic_3 = cubic_1, cubic_2, cubic_3, 0.0
-        rate = k + 1.0
-        part = 1.0 / (rate * (rate + 1.0))
-        x_k, x_dot = m[at.SERIES_X + k], rate * m[at.SERIES_X + k + 1]
-        g_k, g_dot = m[at.SERIES_GAP + k], rate * m[at.SERIES_GAP + k + 1]
-        m[at.SERIES_X + k + 2] = (drive - (twice_1 * x_dot + square_1 * x_k)) * part
-        m[at.SERIES_GAP + k + 2] = (
-            (force_v * x_dot + force_x * x_k) - (twice_2 * g_dot + square_2 * g_k)
-        ) * part
-        m[at.SERIES_DRIVE + k + 2] = -eta_squared * part * m[at.SERIES_DRIVE + k]
+    if order > 8:
+        for k in range(7, 11):
+            set_derivatives(m, k + 2, drive)
+            drive, drive_next = drive_next, square * drive
+    else:
+        for k in range(9, at.SERIES_LONGEST + 1):
+            m[at.SERIES_GAP + k] = 0.0
 
 
-def short_flight(m, order, bound):
-    """Duration of a short flight, where it is certain; else 0.
+def set_derivatives(m, k, drive):
+    """The derivatives of order k from the two before and that of the forcing, of order k - 2."""
+    one, two = at.BRANCH_1, at.BRANCH_2
+    x, v = m[at.SERIES_X + k - 2], m[at.SERIES_X + k - 1]
+    gap, slope = m[at.SERIES_GAP + k - 2], m[at.SERIES_GAP + k - 1]
+    m[at.SERIES_X + k] = drive - (2.0 * m[one + at.DAMPING] * v + m[one + at.OMEGA_SQUARED] * x)
+    m[at.SERIES_GAP + k] = (m[at.FORCE_V] * v + m[at.FORCE_X] * x) - (
+        2.0 * m[two + at.DAMPING] * slope + m[two + at.OMEGA_SQUARED] * gap
+    )
 
-    Its gap is concave throughout, so it has one root.
+
+def short_flight(m, order):
+    """Duration of a short flight, where it is certain: its gap is concave throughout, so it has one
+    root; else 0.
 
     Parameters
     ----------
@@ -76,23 +95,33 @@ def short_flight(m, order, bound):
         With the series.
     order : int
         Of the series.
-    bound : float
-        Of the gap's fifth derivative.
     """
-    g1, g2 = m[at.SERIES_GAP + 1], m[at.SERIES_GAP + 2]
-    g3, g4 = m[at.SERIES_GAP + 3], m[at.SERIES_GAP + 4]
-    root = -g1 / g2
+    g = at.SERIES_GAP
+    c1, c2, c3, c4 = m[g + 1], m[g + 2] * 0.5, m[g + 3] * (1.0 / 6.0), m[g + 4] * (1.0 / 24.0)
+    part = 1.0 / c2
+    root = -c1 * part
     longest = 1.5 * root
-    highest = 6.0 * g3 if g3 > 0.0 else 0.0
-    bent = (12.0 * g4 if g4 > 0.0 else 0.0) + bound * longest * (1.0 / 6.0)
-    if 2.0 * g2 + longest * (highest + longest * bent) >= 0.0:
+    bound = fifth_bound(m)
+    m[at.SERIES_BOUND] = bound
+    bent = (12.0 * c4 if c4 > 0.0 else 0.0) + bound * longest * (1.0 / 6.0)
+    if 2.0 * c2 + longest * ((6.0 * c3 if c3 > 0.0 else 0.0) + longest * bent) >= 0.0:
         return 0.0
-    root -= root * root * g3 / (g2 + 2.0 * root * g3)
+    # the quartic's root by reversion of its series
+    a, b = c3 * part * root, c4 * part * root * root
+    root *= (1.0 - a) + ((2.0 * a * a - b) + 5.0 * a * (b - a * a))
+    c5, c6 = m[g + 5] * (1.0 / 120.0), m[g + 6] * (1.0 / 720.0)
+    c7, c8 = m[g + 7] * (1.0 / 5040.0), m[g + 8] * (1.0 / 40320.0)
     for _ in range(8):  # Newton's method for gap/tau, which falls
-        value, slope = 0.0, 0.0
-        for k in range(order, 0, -1):
-            slope = slope * root + value
-            value = value * root + m[at.SERIES_GAP + k]
+        t2 = root * root
+        t4 = t2 * t2
+        value = ((c1 + c2 * root) + t2 * (c3 + c4 * root)) + t4 * (
+            (c5 + c6 * root) + t2 * (c7 + c8 * root)
+        )
+        slope = ((c2 + 2.0 * c3 * root) + t2 * (3.0 * c4 + 4.0 * c5 * root)) + t4 * (
+            5.0 * c6 + 6.0 * c7 * root
+        )
+        if order > 8:
+            value += t4 * t4 * tail(m, g + 9, root)
         step = value / slope
         root -= step
         if root <= 0.0 or root >= longest:
@@ -102,22 +131,46 @@ def short_flight(m, order, bound):
     return root
 
 
-def polynomial(m, series, tau):
-    """Value and first derivative of a series."""
-    value, slope = 0.0, 0.0
-    for k in range(int(m[at.SERIES]), -1, -1):
-        slope = slope * tau + value
-        value = value * tau + m[series + k]
-    return value, slope
+def tail(m, first, tau):
+    """Terms nine to twelve of ``gap/tau``, over ``tau^8``."""
+    d9, d10 = m[first] * (1.0 / 362880.0), m[first + 1] * (1.0 / 3628800.0)
+    d11, d12 = m[first + 2] * (1.0 / 39916800.0), m[first + 3] * (1.0 / 479001600.0)
+    return (d9 + d10 * tau) + tau * tau * (d11 + d12 * tau)
+
+
+def taylor(m, first, tau):
+    """Value of a series with the derivatives from ``first`` on."""
+    t2 = tau * tau
+    t4 = t2 * t2
+    value = (m[first] + tau * m[first + 1]) + t2 * (
+        m[first + 2] * 0.5 + tau * m[first + 3] * (1.0 / 6.0)
+    )
+    value += t4 * (
+        (m[first + 4] * (1.0 / 24.0) + tau * m[first + 5] * (1.0 / 120.0))
+        + t2 * (m[first + 6] * (1.0 / 720.0) + tau * m[first + 7] * (1.0 / 5040.0))
+    )
+    if m[at.SERIES] > 8.0:
+        value += (
+            t4
+            * t4
+            * (
+                (m[first + 8] * (1.0 / 40320.0) + tau * m[first + 9] * (1.0 / 362880.0))
+                + t2
+                * (m[first + 10] * (1.0 / 3628800.0) + tau * m[first + 11] * (1.0 / 39916800.0))
+            )
+        )
+    return value
 
 
 def gap_at(m, tau):
     """The gap and its first four derivatives."""
     h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
-    for k in range(int(m[at.SERIES]), -1, -1):
-        h4 = h4 * tau + h3
-        h3 = h3 * tau + h2
-        h2 = h2 * tau + h1
-        h1 = h1 * tau + h0
-        h0 = h0 * tau + m[at.SERIES_GAP + k]
-    return h0, h1, 2.0 * h2, 6.0 * h3, 24.0 * h4
+    power = 1.0  # tau^k/k!
+    for k in range(int(m[at.SERIES]) + 1):
+        h0 += power * m[at.SERIES_GAP + k]
+        h1 += power * m[at.SERIES_GAP + k + 1]
+        h2 += power * m[at.SERIES_GAP + k + 2]
+        h3 += power * m[at.SERIES_GAP + k + 3]
+        h4 += power * m[at.SERIES_GAP + k + 4]
+        power *= tau / (k + 1.0)
+    return h0, h1, h2, h3, h4

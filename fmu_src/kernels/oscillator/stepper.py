@@ -3,11 +3,11 @@
 An instance is one flat memory.
 """
 
-from ..numerics.elementary import TWO_PI, fraction
+from ..numerics.elementary import TWO_PI
 from . import memory as at
 from .event_function import evaluate
 from .excitation import begin_segment, inputs_changed
-from .maximum import largest_gap
+from .maximum import watch
 from .motion import begin, begin_common, begin_flight, end_state, move_origin, set_turn, state_at
 from .outputs import momentum, write, write_impulse
 from .parameters import derive
@@ -30,6 +30,8 @@ def initialize(m, time):
     m[at.START_TIME] = time
     m[at.TIME] = time
     for i in range(at.ORIGIN, at.START_TIME):
+        m[i] = 0.0
+    for i in range(at.BEGIN, at.SIZE):
         m[i] = 0.0
     for i in range(at.IMPACT_COUNT, at.SAMPLE_COUNT):
         m[i] = 0.0
@@ -90,12 +92,14 @@ def advance(m, time):
     )
     momentum_before, moment_before = momentum(m)
     now = local_time(m, m[at.TIME])
-    turn = fraction(m[at.TURN] + m[at.ETA_TURNS] * now)
     if inputs_changed(m):
         code = renew_segment(m, now)
         if code != at.OK:
             return code
         now = 0.0
+        m[at.PHASE_COSINE] = m[at.COSINE]
+        m[at.PHASE_SINE] = m[at.SINE]
+    cosine, sine = m[at.PHASE_COSINE], m[at.PHASE_SINE]
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     tau = run_samples(m, before, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:
@@ -108,15 +112,19 @@ def advance(m, time):
     write(m, tau)
     if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
         m[at.X_REL_MAX] = m[at.X_REL]
-    write_impulse(m, h, momentum_before, moment_before, turn)
+    write_impulse(m, h, momentum_before, moment_before, cosine, sine)
     return finite(m)
 
 
 def finite(m):
     """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
-    total = 0.0
-    for i in range(at.X1, at.CONTACT_COUNT):
-        total += m[i]
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0  # four sums side by side: one after the other would take long
+    for i in range(at.X1, at.CONTACT_COUNT, 4):
+        a += m[i]
+        b += m[i + 1]
+        c += m[i + 2]
+        d += m[i + 3]
+    total = (a + b) + (c + d)
     return at.OK if total - total == 0.0 else at.NOT_FINITE
 
 
@@ -126,7 +134,7 @@ def renew_segment(m, now):
     Positions and phase are continuous.
     """
     x1, v1, x2, v2 = state_at(m, now)
-    goes_on = now > 0.0 and m[at.MODE] != at.GLUED and inside(m, now)
+    goes_on = now > 0.0 and m[at.MODE] != at.GLUED and (x2 > x1 or inside(m, now))
     move_origin(m, now)
     code = begin_segment(m)
     if code != at.OK:
@@ -173,17 +181,19 @@ def keep_sample(m, i, tau):
     m[at.X2_SAMPLE + i] = x2
     m[at.V1_SAMPLE + i] = m[at.OMEGA] * v1
     m[at.V2_SAMPLE + i] = m[at.OMEGA] * v2
+    if m[at.X_REL_MAX_ON] != 0.0 and x2 - x1 > m[at.X_REL_MAX]:
+        m[at.X_REL_MAX] = x2 - x1
 
 
 def run_states(m, time, now):
     """Run through all states that end by ``time``; returns the present state's age there."""
-    watch = m[at.X_REL_MAX_ON] != 0.0
+    watching = m[at.X_REL_MAX_ON] != 0.0
     while True:
         tau = local_time(m, time)
-        walk(m, tau)
-        stop = tau if m[at.END] > tau else m[at.END]
-        if watch and m[at.MODE] == at.FLIGHT:
-            m[at.X_REL_MAX] = largest_gap(m, now, stop, m[at.X_REL_MAX])
+        if watching and m[at.MODE] == at.FLIGHT:
+            watch(m, now, tau)
+        else:
+            walk(m, tau)
         if m[at.END_KIND] == at.END_OPEN or m[at.END] > tau or m[at.WORK] >= m[at.WORK_LIMIT]:
             return tau
         impacts = m[at.IMPACT_COUNT]

@@ -88,4 +88,4 @@ def test_bounds_of_higher_derivatives(values, state, order):
     for _ in range(order):
         signal = signal.derivative()
     highest = np.abs(signal.sample(np.linspace(0.0, 60.0, 3000))).max()
-    assert highest <= sum(event_function.bounds(m, at.BRANCH_1, order)) * (1 + 1e-9) + rounding
+    assert highest <= sum(event_function.bounds(m, order)) * (1 + 1e-9) + rounding

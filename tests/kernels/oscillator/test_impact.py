@@ -21,6 +21,7 @@ def structure(mu, e, m1=1.3):
     """A memory that knows masses and restitution."""
     m = unstarted(m1=m1, m2=mu * m1, e=e)
     m[at.MU], m[at.OMEGA] = m[at.M2] / m[at.M1], 1.7
+    m[at.SHARE] = 1.0 / (1.0 + m[at.MU])
     return m
 
 

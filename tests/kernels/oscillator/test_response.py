@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 from fmu_src.kernels.numerics.elementary import TWO_PI, sincos_turns
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.excitation import cubic_at, set_cubic_response, set_harmonic
+from fmu_src.kernels.oscillator.nodes import from_start
 from fmu_src.kernels.oscillator.parameters import set_branch
 from fmu_src.kernels.oscillator.response import basis, displacement, set_free
 
@@ -57,24 +58,15 @@ def oscillator(damping, omega_squared, x, v, phase, forcing=FORCING):
     assert not set_harmonic(m, BRANCH, HARMONIC)
     m[at.CUBIC_PRESENT] = 1.0
     set_cubic_response(m, BRANCH, CUBIC, cubic_at(m, 0.0))
-    set_free(m, BRANCH, HARMONIC, FREE, CUBIC, x, v, *sincos_turns(m[at.TURN]))
+    set_free(m, HARMONIC, FREE, CUBIC, x, v, *sincos_turns(m[at.TURN]))
     return m
 
 
 def state(m, tau):
     """Displacement and velocity at an age."""
-    C, S, _ = basis(m, BRANCH, tau)
-    return displacement(
-        m,
-        BRANCH,
-        HARMONIC,
-        FREE,
-        CUBIC,
-        tau,
-        C,
-        S,
-        *sincos_turns(m[at.TURN] + m[at.ETA] / TWO_PI * tau),
-    )
+    x, v = from_start(m, BRANCH, FREE, tau)
+    sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA] / TWO_PI * tau)
+    return displacement(m, HARMONIC, CUBIC, tau, x, v, sine, cosine)
 
 
 @pytest.mark.parametrize("ratio", DAMPINGS)

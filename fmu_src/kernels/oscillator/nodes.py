@@ -1,0 +1,241 @@
+"""The nodes of a state: phasors rotated by constants from node to node, by a polynomial between.
+
+A free part is the pair of its displacement and velocity (x, v): an age t later it is ``((C + D S) x
++ S v, (C - D S) v - omega^2 S x)``, whatever the damping, with C and S of (10) at t. So is the
+excitation the pair of its cosine and sine. Nodes lie at multiples of a spacing after the state's
+start; from one to the next all pairs rotate by constants, and every 32 nodes they are made anew
+from the closed form, so that rounding does not grow. A pair at a node depends on the node alone,
+never on how it was reached.
+"""
+
+import math
+
+from ..numerics.elementary import sincos_turns, small_decay, small_rotation
+from . import memory as at
+from .response import basis
+
+ANGLE = 1.25  # of the fastest oscillation over a spacing: half of it is for the polynomials
+STEEPEST = 0.65  # decay over half a spacing that small_decay serves
+BLOCK = 32.0  # nodes from one renewal to the next
+FASTEST_TAKEN = 1e100
+
+
+def set_grid(m):
+    """Spacing and constant rotations of a segment; nothing where they are what they were."""
+    eta = m[at.ETA] if m[at.FORCING] != 0.0 else 0.0
+    if m[at.SPACING] != 0.0 and eta == m[at.NODE_ETA]:
+        return
+    m[at.NODE_ETA] = eta
+    damping = max(m[at.BRANCH_1 + at.DAMPING], m[at.BRANCH_2 + at.DAMPING])
+    m[at.RATE] = max(eta, m[at.FASTEST] + 2.0 * damping)  # 2 D/rate + (omega/rate)^2 <= 1
+    m[at.RATE_INVERSE] = 1.0 / m[at.RATE]
+    h = spacing(min(max(m[at.FASTEST], eta), FASTEST_TAKEN))
+    sine, cosine = sincos_turns(m[at.ETA_TURNS] * h if eta != 0.0 else 0.0)
+    m[at.NODE_COSINE] = cosine
+    m[at.NODE_SINE] = sine
+    if h == m[at.SPACING]:
+        return
+    m[at.SPACING] = h
+    m[at.HALF_SPACING] = 0.5 * h
+    square = h * h
+    m[at.HERMITE] = h * 0.2
+    m[at.HERMITE + 1] = square * 0.05
+    m[at.HERMITE + 2] = square * square * square * (1.0 / 28800.0)
+    m[at.STEEP] = 0.0
+    set_turn_constants(m, at.BRANCH_1, h)
+    set_turn_constants(m, at.BRANCH_2, h)
+    set_turn_constants(m, at.BRANCH_3, h)
+
+
+def spacing(fastest):
+    """At most ANGLE over the fastest, eight bits long."""
+    longest = ANGLE / fastest
+    unit = 1.0
+    while unit > longest:
+        unit *= 0.5
+    while 2.0 * unit <= longest:
+        unit *= 2.0
+    return math.floor(longest / unit * 128.0) * 0.0078125 * unit
+
+
+def set_turn_constants(m, b, h):
+    """A branch's rotation over one spacing."""
+    xx, xv, vx, vv = turn_by(m, b, h)
+    m[b + at.STEP_ON] = xx
+    m[b + at.STEP_ON + 1] = vx
+    m[b + at.STEP_ON + 2] = xv
+    m[b + at.STEP_ON + 3] = vv
+    if 0.5 * h * m[b + at.DAMPING] > STEEPEST:
+        m[at.STEEP] = 1.0
+
+
+def turn_by(m, b, t):
+    """What a free part's displacement and velocity become in an age t: of x by x and v, of v by x
+    and v.
+    """
+    C, S, _ = basis(m, b, t)
+    damped = m[b + at.DAMPING] * S
+    return C + damped, S, -m[b + at.OMEGA_SQUARED] * S, C - damped
+
+
+def branch_a(m):
+    """First slot of the branch of free part A."""
+    return at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
+
+
+def start_nodes(m):
+    """The first interval of a state that begins: phasors at its start and one spacing later."""
+    m[at.NODE] = 0.0
+    m[at.LEFT_AGE] = 0.0
+    m[at.RIGHT_AGE] = m[at.SPACING]
+    for i in range(2):
+        m[at.LEFT + i] = m[at.FREE_A + i]
+        m[at.LEFT + 2 + i] = m[at.FREE_B + i]
+    m[at.LEFT + 4] = m[at.COSINE]
+    m[at.LEFT + 5] = m[at.SINE]
+    set_right(m, at.LEFT)
+
+
+def set_right(m, node):
+    """Phasors one spacing after those in ``node``, put to the right."""
+    x, v, x_b, v_b, cosine, sine = turned(
+        m, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5]
+    )
+    put(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
+
+
+def put(m, node, x, v, x_b, v_b, cosine, sine):
+    """Put phasors to a node."""
+    m[node] = x
+    m[node + 1] = v
+    m[node + 2] = x_b
+    m[node + 3] = v_b
+    m[node + 4] = cosine
+    m[node + 5] = sine
+
+
+def turned(m, x, v, x_b, v_b, cosine, sine):
+    """All phasors one spacing later."""
+    a, b = branch_a(m) + at.STEP_ON, at.BRANCH_2 + at.STEP_ON
+    return (
+        x * m[a] + v * m[a + 2],
+        x * m[a + 1] + v * m[a + 3],
+        x_b * m[b] + v_b * m[b + 2],
+        x_b * m[b + 1] + v_b * m[b + 3],
+        cosine * m[at.NODE_COSINE] - sine * m[at.NODE_SINE],
+        sine * m[at.NODE_COSINE] + cosine * m[at.NODE_SINE],
+    )
+
+
+def starts_block(node):
+    """Whether phasors at a node are made anew."""
+    return math.floor(node * (1.0 / BLOCK)) * BLOCK == node
+
+
+def turn_interval(m):
+    """On to the next interval."""
+    m[at.NODE] += 1.0
+    m[at.LEFT_AGE] = m[at.RIGHT_AGE]
+    m[at.RIGHT_AGE] = (m[at.NODE] + 1.0) * m[at.SPACING]
+    for i in range(6):
+        m[at.LEFT + i] = m[at.RIGHT + i]
+    if starts_block(m[at.NODE] + 1.0):
+        renew_right(m, m[at.NODE] + 1.0)
+    else:
+        set_right(m, at.RIGHT)
+
+
+def renew_right(m, node):
+    """Phasors at a node from the closed form, put to the right."""
+    x, v, x_b, v_b, cosine, sine = renewed(m, node * m[at.SPACING])
+    put(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
+
+
+def renewed(m, age):
+    """All phasors at an age from the closed form."""
+    x, v = from_start(m, branch_a(m), at.FREE_A, age)
+    x_b, v_b, cosine, sine = 0.0, 0.0, m[at.COSINE], m[at.SINE]
+    if m[at.MODE] == at.FLIGHT:
+        x_b, v_b = from_start(m, at.BRANCH_2, at.FREE_B, age)
+    if m[at.NODE_ETA] != 0.0:
+        sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
+    return x, v, x_b, v_b, cosine, sine
+
+
+def from_start(m, b, free, age):
+    """A free part at an age of the state, from the closed form."""
+    xx, xv, vx, vv = turn_by(m, b, age)
+    x, v = m[free], m[free + 1]
+    return x * xx + v * xv, x * vx + v * vv
+
+
+def seek(m, tau):
+    """Make the interval around ``tau`` the present one."""
+    node = math.floor(tau / m[at.SPACING]) * 1.0
+    if node * m[at.SPACING] > tau:
+        node -= 1.0
+    block = math.floor(node * (1.0 / BLOCK)) * BLOCK
+    if node < m[at.NODE] or block > m[at.NODE]:
+        if block == 0.0:
+            start_nodes(m)
+        else:
+            m[at.NODE] = block - 1.0
+            m[at.RIGHT_AGE] = block * m[at.SPACING]
+            renew_right(m, block)
+            turn_interval(m)
+    while m[at.NODE] < node:
+        turn_interval(m)
+
+
+def phasors_at(m, tau):
+    """All phasors at an age, from the nearer node.
+
+    Returns
+    -------
+    x_a, v_a, x_b, v_b, cosine, sine : float
+    """
+    if tau < m[at.LEFT_AGE] or tau > m[at.RIGHT_AGE]:
+        seek(m, tau)
+    node, t = at.LEFT, tau - m[at.LEFT_AGE]
+    if t > m[at.HALF_SPACING]:
+        node, t = at.RIGHT, tau - m[at.RIGHT_AGE]
+    x_a, v_a, x_b, v_b = free_parts(m, node, t) if m[at.STEEP] == 0.0 else steep_parts(m, tau)
+    cosine, sine = m[node + 4], m[node + 5]
+    if m[at.NODE_ETA] != 0.0:
+        angle = m[at.NODE_ETA] * t
+        c, s = small_rotation(angle * angle)
+        s *= angle
+        cosine, sine = cosine * c - sine * s, sine * c + cosine * s
+    return x_a, v_a, x_b, v_b, cosine, sine
+
+
+def steep_parts(m, tau):
+    """Both free parts where one decays steeply: from the node before, by elementary functions."""
+    t = tau - m[at.LEFT_AGE]
+    x_a, v_a = from_start(m, branch_a(m), at.LEFT, t)
+    if m[at.MODE] != at.FLIGHT:
+        return x_a, v_a, 0.0, 0.0
+    x_b, v_b = from_start(m, at.BRANCH_2, at.LEFT + 2, t)
+    return x_a, v_a, x_b, v_b
+
+
+def free_parts(m, node, t):
+    """Both free parts at most half a spacing from a node."""
+    a, b = branch_a(m), at.BRANCH_2
+    decay = small_decay(m[a + at.DAMPING] * t)
+    x_a, v_a = turned_part(m, a, node, t, decay)
+    if m[at.MODE] != at.FLIGHT:
+        return x_a, v_a, 0.0, 0.0
+    if m[a + at.DAMPING] != m[b + at.DAMPING]:
+        decay = small_decay(m[b + at.DAMPING] * t)
+    x_b, v_b = turned_part(m, b, node + 2, t, decay)
+    return x_a, v_a, x_b, v_b
+
+
+def turned_part(m, b, free, t, decay):
+    """A free part over a part of a spacing, in which it decays by ``e^{-D t}``."""
+    x, v = m[free], m[free + 1]
+    cosine, sine = small_rotation(m[b + at.NU_SQUARED] * t * t)
+    C, S = decay * cosine, decay * sine * t
+    damped = m[b + at.DAMPING] * S
+    return (C + damped) * x + S * v, (C - damped) * v - m[b + at.OMEGA_SQUARED] * S * x

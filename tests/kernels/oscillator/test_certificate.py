@@ -1,0 +1,56 @@
+"""No root is missed: adversarial flights against a dense search, and in high precision."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from . import flights, truth
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def counts(verdicts):
+    """How many flights have each verdict."""
+    return [int(n) for n in np.bincount(verdicts, minlength=5)]
+
+
+def test_thousands_of_flights_end_on_their_first_root():
+    _, verdicts, ends = flights.campaign(1, 2000)
+    ok, missed, wrong, unfinished, skipped = counts(verdicts)
+    assert missed == wrong == unfinished == 0
+    assert skipped < 200
+    assert np.count_nonzero((ends > 0.0) & (ends < 3.0)) > 500
+
+
+def test_a_sample_in_high_precision():
+    rows, verdicts, ends = flights.campaign(2, 60)
+    for i, (row, verdict, end) in enumerate(zip(rows, verdicts, ends, strict=True)):
+        if verdict != flights.OK:
+            continue
+        values = {"m1": 1.0, "k1": 1.0, **dict(zip(flights.NAMES, map(float, row), strict=True))}
+        state = [values[f"{name}_start"] for name in ("x1", "v1", "x2", "v2")]
+        first, second = truth.apart(values, state, mp.mpf(values["phase_start"]))
+        gap = second - first
+        blind = 0.5 * float(end) if values["x1_start"] == values["x2_start"] else 0.0
+        root = truth.first_root(gap, float(end) + 0.1, blind)
+        if end in (flights.HORIZON, 3.0):
+            assert root is None or root > end * (1.0 - 1e-12), i
+        else:
+            assert root is not None, i
+            slope = abs(float(gap.derivative()(root)))
+            terms = sum(abs(complex(c)) for c, _ in gap.terms)
+            terms += sum(abs(float(q)) * float(end) ** k for k, q in enumerate(gap.polynomial))
+            assert abs(float(root) - end) <= 1e-14 * (1.0 + end) * (1.0 + terms / slope), i
+
+
+@pytest.mark.slow
+def test_a_million_flights():
+    command = [sys.executable, "-m", flights.__name__, "3", "1000000"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    ok, missed, wrong, unfinished, skipped = map(int, done.stdout.split())
+    assert missed == wrong == unfinished == 0
+    assert ok > 900_000

@@ -1,0 +1,58 @@
+"""Phasors from the nodes are those of the closed form, and depend on the age alone."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fmu_src.kernels.numerics.elementary import sincos_turns
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator import nodes
+
+from .kernel import examples, flight, structures
+
+AGES = st.lists(st.floats(0.0, 300.0), min_size=2, max_size=8)
+STEEP = {"m2": 0.35, "k2": 0.468, "d1": 0.03, "d2": 0.9765, "box_frequency": 1.111}
+
+
+def closed_form(m, age):
+    """All phasors by elementary functions."""
+    sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
+    a = nodes.from_start(m, at.BRANCH_1, at.FREE_A, age)
+    b = nodes.from_start(m, at.BRANCH_2, at.FREE_B, age)
+    return (*a, *b, cosine, sine)
+
+
+@examples(60)
+@given(structures() | st.just({**STEEP, "phase_start": 0.35}), AGES)
+def test_they_are_those_of_the_closed_form(values, ages):
+    m = flight(-0.9, 0.95, 0.7, 0.24, **values)
+    size = max(1.0, *(abs(m[i]) for i in range(at.FREE_A, at.FREE_A + 4)))
+    rate = m[at.RATE]
+    for age in (0.45 * m[at.SPACING], 0.55 * m[at.SPACING], 0.999 * m[at.SPACING], *ages):
+        found, expected = nodes.phasors_at(m, age), closed_form(m, age)
+        for k in range(6):
+            error = abs(found[k] - expected[k])
+            if k >= 4:
+                assert error <= 1e-15 * (8.0 + m[at.ETA] * age), k
+            else:
+                assert error <= 4e-15 * size * (rate if k in (1, 3) else 1.0) * (
+                    8.0 + rate * age
+                ), k
+
+
+@examples(40)
+@given(structures() | st.just(STEEP), AGES)
+def test_they_do_not_depend_on_the_way_to_them(values, ages):
+    m = flight(-0.9, 0.95, 0.7, 0.24, **values)
+    fresh = [nodes.phasors_at(list(m), age) for age in ages]
+    assert [nodes.phasors_at(m, age) for age in ages] == fresh
+    assert [nodes.phasors_at(m, age) for age in reversed(ages)] == fresh[::-1]
+
+
+@pytest.mark.parametrize("fastest", [1e-9, 0.3, 1.0, 1.25, 7.7, 1e5, 1e100])
+def test_the_spacing_has_few_digits(fastest):
+    h = nodes.spacing(fastest)
+    assert 0.99 * nodes.ANGLE / fastest <= h <= nodes.ANGLE / fastest
+    for node in (3.0, 1023.0, 2.0**40 + 1.0):
+        age = node * h
+        assert age / h == node and age - (node - 1.0) * h == h
