@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 import time
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import replace
@@ -155,8 +156,7 @@ class Runner:
 
     def bar(self) -> Any:
         """A progress bar over all items."""
-        from tqdm.auto import tqdm
-
+        tqdm = progress_bar(self.options.progress)
         total = sum(state.job.count() for state in self.states.values())
         single = self.jobs[0] if len(self.jobs) == 1 else None
         return tqdm(
@@ -216,6 +216,19 @@ class Runner:
                 return False
             state.start({need.job.name: need.result for need in needs if need.result is not None})
         return not state.complete
+
+
+def progress_bar(wanted: bool) -> Any:
+    """tqdm's bar: a notebook's in a notebook that can show one, a terminal's elsewhere."""
+    if not wanted:
+        from tqdm import tqdm
+
+        return tqdm
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of a notebook without widgets: it gets a line of text
+        from tqdm.auto import tqdm as automatic
+
+        return automatic
 
 
 def gather(jobs: Iterable[Job], running: Mapping[str, object], find: Find) -> list[xr.Dataset]:
