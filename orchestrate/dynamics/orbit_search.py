@@ -103,16 +103,24 @@ def verdict(instance: EventInstance, setting: Setting, values: Floats, ring: Rin
 
 
 def first_motion(
-    setting: Setting, guesses: Iterable[Guess], values: Floats
-) -> tuple[Family, Root, str]:
+    setting: Setting, guesses: Iterable[Guess], values: Floats, *, stable: bool = False
+) -> tuple[Family, Root]:
     """The first orbit that Newton's method finds and that is a motion of just its periods.
+
+    Parameters
+    ----------
+    setting : Setting
+    guesses : iterable of Guess
+    values : ndarray
+    stable : bool
+        Whether a stable one that comes later goes before an unstable one.
 
     Raises
     ------
     NoConvergenceError
         Where no guess leads to one, with the reason of the first.
     """
-    reason = ""
+    reason, unstable = "", None
     for guess in guesses:
         try:
             family, root = solve(setting, guess, values)
@@ -120,14 +128,20 @@ def first_motion(
             reason = reason or str(error)
             continue
         ring = family.ring(root.unknowns)
-        why = why_no_motion(ring)
-        shorter = repeats_earlier(ring)
-        if not why and shorter < guess[0].periods:
-            why = f"the orbit found repeats after {shorter} already"
-        if not why:
-            return family, root, ""
+        why = why_no_motion(ring) or why_shorter(ring, guess[0].periods)
+        if not why and (not stable or np.abs(ring.multipliers()).max(initial=0.0) < 1.0):
+            return family, root
+        unstable = unstable or (None if why else (family, root))
         reason = reason or why
+    if unstable:
+        return unstable
     raise NoConvergenceError(reason or "there is no impact to begin with")
+
+
+def why_shorter(ring: Ring, periods: int) -> str:
+    """Why an orbit is none of so many periods; empty where it is one."""
+    shorter = repeats_earlier(ring)
+    return f"the orbit found repeats after {shorter} already" if shorter < periods else ""
 
 
 def single_impacts(form: ClosedForm, periods: int) -> Iterator[Guess]:

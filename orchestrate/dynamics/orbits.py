@@ -156,7 +156,8 @@ def found(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
     setting = job.setting
     values = np.array([job.excitation[0][1]])
     try:
-        family, root, _ = first_motion(setting, guesses(instance, job, setting, values), values)
+        tried = guesses(instance, job, setting, values)
+        family, root = first_motion(setting, tried, values, stable=job.guess is None)
     except NoConvergenceError as reason:
         expected = "another guess" if job.guess else "another period, or a guess"
         raise InputError(
@@ -269,7 +270,8 @@ def orbit(
         What Newton's method begins with: a state x1, x2 in m, v1, v2 in m/s at phase 0, from which
         the FMU tells the impacts; or a mapping with ``impact_time``, times of all impacts in s, of
         which the distances matter most; or an orbit found before, at another parameter. By default
-        the closest returns of the response from rest, then orbits with a single impact.
+        the closest returns of the response from rest, then orbits with a single impact: the first
+        stable orbit among what is found, or the first.
     box_acceleration : float
         Constant acceleration of the box beside the harmonic one, m/s2: it opens or closes the gap.
     transient, search, tries : int

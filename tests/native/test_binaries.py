@@ -117,7 +117,8 @@ def test_two_builds_have_the_same_bytes(fmus, version, hide, tmp_path):
     """The other build is made now: its own compilation, its own scratch folders."""
     hide()
     made = native_form.export("oscillator", version, tmp_path)
-    assert made.read_bytes() == fmus[version].read_bytes()
+    same = made.read_bytes() == fmus[version].read_bytes()
+    assert same  # a difference of archives shown byte by byte would take hours
 
 
 @pytest.mark.slow
