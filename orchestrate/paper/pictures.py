@@ -96,17 +96,29 @@ DRAW: Mapping[str, Callable[..., Figure]] = {
 }
 
 
+def is_current(part: Part, output: Path) -> bool:
+    """Whether a part's pictures are there, and no older than its data."""
+    pictures = [output / f"{part.picture}.{ending}" for ending in FORMATS]
+    if not all(picture.is_file() for picture in pictures):
+        return False
+    newest = max((output / f"{job}.nc").stat().st_mtime_ns for job in part.jobs)
+    return all(picture.stat().st_mtime_ns >= newest for picture in pictures)
+
+
 def draw_part(part: Part, output: Path) -> Path:
-    """Draw a part from its data files; returns the path of its PNG."""
+    """Draw a part from its data files, where it is not drawn yet; returns the path of its PNG."""
     from ..figures.files import save
 
+    if is_current(part, output):
+        return output / f"{part.picture}.{FORMATS[0]}"
     figure = DRAW[part.name](part.name, *[load(output / f"{job}.nc") for job in part.jobs])
     return save(figure, output / part.picture, FORMATS)[0]
 
 
 def draw_all(parts: Sequence[Part], output: Path, processes: int) -> dict[str, Path]:
     """Draw parts side by side; the paths of their PNG files, by the parts' names."""
-    if min(len(parts), processes) < 2:
+    waiting = [part for part in parts if not is_current(part, output)]
+    if min(len(waiting), processes) < 2:
         return {part.name: draw_part(part, output) for part in parts}
     with at_work(Processes(processes)) as workers, warnings.catch_warnings():
         restarted = "A worker was restarted"  # loky: a picture took memory, which is no leak

@@ -74,6 +74,7 @@ def test_a_lost_worker_loses_nothing(commands, cluster, tmp_path, monkeypatch):
     assert done.code == 0, done.err
     assert workers[1].poll() is None
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    monkeypatch.setattr("orchestrate.paper.reproduce.draw_all", lambda *_: {})
     assert main([*RUN, "--output", str(tmp_path / "here")]) == 0
     here = {path.name: path.read_bytes() for path in (tmp_path / "here").glob("*.nc")}
     assert commands.results() == here and len(here) == 3

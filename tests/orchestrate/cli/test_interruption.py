@@ -40,6 +40,7 @@ RUNS = {  # long enough to be ended by force, chaotic, so that a wrong start is 
 def uninterrupted(tmp_path, monkeypatch):
     """Bytes of the results of a run, computed in one go in this process."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    monkeypatch.setattr("orchestrate.paper.reproduce.draw_all", lambda *_: {})
 
     def results(name: str) -> dict[str, bytes]:
         folder = tmp_path / "uninterrupted"

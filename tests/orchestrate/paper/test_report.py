@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import base64
+import os
 
 from orchestrate.access import OSCILLATOR, find
-from orchestrate.paper import plan, report
+from orchestrate.paper import pictures, plan, report
 from orchestrate.paper.resolution import FULL, QUICK
 
 ROW = {
@@ -40,3 +41,16 @@ def test_claims_are_told_with_their_verdicts(exported, tmp_path):
     text = page(tmp_path, QUICK, claims=[ROW])
     assert "a &lt; b" in text and "R &amp; D" in text and "not borne out" in text
     assert "0 borne out, 0 in part, 1 not" in text and "Reduced resolution" in text
+
+
+def test_pictures_are_drawn_where_they_are_missing_or_older_than_their_data(tmp_path, monkeypatch):
+    part = plan.make(FULL).parts["5"]
+    (tmp_path / "figure5.nc").touch()
+    assert not pictures.is_current(part, tmp_path)
+    for ending in pictures.FORMATS:
+        (tmp_path / f"figure5.{ending}").touch()
+    assert pictures.is_current(part, tmp_path)
+    monkeypatch.setattr(pictures, "load", lambda path: 1 / 0)
+    assert pictures.draw_all([part], tmp_path, 2) == {"5": tmp_path / "figure5.png"}
+    os.utime(tmp_path / "figure5.nc", (2e9, 2e9))
+    assert not pictures.is_current(part, tmp_path)
