@@ -4,6 +4,7 @@ import os
 import pickle
 import re
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from filelock import FileLock
@@ -33,16 +34,21 @@ def refresh(build):
     dict of str to CannotExport
         What cannot be made here, as ``FORM/NAME``, and why.
     """
-    reasons = {}
     build.mkdir(exist_ok=True)
-    with FileLock(build / ".lock"):
-        for form in forms.FORMS:
-            for name in forms.MODELS:
-                if guid_inside(build / form / f"{name}.fmu") != forms.guid(name, form):
-                    try:
-                        forms.export(name, form, build)
-                    except CannotExport as reason:
-                        reasons[f"{form}/{name}"] = reason
+    with FileLock(build / ".lock"), ThreadPoolExecutor() as threads:  # compilers work outside
+        made = list(threads.map(lambda name: refresh_model(name, build), forms.MODELS))
+    return {place: reason for reasons in made for place, reason in reasons.items()}
+
+
+def refresh_model(name, build):
+    """One model in all forms; returns as :func:`refresh`."""
+    reasons = {}
+    for form in forms.FORMS:
+        if guid_inside(build / form / f"{name}.fmu") != forms.guid(name, form):
+            try:
+                forms.export(name, form, build)
+            except CannotExport as reason:
+                reasons[f"{form}/{name}"] = reason
     return reasons
 
 

@@ -1,4 +1,7 @@
-"""The manual builds without a warning, its code cells run, and nothing public is left out."""
+"""The manual builds without a warning, its code cells run, and nothing public is left out.
+
+Slow: it takes half a minute, most of it the tutorial's own questions.
+"""
 
 from __future__ import annotations
 
@@ -40,17 +43,20 @@ def inventory(site):
     return {line.split()[0] for line in zlib.decompress(packed).decode().splitlines() if line}
 
 
+@pytest.mark.slow
 def test_the_public_face_is_described(site):
     names = {f"orchestrate.{name}" for name in orchestrate.__all__ if not name.startswith("_")}
     assert names - inventory(site) == set()
 
 
+@pytest.mark.slow
 def test_every_command_has_its_help(site):
     page = (site / "commands.html").read_text(encoding="utf-8")
     names = [command.__name__.rpartition(".")[2] for command in cli.COMMANDS]
     assert [name for name in names if f">{name}<" not in page] == []
 
 
+@pytest.mark.slow
 def test_nothing_comes_from_elsewhere(site):
     """No script, style, font or picture is taken from the network."""
     outside = re.compile(r'(?:<script[^>]* src|<link[^>]* href|<img[^>]* src)="(https?:[^"]*)"')

@@ -17,7 +17,7 @@ from .commands import all_end, below, end, kill, wait_for
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups and /proc")
 INTERRUPTED = "interrupted: nothing computed is lost, the same command goes on from here"
 RUNS = {  # long enough to be ended by force, chaotic, so that a wrong start is seen
-    "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "1000", "--samples", "20"),
+    "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "2000", "--samples", "20"),
     "couple": (
         "couple",
         "--only",
@@ -90,7 +90,7 @@ def test_ctrl_c_is_one_line_and_leaves_nothing_behind(commands):
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
 def test_no_worker_outlives_the_main_process(commands, number):
-    process = commands.start(*RUNS["sweep"], "--jobs", "2")
+    process = commands.start(*RUNS["sweep"], "--jobs", "2", "--transient", "20000")
     wait_for(lambda: len(list(below(process.pid))) >= 2, process, "workers were there")
     workers = list(below(process.pid))
     os.kill(process.pid, number)

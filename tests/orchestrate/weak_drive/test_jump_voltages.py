@@ -26,6 +26,7 @@ def test_too_few_jumps_give_no_error():
     assert np.isnan(extrapolate(rates[:2], voltages[:2])).all()
 
 
+@pytest.mark.slow
 def test_quick():
     """Bonded at the averaged theory's folds, delaminated up and down at lower voltages."""
     rates = [2e-4, 1e-4, 5e-5]
