@@ -11,7 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from .options import Commands, add_drive, described, ends_of, values_of
-from .output import add_running, check_output, draw_if_missing, own_fmus, running_of
+from .output import (
+    FORMATS,
+    PLOTS,
+    add_files,
+    add_running,
+    check_output,
+    drawn,
+    endings_of,
+    exported,
+    own_fmus,
+    running_of,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,6 +55,7 @@ def add_parser(commands: Commands) -> None:
     add_schedule(parser)
     branches = "compute the branches of stationary motions too, and draw them under the ramps"
     parser.add_argument("--branches", action="store_true", help=branches)
+    add_files(parser, store=False)
     add_running(parser, several=True)
     package = "write the coupled system for other tools instead"
     parser.add_argument("--ssp", type=Path, metavar="FILE", help=package)
@@ -162,6 +174,8 @@ def run(arguments: argparse.Namespace) -> None:
     from ..running.store import load
 
     structure, drive = described(arguments)
+    formats = endings_of("--format", arguments.format, FORMATS)
+    plots = endings_of("--plot", arguments.plot, PLOTS)
     if len(rates_of(arguments)) > 1:
         extrapolated(arguments, structure, drive)
         return
@@ -176,8 +190,9 @@ def run(arguments: argparse.Namespace) -> None:
     paths = answer_all(jobs, arguments.output, RunOptions.of(running), finder(running))
     results = {job.name.rpartition("_")[2]: load(paths[job.name]) for job in jobs}
     name = Path(arguments.drive).stem
-    picture = draw_if_missing(
-        arguments.output / f"couple_{name}.png",
+    pictures = drawn(
+        arguments.output / f"couple_{name}.nc",
+        plots,
         fresh or arguments.force,
         lambda: picture_of(
             results, structure, drive, branches_of(arguments, structure, drive), name
@@ -185,8 +200,12 @@ def run(arguments: argparse.Namespace) -> None:
     )
     for state, data in results.items():
         report(state, data)
-    for path in (*paths.values(), picture):
-        print(path)
+    for state, data in results.items():
+        path = paths[f"couple_{name}_{state}"]
+        for place in (path, *exported(data, path, formats, fresh or arguments.force)):
+            print(place)
+    for picture in pictures:
+        print(picture)
 
 
 def extrapolated(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -17,6 +18,23 @@ if TYPE_CHECKING:
 MOST_VALUES = 10_000_000
 RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
 SETS = Path(__file__).resolve().parents[1] / "structures" / "sets"
+UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
+FREQUENCIES = ("eta", *UNITS)
+QUANTITIES = """quantities:
+  m1 m2, k1 k2, d1 d2   masses kg, stiffnesses N/m, dampers N s/m
+  e                     coefficient of restitution: speed after an impact over that before
+  gamma                 end of chattering: the masses stick where the next flight would last
+                        less than gamma/omega
+  omega = sqrt(k1/m1)   unit of frequency, rad/s
+  mu = m2/m1, kappa = k2/k1
+  D1 = d1/(2 omega m1), D2 = d2/(2 omega m2); D sets both
+  Omega = 2 pi Hz = 2 pi rpm/60 rad/s; the box moves by a sin(Omega t), T = 2 pi/Omega
+  eta = Omega/omega     frequency ratio
+  g                     a Omega^2 over 9.80665 m/s2: the box's peak acceleration
+  xi = x/(a eta^2)      displacement without a unit; xi_Rel = xi_2 - xi_1 is the gap
+  tau = omega t         time without a unit
+
+"""
 
 
 @dataclass(frozen=True)
@@ -52,13 +70,13 @@ class Commands:
             name,
             help=text,
             description=f"{text[0].upper()}{text[1:]}.",
-            epilog=f"examples:\n{examples.format(program=self.program)}",
+            epilog=f"{QUANTITIES}examples:\n{examples.format(program=self.program)}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,
         )
         debug = "show where in the program an error came from"
         parser.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help=debug)
-        parser.set_defaults(run=run)
+        parser.set_defaults(run=run, command=name)
         return parser
 
 
@@ -175,7 +193,173 @@ def described(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
     return structure.replace(**of_structure), drive.replace(**of_drive)
 
 
-# -- frequencies ----------------------------------------------------------------------------------
+# -- the box's motion -----------------------------------------------------------------------------
+
+
+def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual: str = "") -> Any:
+    """Frequency and amplitude of the box; gives the group of the question's options.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+    several : bool
+        Whether frequencies may be a range or a list.
+    usual : str
+        What is asked where no frequency is given.
+    """
+    values = "VALUES" if several else "VALUE"
+    form = ", FIRST:LAST:STEP with both ends or a list A,B,..." if several else ""
+    group = parser.add_argument_group("the box's motion, one frequency and one amplitude of these")
+    option = group.add_argument
+    default = f" (default: {usual})" if usual else ""
+    option("--hz", metavar=values, help=f"frequency in Hz{form}")
+    option("--rpm", metavar=values, help="the same in turns per minute")
+    option("--frequency", metavar=values, help="the same as Omega in rad/s")
+    option("--eta", metavar=values, help=f"the same as frequency ratio Omega/omega{default}")
+    option("--amplitude", metavar="A", help="amplitude a in m (default with --eta: 1/eta^2 m)")
+    option("--g", metavar="G", help="the same as peak acceleration in g, held at all frequencies")
+    return parser.add_argument_group("question")
+
+
+def excitation_of(
+    arguments: argparse.Namespace, structure: Structure, si: bool = False, one: bool = False
+) -> dict[str, Any]:
+    """The box's motion as keywords of the public API.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+    structure : Structure
+    si : bool
+        Whether the answer is in m and m/s2, so that an amplitude of 1/eta^2 m says nothing of a
+        structure whose omega is not 1 rad/s.
+    one : bool
+        Whether it must be one frequency.
+
+    Raises
+    ------
+    InputError
+    """
+    from ..structures.sections import GRAVITY, TO_RAD_S
+
+    name = frequency_option(arguments)
+    amplitude = amplitude_of(arguments)
+    if name is None:
+        raise InputError(f"frequency: nothing given; expected one of {options(FREQUENCIES)}")
+    text = getattr(arguments, name)
+    values = one_or_more(f"--{name}", text, one)
+    if name == "eta" and amplitude is None:
+        if si and not math.isclose(structure.omega, 1.0):
+            raise InputError(
+                f"--eta {text}: omega is {structure.omega:g} rad/s; expected --amplitude in m or "
+                "--g with it (1/eta^2 m is the paper's, for omega = 1 rad/s)"
+            )
+        return {"eta": values}
+    if amplitude is None:
+        raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
+    omega = structure.omega
+    turns = each(TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values)
+    if arguments.g is None:
+        return {"frequency": turns, "amplitude": amplitude}
+    held = each(lambda value: amplitude * GRAVITY / value**2, turns)
+    return {"frequency": turns, "amplitude": held}
+
+
+def frequency_option(arguments: argparse.Namespace) -> str | None:
+    """Which option tells the frequency."""
+    given = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
+    if len(given) > 1:
+        raise InputError(f"{options(given, ' and ')}: expected one of them")
+    return given[0] if given else None
+
+
+def amplitude_of(arguments: argparse.Namespace) -> float | None:
+    """The amplitude in m, or in g where that is given; None where neither is."""
+    if arguments.amplitude is not None and arguments.g is not None:
+        raise InputError("--amplitude and --g: expected one of them")
+    for name in ("amplitude", "g"):
+        text = getattr(arguments, name)
+        if text is not None:
+            return one_value(f"--{name}", text)
+    return None
+
+
+def options(names: Any, joint: str = ", ") -> str:
+    """Names as options."""
+    return joint.join(f"--{name}" for name in names)
+
+
+def each(change: Callable[[float], float], values: float | tuple[float, ...]) -> Any:
+    """The same of one number, or of each of several."""
+    return tuple(map(change, values)) if isinstance(values, tuple) else change(values)
+
+
+def excitation_text(question: Mapping[str, Any]) -> dict[str, float]:
+    """The box's motion in numbers for a title: what is one number of it."""
+    names = ("eta", "frequency", "amplitude")
+    return {name: question[name] for name in names if isinstance(question.get(name), float)}
+
+
+# -- a parameter that varies ----------------------------------------------------------------------
+
+
+def add_over(option: Callable[..., Any]) -> None:
+    """``--over`` and ``--values``."""
+    option(
+        "--over",
+        metavar="NAME",
+        help="another parameter that varies, at one frequency: of the structure, as for --set",
+    )
+    option("--values", metavar="VALUES", help="its values, FIRST:LAST:STEP or a list A,B,...")
+
+
+def along(
+    arguments: argparse.Namespace, structure: Structure, usual: str | None = None
+) -> tuple[dict[str, Any], bool]:
+    """What varies as keywords of the public API, and whether its values are a range.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        With the options of :func:`add_excitation` and :func:`add_over`.
+    structure : Structure
+    usual : str, optional
+        Of ``--eta``, where no frequency is given.
+    """
+    over, values = arguments.over, arguments.values
+    if (over is None) != (values is None):
+        raise InputError("--over and --values: expected both, or none of them")
+    if over is not None:
+        found, is_range = values_of("--values", values, zero=True)
+        check_over(over, arguments)
+        fixed = excitation_of(arguments, structure, one=True)
+        return {**fixed, "over": over, "values": found}, is_range
+    if (
+        usual is not None
+        and frequency_option(arguments) is None
+        and amplitude_of(arguments) is None
+    ):
+        arguments.eta = usual
+    asked = excitation_of(arguments, structure)
+    return asked, ":" in str(getattr(arguments, frequency_option(arguments) or "eta"))
+
+
+def check_over(over: str, arguments: argparse.Namespace) -> None:
+    """See that what varies is the structure, and that ``--eta`` means one frequency then."""
+    if over in ("eta", "frequency"):
+        raise InputError(f"--over {over}: expected --{over} VALUES instead")
+    if over == "amplitude":
+        raise InputError(
+            "--over amplitude: a response over a eta^2 is the same at every amplitude; expected a "
+            "parameter of the structure"
+        )
+    scaled = amplitude_of(arguments) is not None and arguments.eta is not None
+    if scaled and over in ("m1", "k1", "omega"):
+        expected = options(UNITS, " or ")
+        raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
+
+
+# -- numbers --------------------------------------------------------------------------------------
 
 
 def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, ...], bool]:
@@ -209,6 +393,20 @@ def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, 
             raise InputError(f"{option} {text}: {RANGE}, and at most {MOST_VALUES} values")
         numbers = [first + i * step for i in range(int((last - first) / step) + 1)]
     return tuple(map(float, numbers)), is_range
+
+
+def one_or_more(option: str, text: str, one: bool = False) -> float | tuple[float, ...]:
+    """A number, or those of a range or a list.
+
+    Parameters
+    ----------
+    option, text : str
+    one : bool
+        Whether it must be one number.
+    """
+    if one or not (":" in text or "," in text):
+        return one_value(option, text)
+    return values_of(option, text)[0]
 
 
 def one_value(option: str, text: str) -> float:

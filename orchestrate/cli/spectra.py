@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import Commands, add_drive, changes_of, described, values_of
-from .output import add_running, check_output, draw_if_missing, own_fmus, running_of
+from .options import (
+    FREQUENCIES,
+    Commands,
+    add_drive,
+    add_excitation,
+    amplitude_of,
+    changes_of,
+    described,
+    excitation_of,
+    options,
+)
+from .output import Files, add_files, add_running, digest, running_of
+from .question import carry_out, place
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,7 +29,7 @@ EXAMPLES = """\
   {program} spectra                      Figure 3: quick, the motor hangs at the resonance
   {program} spectra --drive beam --voltage 6.5
   {program} spectra --eta 0.4,1.047      shaken harmonically instead, at these frequency ratios
-  {program} spectra --structure beam --eta 1.047"""
+  {program} spectra --structure beam --hz 12.5 --g 0.02 --format nc,csv"""
 
 
 def add_parser(commands: Commands) -> None:
@@ -36,21 +46,25 @@ def add_parser(commands: Commands) -> None:
         + ", else between the jumps of the averaged theory)",
     )
     option("--voltage", type=float, help="the same in V")
-    option = parser.add_argument_group("shaken harmonically").add_argument
-    option("--eta", metavar="VALUES", help="frequency ratios, FIRST:LAST:STEP or A,B,...")
+    option = add_excitation(parser, usual="none: shaken by the motor").add_argument
     option("--transient", type=int, default=2000, help="periods dropped (default: %(default)s)")
     option("--periods", type=int, default=64, help="periods of the record (default: %(default)s)")
     option("--points", type=int, default=1024, help="samples a period (default: %(default)s)")
+    add_files(parser)
     add_running(parser, several=True)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
-    harmonic = arguments.eta is not None
-    if harmonic and not (arguments.eta0 is arguments.voltage is None):
-        raise InputError("--eta: expected without --eta0 and --voltage, which are the motor's")
-    check_output(arguments.output)
-    (shaken_harmonically if harmonic else shaken_by_the_motor)(arguments)
+    given = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
+    if not given and amplitude_of(arguments) is None:
+        shaken_by_the_motor(arguments)
+        return
+    for name in ("eta0", "voltage"):
+        if getattr(arguments, name) is not None:
+            what = options(given or ["amplitude or --g"], " and ")
+            raise InputError(f"{what}: expected without --{name}, which is the motor's")
+    shaken_harmonically(arguments)
 
 
 def shaken_by_the_motor(arguments: argparse.Namespace) -> None:
@@ -62,46 +76,48 @@ def shaken_by_the_motor(arguments: argparse.Namespace) -> None:
     voltage = arguments.voltage
     if voltage is None and eta0 is not None:
         voltage = eta0 * drive.volts(structure)
-    result = arguments.output / f"spectra_{Path(arguments.drive).stem}.nc"
-    fresh = arguments.force or not result.exists()
+    told = digest(structure.parameters(), drive.parameters(), voltage)
+    files = Files.of(arguments, f"spectra_{Path(arguments.drive).stem}_{told}")
 
     from ..figures import drive_spectra as figure
     from ..weak_drive.drive_spectra import drive_spectra
 
-    running: Any = {**running_of(arguments, result), "fmu": own_fmus(arguments.fmu)}
-    data = drive_spectra(structure, drive, voltage=voltage, **running)
+    data = drive_spectra(structure, drive, voltage=voltage, **running_of(arguments, files.result))
     for kind in map(str, data.kind.values):
         part = data.sel(kind=kind, mass=1)
         heard(f"{kind} at {float(part.speed):.4f} rad/s", part.acceleration)
-    finish(result, fresh, lambda: figure.draw(data))
+    files.write(data, lambda: figure.draw(data))
 
 
 def shaken_harmonically(arguments: argparse.Namespace) -> None:
-    """Spectra at frequency ratios."""
-    etas, _ = values_of("--eta", arguments.eta)
-
-    from .. import spectra
-    from ..figures import spectra as figure
+    """Spectra at frequencies."""
     from ..structures import Structure
 
     structure = Structure.from_file(arguments.structure or "paper")
     structure = structure.replace(**changes_of(arguments.set))
-    result = arguments.output / f"spectra_{structure.label()}_eta{arguments.eta}.nc"
-    fresh = arguments.force or not result.exists()
-    running: Any = {**running_of(arguments, result), "fmu": own_fmus(arguments.fmu)}
-    data = spectra(
-        structure,
-        eta=etas,
-        transient=arguments.transient,
-        periods=arguments.periods,
-        points=arguments.points,
-        **running,
-    )
-    for kind in map(str, data.kind.values):
-        for eta in etas:
-            part = data.acceleration.sel(kind=kind, mass=1, eta=eta)
-            heard(f"{kind} at eta = {eta:g}", part)
-    finish(result, fresh, lambda: figure.draw(data))
+    question = {
+        **excitation_of(arguments, structure, si=True),
+        "transient": arguments.transient,
+        "periods": arguments.periods,
+        "points": arguments.points,
+    }
+    carry_out(arguments, structure, question, report, picture_of)
+
+
+def picture_of(data: xr.Dataset, title: str) -> Any:
+    """The spectra, a panel a frequency."""
+    from ..figures.spectra import draw
+
+    return draw(data)
+
+
+def report(data: xr.Dataset) -> None:
+    """What is heard, a line a kind and a frequency."""
+    name = str(data.acceleration.dims[0])
+    for value in data[name].values:
+        for kind in map(str, data.kind.values):
+            part = data.acceleration.sel({"kind": kind, "mass": 1, name: value})
+            heard(f"{kind} at {place(name, float(value))}", part)
 
 
 def heard(name: str, amplitude: xr.DataArray) -> None:
@@ -110,10 +126,3 @@ def heard(name: str, amplitude: xr.DataArray) -> None:
     above = float(amplitude.where(amplitude.order > 1.5, 0.0).max())
     share = above / largest if largest else 0.0
     print(f"{name}: largest line {largest:.4g} m/s2, {share:.2g} of it above the excitation")
-
-
-def finish(result: Path, fresh: bool, draw: Callable[[], Any]) -> None:
-    """The picture, and the files."""
-    picture = draw_if_missing(result.with_suffix(".png"), fresh, draw)
-    print(f"{result}{'' if fresh else ': complete already'}")
-    print(picture)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from ..errors import InputError
-from .options import Commands, add_structure, one_value, structure_of, title_of, values_of
-from .output import add_running, check_output, draw_if_missing, running_of
+from .options import Commands, add_excitation, add_over, add_structure, along, structure_of
+from .output import add_files, add_running
+from .question import along_of, carry_out, place, ranges, several, tell_one
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -15,26 +15,20 @@ if TYPE_CHECKING:
 EXAMPLES = """  {program} sweep                                           the paper's Figure 6
   {program} sweep --set e=0.3                               Figure 11
   {program} sweep --eta 1.0:1.5:0.0005 --direction both     up and down: non-unique responses
-  {program} sweep --over D --values 0.005:0.1:0.001 --eta 1.2
-  {program} sweep --structure beam --eta 0.4,1.047,2.9 --samples 2000
+  {program} sweep --over e --values 0.05:0.95:0.003 --eta 1.2
+  {program} sweep --structure beam --hz 8:20:0.05 --g 0.02 --format nc,csv
 Interrupted, the same command goes on where it was. A finished result is left as it is."""
 PAPER = "0.1:8.0:0.001"  # frequency ratios of Figure 6
+APART = 0.01  # of the largest gap: where up and down differ by more, they are different motions
 
 
 def add_parser(commands: Commands) -> None:
     """Declare the command."""
-    text = "follow responses along the frequency ratio or another parameter: an orbit diagram"
+    text = "follow responses along the frequency or another parameter: an orbit diagram"
     parser = commands.add("sweep", run, text, EXAMPLES)
     add_structure(parser)
-    option = parser.add_argument_group("question").add_argument
-    option(
-        "--eta",
-        metavar="VALUES",
-        help="frequency ratios Omega/omega, FIRST:LAST:STEP with both ends, or a list A,B,... "
-        f"(default: {PAPER})",
-    )
-    option("--over", metavar="NAME", help="parameter that takes --values, at one --eta")
-    option("--values", metavar="VALUES", help="its values, in the form of --eta")
+    option = add_excitation(parser, usual=f"{PAPER} where no frequency is given").add_argument
+    add_over(option)
     option(
         "--direction",
         choices=("up", "down", "both"),
@@ -45,50 +39,22 @@ def add_parser(commands: Commands) -> None:
     option("--samples", type=int, default=200, help="periods kept (default: %(default)s)")
     tolerance = "relative deviation within which a state repeats (default: %(default)s)"
     option("--tolerance", type=float, default=1e-2, help=tolerance)
+    add_files(parser)
     add_running(parser)
-
-
-def question(arguments: argparse.Namespace) -> tuple[dict[str, Any], str]:
-    """What is asked as keywords of :func:`orchestrate.sweep`, and a name for files."""
-    if (arguments.over is None) != (arguments.values is None):
-        raise InputError("--over and --values: expected both, or none of them")
-    if arguments.over is None:
-        etas, is_range = values_of("--eta", arguments.eta or PAPER)
-        direction = arguments.direction or ("up" if is_range else "given")
-        return {"eta": etas, "direction": direction}, direction if is_range else "list"
-    if arguments.eta is None:
-        raise InputError(f"--over {arguments.over}: expected --eta with it, one frequency ratio")
-    values, is_range = values_of("--values", arguments.values, zero=True)
-    eta = one_value("--eta", arguments.eta)
-    direction = arguments.direction or ("up" if is_range else "given")
-    asked = {"over": arguments.over, "values": values, "eta": eta, "direction": direction}
-    ending = direction if is_range else "list"
-    return asked, f"eta{eta!r}_over_{arguments.over}_{ending}"
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
-    asked, ending = question(arguments)
     structure = structure_of(arguments)
-    check_output(arguments.output)
-    result = arguments.output / f"orbit_{structure.label()}_{ending}.nc"
-    fresh = arguments.force or not result.exists()
-
-    from .. import sweep
-
-    data = sweep(
-        structure,
+    asked, is_range = along(arguments, structure, usual=PAPER)
+    question = {
         **asked,
-        transient=arguments.transient,
-        samples=arguments.samples,
-        tolerance=arguments.tolerance,
-        **running_of(arguments, result),
-    )
-    title = title_of(structure)
-    picture = draw_if_missing(result.with_suffix(".png"), fresh, lambda: picture_of(data, title))
-    report(data)
-    print(f"{result}{'' if fresh else ': complete already'}")
-    print(picture)
+        "direction": arguments.direction or ("up" if is_range else "given"),
+        "transient": arguments.transient,
+        "samples": arguments.samples,
+        "tolerance": arguments.tolerance,
+    }
+    carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
 
 
 def picture_of(data: xr.Dataset, title: str) -> Any:
@@ -100,14 +66,34 @@ def picture_of(data: xr.Dataset, title: str) -> Any:
 
 def report(data: xr.Dataset) -> None:
     """What was found, in a few lines."""
-    (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
-    top = data.xi_rel_max.where(data.xi_rel_max == data.xi_rel_max.max(), drop=True)
-    place = float(top[parameter][0])
-    print(f"largest xi_Rel: {float(data.xi_rel_max.max()):.6g} at {parameter} = {place:g}")
-    count = data.multiplicity.size
-    periodic, contact = int((data.multiplicity > 0).sum()), int(data.permanent_contact.sum())
-    print(f"periodic: {periodic} of {count} responses; with permanent contact: {contact}")
+    name = along_of(data)
+    if data.sizes[name] == 1:
+        tell_one(data, name)
+        return
+    top = data.isel(data.xi_rel_max.argmax(...))
+    where = place(name, float(top[name]))
+    print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g} at {where}")
+    print(f"largest displacement: {float(data.x1_max.max()):.4g} m of mass 1, ", end="")
+    print(f"{float(data.x2_max.max()):.4g} m of mass 2")
+    kinds = data.multiplicity
+    irregular = (kinds == 0).any("direction") if "direction" in kinds.dims else kinds == 0
+    print(f"periodic: {int((kinds > 0).sum())} of {kinds.size} responses")
+    if irregular.any():
+        ordered = irregular.sortby(name)
+        print(f"not periodic at {ranges(name, ordered[name].values, ordered.values)}")
+    contact = int(data.permanent_contact.sum())
+    print(f"with permanent contact: {contact} of {kinds.size} responses")
     if "direction" in data.dims:
-        up, down = (data.sel(direction=name) for name in ("up", "down"))
-        differ = abs(up.xi_rel_max / down.xi_rel_max - 1.0) > 0.01
-        print(f"up and down differ by more than 1 % in xi_Rel at {int(differ.sum())} values")
+        tell_differences(data, name)
+
+
+def tell_differences(data: xr.Dataset, name: str) -> None:
+    """Where up and down are different motions."""
+    gaps = data.xi_rel_max.sortby(name)
+    up, down = (gaps.sel(direction=word) for word in ("up", "down"))
+    differ = abs(up - down) > APART * abs(gaps).max("direction")
+    if not differ.any():
+        print(f"up and down are the same to {APART:.0%} of the largest gap: no hysteresis here")
+        return
+    where = ranges(name, gaps[name].values, differ.values)
+    print(f"up and down differ by more than {APART:.0%} of the largest gap at {where}")

@@ -211,6 +211,11 @@ class Structure:
         """The natural frequency of both masses together over omega, in contact (7)."""
         return math.sqrt((1.0 + self.kappa) / (1.0 + self.mu))
 
+    @property
+    def alike(self) -> bool:
+        """Whether both oscillators move alike, so that masses that start together never part."""
+        return self.kappa == self.mu and self.D1 == self.D2
+
     def as_bonded(self) -> Structure:
         """The undamaged structure, both masses glued."""
         return dataclasses.replace(self, bonded=True)

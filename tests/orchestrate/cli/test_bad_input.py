@@ -23,7 +23,10 @@ SWEEP = [
     (["--eta", "1:2:1e-9999999"], ["--eta 1:2:1e-9999999:", "10000000 values"]),
     (["--eta", "1,1", "--direction", "up"], ["eta", "1.0 twice"]),
     (["--over", "e", "--eta", "1"], ["--over and --values", "both"]),
-    (["--over", "e", "--values", "0.1,0.2"], ["--over e", "--eta"]),
+    (["--over", "e", "--values", "0.1,0.2"], ["frequency: nothing given", "--eta"]),
+    (["--over", "eta", "--values", "1,2"], ["--over eta", "--eta VALUES"]),
+    (["--over", "amplitude", "--values", "1,2", "--hz", "1"], ["--over amplitude", "the same"]),
+    (["--over", "k1", "--values", "1,2", "--eta", "1", "--g", "1"], ["--over k1", "--hz"]),
     (["--over", "e", "--values", "0.1,0.2", "--eta", "1,2"], ["--eta 1,2", "2 values"]),
     (["--over", "f", "--values", "0.1", "--eta", "1"], ["'f'", "no parameter"]),
     (["--over", "e", "--values", "0.1,1.2", "--eta", "1"], ["e = 1.2", "0 <= e <= 1"]),
@@ -48,11 +51,21 @@ SWEEP = [
     (["--fmu", "nowhere.fmu"], ["nowhere.fmu", "no such file"]),
 ]
 SIMULATE = [
-    ([], ["excitation", "--eta", "--frequency"]),
+    ([], ["frequency: nothing given", "--eta", "--hz", "--rpm", "--frequency"]),
     (["--eta", "1,2"], ["--eta 1,2", "2 values"]),
-    (["--eta", "1", "--frequency", "2"], ["--eta", "alone"]),
-    (["--frequency", "2"], ["--frequency with --amplitude"]),
-    (["--frequency", "-2", "--amplitude", "1"], ["frequency = -2.0"]),
+    (["--eta", "1", "--frequency", "2"], ["--eta and --frequency", "one of them"]),
+    (["--hz", "1", "--rpm", "2", "--g", "1"], ["--hz and --rpm", "one of them"]),
+    (["--frequency", "2"], ["--frequency 2", "--amplitude", "--g"]),
+    (["--hz", "2", "--amplitude", "1", "--g", "1"], ["--amplitude and --g", "one of them"]),
+    (["--hz", "2", "--g", "x"], ["--g x", "not numbers"]),
+    (["--hz", "2", "--amplitude", "1,2"], ["--amplitude 1,2", "2 values"]),
+    (["--hz", "1:2:0.1", "--g", "1"], ["--hz 1:2:0.1", "11 values"]),
+    (["--structure", "beam", "--eta", "1"], ["--eta 1", "75 rad/s", "--amplitude", "--g"]),
+    (["--eta", "1", "--beside", "--store", "a.nc"], ["--beside", "--store"]),
+    (["--eta", "1", "--store", "mine.dat"], ["--store mine.dat", ".nc"]),
+    (["--eta", "1", "--format", "nc,doc"], ["--format nc,doc", "doc", "xlsx"]),
+    (["--eta", "1", "--plot", "gif"], ["--plot gif", "png", "svg"]),
+    (["--frequency", "-2", "--amplitude", "1"], ["--frequency -2", "> 0"]),
     (["--eta", "1", "--periods", "0"], ["periods = 0", "from 1"]),
     (["--eta", "1", "--points", "0"], ["points = 0", "from 1"]),
     (["--eta", "1", "--start", "0,1"], ["--start 0,1", "four numbers"]),
@@ -176,11 +189,11 @@ def netcdf_of_others(path):
 
 @pytest.mark.parametrize("make", [not_netcdf, netcdf_of_others, lambda path: path.mkdir()])
 def test_something_else_in_the_place_of_the_result(ask, tmp_path, make):
-    result = tmp_path / "results" / "orbit_e0.7_D0.005_list.nc"
+    result = tmp_path / "results" / "mine.nc"
     result.parent.mkdir()
     make(result)
     before = result.read_bytes() if result.is_file() else b""
-    done = ask("sweep", "--eta", "1", *QUICK)
+    done = ask("sweep", "--eta", "1", *QUICK, "--store", result)
     done.complaint(result, "not a result of this project", code=done.code)
     assert done.code in (1, 2)
     assert [path.name for path in result.parent.iterdir()] == [result.name]

@@ -33,7 +33,8 @@ def resize(commands):
 def whole(ask, tmp_path):
     """The samples of RUN, computed in one go."""
     assert ask(*RUN, output=tmp_path / "whole").code == 0
-    return xr.load_dataset(tmp_path / "whole" / "orbit_e0.7_D0.005_up.nc").xi_rel
+    (result,) = (tmp_path / "whole").glob("*.nc")
+    return xr.load_dataset(result).xi_rel
 
 
 def goes_on(commands, ask, tmp_path):

@@ -12,7 +12,7 @@ from orchestrate.access import OSCILLATOR, find
 from orchestrate.version import __version__
 
 SWEEP = ("sweep", "--eta", "1.28:1.31:0.005", "--transient", "20", "--samples", "12")
-NAME = "orbit_e0.7_D0.005_up"
+NAME = "sweep_e0.7_D0.005_eta1.28-1.31_up_1cc308"
 
 
 def fingerprint(folder):
@@ -23,6 +23,12 @@ def fingerprint(folder):
 @pytest.fixture
 def folder(tmp_path):
     return tmp_path / "results"
+
+
+def result_in(folder):
+    """The one result in a folder."""
+    (path,) = folder.glob("*.nc")
+    return xr.load_dataset(path)
 
 
 def shows_something(path):
@@ -71,11 +77,23 @@ def test_force_computes_the_same_bytes_anew(ask, folder, monkeypatch):
 
 
 @pytest.mark.parametrize("option", [("--samples", "13"), ("--eta", "1.28:1.31:0.01")])
-def test_another_questions_result_is_not_replaced(ask, folder, option):
+def test_another_question_has_another_file(ask, folder, option):
     ask(*SWEEP)
     before = fingerprint(folder)
-    ask(*SWEEP, *option).complaint(folder / f"{NAME}.nc", "another question", "force")
-    assert fingerprint(folder) == before
+    assert ask(*SWEEP, *option).code == 0
+    after = fingerprint(folder)
+    assert len(after) == 4 and before.items() <= after.items()
+
+
+def test_a_file_of_ones_own_is_not_replaced_by_another_question(ask, folder):
+    own = folder / "mine.nc"
+    assert ask(*SWEEP, "--store", own).code == 0
+    before = fingerprint(folder)
+    assert sorted(before) == ["mine.nc", "mine.png"]
+    ask(*SWEEP, "--samples", "13", "--store", own).complaint(own, "another question", "force")
+    own.unlink()
+    ask(*SWEEP, "--store", own).complaint("mine.png", "--store", "--force")
+    assert fingerprint(folder) == {"mine.png": before["mine.png"]}
 
 
 def test_a_failed_picture_is_drawn_by_the_same_command(ask, folder):
@@ -89,17 +107,17 @@ def test_a_failed_picture_is_drawn_by_the_same_command(ask, folder):
 
 def test_a_list_is_taken_in_its_own_order(ask, folder):
     ask("sweep", "--eta", "1.31, 1.28,2", "--transient", "3", "--samples", "2")
-    data = xr.load_dataset(folder / "orbit_e0.7_D0.005_list.nc")
+    data = result_in(folder)
     assert data.eta.values.tolist() == [1.31, 1.28, 2.0]
     assert data.attrs["direction"] == "given"
 
 
 def test_up_and_down_in_one_picture(ask, folder):
     done = ask(*SWEEP, "--direction", "both")
-    data = xr.load_dataset(folder / "orbit_e0.7_D0.005_both.nc")
+    data = result_in(folder)
     assert data.direction.values.tolist() == ["up", "down"]
     assert "up and down differ" in done.out
-    assert shows_something(folder / "orbit_e0.7_D0.005_both.png")
+    assert shows_something(next(folder.glob("*.png")))
 
 
 def test_over_another_parameter_of_an_own_structure(ask, folder, tmp_path):
@@ -107,8 +125,7 @@ def test_over_another_parameter_of_an_own_structure(ask, folder, tmp_path):
     path.write_text("[structure]\nm1 = 1.5\nm2 = 1.2\nk1 = 8000.0\nk2 = 9000.0\nd1 = 1.0\n")
     asked = ("--over", "e", "--values", "0.1:0.9:0.2", "--eta", "1.1", "--samples", "4")
     assert ask("sweep", "--structure", path, "--set", "d2=2", *asked).code == 0
-    (result,) = folder.glob("*.nc")
-    data = xr.load_dataset(result)
+    data = result_in(folder)
     assert data.xi_rel.dims == ("e", "sample")
     assert {n: data.attrs[n] for n in ("m1", "d2")} == {"m1": 1.5, "d2": 2.0}
 
@@ -129,17 +146,36 @@ def test_the_default_range_is_the_papers(ask, monkeypatch):
 def test_a_motion(ask, folder):
     done = ask("simulate", "--eta", "0.4", "--transient", "50", "--periods", "2", "--points", "50")
     assert "60 impacts" in done.out and "2 of them begin permanent contact" in done.out
-    assert shows_something(folder / "motion_e0.7_D0.005_eta0.4.png")
-    asked = ("--frequency", "80", "--amplitude", "0.001", "--periods", "2", "--set", "bonded=true")
-    done = ask("simulate", "--structure", "beam", *asked)
-    assert done.code == 0 and "0 impacts" in done.out
+    assert shows_something(next(folder.glob("*.png")))
+
+
+def test_the_same_motion_told_in_other_units(ask, folder):
+    short = ("simulate", "--structure", "beam", "--periods", "2", "--plot", "none")
+    told = (
+        ("--frequency", "80", "--amplitude", "0.001"),
+        ("--hz", f"{80 / (2 * np.pi)!r}", "--g", f"{0.001 * 80**2 / 9.80665!r}"),
+        ("--rpm", f"{80 * 30 / np.pi!r}", "--amplitude", "0.001"),
+        ("--eta", f"{80 / 75!r}", "--amplitude", "0.001"),
+    )
+    for options in told:
+        assert ask(*short, *options).code == 0
+    motions = [xr.load_dataset(path).x1.values for path in folder.glob("*.nc")]
+    for motion in motions:
+        np.testing.assert_allclose(motion, motions[0], rtol=1e-9, atol=1e-15)
+
+
+def test_a_motion_with_the_bonded_structure_beside_it(ask, folder):
+    done = ask("simulate", "--eta", "1.047", "--periods", "2", "--beside")
+    assert done.code == 0 and "no impacts" in done.out and "the fastest at" in done.out
+    assert len(list(folder.glob("*.nc"))) == 2
+    assert shows_something(next(folder.glob("*.png")))
 
 
 def test_spectra(ask, folder):
     short = ("--transient", "300", "--periods", "8", "--points", "256")
     done = ask("spectra", "--eta", "1.047", *short)
     assert "delaminated at eta = 1.047: largest line" in done.out
-    assert shows_something(folder / "spectra_e0.7_D0.005_eta1.047.png")
+    assert shows_something(next(folder.glob("*.png")))
 
 
 @pytest.fixture

@@ -1,0 +1,138 @@
+"""What all questions at the command line have in common: ask, say what came out, list the files."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from .options import excitation_text, title_of
+from .output import Files, name_of, running_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..structures import Structure
+
+TURN = 2.0 * math.pi
+Question = Mapping[str, Any]
+Draw = Callable[["xr.Dataset", str], Any]
+
+
+def carry_out(
+    arguments: argparse.Namespace,
+    structure: Structure,
+    question: Question,
+    report: Callable[[xr.Dataset], None],
+    draw: Draw | None,
+    ending: str = "",
+) -> xr.Dataset:
+    """Ask a question of the public face; tell what a person wants to know, then the files.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        ``command`` is the function's name in the public face.
+    structure : Structure
+    question : mapping
+        All other keywords of the function.
+    report : callable
+        Prints what came out.
+    draw : callable, optional
+        From the result and a title to a picture; none where there is nothing to draw.
+    ending : str
+        Of the files' names, where their pictures show more than this result.
+
+    Returns
+    -------
+    xarray.Dataset
+        The answer.
+    """
+    import orchestrate
+
+    command = arguments.command
+    name = "_".join(filter(None, [name_of(command, structure, question), ending]))
+    files = Files.of(arguments, name)
+    data = getattr(orchestrate, command)(
+        structure, **question, **running_of(arguments, files.result)
+    )
+    for line in notes(structure):
+        print(line)
+    report(data)
+    title = heading(structure, question)
+    files.write(data, (lambda: draw(data, title)) if draw else None)
+    return data
+
+
+def several(asked: Question) -> bool:
+    """Whether there is a curve to draw, and not one point."""
+    return any(len(value) > 1 for value in asked.values() if isinstance(value, tuple))
+
+
+def tell_one(data: xr.Dataset, name: str) -> None:
+    """A result at one value as a table: there is no curve to draw."""
+    print(f"one value, {place(name, float(data[name][0]))}: a table and no picture")
+    numbers = data.isel({name: 0})
+    for key, array in numbers.data_vars.items():
+        if not set(array.dims) - {"direction", "structure"}:
+            values = ", ".join(f"{float(value):.6g}" for value in array.values.ravel())
+            unit = str(array.attrs.get("units", "1")).removeprefix("1")
+            print(f"  {key:20} {values} {unit}".rstrip())
+
+
+def heading(structure: Structure, question: Question) -> str:
+    """What is the same in the whole picture, for its title."""
+    from ..figures.labels import parameters_text
+
+    shaken = parameters_text(excitation_text(question))
+    return ", ".join(filter(None, [title_of(structure), shaken]))
+
+
+def notes(structure: Structure) -> list[str]:
+    """What makes an answer trivial."""
+    if structure.bonded:
+        return ["bonded: both masses move as one, there are no impacts"]
+    if structure.alike:
+        return ["both oscillators are alike: masses that start together never part"]
+    return []
+
+
+def along_of(data: xr.Dataset) -> str:
+    """The parameter along which a result lies."""
+    (name,) = {str(dim) for dim in data.impacts_per_period.dims} - {"direction", "structure"}
+    return name
+
+
+def place(name: str, value: float) -> str:
+    """A value of a parameter for people: frequencies in Hz."""
+    if name == "frequency":
+        return f"{value / TURN:.6g} Hz"
+    return f"{name} = {value:.6g}"
+
+
+def ranges(name: str, values: Any, flags: Any, most: int = 8) -> str:
+    """Runs of values for which something holds, for people.
+
+    Parameters
+    ----------
+    name : str
+        Of the parameter.
+    values : array_like
+        In increasing order.
+    flags : array_like of bool
+    most : int
+        Runs that are listed; the longest ones.
+    """
+    runs: list[tuple[int, int]] = []
+    for index, holds in enumerate(flags):
+        if holds and runs and runs[-1][1] == index - 1:
+            runs[-1] = (runs[-1][0], index)
+        elif holds:
+            runs.append((index, index))
+    longest = sorted(sorted(runs, key=lambda run: run[0] - run[1])[:most])
+    scale, unit = (1.0 / TURN, " Hz") if name == "frequency" else (1.0, "")
+    ends = [[f"{scale * float(values[i]):.6g}" for i in dict.fromkeys(run)] for run in longest]
+    text = ", ".join(" to ".join(pair) for pair in ends)
+    left = len(runs) - len(longest)
+    return f"{text}{unit}" + (f" and {left} shorter ranges" if left else "")

@@ -1,0 +1,93 @@
+"""Results in other tools' formats, read back with those tools."""
+
+from __future__ import annotations
+
+import numpy as np
+import openpyxl
+import pandas as pd
+import pytest
+import xarray as xr
+from scipy.io import loadmat
+
+from orchestrate.errors import InputError, StoreError
+from orchestrate.running import formats
+
+
+def metres(dims, values):
+    """A length."""
+    return dims, np.asarray(values, dtype=float), {"units": "m", "long_name": "length"}
+
+
+@pytest.fixture
+def data():
+    kind = {"units": "1", "flag_values": np.array([0, 1], "i1"), "flag_meanings": "at_rest moves"}
+    return xr.Dataset(
+        {
+            "x": metres("time", [0.1, 1.0 / 3.0, np.nan]),
+            "kind": ("time", np.array([0, 1, 1], "i1"), kind),
+            "gap": metres(("name", "time"), np.arange(6).reshape(2, 3)),
+            "peak": metres((), 2.5),
+        },
+        {
+            "time": ("time", [0.0, 1.0, 2.0], {"units": "s"}),
+            "name": ["up", "down"],
+            "eta": ((), 1.2),
+        },
+        {"title": "a test", "e": 0.7},
+    )
+
+
+def test_csv(data, tmp_path):
+    written = formats.write(data, tmp_path / "a.csv")
+    names = [path.name for path in written]
+    assert names == ["a.time.csv", "a.name_time.csv", "a.numbers.csv"]
+    assert sorted(names) == sorted(path.name for path in tmp_path.iterdir())
+    table = pd.read_csv(written[0])
+    assert list(table.columns) == ["time [s]", "x [m]", "kind"]
+    np.testing.assert_array_equal(table["x [m]"], data.x)
+    assert table["kind"].tolist() == ["at rest", "moves", "moves"]
+    long = pd.read_csv(written[1]).set_index(["name", "time [s]"])["gap [m]"]
+    assert long["down", 1.0] == 4.0 and len(long) == 6
+    assert pd.read_csv(written[2])["peak [m]"].tolist() == [2.5]
+
+
+def test_one_table_is_one_file(data, tmp_path):
+    assert formats.write(data[["x"]], tmp_path / "a.csv") == [tmp_path / "a.csv"]
+
+
+def test_xlsx(data, tmp_path):
+    formats.write(data, tmp_path / "a.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
+    assert book.sheetnames == ["time", "name_time", "numbers", "about"]
+    rows = list(book["time"].values)
+    assert rows[0] == ("time [s]", "x [m]", "kind") and rows[2] == (1, 1.0 / 3.0, "moves")
+    assert ("x", "m", "length") in list(book["about"].values)
+    assert ("e", None, "0.7") in list(book["about"].values)
+
+
+def test_mat(data, tmp_path):
+    formats.write(data, tmp_path / "a.mat")
+    found = loadmat(tmp_path / "a.mat", simplify_cells=True)
+    np.testing.assert_array_equal(found["x"], data.x)
+    np.testing.assert_array_equal(found["gap"], data.gap)
+    assert found["name"].tolist() == ["up", "down"] and found["peak"] == 2.5
+    assert found["units"]["x"] == "m" and found["attributes"]["title"] == "a test"
+    assert found["dimensions"]["gap"] == "name, time"
+
+
+def test_what_does_not_fit_or_is_unknown(data, tmp_path, monkeypatch):
+    monkeypatch.setattr(formats, "MOST_ROWS", 2)
+    with pytest.raises(InputError, match="has 3 rows, a sheet at most 2; expected csv"):
+        formats.write(data, tmp_path / "a.xlsx")
+    with pytest.raises(InputError, match="format 'doc'; expected one of csv"):
+        formats.write(data, tmp_path / "a.doc")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("ending", formats.WRITERS)
+def test_whole_or_not_at_all(data, tmp_path, ending):
+    place = tmp_path / f"a.{ending}"
+    place.mkdir()
+    with pytest.raises(StoreError, match="cannot be written"):
+        formats.write(data[["x"]], place)
+    assert [path.name for path in tmp_path.iterdir()] == [place.name]
