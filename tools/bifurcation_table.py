@@ -18,6 +18,7 @@ from orchestrate.access import OSCILLATOR, EventInstance, begin, find
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.orbits import orbit
+from orchestrate.dynamics.stable_windows import StableWindow, kind_names, stable_windows
 from orchestrate.errors import InputError
 from orchestrate.figures import borders as borders_figure
 from orchestrate.figures import branches as branches_figure
@@ -135,16 +136,9 @@ def contacts(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
     return f"{int(instance.get('contact_count')[0])} contacts in {PERIODS} periods"
 
 
-def names_of(found: xr.Dataset) -> dict[int, str]:
-    """Names of the kinds of bifurcations."""
-    words = found.bifurcation_kind.attrs
-    names = [word.replace("_", " ") for word in words["flag_meanings"].split()]
-    return dict(zip(words["flag_values"], names, strict=True))
-
-
 def rows(instance: EventInstance, label: str, found: xr.Dataset) -> Iterator[str]:
     """Lines of the table for a branch, upwards."""
-    values, names = found.bifurcation_value.values, names_of(found)
+    values, names = found.bifurcation_value.values, kind_names(found)
     for i in np.argsort(values):
         at = found.isel(bifurcation=int(i))
         kind = names[int(at.bifurcation_kind)]
@@ -180,24 +174,13 @@ def windows(found: dict[str, xr.Dataset]) -> list[xr.Dataset]:
     return curves
 
 
-def stable_windows(case: str, label: str, found: xr.Dataset) -> list[str]:
-    """Lines of the table of windows: where a branch is stable, and what ends it."""
-    names = names_of(found)
-    order = np.argsort(found.bifurcation_place.values)
-    places = [0.0, *found.bifurcation_place.values[order], found.sizes["point"] - 1.0]
+def window_line(case: str, label: str, window: StableWindow) -> str:
+    """A line of the table of windows."""
     ends = [
-        f"{value:.8f}, {names[int(kind)]}"
-        for value, kind in zip(
-            found.bifurcation_value.values[order], found.bifurcation_kind.values[order], strict=True
-        )
+        f"{value:g}, limit" if kind == "limit" else f"{value:.8f}, {kind}"
+        for value, kind in ((window.low, window.below), (window.high, window.above))
     ]
-    ends = [f"{float(found.eta[0]):g}, limit", *ends, f"{float(found.eta[-1]):g}, limit"]
-    lines = []
-    for i, (first, last) in enumerate(zip(places[:-1], places[1:], strict=True)):
-        inside = found.stable.values[int(np.ceil(first + 1e-9)) : int(np.floor(last - 1e-9)) + 1]
-        if inside.size and inside.all():
-            lines.append(f"| {case} | {label} | {ends[i]} | {ends[i + 1]} |")
-    return lines
+    return f"| {case} | {label} | {ends[0]} | {ends[1]} |"
 
 
 def all_windows() -> list[str]:
@@ -206,7 +189,8 @@ def all_windows() -> list[str]:
     for case, structure in CASES.items():
         for label, (eta, period, limits) in WINDOWS.items():
             start = orbit(structure, eta=eta, period=period)
-            lines += stable_windows(case, label, branch(structure, start=start, limits=limits))
+            found = branch(structure, start=start, limits=limits)
+            lines += [window_line(case, label, window) for window in stable_windows(found)]
     return lines
 
 

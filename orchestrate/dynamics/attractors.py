@@ -135,7 +135,7 @@ class AttractorsJob(SeriesQuestion):
         rows, ends = [], []
         with Instance(fmus[OSCILLATOR]) as instance:
             for item, start in self.drawn(instance, items):
-                response = response_from(instance, item.point, start, self.telling)
+                response, _ = response_from(instance, item.point, start, self.telling)
                 rows.append(features(response, item.point.length))
                 ends.append(response.end)
         return {"features": np.array(rows, dtype=float), "end": np.array(ends)}
@@ -154,7 +154,7 @@ class AttractorsJob(SeriesQuestion):
 
     def scale_from_rest(self, instance: Instance, point: Point) -> float:
         """Half width of the box of starts from the response from rest, m."""
-        gap = response_from(instance, point, REST, self.telling).x_rel_max
+        gap = response_from(instance, point, REST, self.telling).response.x_rel_max
         return self.width * (gap or point.length)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
@@ -239,18 +239,14 @@ def random_starts(
     return np.column_stack([x1, x1 + gap, v1, v1 + rate])
 
 
-def told_apart(
-    transient: Any, settle: Any, samples: Any, tolerance: Any, alike: Any, alike_irregular: Any
-) -> Telling:
-    """What tells responses apart, checked."""
-    return Telling(
-        transient=whole("transient", transient, 0),
-        settle=positive("settle", settle),
-        samples=whole("samples", samples, 4),
-        tolerance=positive("tolerance", tolerance),
-        alike=positive("alike", alike),
-        alike_irregular=positive("alike_irregular", alike_irregular),
-    )
+def told_apart(**given: Any) -> Telling:
+    """What tells responses apart, checked: keywords of :class:`.clusters.Telling`."""
+    least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
+    checked: dict[str, Any] = {
+        name: whole(name, value, least[name]) if name in least else positive(name, value)
+        for name, value in given.items()
+    }
+    return Telling(**checked)
 
 
 def attractors(
@@ -269,6 +265,8 @@ def attractors(
     settle: float = 300.0,
     samples: int = 48,
     tolerance: float = 1e-2,
+    converged: float = 1e-6,
+    longest: int = 20_000,
     alike: float = 0.02,
     alike_irregular: float = 0.25,
     **running: Unpack[Running],
@@ -298,8 +296,10 @@ def attractors(
         Periods dropped at least, over eta: a slow decay takes time, not periods.
     samples : int
         Periods looked at.
-    tolerance : float
-        Relative deviation within which a state counts as repeated.
+    tolerance, converged : float
+        Relative deviations within which a state nearly repeats, and within which it decides.
+    longest : int
+        Periods up to which a response is run on that does not repeat; beyond it is irregular.
     alike, alike_irregular : float
         Relative difference within which responses of the same multiplicity belong to one attractor:
         periodic ones, irregular ones.
@@ -323,9 +323,11 @@ def attractors(
     -----
     The non-unique solutions of the paper's sections 3.2 and 4.1. Responses are told apart by
     multiplicity, impacts per period, largest gap, and mean and deviation of the gap's samples.
-    Where an impact falls on the sampling phase itself, samples show either side of it, and a
-    periodic response may count as another kind; of irregular responses the number depends on
-    ``alike_irregular``.
+    A response is run on until its state repeats within ``converged``: a long transient is none of
+    the attractors. What has not repeated after ``longest`` periods is irregular, a torus or chaos;
+    how many of these there are depends on ``alike_irregular``. Where an impact falls on the
+    sampling phase itself, samples show either side of it, and a periodic response may count as
+    irregular.
 
     Examples
     --------
@@ -342,7 +344,16 @@ def attractors(
         seed=whole("seed", seed, 0, 2**32 - 1),
         scale=checked_scale(scale),
         width=positive("width", width),
-        telling=told_apart(transient, settle, samples, tolerance, alike, alike_irregular),
+        telling=told_apart(
+            transient=transient,
+            settle=settle,
+            samples=samples,
+            tolerance=tolerance,
+            converged=converged,
+            longest=longest,
+            alike=alike,
+            alike_irregular=alike_irregular,
+        ),
     )
     return answer(job, running, finder(running))
 

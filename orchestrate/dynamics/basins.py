@@ -156,7 +156,7 @@ class BasinJob(Question):
                 if item.state[1] < item.state[0]:
                     continue
                 start = at_phase_zero(instance, item)
-                response = response_from(instance, item.point, start, self.telling)
+                response, _ = response_from(instance, item.point, start, self.telling)
                 rows[i] = features(response, item.point.length)
                 ends[i] = response.end
         return {"features": rows, "end": ends}
@@ -255,6 +255,8 @@ def basin(
     settle: float = 300.0,
     samples: int = 48,
     tolerance: float = 1e-2,
+    converged: float = 1e-6,
+    longest: int = 20_000,
     alike: float = 0.02,
     alike_irregular: float = 0.25,
     **running: Unpack[Running],
@@ -278,7 +280,7 @@ def basin(
         of ``at``.
     phase : float
         Phase of the box at the start, rad.
-    transient, settle, samples, tolerance, alike, alike_irregular
+    transient, settle, samples, tolerance, converged, longest, alike, alike_irregular
         As in :func:`orchestrate.attractors`.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
@@ -321,7 +323,16 @@ def basin(
         x=sides[0],
         y=sides[1],
         at=state("at", at, structure),
-        telling=told_apart(transient, settle, samples, tolerance, alike, alike_irregular),
+        telling=told_apart(
+            transient=transient,
+            settle=settle,
+            samples=samples,
+            tolerance=tolerance,
+            converged=converged,
+            longest=longest,
+            alike=alike,
+            alike_irregular=alike_irregular,
+        ),
     )
     check_plane(job)
     return answer(job, running, finder(running))

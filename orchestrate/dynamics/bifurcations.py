@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .closed_form import Floats
-from .continuation import Root, Walk
+from .continuation import NoConvergenceError, Root, Walk
 from .families import Family
 from .impact_sequence import CLOSING, POSITION, VELOCITY, Ring
 from .turning_points import nearest, turning_points, weakest_force
@@ -108,10 +109,6 @@ class Look:
             return float(held.min(initial=1.0))
         return float(missing[~(ring.contact | ring.sequence.releases)].min(initial=1.0))
 
-    def changed(self, before: Look) -> list[int]:
-        """Kinds of the bifurcations between an orbit and this one."""
-        return [kind for kind in SIGNS if before.test(kind) * self.test(kind) < 0.0]
-
     def happens(self, kind: int) -> bool:
         """Whether it is the bifurcation: the product of two real multipliers may be 1 as well."""
         if kind != TORUS:
@@ -119,28 +116,97 @@ class Look:
         return bool((np.abs(np.abs(self.pairs) - 1.0) < ON_CIRCLE).any())
 
 
-def locate(
-    walk: Walk[Family], before: Look, after: Look, length: float, kind: int
-) -> tuple[float, Look]:
-    """Where between two orbits a bifurcation lies, by Brent's method along the branch.
+@dataclass
+class Step:
+    """A step along a branch, between two orbits of one sequence.
 
-    Returns
-    -------
+    Attributes
+    ----------
+    walk : Walk
+        That stands at the step's begin.
+    before, after : Look
+        The orbits at its ends.
     length : float
-        Of the step to it.
-    look : Look
-        The orbit there.
+    rates : dict
+        How fast each test changed in the step before, where there was one.
     """
-    from scipy.optimize import brentq
 
-    seen = {0.0: before, length: after}
+    walk: Walk[Family]
+    before: Look
+    after: Look
+    length: float
+    rates: Mapping[int, float] = field(default_factory=dict)
 
-    def test(place: float) -> float:
-        if place not in seen:
-            seen[place] = Look(before.family, walk.at(place))
-        value = seen[place].test(kind)
+    def __post_init__(self) -> None:
+        self.seen = {0.0: self.before, self.length: self.after}
+
+    def look(self, place: float) -> Look:
+        """The orbit so far into the step."""
+        if place not in self.seen:
+            self.seen[place] = Look(self.walk.curve, self.walk.at(place))
+        return self.seen[place]
+
+    def test(self, place: float, kind: int) -> float:
+        """What changes its sign at a bifurcation of a kind."""
+        value = self.look(place).test(kind)
         return value if np.isfinite(value) else 1.0
 
-    place = float(brentq(test, 0.0, length, xtol=ACCURACY, rtol=1e-14))
-    test(place)
-    return place, seen[place]
+    def crossings(self) -> list[tuple[int, float, float]]:
+        """Kinds of the bifurcations in the step, each with two places that it lies between."""
+        found = []
+        for kind in SIGNS:
+            if self.before.test(kind) * self.after.test(kind) < 0.0:
+                found.append((kind, 0.0, self.length))
+            elif self.turns_back(kind):
+                middle = self.lowest(kind)
+                if self.before.test(kind) * self.test(middle, kind) < 0.0:
+                    found += [(kind, 0.0, middle), (kind, middle, self.length)]
+        return found
+
+    def turns_back(self, kind: int) -> bool:
+        """Whether two bifurcations of a kind are possible: the test falls first and rises after.
+
+        Looked at where it could have come to zero twice as fast as it changed in the step before.
+        """
+        value = self.before.test(kind)
+        reach = 2.0 * abs(self.rates.get(kind, np.inf)) * self.length
+        if self.length <= ACCURACY or not abs(value) < reach:
+            return False
+        sign = np.sign(value)
+        falls, rises = (sign * self.slope(end, kind) for end in (0.0, self.length))
+        return bool(falls < 0.0 < rises)
+
+    def rate(self, kind: int) -> float:
+        """How fast a test changes on average; unbounded where it is not known."""
+        change = self.after.test(kind) - self.before.test(kind)
+        return change / self.length if np.isfinite(change) and self.length else np.inf
+
+    def slope(self, place: float, kind: int, small: float = 1e-3) -> float:
+        """How fast a test changes at an end of the step; 0 where it is not known."""
+        near = place + (small if place == 0.0 else -small) * self.length
+        try:
+            change = self.look(near).test(kind) - self.look(place).test(kind)
+        except NoConvergenceError:
+            return 0.0
+        return change / (near - place) if np.isfinite(change) else 0.0
+
+    def lowest(self, kind: int) -> float:
+        """Where the test is nearest to changing its sign, or beyond."""
+        from scipy.optimize import minimize_scalar
+
+        sign = np.sign(self.before.test(kind))
+        options = {"xatol": 1e-6 * self.length}
+        found = minimize_scalar(
+            lambda place: sign * self.test(float(place), kind),
+            bounds=(0.0, self.length),
+            method="bounded",
+            options=options,
+        )
+        return float(found.x)
+
+    def locate(self, kind: int, low: float, high: float) -> tuple[float, Look]:
+        """Where a bifurcation lies, by Brent's method along the branch, and the orbit there."""
+        from scipy.optimize import brentq
+
+        place = float(brentq(lambda at: self.test(at, kind), low, high, xtol=ACCURACY, rtol=1e-14))
+        return place, self.look(place)

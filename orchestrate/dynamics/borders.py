@@ -20,7 +20,7 @@ from ..structures import Structure
 from .bifurcations import KINDS, TORUS, Look
 from .border_curve import Border
 from .branch_walk import LIMIT, LONG, STUCK
-from .branches import begin_of, excitation_of
+from .branches import begin_of, check_start, excitation_of
 from .continuation import NoConvergenceError, Root, Walk, corrected, held
 from .families import ACCELERATION, Family, Setting, check_names, knocking
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
@@ -243,6 +243,7 @@ def border(
     ('Neimark-Sacker', array([0.69, 0.71]))
     """
     knocking(checked_structure(structure))
+    check_start(start)
     names = tuple(over)
     check_names(names)
     if len(names) != 2 or names[0] != start.attrs.get("over"):

@@ -14,9 +14,10 @@ from .bifurcations import (
     FLIP,
     GRAZING,
     KINDS,
+    SIGNS,
     TOUCHING,
     Look,
-    locate,
+    Step,
 )
 from .closed_form import Floats
 from .continuation import NoConvergenceError, Root, Walk, corrected, held
@@ -68,11 +69,14 @@ class Leg:
         Bifurcations on it, in order.
     end : str
         Why it ends.
+    rates : dict
+        How fast what tells bifurcations changed in the last step.
     """
 
     looks: list[Look] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
     end: str = ""
+    rates: dict[int, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -112,7 +116,9 @@ def advance(leg: Leg, walk: Walk[Family]) -> None:
             family.size, family.setting.limits, lambda root: orderly(family, root)
         )
         after, leg.end = Look(family, root), LIMIT if arrived else ""
-        found = located(walk, before, after, length)
+        step = Step(walk, before, after, length, leg.rates)
+        found = located(step)
+        leg.rates = {kind: step.rate(kind) for kind in SIGNS}
     except NoConvergenceError:
         leg.end = STUCK
         return
@@ -143,26 +149,23 @@ def rescale(walk: Walk[Family]) -> None:
     walk.root = replace(root, tangent=tangent / np.linalg.norm(tangent))
 
 
-def located(
-    walk: Walk[Family], before: Look, after: Look, length: float
-) -> list[tuple[float, Look, int]]:
+def located(step: Step) -> list[tuple[float, Look, int]]:
     """Bifurcations in a step, in order; up to the one that ends the branch, if any.
 
     Not the one that the step begins at.
     """
-
-    def places(kinds: list[int]) -> list[tuple[float, Look, int]]:
-        found = [(*locate(walk, before, after, length, kind), kind) for kind in kinds]
-        there = [one for one in found if one[0] > AT_BEGIN * length and one[1].happens(one[2])]
-        return sorted(there, key=lambda one: one[0])
-
-    kinds = after.changed(before)
-    ends = places([kind for kind in kinds if kind in ENDS])[:1]
+    ends = places(step, [one for one in step.crossings() if one[0] in ENDS])[:1]
     if ends:  # multipliers are infinite where an impact grazes
-        length = ends[0][0] * SHORT_OF
-        after = Look(before.family, walk.at(length))
-        kinds = after.changed(before)
-    return [*places([kind for kind in kinds if kind not in ENDS]), *ends]
+        short = ends[0][0] * SHORT_OF
+        step = replace(step, after=step.look(short), length=short)
+    return [*places(step, [one for one in step.crossings() if one[0] not in ENDS]), *ends]
+
+
+def places(step: Step, crossings: list[tuple[int, float, float]]) -> list[tuple[float, Look, int]]:
+    """Where bifurcations lie in a step, in order."""
+    found = [(*step.locate(*crossing), crossing[0]) for crossing in crossings]
+    there = [one for one in found if one[0] > AT_BEGIN * step.length and one[1].happens(one[2])]
+    return sorted(there, key=lambda one: one[0])
 
 
 def orderly(family: Family, root: Root) -> bool:
@@ -181,7 +184,7 @@ def resequenced(leg: Leg, walk: Walk[Family], look: Look, length: float) -> Look
         return chattering(look)
     except NoConvergenceError:  # too far on: look where the first impact comes or goes
         kind = CONTACT_LOST if look.contact_test(CONTACT_LOST) <= 0.0 else CONTACT_BEGUN
-        place, first = locate(walk, leg.looks[-1], look, length, kind)
+        place, first = Step(walk, leg.looks[-1], look, length).locate(kind, 0.0, length)
     try:
         found = chattering(rechattered(first))
     except NoConvergenceError:

@@ -271,6 +271,8 @@ def branch(
     """
     check_names((over,))
     knocking(checked_structure(structure))
+    if start is not None:
+        check_start(start)
     low_high = checked_limits(over, limits)
     given = excitation_of(start, over, told(eta, frequency, amplitude), low_high)
     if start is None:
@@ -302,6 +304,20 @@ def branch(
         most=whole("most", most, 1),
     )
     return answer(job, running, finder(running))
+
+
+def check_start(start: Any) -> None:
+    """Whether a branch can begin with it.
+
+    Raises
+    ------
+    InputError
+    """
+    if not hasattr(start, "sizes"):
+        raise InputError(
+            f"start = {start!r}: expected a dataset of orbit or branch; a number of the parameter "
+            "is told by its name, as eta = 1.5"
+        )
 
 
 def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import Instance
+from ..response.multiplicity import multiplicity
 from ..response.questions import Point
 from ..response.respond import Response, respond
 
@@ -31,7 +33,13 @@ class Telling:
     samples : int
         Periods looked at.
     tolerance : float
-        Relative deviation within which a state counts as repeated.
+        Relative deviation within which a state nearly repeats.
+    converged : float
+        Relative deviation within which a repeated state decides.
+    longest : int
+        Periods after which a response that does not repeat is irregular.
+    irregular_samples : int
+        Periods looked at then.
     alike, alike_irregular : float
         Features of one attractor differ by less, relatively: periodic responses, others, whose
         means are taken over few periods.
@@ -43,6 +51,9 @@ class Telling:
     settle: float = 300.0
     samples: int = 48
     tolerance: float = 1e-2
+    converged: float = 1e-6
+    longest: int = 20_000
+    irregular_samples: int = 400
     alike: float = 0.02
     alike_irregular: float = 0.25
     count_weight: float = 0.2
@@ -53,13 +64,53 @@ def settling(transient: int, settle: float, eta: float) -> int:
     return max(transient, round(settle * eta))
 
 
-def response_from(instance: Instance, point: Point, start: ArrayLike, telling: Telling) -> Response:
-    """The settled response from a state at phase 0, in m and m/s."""
-    structure, excitation = point
-    dropped = settling(telling.transient, telling.settle, excitation.eta(structure))
-    return respond(
-        instance, structure, excitation, start, dropped, telling.samples, telling.tolerance
-    )
+class Settled(NamedTuple):
+    """A response that has been run on until it is known what it is.
+
+    Attributes
+    ----------
+    response : Response
+        Its multiplicity is 0 where it is irregular: a torus, or chaos.
+    periods : int
+        After which it was decided.
+    """
+
+    response: Response
+    periods: int
+
+
+def response_from(instance: Instance, point: Point, start: ArrayLike, telling: Telling) -> Settled:
+    """The response from a state at phase 0, in m and m/s, run on until a repeated state decides.
+
+    Each time it does not repeat, it is run on for as long as before. One that nearly repeats at the
+    end counts as periodic if what is left of its deviation shrinks, else it is a narrow torus.
+    """
+    dropped = settling(telling.transient, telling.settle, point.excitation.eta(point.structure))
+    done, before = 0, np.inf
+    while True:
+        response = respond(instance, *point, start, dropped, telling.samples, telling.converged)
+        done, start = done + dropped + telling.samples, response.end
+        if response.multiplicity:
+            return Settled(response, done)
+        nearly, left = deviation(response.samples, telling.tolerance)
+        if done >= telling.longest:
+            break
+        before, dropped = left, min(done, telling.longest - done)
+    if 2.0 * left < before:
+        return Settled(replace(response, multiplicity=nearly), done)
+    response = respond(instance, *point, start, 0, telling.irregular_samples, telling.converged)
+    return Settled(response, done + telling.irregular_samples)
+
+
+def deviation(samples: Floats, tolerance: float) -> tuple[int, float]:
+    """After how many periods states nearly repeat, and how nearly; 0 and infinity where never."""
+    n = multiplicity(samples, tolerance)
+    if not n:
+        return 0, np.inf
+    states = samples[len(samples) // 2 :]
+    scale = np.abs(states).max(axis=0)
+    away = np.abs(states[n:] - states[:-n]).max(axis=0)
+    return n, float(np.divide(away, scale, out=np.zeros_like(away), where=scale > 0.0).max())
 
 
 def features(response: Response, length: float) -> list[float]:
@@ -71,13 +122,12 @@ def features(response: Response, length: float) -> list[float]:
     length : float
         Unit of the gap, a eta^2 in m.
     """
-    n, samples = response.multiplicity, len(response.samples)
-    gaps = (response.samples[:, 1] - response.samples[:, 0]) / length
-    in_period = n * response.impacts_per_period
-    if abs(in_period - round(in_period)) > n / samples:
-        n = 0  # the state nearly repeats, its impacts do not
-    peak = response.x_rel_max / length
-    return [n, response.impacts_per_period, peak, float(gaps.mean()), float(gaps.std())]
+    n, samples = response.multiplicity, response.samples
+    gaps = (samples[:, 1] - samples[:, 0]) / length
+    impacts = response.impacts_per_period
+    if n:  # over whole periods of the response
+        gaps, impacts = gaps[-n:], round(n * impacts) / n
+    return [n, impacts, response.x_rel_max / length, float(gaps.mean()), float(gaps.std())]
 
 
 def clusters(rows: ArrayLike, telling: Telling) -> NDArray[np.intp]:

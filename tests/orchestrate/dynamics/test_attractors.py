@@ -68,7 +68,7 @@ def test_scale_is_three_times_the_largest_gap_from_rest():
     )
     asked = {**ASKED, "eta": TWO, "starts": 4}
     one, two = attractors(PAPER, **asked), attractors(PAPER, **asked, scale=3.0 * gap)
-    np.testing.assert_array_equal(one.features, two.features)
+    np.testing.assert_allclose(one.features, two.features, rtol=1e-9)
     with pytest.raises(InputError, match="scale: 2 values for 1 of eta"):
         attractors(PAPER, **asked, scale=[1.0, 2.0])
     with pytest.raises(InputError, match=r"scale = -1\.0: expected numbers > 0"):

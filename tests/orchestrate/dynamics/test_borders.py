@@ -90,10 +90,11 @@ def test_impacts_begin_along_the_resonance_curve():
         ({"over": ("eta", "ee")}, "over = 'ee'"),
         ({"limits": [(3.0, 4.0)]}, "limits"),
         ({"bifurcation": 99}, "switch = 99"),
+        ({"start": 1.5}, "start = 1.5"),
     ],
 )
 def test_what_cannot_be_asked(question, words):
     good = {"bifurcation": 0, "limits": [(3.0, 4.0), (0.5, 0.9)], "over": ("eta", "e")}
     with pytest.raises(InputError, match=words) as caught:
-        border(PAPER, start=window(), **{**good, **question})
+        border(PAPER, **{"start": window(), **good, **question})
     assert "expected" in str(caught.value)

@@ -8,15 +8,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.cluster.hierarchy import fcluster, linkage
 
+from orchestrate.access import OSCILLATOR, REST, Instance, find
 from orchestrate.dynamics.clusters import (
     Telling,
     attractors_of,
     clusters,
     connected,
     features,
+    response_from,
     settling,
 )
-from orchestrate.response.respond import Response
+from orchestrate.response.questions import Point
+from orchestrate.response.respond import Response, respond
+from orchestrate.response.sweep import sweep
+from orchestrate.structures import Excitation, Structure
+
+PAPER = Structure.nondimensional()
 
 
 @given(st.integers(0, 10_000), st.integers(2, 60), st.floats(0.01, 0.5))
@@ -58,14 +65,43 @@ def test_attractors_have_shares_medians_and_a_state():
     assert second.state.tolist() == ends[1].tolist()
 
 
-def test_impacts_that_do_not_repeat_make_a_response_irregular():
+def test_features_of_periodic_responses_are_over_whole_periods():
     samples = np.zeros((48, 4))
-    samples[:, 1] = 3.0
-    settled = {"samples": samples, "x_rel_max": 6.0, "permanent_contact": False}
-    whole = Response(**settled, impacts_per_period=1.5, multiplicity=2)
-    assert features(whole, 3.0) == [2, 1.5, 2.0, 1.0, 0.0]
-    uneven = Response(**settled, impacts_per_period=1.7, multiplicity=2)
-    assert features(uneven, 3.0)[0] == 0
+    samples[:, 1] = [3.0, 6.0, 9.0, 12.0, 15.0] * 9 + [3.0, 6.0, 9.0]
+    given = {"samples": samples, "x_rel_max": 16.0, "permanent_contact": False}
+    periodic = Response(**given, impacts_per_period=19.0 / 48.0, multiplicity=5)
+    assert features(periodic, 3.0) == pytest.approx([5, 0.4, 16.0 / 3.0, 3.0, np.sqrt(2.0)])
+    irregular = Response(**given, impacts_per_period=19.0 / 48.0, multiplicity=0)
+    assert features(irregular, 3.0)[1] == 19.0 / 48.0
+
+
+@pytest.mark.parametrize(
+    ("eta", "multiplicity", "least", "most"),
+    [
+        (1.047, 1, 0, 5_000),
+        (2.655, 0, 20_000, 21_000),  # a torus, which T nearly is
+        (0.8, 0, 20_000, 21_000),  # chaos
+    ],
+)
+def test_a_response_is_run_on_until_it_is_known(exported, eta, multiplicity, least, most):
+    point = Point(PAPER, Excitation.nondimensional(eta, PAPER))
+    with Instance(find(OSCILLATOR).path) as instance:
+        response, periods = response_from(instance, point, REST, Telling())
+    assert response.multiplicity == multiplicity
+    assert least <= periods <= most
+
+
+def test_a_long_transient_is_not_what_it_settles_to(exported):
+    """At D = 0.05 T/1 is unstable at 1.116: deviations take thousands of periods to grow."""
+    damped = PAPER.replace(D=0.05)
+    point = Point(damped, Excitation.nondimensional(1.116, damped))
+    near = sweep(damped, eta=1.115, transient=3000, samples=10).end_state.values[0]
+    with Instance(find(OSCILLATOR).path) as instance:
+        early = respond(instance, *point, near, 500, 200, 1e-2)
+        response, periods = response_from(instance, point, near, Telling())
+    assert (early.multiplicity, early.impacts_per_period) == (1, 1.0)
+    assert (response.multiplicity, features(response, 1.0)[1]) == (2, 1.5)
+    assert periods > 2_000
 
 
 def test_short_periods_take_more_of_them():

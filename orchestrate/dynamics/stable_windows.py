@@ -1,0 +1,67 @@
+"""Where along a branch its orbits are stable: the exact limits, and what happens there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class StableWindow(NamedTuple):
+    """A stable part of a branch.
+
+    Attributes
+    ----------
+    low, high : float
+        The parameter at its ends.
+    below, above : str
+        Kinds of the bifurcations there, or why the branch was followed no further.
+    """
+
+    low: float
+    high: float
+    below: str
+    above: str
+
+
+def stable_windows(found: xr.Dataset) -> list[StableWindow]:
+    """The stable parts of a branch, in the order along it.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Of :func:`orchestrate.branch`.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.dynamics.branches import branch
+    >>> found = branch(Structure.nondimensional(), eta=2.6, limits=(2.5, 2.7))
+    >>> stable_windows(found)[0].high.__round__(8), stable_windows(found)[0].above
+    (2.64796105, 'Neimark-Sacker')
+    """
+    over = found[found.attrs["over"]].values
+    order = np.argsort(found.bifurcation_place.values)
+    places = [0.0, *found.bifurcation_place.values[order], found.sizes["point"] - 1.0]
+    values = [over[0], *found.bifurcation_value.values[order], over[-1]]
+    names = kind_names(found)
+    kinds = [names[kind] for kind in found.bifurcation_kind.values[order].tolist()]
+    reasons = [found.attrs["first_end"], *kinds, found.attrs["last_end"]]
+    ends = list(zip(map(float, values), reasons, strict=True))
+    windows = []
+    for i, (first, last) in enumerate(zip(places[:-1], places[1:], strict=True)):
+        inside = found.stable.values[int(np.ceil(first + 1e-9)) : int(np.floor(last - 1e-9)) + 1]
+        if inside.size and inside.all():
+            (low, below), (high, above) = sorted(ends[i : i + 2])
+            windows.append(StableWindow(low, high, below, above))
+    return windows
+
+
+def kind_names(found: xr.Dataset) -> dict[int, str]:
+    """Names of the kinds of bifurcations by number."""
+    words = found.bifurcation_kind.attrs
+    names = [word.replace("_", " ") for word in words["flag_meanings"].split()]
+    return dict(zip(map(int, words["flag_values"]), names, strict=True))
