@@ -13,9 +13,10 @@ What is described
 What is asked
     :func:`simulate`, :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`,
     :func:`attractors`, :func:`basin`, :func:`impact_statistics`; :func:`orbit`, :func:`branch`,
-    :func:`border` for what is periodic; :func:`couple`,
-    :func:`jump_voltages`, :func:`drive_branch` and :func:`drive_spectra` for the weak drive,
-    :func:`write_ssp` for other tools.
+    :func:`border` for what is periodic; :func:`couple`, :func:`capture`, :func:`passage`,
+    :func:`waterfall`, :func:`jump_voltages`, :func:`drive_branch` and :func:`drive_spectra` for
+    the weak drive, its voltage a :class:`Course`, a :class:`SpeedControl` or a
+    :class:`SpeedGradient` too; :func:`write_ssp` for other tools.
 What is answered
     An :class:`xarray.Dataset` with units, long names, all parameters, and where it comes from.
 
@@ -44,17 +45,24 @@ if TYPE_CHECKING:
     from .response.spectra import spectra
     from .response.sweep import sweep
     from .structures import Drive, Excitation, Structure
+    from .weak_drive.capture import capture
+    from .weak_drive.controllers import SpeedControl, SpeedGradient
     from .weak_drive.couple import couple
     from .weak_drive.drive_branch import drive_branch
     from .weak_drive.drive_spectra import drive_spectra
     from .weak_drive.jump_voltages import jump_voltages
+    from .weak_drive.passage import passage, waterfall
+    from .weak_drive.schedule import Course
     from .weak_drive.ssp import write_ssp
 
 __all__ = [
+    "Course",
     "Drive",
     "Excitation",
     "FmuError",
     "InputError",
+    "SpeedControl",
+    "SpeedGradient",
     "StaleError",
     "StoreError",
     "Structure",
@@ -65,6 +73,7 @@ __all__ = [
     "basin",
     "border",
     "branch",
+    "capture",
     "couple",
     "drive_branch",
     "drive_spectra",
@@ -73,9 +82,11 @@ __all__ = [
     "lyapunov",
     "map",
     "orbit",
+    "passage",
     "simulate",
     "spectra",
     "sweep",
+    "waterfall",
     "write_ssp",
 ]
 PLACES = {  # where each name lives: it is imported when it is used, so that `import` takes no time
@@ -95,10 +106,14 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "dynamics.branches": ("branch",),
     "dynamics.borders": ("border",),
     "dynamics.impact_statistics": ("impact_statistics",),
+    "weak_drive.capture": ("capture",),
+    "weak_drive.controllers": ("SpeedControl", "SpeedGradient"),
     "weak_drive.couple": ("couple",),
     "weak_drive.drive_branch": ("drive_branch",),
     "weak_drive.drive_spectra": ("drive_spectra",),
     "weak_drive.jump_voltages": ("jump_voltages",),
+    "weak_drive.passage": ("passage", "waterfall"),
+    "weak_drive.schedule": ("Course",),
     "weak_drive.ssp": ("write_ssp",),
 }
 

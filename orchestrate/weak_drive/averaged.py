@@ -107,6 +107,18 @@ def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.
     return [Fold(float(no_load_speed(structure, drive, Omega)), Omega) for Omega in speeds]
 
 
+def dividing_speed(structure: Structure, drive: Drive) -> float:
+    """Speed over omega between stationary motions below and beyond the resonance.
+
+    Half way between the speeds of the outer folds, where all motions are unstable; the resonance's
+    speed where there are none.
+    """
+    ends = folds(structure, drive)
+    if not ends:
+        return resonance(structure, drive)
+    return 0.5 * (ends[0].Omega + ends[-1].Omega)
+
+
 def slope(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
     """The derivative d eta0 / d Omega as numerator and denominator, polynomials in Omega."""
     pull, masses, box = (on_the_axis(part) for part in mechanics(structure, drive))

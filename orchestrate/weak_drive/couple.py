@@ -7,10 +7,10 @@ and of the master, so an interrupted run goes on with the same bits.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -22,7 +22,8 @@ from ..running.options import Running
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .jumps import Jump, Way, find_jump, why_none
+from .controllers import Controller, Seen
+from .jumps import Jump, Way, find_jump, stays_beyond, why_none
 from .master import Master, Scheme
 from .revolutions import COLUMNS, Revolutions
 from .schedule import Constant, Ramp, Schedule, check
@@ -53,6 +54,8 @@ class CoupleJob(Job):
     scheme : Scheme
     speed_start : float
         Of the motor, rad/s.
+    control : Controller, optional
+        What takes the voltage from the schedule; the motor gets all of it where there is none.
     """
 
     structure: Structure
@@ -60,6 +63,7 @@ class CoupleJob(Job):
     schedule: Schedule
     scheme: Scheme
     speed_start: float
+    control: Controller | None = None
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk: ClassVar[int] = 10_000
@@ -103,7 +107,7 @@ class CoupleJob(Job):
                 f"not one revolution of the motor in {self.schedule.duration:g} s: "
                 "expected a voltage that turns it, and time"
             )
-        found = {
+        found: dict[str, Any] = {
             name: ("revolution", table[name], {"units": unit, "long_name": text})
             for name, (unit, text) in COLUMNS.items()
         }
@@ -119,6 +123,10 @@ class CoupleJob(Job):
             ),
             "Omega": ("revolution", Omega, {"units": "1", "long_name": "mean speed over omega"}),
         }
+        divide = averaged.dividing_speed(self.structure, self.drive)
+        text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
+        passed = stays_beyond(table["time"], np.abs(Omega), divide)
+        found["passage_time"] = ((), passed, {"units": "s", "long_name": text})
         dataset = xr.Dataset(
             {**found, **self.jumps(table, eta0, Omega)}, coordinates, self.attributes(table)
         )
@@ -135,10 +143,9 @@ class CoupleJob(Job):
         for up in (True, False):
             rows = np.flatnonzero(trend > 0 if up else trend < 0)
             way = Way(time[rows], np.abs(eta0[rows]), np.abs(Omega[rows]))
-            jump = find_jump(way, drive.b(structure), up)
-            resonance = averaged.resonance(structure, drive)
+            jump = None if self.control else find_jump(way, drive.b(structure), up)
             found.append(None if jump is None else Jump._make(int(rows[i]) for i in jump))
-            reasons.append("" if jump else why_none(way, up, resonance, bool(folds)))
+            reasons.append("" if jump else self.why_none(way, up))
         columns = jump_columns(table, found)
         if structure.bonded:
             theory = [folds[0].eta0, folds[-1].eta0] if folds else [math.nan, math.nan]
@@ -150,6 +157,13 @@ class CoupleJob(Job):
         columns["jump_lag"] = ("jump", lags, {"units": "V", "long_name": text})
         columns["no_jump"] = ("jump", reasons, {"long_name": "why there is no jump"})
         return columns
+
+    def why_none(self, way: Way, up: bool) -> str:
+        """Why there is no jump on a way up or down."""
+        if self.control:
+            return "a controller sets the voltage"
+        folds = averaged.folds(self.structure, self.drive)
+        return why_none(way, up, averaged.resonance(self.structure, self.drive), bool(folds))
 
     def attributes(self, table: Table) -> dict[str, str | float]:
         """Title, and what the coupling has lost of the motor's work."""
@@ -178,6 +192,7 @@ def jump_columns(table: Table, jumps: Sequence[Jump | None]) -> dict[str, Variab
 
     wanted = {
         "jumps": ("voltage", "row", "V", "voltage at which the speed jumps"),
+        "jump_time": ("time", "row", "s", "time of that voltage"),
         "jump_speed": ("speed", "row", "rad/s", "mean speed of that revolution"),
         "jump_speed_before": ("speed", "before", "rad/s", "mean speed where it leaves its branch"),
         "jump_speed_after": ("speed", "after", "rad/s", "mean speed after the jump"),
@@ -210,18 +225,30 @@ class Run:
         shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
         self.master = Master(oscillator, shaker, job.structure, job.scheme)
         self.revolutions = Revolutions(self.master, job.structure, self.impact_count)
+        self.control_memory = job.control.begin(job.speed_start) if job.control else ()
 
     def impact_count(self) -> float:
         """Impacts so far."""
         return float(self.oscillator.get("impact_count")[0])
 
-    def revolve(self, steps: Sequence[int]) -> Table:
-        """Do some steps; columns of their complete revolutions."""
-        master, add = self.master, self.revolutions.add
-        voltage, h = self.job.schedule.voltage, self.job.scheme.h
+    def voltage(self, i: int) -> float:
+        """The voltage over a step, constant: the mean of a ramp, or a controller's part of it."""
+        h, control = self.job.scheme.h, self.job.control
+        available = self.job.schedule.voltage((i + 0.5) * h)
+        if control is None:
+            return available
+        seen = Seen(self.master.time, self.master.shaking.speed, available, h)
+        voltage, self.control_memory = control.act(seen, self.control_memory)
+        return voltage
+
+    def revolve(self, steps: Sequence[int], look: Callable[[], None] | None = None) -> Table:
+        """Do some steps, and look at the end of each; columns of their complete revolutions."""
+        master, add, voltage = self.master, self.revolutions.add, self.voltage
         rows = []
         for i in steps:
-            master.step(voltage((i + 0.5) * h))  # constant over the step, the mean of a ramp
+            master.step(voltage(i))
+            if look:
+                look()
             row = add()
             if row:
                 rows.append(row)
@@ -235,6 +262,7 @@ class Run:
             "shaker_state": np.frombuffer(self.shaker.save_state(), dtype=np.uint8),
             "master_memory": np.array(self.master.memory()),
             "revolution_memory": np.array(self.revolutions.memory()),
+            "control_memory": np.array(self.control_memory),
         }
         return {name: state[np.newaxis] for name, state in states.items()}
 
@@ -244,6 +272,7 @@ class Run:
         self.shaker.restore_state(table["shaker_state"][-1].tobytes())
         self.master.remember(table["master_memory"][-1].tolist())
         self.revolutions.remember(table["revolution_memory"][-1].tolist())
+        self.control_memory = tuple(table["control_memory"][-1].tolist())
 
 
 def checked_motor(drive: Drive) -> None:
@@ -321,6 +350,7 @@ def couple_job(
     schedule: Schedule,
     scheme: Scheme,
     speed_start: float | None = None,
+    control: Controller | None = None,
 ) -> CoupleJob:
     """The run with this schedule.
 
@@ -328,11 +358,15 @@ def couple_job(
     ------
     InputError
     """
+    if control is not None and not isinstance(control, Controller):
+        raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
     if speed_start is None:
-        speed_start = schedule.voltage(0.0) / drive.motor_constant
+        at_rest = control is not None
+        speed_start = 0.0 if at_rest else schedule.voltage(0.0) / drive.motor_constant
     check("speed_start", speed_start, "rad/s")
     name = "bonded" if structure.bonded else "delaminated"
-    job = CoupleJob(f"couple_{name}", structure, drive, schedule, scheme, float(speed_start))
+    start = float(speed_start)
+    job = CoupleJob(f"couple_{name}", structure, drive, schedule, scheme, start, control)
     steps = schedule.duration / scheme.h
     if not steps <= MOST_STEPS:
         raise InputError(
@@ -354,6 +388,7 @@ def couple(
     settle: float | None = None,
     spin_up: float | None = None,
     speed_start: float | None = None,
+    control: Controller | None = None,
     step: float | None = None,
     algorithm: str = "rollback",
     tolerance: float = 0.0,
@@ -387,7 +422,12 @@ def couple(
         by default 600/omega where a run up would begin beyond the resonance otherwise and no
         ``speed_start`` is given, else 0.
     speed_start : float, optional
-        Speed of the motor at the start, rad/s; by default its no-load speed at the first voltage.
+        Speed of the motor at the start, rad/s; by default its no-load speed at the first voltage,
+        with a controller 0.
+    control : Controller, optional
+        :class:`~.controllers.SpeedControl` or :class:`~.controllers.SpeedGradient`: takes a part of
+        ``voltage``, once a communication step, by the speed. There are no jumps to be found then;
+        ``passage_time`` says whether the motor has passed the resonance.
     step : float, optional
         Communication step, s; 0.1/omega by default.
     algorithm : str
@@ -404,9 +444,10 @@ def couple(
         Dimension ``revolution``: ``time`` (s), ``voltage`` (V), ``speed`` (rad/s), ``amplitude``
         and ``box_amplitude`` (m), ``box_acceleration`` (m/s2), ``impacts``, energies since the
         start (J), and the numbers ``eta0`` = U/(K omega) and ``Omega`` = speed/omega. Dimension
-        ``jump``: ``jumps`` (V), ``jump_speed`` (rad/s), speed and amplitude before and after,
-        ``jump_rate`` (V/s) at the jumps up and down, NaN where there is none, and ``no_jump`` says
-        why; for a bonded structure ``averaged_jumps`` and ``jump_lag`` (V) too.
+        ``jump``: ``jumps`` (V), ``jump_time`` (s), ``jump_speed`` (rad/s), speed and amplitude
+        before and after, ``jump_rate`` (V/s) at the jumps up and down, NaN where there is none,
+        and ``no_jump`` says why; for a bonded structure ``averaged_jumps`` and ``jump_lag`` (V)
+        too. From ``passage_time`` (s) on the speed stays beyond the resonance.
 
     Raises
     ------
@@ -438,5 +479,5 @@ def couple(
     given = (duration, rate, settle, increment, back, spin_up)
     schedule = schedule_of(structure, drive, voltage, *given)
     scheme = scheme_of(structure, step, algorithm, tolerance)
-    job = couple_job(structure, drive, schedule, scheme, speed_start)
+    job = couple_job(structure, drive, schedule, scheme, speed_start, control)
     return answer(job, running, finder(running))

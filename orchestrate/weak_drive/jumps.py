@@ -131,6 +131,14 @@ def half_slip(slip: np.ndarray, before: int, up: bool) -> int | None:
     return before + int(after[0]) if after.size else None
 
 
+def stays_beyond(time: np.ndarray, Omega: np.ndarray, divide: float) -> float:
+    """Time from which a speed stays above ``divide``; NaN where it ends below."""
+    below = np.flatnonzero(Omega <= divide)
+    if not len(Omega) or Omega[-1] <= divide:
+        return math.nan
+    return float(time[below[-1] + 1]) if below.size else float(time[0])
+
+
 def why_none(way: Way, up: bool, resonance: float, has_folds: bool) -> str:
     """Why there is no jump.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import numbers
 from abc import ABC, abstractmethod
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -16,16 +17,25 @@ from ..errors import InputError
 
 
 def check(
-    name: str, value: float, unit: str, low: float = -math.inf, high: float = math.inf
+    name: str,
+    value: float,
+    unit: str,
+    low: float = -math.inf,
+    high: float = math.inf,
+    exclusive: bool = False,
 ) -> None:
-    """Check that a number is finite and in a range, both ends included.
+    """Check that a number is finite and in a range, both ends included, or not the lower one.
 
     Raises
     ------
     InputError
     """
-    if not (math.isfinite(value) and low <= value <= high):
-        ends = f"{low:g} <= {name}" if high == math.inf else f"{low:g} <= {name} <= {high:g}"
+    number = isinstance(value, numbers.Real) and not isinstance(value, bool)
+    if not (number and math.isfinite(value) and low <= value <= high) or (
+        exclusive and value == low
+    ):
+        ends = f"{low:g} {'<' if exclusive else '<='} {name}"
+        ends += "" if high == math.inf else f" <= {high:g}"
         expected = "a finite number" if low == -math.inf else ends
         raise InputError(f"{name} = {value} {unit}: expected {expected}")
 

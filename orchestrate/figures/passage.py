@@ -1,0 +1,131 @@
+"""The passage through the resonance: speed, motion, where the power goes, spectra over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from .style import GREY, in_our_look, panels
+from .weak_drive import COLOURS, SINKS
+
+HALF_TURN = np.pi
+FLOOR = 1e-4  # of the largest line: the lower end of the colours
+
+
+@in_our_look
+def draw(
+    runs: Mapping[str, xr.Dataset], spectra: Mapping[str, xr.Dataset], title: str = ""
+) -> Figure:
+    """Draw passages, one a column.
+
+    Parameters
+    ----------
+    runs : mapping of xarray.Dataset
+        Of :func:`orchestrate.passage`, by what they are, such as ``"bonded"``.
+    spectra : mapping of xarray.Dataset
+        Of :func:`orchestrate.waterfall`, by the same names.
+    title : str
+        What is shown: set, rate, volts.
+    """
+    count = len(runs)
+    figure, axes = panels(5, count, (6.5 * count + 1.0, 14), sharex="col", sharey="row")
+    top = max(float(found.acceleration.max()) for found in spectra.values())
+    for column, (name, data) in enumerate(runs.items()):
+        begin, words = beginning(data)
+        own = axes[column::count]
+        revolution = over_revolutions(data)
+        time = data.time.values - begin
+        draw_speed(own[0], time, data, revolution)
+        own[1].plot(time, data.voltage, color="k", linewidth=1.0)
+        own[2].plot(time, data.x1, color=COLOURS.get(name, "C0"), linewidth=0.3)
+        draw_powers(own[3], time, revolution)
+        mesh = draw_waterfall(own[4], spectra[name], begin, top)
+        for panel in own[:4]:
+            panel.axvline(0.0, color=GREY, linewidth=0.8, zorder=0)
+        own[0].set_title(f"{name}: {told(data)}")
+        own[4].set_xlabel(f"time {words} in s")
+        own[4].set_xlim(time[0], time[-1])
+    labels = ("speed in rad/s", "voltage in V", "$x_1$ in m", "power in W", "multiple of the speed")
+    for panel, label in zip(axes[::count], labels, strict=True):
+        panel.set_ylabel(label)
+    for row in (0, 3):
+        axes[row * count].legend(loc="best", fontsize=7)
+    bar = "amplitude of the acceleration in m/s$^2$"
+    figure.colorbar(mesh, ax=axes[4 * count :], label=bar, pad=0.01)
+    if title:
+        figure.suptitle(title)
+    return figure
+
+
+def beginning(data: xr.Dataset) -> tuple[float, str]:
+    """The time that counts as 0, and its name."""
+    jumps = data.jump_time.values
+    known = np.flatnonzero(np.isfinite(jumps))
+    if known.size:
+        return float(jumps[known[0]]), f"from the jump {data.jump.values[known[0]]}"
+    passed = float(data.passage_time)
+    return (passed, "from the passage") if np.isfinite(passed) else (0.0, "from the start")
+
+
+def told(data: xr.Dataset) -> str:
+    """The jumps in words, or whether the resonance is passed."""
+    found = [
+        f"jump {way} at {float(data.jumps.sel(jump=way)):.4f} V"
+        for way in data.jump.values
+        if np.isfinite(float(data.jumps.sel(jump=way)))
+    ]
+    if found:
+        return ", ".join(found)
+    passed = float(data.passage_time)
+    if np.isfinite(passed):
+        return f"beyond the resonance from {passed:.4g} s on"
+    return "the resonance is not passed"
+
+
+def over_revolutions(data: xr.Dataset) -> dict[str, np.ndarray]:
+    """Mean speed and powers over the revolution around each sample; NaN at the ends."""
+    angle, time = np.abs(data.angle.values), data.time.values
+    far = np.maximum.accumulate(angle)
+    before, after = (np.interp(angle + side, far, time) for side in (-HALF_TURN, HALF_TURN))
+    span = after - before
+    whole = (angle - HALF_TURN > far[0]) & (angle + HALF_TURN < far[-1])
+    turned = np.interp(after, time, angle) - np.interp(before, time, angle)
+    found = {"speed": turned / span}
+    for account in ("motor", *SINKS, "stored"):
+        values = data[account].values
+        found[account] = (np.interp(after, time, values) - np.interp(before, time, values)) / span
+    return {name: np.where(whole, values, np.nan) for name, values in found.items()}
+
+
+def draw_speed(
+    axes: Axes, time: np.ndarray, data: xr.Dataset, revolution: Mapping[str, np.ndarray]
+) -> None:
+    """The speed at each instant, and its mean over a revolution."""
+    instant: Any = {"color": "C0", "linewidth": 0.4, "alpha": 0.6, "label": "at the instant"}
+    axes.plot(time, np.abs(data.speed), **instant)
+    mean: Any = {"color": "k", "linewidth": 1.2, "label": "mean of a revolution"}
+    axes.plot(time, revolution["speed"], **mean)
+
+
+def draw_powers(axes: Axes, time: np.ndarray, revolution: Mapping[str, np.ndarray]) -> None:
+    """Where the motor's power goes, means of a revolution."""
+    axes.plot(time, revolution["motor"], "k", linewidth=1.6, label="motor")
+    for account, label in SINKS.items():
+        axes.plot(time, revolution[account], linewidth=1.0, label=label)
+    axes.plot(time, revolution["stored"], color=GREY, linewidth=1.0, label="stored")
+
+
+def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, top: float) -> Any:
+    """Lines over time as colours; the slow swinging of the box below half the speed left out."""
+    shown = spectra.sel(order=slice(0.25, None))
+    values = shown.acceleration.values.T.clip(FLOOR * top)
+    norm = LogNorm(FLOOR * top, top)
+    return axes.pcolormesh(
+        shown.time.values - begin, shown.order.values, values, norm=norm, shading="nearest"
+    )

@@ -1,0 +1,175 @@
+"""Controllers: the motor's voltage from its measured speed, within what the source gives.
+
+The schedule says how much voltage there is. A controller takes a part of it, once a communication
+step: it sees the speed at the step's beginning and holds its voltage over the step, as a digital
+one does.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from .schedule import check
+
+Memory = tuple[float, ...]
+
+
+class Seen(NamedTuple):
+    """What a controller sees at the beginning of a communication step.
+
+    Attributes
+    ----------
+    time : float
+        s.
+    speed : float
+        Of the motor, at this instant, rad/s.
+    available : float
+        Voltage of the schedule over the step, V: the most a controller may take.
+    h : float
+        Length of the step, s.
+    """
+
+    time: float
+    speed: float
+    available: float
+    h: float
+
+
+@dataclass(frozen=True)
+class Controller(ABC):
+    """A law for the voltage; subclasses say which."""
+
+    @abstractmethod
+    def begin(self, speed: float) -> Memory:
+        """What it remembers at the start, the motor turning with ``speed``, rad/s."""
+
+    @abstractmethod
+    def act(self, seen: Seen, memory: Memory) -> tuple[float, Memory]:
+        """The voltage over a step, V, and what it remembers at its end."""
+
+
+def within(voltage: float, available: float) -> float:
+    """A voltage between 0 and the one that is available, which may be negative."""
+    low, high = min(0.0, available), max(0.0, available)
+    return min(max(voltage, low), high)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedControl(Controller):
+    """Proportional-integral control of the speed.
+
+    The voltage is ``gain`` times the deviation w_r - w of the speed and its integral over
+    ``reset_time``, between 0 and what the source gives; while that limits it, the integral stands
+    still.
+
+    Attributes
+    ----------
+    speed : float
+        That is wanted in the end, rad/s.
+    gain : float
+        V s/rad, > 0; several times the motor constant, which a speed takes without a load.
+    reset_time : float
+        s, > 0; infinite for proportional control only.
+    rise : float
+        Rate at which the wanted speed changes from that at the start, rad/s2; infinite: at once.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> control = SpeedControl(speed=100.0, gain=0.3, reset_time=0.5)
+    >>> voltage, memory = control.act(Seen(0.0, 90.0, 12.0, 0.001), control.begin(90.0))
+    >>> round(voltage, 6)  # 0.3 (10 + 10 * 0.001/0.5)
+    3.006
+    """
+
+    speed: float
+    gain: float
+    reset_time: float = math.inf
+    rise: float = math.inf
+
+    def __post_init__(self) -> None:
+        check("speed", self.speed, "rad/s")
+        check("gain", self.gain, "V.s/rad", low=0.0, exclusive=True)
+        for name, unit in (("reset_time", "s"), ("rise", "rad/s2")):
+            if getattr(self, name) != math.inf:
+                check(name, getattr(self, name), unit, low=0.0, exclusive=True)
+
+    def begin(self, speed: float) -> Memory:
+        """The speed wanted at first, and the integral of the deviation over the reset time."""
+        return (self.speed if self.rise == math.inf else speed), 0.0
+
+    def act(self, seen: Seen, memory: Memory) -> tuple[float, Memory]:
+        """Proportional and integral part, limited."""
+        wanted, integral = memory
+        deviation = wanted - seen.speed
+        grown = integral + deviation * seen.h / self.reset_time
+        asked = self.gain * (deviation + grown)
+        voltage = within(asked, seen.available)
+        if voltage == asked or (asked - voltage) * deviation < 0.0:  # not limited, or leaving that
+            integral = grown
+        step = self.rise * seen.h
+        return voltage, (wanted + min(max(self.speed - wanted, -step), step), integral)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedGradient(Controller):
+    """Passage through a resonance with less voltage: the rotor is swung until it gets across.
+
+    The source is fully on while the rotor turns faster than a running mean of its own speed, else
+    only ``low`` of it: always in the sense in which the energy of its slow swinging about that mean
+    grows. Beyond ``passed`` the source is fully on.
+
+    Attributes
+    ----------
+    filter_time : float
+        Of the running mean psi, T psi' = w - psi, s, > 0: longer than a revolution; about the
+        period of the slow swinging.
+    passed : float
+        Mean speed from which the resonance is passed, rad/s, > 0.
+    low : float
+        Part of the voltage while the rotor is slower than its mean, from 0 to 1.
+
+    Raises
+    ------
+    InputError
+
+    Notes
+    -----
+    After the speed-gradient method: A. Fradkov, O. Tomchina, D. Tomchin, Controlled passage through
+    resonance in mechanical systems, Journal of Sound and Vibration 330 (2011) 1065-1073. There the
+    threshold is one of energy; here, of the filtered speed.
+
+    Examples
+    --------
+    >>> control = SpeedGradient(filter_time=0.2, passed=120.0)
+    >>> fast, slow = (Seen(1.0, speed, 6.0, 0.001) for speed in (91.0, 89.0))
+    >>> control.act(fast, (90.0,))[0], control.act(slow, (90.0,))[0]
+    (6.0, 0.0)
+    """
+
+    filter_time: float
+    passed: float
+    low: float = 0.0
+
+    def __post_init__(self) -> None:
+        check("filter_time", self.filter_time, "s", low=0.0, exclusive=True)
+        check("passed", self.passed, "rad/s", low=0.0, exclusive=True)
+        check("low", self.low, "of the voltage", low=0.0, high=1.0)
+
+    def begin(self, speed: float) -> Memory:
+        """The running mean of the speed."""
+        return (speed,)
+
+    def act(self, seen: Seen, memory: Memory) -> tuple[float, Memory]:
+        """All of the voltage, or the lower part of it."""
+        (mean,) = memory
+        mean -= (seen.speed - mean) * math.expm1(-seen.h / self.filter_time)
+        way = math.copysign(1.0, seen.available)
+        on = way * mean > self.passed or way * (seen.speed - mean) >= 0.0
+        return seen.available * (1.0 if on else self.low), (mean,)

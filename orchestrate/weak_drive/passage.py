@@ -1,0 +1,328 @@
+"""The passage through the resonance at full resolution: every communication step of a run is kept.
+
+Of a long run only what lies around the jumps may be kept. :func:`waterfall` makes spectra over the
+motor's revolutions of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from ..access.exported import finder
+from ..access.instance import Instance
+from ..access.models import OSCILLATOR, SHAKER
+from ..errors import InputError
+from ..response.labels import variable
+from ..running.job import Inputs, Job, Table
+from ..running.runner import answer
+from ..structures.drive import Drive
+from ..structures.structure import Structure
+from .controllers import Controller
+from .couple import CoupleJob, Run, checked_motor, couple_job, schedule_of, scheme_of
+from .revolutions import COLUMNS, TURN
+from .schedule import Schedule, check
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+SAMPLES = {
+    "time": ("s", "time"),
+    "voltage": ("V", "voltage of the motor over the step before"),
+    "speed": ("rad/s", "speed of the motor at this instant"),
+    "angle": ("rad", "angle of the motor"),
+    "x1": ("m", "displacement of mass 1 relative to the box"),
+    "x2": ("m", "displacement of mass 2 relative to the box"),
+    "v1": ("m/s", "velocity of mass 1 relative to the box"),
+    "v2": ("m/s", "velocity of mass 2 relative to the box"),
+    "box_position": ("m", "position of the box"),
+    "box_velocity": ("m/s", "velocity of the box"),
+    "box_acceleration": ("m/s2", "acceleration of the box"),
+    "motor": ("J", "work of the motor since the start"),
+    "box_damper": ("J", "energy lost in the damper of the box since the start"),
+    "impact_loss": ("J", "energy lost in impacts since the start"),
+    "stored": ("J", "energy stored since the start"),
+    "dampers": ("J", "energy lost in the dampers of the masses since the start"),
+}
+KEPT = "sampled "  # before the names of samples in a table that has revolutions too
+
+
+@dataclass(frozen=True)
+class PassageJob(Job):
+    """A run of the coupled system with all its communication points.
+
+    Attributes
+    ----------
+    run : CoupleJob
+    around : float, optional
+        Time before and after each jump that is kept, s; all where there is none.
+    """
+
+    run: CoupleJob
+    around: float | None
+
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+    chunk: ClassVar[int] = 10_000
+    sequential: ClassVar[bool] = True
+    item: ClassVar[str] = "step"
+
+    def count(self) -> int:
+        """Number of communication steps."""
+        return self.run.count()
+
+    def items(self, inputs: Inputs) -> Sequence[int]:
+        """The steps."""
+        return range(self.count())
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+        """Some steps: their revolutions, their ends, and all to go on from."""
+        with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
+            run = Run(self.run, oscillator, shaker)
+            try:
+                if carry is not None:
+                    run.remember(carry)
+                rows: list[tuple[float, ...]] = []
+                revolutions = run.revolve(items, lambda: rows.append(sample(run)))
+                columns = np.array(rows).T
+                names = (KEPT + name for name in SAMPLES)
+                return {**revolutions, **dict(zip(names, columns, strict=True)), **run.memory()}
+            finally:
+                run.master.close()
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Samples over time, and the jumps."""
+        import xarray as xr
+
+        revolutions = self.run.dataset({name: table[name] for name in COLUMNS}, inputs)
+        samples = {name: table[KEPT + name] for name in SAMPLES}
+        centres, what = self.centres(revolutions)
+        away = np.abs(samples["time"][:, np.newaxis] - centres).min(axis=1, initial=np.inf)
+        kept = np.flatnonzero(away <= (math.inf if self.around is None else self.around))
+        variables = {
+            name: variable("time", samples[name][kept], *SAMPLES[name]) for name in SAMPLES
+        }
+        time = {"time": variables.pop("time")}
+        of_jumps = revolutions.drop_dims("revolution")
+        state = "bonded" if self.run.structure.bonded else "delaminated"
+        title = {"title": f"Passage through the resonance, {state} structure", "kept": what}
+        return xr.Dataset(variables, time, {**revolutions.attrs, **title}).merge(of_jumps)
+
+    def centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
+        """Times around which samples are kept, and what they are."""
+        jumps = revolutions.jump_time.values
+        passed = float(revolutions.passage_time)
+        if self.around is None:
+            return jumps, "the whole run"
+        if np.isfinite(jumps).any():
+            return jumps[np.isfinite(jumps)], "around jumps"
+        if math.isfinite(passed):
+            return np.array([passed]), "around the passage, there is no jump"
+        return np.array([self.run.schedule.duration - self.around]), "the end, there is no jump"
+
+
+def sample(run: Run) -> tuple[float, ...]:
+    """A communication point, in the order of ``SAMPLES``."""
+    master = run.master
+    motion, shaking = master.motion, master.shaking
+    energies = master.balance.energies(motion, shaking)
+    return (
+        *(master.time, master.voltage, shaking.speed, shaking.angle),
+        *(motion.x1, motion.x2, motion.v1, motion.v2),
+        *(shaking.box_position, shaking.box_velocity, shaking.box_acceleration),
+        *(energies.motor, energies.box_damper, energies.impact_loss),
+        *(energies.stored, energies.dampers),
+    )
+
+
+def passage(
+    structure: Structure,
+    drive: Drive,
+    *,
+    voltage: float | tuple[float, float] | Schedule,
+    around: float | None = None,
+    duration: float | None = None,
+    rate: float | None = None,
+    back: bool = False,
+    settle: float | None = None,
+    spin_up: float | None = None,
+    speed_start: float | None = None,
+    control: Controller | None = None,
+    step: float | None = None,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """A run through the resonance at full resolution: time histories, speed, energies.
+
+    Parameters
+    ----------
+    structure : Structure
+    drive : Drive
+    voltage : float, (float, float) or Schedule
+        As in :func:`orchestrate.couple`, V.
+    around : float, optional
+        Keep only what is up to this time before or after a jump, s, or where there is none, the
+        passage of the resonance, or the end; ``kept`` in the attributes says which. By default all.
+    duration, rate, back, settle, spin_up, speed_start, control
+        As in :func:`orchestrate.couple`, but the voltage does not come back unless wanted.
+    step : float, optional
+        Communication step, s, and so the distance of samples; 0.1/omega by default.
+    **running
+        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time`` (s): ``voltage`` (V), ``speed`` (rad/s) at the instant, ``angle`` (rad),
+        positions and velocities of the masses (relative to the box) and of the box, and energies
+        since the start (J). Over ``jump`` what :func:`orchestrate.couple` says of the jumps.
+
+    Raises
+    ------
+    InputError
+        Where an argument is not what is expected.
+
+    Examples
+    --------
+    >>> from orchestrate import Drive, Structure, passage
+    >>> quick = Structure.from_file("quick"), Drive.from_file("quick")
+    >>> found = passage(*quick, voltage=1.5, duration=100.0, progress=False)
+    >>> found.x1.dims, found.sizes["time"], found.speed.attrs["units"]
+    (('time',), 1000, 'rad/s')
+    """
+    checked_motor(drive)
+    if around is not None:
+        check("around", around, "s", low=0.0, exclusive=True)
+    if spin_up is None and speed_start is not None:
+        spin_up = 0.0
+    given = (duration, rate, settle, 0.0, back, spin_up)
+    schedule = schedule_of(structure, drive, voltage, *given)
+    scheme = scheme_of(structure, step, "rollback", 0.0)
+    run = couple_job(structure, drive, schedule, scheme, speed_start, control)
+    name = run.name.replace("couple", "passage")
+    return answer(PassageJob(name, run, around), running, finder(running))
+
+
+def waterfall(
+    found: xr.Dataset, *, mass: int = 1, revolutions: int = 16, highest: float = 6.0
+) -> xr.Dataset:
+    """Spectra of a mass's acceleration in space over the motor's revolutions, one after the other.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Of :func:`passage`, with all samples kept or those around one jump.
+    mass : int
+        1 or 2.
+    revolutions : int
+        Of each spectrum; it begins a quarter of them after the one before. Lines are
+        1/``revolutions`` of the speed apart.
+    highest : float
+        Highest line, as a multiple of the motor's speed.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``acceleration`` (m/s2) over ``time`` (s, the middle of the revolutions) and ``order``, the
+        multiple of the motor's speed; and mean ``speed`` (rad/s) and ``voltage`` (V) over time.
+
+    Raises
+    ------
+    InputError
+
+    Notes
+    -----
+    The displacement is interpolated to equal angles by its values and velocities, its spectrum is
+    taken with a Hann window, and multiplied by the square of the frequency: an impact is a kink of
+    the displacement, so what folds back is small.
+
+    Examples
+    --------
+    >>> from orchestrate import Drive, Structure, passage, waterfall
+    >>> quick = Structure.from_file("quick"), Drive.from_file("quick")
+    >>> spectra = waterfall(passage(*quick, voltage=1.3, duration=300.0, progress=False))
+    >>> strongest = spectra.acceleration.isel(time=-1).sel(order=slice(0.5, None)).idxmax()
+    >>> float(strongest)
+    1.0
+    """
+    import xarray as xr
+
+    check_spectra(found, mass, revolutions, highest)
+    points = max(16, math.ceil(4.0 * highest))
+    at, moved = over_angle(found, mass, points)
+    length, hop = revolutions * points, max(1, revolutions // 4) * points
+    begins = np.arange(0, len(at) - length + 1, hop)
+    if not begins.size:
+        turns = len(at) // points
+        raise InputError(f"revolutions = {revolutions}: expected at most the {turns} there are")
+    lines = hann_lines(moved[begins[:, np.newaxis] + np.arange(length)])
+    order = np.arange(lines.shape[1]) / revolutions
+    wanted = order <= highest
+    ends = begins + length - 1
+    speed = TURN * (length - 1) / points / (at[ends] - at[begins])
+    middle = at[begins + length // 2]
+    volts = np.interp(middle, found.time, found.voltage)
+    text = f"amplitude of the acceleration of mass {mass} in space"
+    amplitude = lines[:, wanted] * np.outer(speed, order[wanted]) ** 2
+    variables = {
+        "acceleration": variable(("time", "order"), amplitude, "m/s2", text),
+        "speed": variable("time", speed, "rad/s", "mean speed of the motor"),
+        "voltage": variable("time", volts, "V", "voltage of the motor"),
+    }
+    coordinates = {
+        "time": variable("time", middle, "s", "middle of the revolutions"),
+        "order": variable("order", order[wanted], "1", "multiple of the motor's speed"),
+    }
+    return xr.Dataset(variables, coordinates, {"title": "Spectra over the motor's revolutions"})
+
+
+def over_angle(found: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Times and displacements in space at equal angles, ``points`` a revolution.
+
+    Where the motor turns back for a moment, samples are left out until it has come as far again.
+    """
+    from scipy.interpolate import CubicHermiteSpline
+
+    angle, time = np.abs(found.angle.values - found.angle.values[0]), found.time.values
+    forward = np.concatenate([[True], np.diff(np.maximum.accumulate(angle)) > 0.0])
+    last = math.floor(angle[forward][-1] * points / TURN)
+    at = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
+    position = (found[f"x{mass}"] + found.box_position).values
+    velocity = (found[f"v{mass}"] + found.box_velocity).values
+    return at, CubicHermiteSpline(time, position, velocity)(at)
+
+
+def hann_lines(pieces: np.ndarray) -> np.ndarray:
+    """Amplitudes of the lines of each piece, with a Hann window."""
+    window = np.hanning(pieces.shape[1] + 1)[:-1]
+    centred = (pieces - pieces.mean(axis=1, keepdims=True)) * window
+    return np.asarray(np.abs(np.fft.rfft(centred, axis=1)) * 2.0 / window.sum())
+
+
+def check_spectra(found: Any, mass: int, revolutions: int, highest: float) -> None:
+    """See that spectra over revolutions can be made.
+
+    Raises
+    ------
+    InputError
+    """
+    if mass not in (1, 2):
+        raise InputError(f"mass = {mass!r}: expected 1 or 2")
+    if not isinstance(revolutions, int) or isinstance(revolutions, bool) or revolutions < 1:
+        raise InputError(f"revolutions = {revolutions!r}: expected a whole number >= 1")
+    check("highest", highest, "times the speed", low=0.0, exclusive=True)
+    missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(map(str, found))
+    if missing:
+        raise InputError(f"no {sorted(missing)[0]} in the dataset: expected one of passage()")
+    gaps = np.diff(found.time.values)
+    if not gaps.size or gaps.max() > 1.5 * gaps.min():
+        raise InputError(
+            "time: samples of several jumps, or too few; expected some without a gap, such as "
+            "found.sel(time=slice(first, last))"
+        )
