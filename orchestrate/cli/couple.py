@@ -265,7 +265,7 @@ def branches_of(
     running["fmu"] = own_fmus(arguments.fmu)
     found = drive_branch(structure, drive, **running)
     for kind, name, volts in zip(
-        *(found[f"point_{of}"].values for of in ("kind", "structure", "voltage")), strict=True
+        *(found[f"bifurcation_{of}"].values for of in ("kind", "structure", "voltage")), strict=True
     ):
         print(f"{name}: {kind} at {volts:.4f} V")
     return found

@@ -88,17 +88,18 @@ def ways(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
     """Stationary motions, thin and pale under the ramps: dashed where they are unstable."""
     for name in branches.structure.values:
-        branch = branches.sel(structure=name)
-        stable, speed = branch.stable.values, branch.speed.values
-        known = np.isfinite(branch.voltage.values)
-        for part, style, what in ((stable, "-", "stable"), (known & ~stable, ":", "unstable")):
-            line: Any = {"color": COLOURS[name], "linewidth": 3.0, "alpha": 0.35, "zorder": 1}
-            line["label"] = f"{name}, branch, {what}"
-            voltage, amplitude = (
-                np.where(part, branch[of].values, np.nan) for of in ("voltage", "amplitude")
-            )
-            axes[0].plot(voltage, speed, style, **line)
-            axes[1].plot(speed, amplitude, style, **line)
+        for i, leg in enumerate(branches.leg.values):
+            branch = branches.sel(structure=name, leg=leg)
+            stable, known = branch.stable.values, np.isfinite(branch.voltage.values)
+            for part, style, what in ((stable, "-", "stable"), (known & ~stable, ":", "unstable")):
+                line: Any = {"color": COLOURS[name], "linewidth": 3.0, "alpha": 0.35, "zorder": 1}
+                line["label"] = None if i else f"{name}, branch, {what}"
+                voltage, speed, amplitude = (
+                    np.where(part, branch[of].values, np.nan)
+                    for of in ("voltage", "speed", "amplitude")
+                )
+                axes[0].plot(voltage, speed, style, **line)
+                axes[1].plot(speed, amplitude, style, **line)
 
 
 def mean_of(values: np.ndarray) -> np.ndarray:

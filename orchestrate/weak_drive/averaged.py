@@ -3,8 +3,14 @@
 At a speed Omega the box answers the unbalance as a linear system does, y = Omega^2 H(i Omega)
 S/M_t; the vibration's mean torque is T_v(Omega) = -epsilon Omega^4 Im H(i Omega) / 2, and the motor
 gives it where eta0 = Omega + T_v/b. Where eta0 falls with Omega the motion is unstable: the branch
-ends in folds, where the speed jumps. Non-dimensional throughout: time 1/omega, length S/M_t,
-voltage eta0 = U/(K omega).
+ends in folds, where the speed jumps. It may be unstable elsewhere too: a slow disturbance of the
+angle, psi exp(s t), is answered by the vibration at s +- i Omega, and so
+
+    s^2 + b s / (1 + tau s) = epsilon ((G(s + i Omega) + G(s - i Omega)) / 4 - Re G(i Omega) / 2),
+
+G(p) = p^4 H(p), tau = L omega / R_a. Where a pair of its roots passes the imaginary axis is a
+Neimark-Sacker point. Non-dimensional throughout: time 1/omega, length S/M_t, voltage
+eta0 = U/(K omega).
 """
 
 from __future__ import annotations
@@ -19,8 +25,8 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 
 
-class Fold(NamedTuple):
-    """Where a branch of stationary motions turns back.
+class Place(NamedTuple):
+    """A point of the branch of stationary motions: a fold, or a Neimark-Sacker point.
 
     Attributes
     ----------
@@ -84,7 +90,7 @@ def resonance(structure: Structure, drive: Drive) -> float:
     return float(np.abs(roots).max())
 
 
-def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0) -> list[Fold]:
+def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0) -> list[Place]:
     """Where the speed jumps: zeros of d eta0 / d Omega.
 
     Parameters
@@ -96,7 +102,7 @@ def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.
 
     Returns
     -------
-    list of Fold
+    list of Place
         By speed: a jump up, where eta0 is largest, then a jump down, and so on; empty without
         folds.
     """
@@ -104,7 +110,7 @@ def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
     speeds = [polished(numerator, root) for root in real if low <= root <= high]
-    return [Fold(float(no_load_speed(structure, drive, Omega)), Omega) for Omega in speeds]
+    return [Place(float(no_load_speed(structure, drive, Omega)), Omega) for Omega in speeds]
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
@@ -127,6 +133,70 @@ def slope(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
     size = imaginary(1j * below * conjugate(below))  # |below|^2
     factor = drive.epsilon / (2.0 * drive.b(structure))
     return size**2 - factor * (torque.deriv() * size - torque * size.deriv()), size**2
+
+
+def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
+    """Growth rates of slow disturbances: the roots s, but the 0 of a shifted angle.
+
+    Parameters
+    ----------
+    structure : Structure
+    drive : Drive
+    Omega : float
+
+    Returns
+    -------
+    ndarray of complex
+        Over omega; the one that grows fastest first.
+    """
+    pull, masses, box = mechanics(structure, drive)
+    above = (pull + masses) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
+    below = box * (pull + masses) + pull * masses
+    at, side = 1j * Omega, Polynomial([1j * Omega, 1.0])
+    sides = [(above(shift), below(shift)) for shift in (side, Polynomial([-at, 1.0]))]
+    (top, bottom), (other_top, other_bottom) = sides
+    lag = drive.armature_inductance / drive.armature_resistance * structure.omega
+    late = Polynomial([1.0, lag])
+    still = 0.5 * complex(above(at) / below(at)).real
+    free = Polynomial([0.0, 0.0, 1.0]) * late + Polynomial([0.0, drive.b(structure)])
+    whole = (free + drive.epsilon * still * late) * bottom * other_bottom
+    driven = 0.25 * drive.epsilon * late * (top * other_bottom + other_top * bottom)
+    roots = Polynomial((whole - driven).coef.real[1:]).roots()
+    return np.asarray(roots[np.argsort(-roots.real)])
+
+
+def torus_points(
+    structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 401
+) -> list[Place]:
+    """Neimark-Sacker points: where a pair of :func:`growth` passes the imaginary axis.
+
+    Parameters
+    ----------
+    structure : Structure
+    drive : Drive
+    low, high : float
+        Range of Omega.
+    count : int
+        Speeds that are looked at.
+    """
+    from scipy.optimize import brentq
+
+    def test(Omega: float) -> float:
+        """Product of all sums of two roots: 0 where a pair is imaginary, as Hurwitz has it."""
+        roots = growth(structure, drive, Omega)
+        sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
+        return float(np.prod(-sums / np.abs(sums).max()).real)
+
+    speeds = np.linspace(low, high, count)
+    signs = np.sign([test(Omega) for Omega in speeds])
+    found = []
+    for i in np.flatnonzero(signs[1:] != signs[:-1]):
+        Omega = float(brentq(test, speeds[i], speeds[i + 1], xtol=1e-12))
+        roots = growth(structure, drive, Omega)
+        pairs = roots[np.abs(roots.imag) > 1e-9]
+        if np.abs(pairs.real).min() < 1e-6:  # no two real ones of opposite signs
+            found.append(Place(float(no_load_speed(structure, drive, Omega)), Omega))
+    return found
 
 
 def on_the_axis(polynomial: Polynomial) -> Polynomial:

@@ -1,8 +1,9 @@
-"""Branches of the coupled system: its stationary motions over the speed, stable and unstable.
+"""Branches of the coupled system: its stationary motions round all folds, stable and unstable.
 
 Each point is a periodic motion of structure and motor together, the fluctuation of the speed
 included, with the voltage that holds it and its Floquet multipliers. Where the voltage is largest
-or smallest along the branch is a fold: a slow ramp's jump.
+or smallest along the branch is a fold: a slow ramp's jump, unless a pair of multipliers has left
+the unit circle before (Neimark-Sacker).
 """
 
 from __future__ import annotations
@@ -11,13 +12,14 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ..access.exported import finder
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
+from ..dynamics.continuation import NoConvergenceError
 from ..errors import InputError
 from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
@@ -25,8 +27,9 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
 from .couple import checked_motor
+from .drive_walk import ENDS, LIMIT, NONE, NOT_BEGUN, TESTS, Leg, Motion, Pace, follow, motion_near
 from .schedule import check
-from .shooting import Orbit, Shooter
+from .shooting import Shooter
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,22 +38,32 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
-FINEST = 1.0 / 32.0  # of the distance of two points: where a branch is not found closer, it ends
+LEGS = ("from below", "from above")
+EVENTS = tuple(TESTS)
+LONGER = (1.0, 4.0)  # times to settle, where the first is too short
 MULTIPLIERS = 4  # the largest ones, that are kept
+TOLD: dict[str, tuple[str, str]] = {  # of a motion, with units
+    "speed": ("rad/s", "mean speed"),
+    "voltage": ("V", "voltage that holds the speed"),
+    "amplitude": ("m", "half the range of x1 over a period"),
+    "impacts": ("1", "impacts in a revolution"),
+}
+Variable = tuple[Any, np.ndarray, dict[str, str]]
 
 
 @dataclass(frozen=True)
 class DriveBranchJob(Job):
-    """A branch of each structure over the same speeds.
+    """The branches of both structures over the same range of speeds.
 
     Attributes
     ----------
     structure : Structure
     drive : Drive
-    speeds : tuple of float
+    speeds : (float, float)
         rad/s, rising.
+    pace : Pace
     period : int
-        Revolutions after which the motion repeats.
+        Revolutions after which the delaminated motion repeats.
     steps : int
         Communication steps in a revolution.
     settle : float
@@ -59,7 +72,8 @@ class DriveBranchJob(Job):
 
     structure: Structure
     drive: Drive
-    speeds: tuple[float, ...]
+    speeds: tuple[float, float]
+    pace: Pace
     period: int
     steps: int
     settle: float
@@ -78,157 +92,121 @@ class DriveBranchJob(Job):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Structure], carry: Table | None
     ) -> Table:
-        """The branches of some structures; NaN beyond the end of one."""
-        rows = []
+        """Branches of some structures: each a row of legs, NaN beyond a leg's end."""
+        found = []
         for structure in items:
             with Instance(fmus[OSCILLATOR]) as one, Instance(fmus[SHAKER]) as other:
-                period = 1 if structure.bonded else self.period
-                shooter = Shooter((one, other), structure, self.drive, period, self.steps)
-                rows.append(self.follow(shooter))
-        return {"branch": np.array(rows)}
+                found.append(self.legs((one, other), structure))
+        motions = [[leg.motions for leg in legs] for legs in found]
+        events = [[[event.motion for event in leg.bifurcations] for leg in legs] for legs in found]
+        kinds = [[[event.kind for event in leg.bifurcations] for leg in legs] for legs in found]
+        return {
+            "points": np.array([[self.rows(part) for part in row] for row in motions]),
+            "events": np.array([[self.rows(part) for part in row] for row in events]),
+            "kinds": np.array([[self.codes(part) for part in row] for row in kinds]),
+            "ends": np.array([[ENDS.index(leg.end) for leg in legs] for legs in found]),
+        }
 
-    def follow(self, shooter: Shooter) -> np.ndarray:
-        """Voltage, amplitude and multipliers at each speed, shape (speeds, 2 + MULTIPLIERS)."""
-        table = np.full((len(self.speeds), 2 + MULTIPLIERS), np.nan, dtype=complex)
-        before, now = None, self.first(shooter)
-        for i, speed in enumerate(self.speeds):
-            if i:
-                before, now = now, self.next(shooter, before, now, (i - 1, i))
-            if now is None:
+    def legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
+        """The branch from the lowest speed and, where that ends on the way, from the highest."""
+        omega, drive = structure.omega, self.drive
+        low, high = (speed / omega for speed in self.speeds)
+        sizes = averaged.amplitude(structure, drive, np.linspace(low, high, 2001))
+        length = float(sizes.max()) * drive.length
+        turns = 1 if structure.bonded else self.period
+        shooter = Shooter(fmus, structure, drive, turns, self.steps, length)
+        below = self.leg(shooter, (low, high), up=True)
+        passed = below.end == LIMIT and below.motions[-1].root.unknowns[-1] > 0.5 * (low + high)
+        return [below, Leg(end=NOT_BEGUN) if passed else self.leg(shooter, (low, high), up=False)]
+
+    def leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
+        """The branch from one of two speeds over omega, where a simulation settles."""
+        speed = speeds[0] if up else speeds[1]
+        voltage = float(averaged.no_load_speed(shooter.structure, self.drive, speed))
+        omega = shooter.structure.omega
+        for longer in LONGER:
+            state = shooter.settle(voltage * shooter.volts, speed * omega, longer * self.settle)
+            try:
+                start = motion_near(shooter, np.append(state, [voltage, speed]), up)
                 break
-            values = shooter.multipliers(now)[:MULTIPLIERS]
-            table[i] = [now.voltage, shooter.amplitude(now, speed), *values]
+            except NoConvergenceError:
+                continue
+        else:
+            return Leg(end=NONE)
+        return follow(shooter, start, speeds, self.pace)
+
+    def rows(self, motions: Sequence[Motion]) -> np.ndarray:
+        """Numbers of motions, NaN beyond them, shape (most, numbers)."""
+        table = np.full((self.pace.most, len(TOLD) + MULTIPLIERS), np.nan, dtype=complex)
+        volts, omega = self.drive.volts(self.structure), self.structure.omega
+        for row, motion in zip(table, motions, strict=False):
+            voltage, speed = motion.root.unknowns[-2:]
+            period = motion.period
+            impacts = period.impacts / period.revolutions
+            told = (speed * omega, voltage * volts, period.amplitude, impacts)
+            row[:] = [*told, *motion.multipliers[:MULTIPLIERS]]
         return table
 
-    def first(self, shooter: Shooter) -> Orbit | None:
-        """The motion at the first speed, from a simulation at the averaged theory's voltage."""
-        speed = self.speeds[0]
-        Omega = speed / self.structure.omega
-        voltage = averaged.no_load_speed(self.structure, self.drive, Omega)
-        volts = float(voltage) * self.drive.volts(self.structure)
-        state = shooter.settle(volts, speed, self.settle)
-        return shooter.orbit(Orbit(volts, state, np.empty((0, 0))), speed)
-
-    def next(
-        self, shooter: Shooter, before: Orbit | None, now: Orbit | None, ends: tuple[int, int]
-    ) -> Orbit | None:
-        """The motion at the next speed, by way of speeds between where they are too far apart."""
-        low, high = (self.speeds[i] for i in ends)
-        done, part = 0.0, 1.0
-        slope = (now, 0.0) if before is None else (before, 1.0)
-        while now is not None and done < 1.0:
-            last, distance = slope
-            share = part / distance if distance else 0.0
-            guess = Orbit(
-                now.voltage + share * (now.voltage - last.voltage) if last else now.voltage,
-                now.state + share * (now.state - last.state) if last else now.state,
-                now.jacobian,
-            )
-            found = shooter.orbit(guess, low + (done + part) * (high - low))
-            if found is None:
-                part *= 0.5
-                if part < FINEST:
-                    return None
-                continue
-            slope, now, done = (now, part), found, done + part
-            part = min(2.0 * part, 1.0 - done)
-        return now
+    def codes(self, kinds: Sequence[str]) -> np.ndarray:
+        """Kinds as numbers, -1 beyond them."""
+        numbers = np.full(self.pace.most, -1)
+        known = [EVENTS.index(kind) for kind in kinds][: self.pace.most]
+        numbers[: len(known)] = known
+        return numbers
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Both branches, and their bifurcations."""
         import xarray as xr
 
-        branch = table["branch"]
-        volts, largest = branch[..., 0].real, branch[..., 2:]
-        known = np.isfinite(volts)
-        stable = known & (np.nan_to_num(np.abs(largest[..., 0]), nan=np.inf) < 1.0)
-        over = ("structure", "speed")
-        parts = ((*over, "multiplier"), {"units": "1"})
-        text = "Floquet multipliers of the largest size"
-        variables = {
-            "voltage": (over, volts, {"units": "V", "long_name": "voltage that holds the speed"}),
-            "amplitude": (
-                over,
-                branch[..., 1].real,
-                {"units": "m", "long_name": "half the range of x1 over a period"},
-            ),
-            "stable": (over, stable, {"units": "1", "long_name": "whether the motion is stable"}),
-            "multiplier_real": (
-                parts[0],
-                largest.real,
-                {**parts[1], "long_name": f"{text}, real part"},
-            ),
-            "multiplier_imag": (
-                parts[0],
-                largest.imag,
-                {**parts[1], "long_name": f"{text}, imaginary part"},
-            ),
+        points = table["points"]
+        points = points[:, :, : max(1, int(np.isfinite(points[..., 0]).sum(axis=2).max()))]
+        along = ("structure", "leg", "point")
+        found = told(along, points)
+        stable = np.nan_to_num(np.abs(points[..., len(TOLD)]), nan=np.inf) < 1.0
+        found["stable"] = (along, stable, labels("1", "whether the motion is stable"))
+        ends = np.array(ENDS)[table["ends"]]
+        found["end"] = (along[:2], ends, labels("1", "why the branch ends"))
+        kinds = table["kinds"]
+        chosen = kinds >= 0
+        places = np.argwhere(chosen)
+        found |= {
+            f"bifurcation_{name}": values
+            for name, values in told(("bifurcation",), table["events"][chosen]).items()
         }
+        for name, values, text in (
+            ("structure", np.array(KINDS)[places[:, 0]], "structure"),
+            ("kind", np.array(EVENTS)[kinds[chosen]], "kind of bifurcation"),
+        ):
+            found[f"bifurcation_{name}"] = (("bifurcation",), values, labels("1", text))
         coordinates = {
             "structure": ("structure", list(KINDS), {"long_name": "structure"}),
-            "speed": ("speed", list(self.speeds), {"units": "rad/s", "long_name": "mean speed"}),
+            "leg": ("leg", list(LEGS), {"long_name": "where the branch was begun"}),
         }
-        found = xr.Dataset(variables, coordinates, {"title": "Branches of the weak drive"})
-        return found.assign(self.points(volts, largest))
-
-    def points(self, volts: np.ndarray, largest: np.ndarray) -> dict[str, tuple[object, ...]]:
-        """The bifurcations of both branches as variables over ``point``."""
-        speeds = np.array(self.speeds)
-        rows = [
-            (kind, *point)
-            for kind, row, values in zip(KINDS, volts, largest, strict=True)
-            for point in bifurcations(speeds, row, values)
-        ]
-        names = ("point_structure", "point_kind", "point_speed", "point_voltage")
-        units = ("1", "1", "rad/s", "V")
-        texts = ("structure", "kind of bifurcation", "mean speed", "voltage")
-        columns = list(zip(*rows, strict=True)) if rows else [(), (), (), ()]
-        return {
-            name: (
-                "point",
-                np.array(column, dtype=float if unit != "1" else str),
-                {"units": unit, "long_name": text},
-            )
-            for name, column, unit, text in zip(names, columns, units, texts, strict=True)
-        }
+        return xr.Dataset(found, coordinates, {"title": "Branches of the weak drive"})
 
 
-def bifurcations(
-    speeds: np.ndarray, volts: np.ndarray, largest: np.ndarray
-) -> list[tuple[str, float, float]]:
-    """Folds, and where a multiplier leaves the unit circle elsewhere than at 1.
+def labels(unit: str, text: str) -> dict[str, str]:
+    """Attributes of a variable."""
+    return {"units": unit, "long_name": text}
 
-    Parameters
-    ----------
-    speeds, volts : ndarray, shape (n,)
-        NaN where the branch is not known.
-    largest : ndarray of complex, shape (n, k)
-        Multipliers.
 
-    Returns
-    -------
-    list of (str, float, float)
-        Kind ("fold", "Neimark-Sacker", "period doubling"), speed in rad/s and voltage in V.
-    """
-    from scipy.interpolate import CubicSpline
-
-    known = np.isfinite(volts)
-    if known.sum() < 4:
-        return []
-    speeds, volts, largest = speeds[known], volts[known], largest[known]
-    spline = CubicSpline(speeds, volts)
-    folds = spline.derivative().roots(extrapolate=False)
-    found = [("fold", float(speed), float(spline(speed))) for speed in folds]
-    turned = np.abs(largest.imag) > 1e-6
-    for kind, sizes in (
-        ("Neimark-Sacker", np.where(turned, np.abs(largest), 0.0).max(axis=1)),
-        ("period doubling", np.where(turned, 0.0, -largest.real).max(axis=1)),
-    ):
-        for i in np.flatnonzero(np.diff(np.sign(sizes - 1.0)) != 0.0):
-            share = (1.0 - sizes[i]) / (sizes[i + 1] - sizes[i])
-            speed = float(speeds[i] + share * (speeds[i + 1] - speeds[i]))
-            found.append((kind, speed, float(spline(speed))))
-    return sorted(found, key=lambda point: point[1])
+def told(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Variable]:
+    """Numbers of motions as variables: the last axis is shared out."""
+    found: dict[str, Variable] = {
+        name: (dims, numbers[..., i].real, labels(unit, text))
+        for i, (name, (unit, text)) in enumerate(TOLD.items())
+    }
+    largest = numbers[..., len(TOLD) :]
+    text = "Floquet multipliers of the largest size"
+    parts = {"real": largest.real, "imag": largest.imag}
+    for part, values in parts.items():
+        word = "real" if part == "real" else "imaginary"
+        found[f"multiplier_{part}"] = (
+            (*dims, "multiplier"),
+            values,
+            labels("1", f"{text}, {word} part"),
+        )
+    return found
 
 
 def drive_branch(
@@ -236,13 +214,14 @@ def drive_branch(
     drive: Drive,
     *,
     speed: tuple[float, float] | None = None,
-    count: int = 100,
+    longest: float = 0.05,
+    most: int = 200,
     period: int = 2,
     steps: int = 48,
     settle: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Stationary motions of structure and motor together, stable and unstable, over the speed.
+    """Stationary motions of structure and motor together, stable and unstable, round all folds.
 
     Parameters
     ----------
@@ -250,9 +229,12 @@ def drive_branch(
         Whether it is bonded does not matter: both kinds are answered.
     drive : Drive
     speed : (float, float), optional
-        First and last mean speed, rad/s; by default 0.95 and 1.25 times the resonance.
-    count : int
-        Speeds.
+        Range of the mean speed, rad/s; by default 0.95 and 1.25 times the resonance.
+    longest : float
+        Longest step along the branch, displacements over the averaged theory's largest amplitude,
+        voltage over K omega and speed over omega: 0.05 makes about 70 points.
+    most : int
+        Most points in one direction.
     period : int
         Revolutions after which the delaminated motion repeats; 2 finds those of 1 too.
     steps : int
@@ -265,10 +247,12 @@ def drive_branch(
     Returns
     -------
     xarray.Dataset
-        ``voltage`` (V), ``amplitude`` (m) and ``stable`` over ``structure`` and ``speed`` (rad/s),
-        NaN beyond the end of a branch; real and imaginary part of the largest Floquet multipliers;
-        bifurcations over ``point``: ``point_structure``, ``point_kind``, ``point_speed`` and
-        ``point_voltage``.
+        ``speed`` (rad/s), ``voltage`` (V), ``amplitude`` (m), ``impacts`` in a revolution and
+        ``stable`` over ``structure``, ``leg`` and ``point``, NaN beyond the end of a leg, and
+        ``end`` says why it ends; real and imaginary part of the largest Floquet multipliers. The
+        same of bifurcations over ``bifurcation``, with ``bifurcation_structure`` and
+        ``bifurcation_kind``: fold, period doubling, Neimark-Sacker. The leg from the lowest speed
+        goes up; where it does not arrive at the highest, another one goes down from there.
 
     Raises
     ------
@@ -277,18 +261,21 @@ def drive_branch(
 
     Notes
     -----
-    At a given speed the voltage is one of the unknowns of Newton's method, so folds over the
-    voltage are no obstacle. A branch that turns back over the speed ends there. The angle's own
-    multiplier, 1 for every motion, is not among those given. Bifurcations are interpolated between
-    the speeds: where the peak is narrow they need to be close.
+    Voltage and speed are both unknowns of Newton's method, and Keller's pseudo-arclength equation
+    is the one that is missing then. Bifurcations are roots on the branch, of the tangent's voltage
+    (fold) and of products of the multipliers (the others), to 1e-3 of a step. The angle's own
+    multiplier, 1 for every motion, is not among those given.
 
     Examples
     --------
     >>> from orchestrate import Drive, Structure, drive_branch
     >>> quick = Structure.from_file("quick"), Drive.from_file("quick")
-    >>> found = drive_branch(*quick, speed=(1.26, 1.34), count=6, progress=False)
-    >>> bool(found.voltage.values[0].argmax() == 3)
-    True
+    >>> found = drive_branch(*quick, speed=(1.29, 1.32), longest=0.2, progress=False)
+    >>> bonded = found.bifurcation_structure == "bonded"
+    >>> found.bifurcation_kind[bonded].values.tolist()
+    ['fold']
+    >>> found.bifurcation_voltage[bonded].values.round(4).tolist()
+    [1.5831]
     """
     checked_motor(drive)
     omega = structure.omega
@@ -296,11 +283,20 @@ def drive_branch(
     first, last = (0.95 * resonance, 1.25 * resonance) if speed is None else map(float, speed)
     if not (0.0 < first < last < math.inf):
         raise InputError(f"speed = {speed} rad/s: expected (first, last) with 0 < first < last")
-    for name, number, least in (("count", count, 4), ("period", period, 1), ("steps", steps, 16)):
+    for name, number, least in (("most", most, 2), ("period", period, 1), ("steps", steps, 16)):
         if not isinstance(number, int) or number < least:
             raise InputError(f"{name} = {number}: expected a whole number >= {least}")
+    check("longest", longest, "", low=1e-4, high=1.0)
     settle = 600.0 / omega if settle is None else float(settle)
     check("settle", settle, "s", low=0.0)
-    speeds = tuple(np.linspace(first, last, count).tolist())
-    job = DriveBranchJob("drive_branch", structure, drive, speeds, period, steps, settle)
+    job = DriveBranchJob(
+        "drive_branch",
+        structure,
+        drive,
+        (first, last),
+        Pace(float(longest), most),
+        period,
+        steps,
+        settle,
+    )
     return answer(job, running, finder(running))

@@ -1,8 +1,8 @@
 """Stationary motions of structure and motor together: periodic after some revolutions, by shooting.
 
 Both FMUs are started from a state, stepped together over one period, and compared with where they
-began. At a given mean speed the period is known, and the voltage is one of the unknowns: so a
-branch goes round its folds without more ado, as long as it is one over the speed.
+began. The motor's angle at the start is fixed, voltage and mean speed are two more unknowns: so the
+motions make a curve, which :mod:`orchestrate.dynamics.continuation` follows round all its folds.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..access.instance import Instance
+from ..dynamics.closed_form import Floats
+from ..dynamics.continuation import NoConvergenceError
 from ..errors import FmuError
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -27,26 +29,34 @@ STARTS = {  # start values of the shaker and of the structure by the outputs tha
 }
 
 
-class Orbit(NamedTuple):
-    """A periodic motion.
+class Period(NamedTuple):
+    """What is seen of a motion over a period.
 
     Attributes
     ----------
-    voltage : float
-        V.
-    state : ndarray, shape (n,)
-        Where the angle has its value at the start, each quantity over its unit.
-    jacobian : ndarray, shape (n + 1, n + 2)
-        State and angle a period later by state, voltage and length of the period.
+    amplitude : float
+        Half the range of x1, m.
+    impacts : int
+    revolutions : int
+    clear : int
+        Steps from the start to where the gap is widest.
+    share : float
+        The gap at the start over the widest one; 1 where bonded.
     """
 
-    voltage: float
-    state: np.ndarray
-    jacobian: np.ndarray
+    amplitude: float
+    impacts: int
+    revolutions: int
+    clear: int
+    share: float
 
 
 class Shooter:
-    """Both FMUs, and what a state of theirs is.
+    """Both FMUs as equations whose roots are periodic motions.
+
+    Unknowns are the state where the angle has its value at the start, each quantity over its unit,
+    then the voltage over K omega and the mean speed over omega. The Jacobian is renewed where it is
+    asked for, and follows the residuals by Broyden's secants between.
 
     Parameters
     ----------
@@ -58,6 +68,17 @@ class Shooter:
         After which the motion is to repeat.
     steps : int
         Communication steps in each.
+    length : float
+        Unit of the displacements, m: about the amplitude.
+
+    Attributes
+    ----------
+    size : int
+        Quantities of the state; the voltage's place among the unknowns.
+    angle : float
+        Of the motor at the start, rad.
+    matrix : ndarray, shape (size + 1, size + 2)
+        The residual's Jacobian.
     """
 
     def __init__(
@@ -67,11 +88,12 @@ class Shooter:
         drive: Drive,
         revolutions: int,
         steps: int,
+        length: float,
     ) -> None:
         self.fmus, self.structure, self.drive = fmus, structure, drive
         self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
         self.used = False
-        length, omega = 10.0 * drive.length, structure.omega
+        omega = structure.omega
         masses = ("x1", "v1") if structure.bonded else ("x1", "v1", "x2", "v2")
         self.names = (*masses, "box_position", "box_velocity", "speed")
         units = {"x1": length, "x2": length, "box_position": length, "speed": omega}
@@ -79,9 +101,14 @@ class Shooter:
         if drive.armature_inductance > 0.0:
             self.names = (*self.names, "motor_current")
         self.units = np.array([units.get(name, length * omega) for name in self.names])
-        self.volts = drive.volts(structure)
+        self.volts, self.size = drive.volts(structure), len(self.names)
+        self.scale: Floats = np.ones(self.size + 2)
+        self.matrix: Floats = np.empty((0, 0))
+        self._last: tuple[Floats, Floats] | None = None
 
-    def master(self, state: np.ndarray, voltage: float, h: float) -> Master:
+    # -- both FMUs over a period --
+
+    def master(self, state: Floats, voltage: float, h: float) -> Master:
         """Both FMUs, started from a state."""
         oscillator, shaker = self.fmus
         if self.used:
@@ -98,16 +125,22 @@ class Shooter:
         shaker.initialize(**self.drive.parameters(), **starts, **more)
         return Master(oscillator, shaker, self.structure, Scheme("rollback", h))
 
-    def state_of(self, master: Master) -> np.ndarray:
+    def begin(self, unknowns: Floats) -> tuple[Master, float]:
+        """Both FMUs at the start of a period, and the voltage, V."""
+        voltage = float(unknowns[-2]) * self.volts
+        period = self.turns * TURN / (float(unknowns[-1]) * self.structure.omega)
+        return self.master(unknowns[:-2], voltage, period / self.count), voltage
+
+    def state_of(self, master: Master) -> Floats:
         """The state of both, each quantity over its unit."""
         values = {**master.motion._asdict(), **master.shaking._asdict()}
         if "motor_current" in self.names:
             values["motor_current"] = self.fmus[1].get("motor_current")[0]
         return np.array([values[name] for name in self.names]) / self.units
 
-    def settle(self, voltage: float, speed: float, time: float) -> np.ndarray:
+    def settle(self, voltage: float, speed: float, time: float) -> Floats:
         """The state after a time at a voltage, with the masses apart unless they are bonded."""
-        state = np.zeros(len(self.names))
+        state = np.zeros(self.size)
         state[self.names.index("speed")] = speed / self.structure.omega
         master = self.master(state, voltage, 0.1 / self.structure.omega)
         while master.time < time or self._touching(master):
@@ -120,62 +153,29 @@ class Shooter:
     def _touching(self, master: Master) -> bool:
         return not self.structure.bonded and master.motion.x1 == master.motion.x2
 
-    def after(self, unknowns: np.ndarray, period: float) -> np.ndarray:
-        """State, and angle beyond full turns, a period after the state and voltage in unknowns."""
-        voltage = float(unknowns[-1]) * self.volts
-        master = self.master(unknowns[:-1], voltage, period / self.count)
-        for _ in range(self.count):
-            master.step(voltage)
+    def after(self, unknowns: Floats) -> Floats:
+        """State, and angle beyond full turns, a period later.
+
+        Raises
+        ------
+        NoConvergenceError
+            Where the FMUs cannot begin there, as with masses through each other.
+        """
+        try:
+            master, voltage = self.begin(unknowns)
+            for _ in range(self.count):
+                master.step(voltage)
+        except FmuError as error:
+            raise NoConvergenceError(str(error)) from None
         turned = master.shaking.angle - self.angle - self.turns * TURN
         found = np.append(self.state_of(master), turned)
         master.close()
         return found
 
-    def jacobian(self, unknowns: np.ndarray, period: float, base: np.ndarray) -> np.ndarray:
-        """Derivatives of :meth:`after` by the unknowns and the period's relative length."""
-        change = 1e-5
-        columns = []
-        for i in range(len(unknowns)):
-            name = self.names[i] if i < len(self.names) else ""
-            step = -change if name == "x1" else change  # the masses must not overlap
-            moved = unknowns.copy()
-            moved[i] += step
-            columns.append((self.after(moved, period) - base) / step)
-        columns.append((self.after(unknowns, period * (1.0 + change)) - base) / change)
-        return np.stack(columns, axis=1)
-
-    def orbit(
-        self, guess: Orbit, speed: float, tolerance: float = 1e-8, tries: int = 12
-    ) -> Orbit | None:
-        """The periodic motion at a mean speed, rad/s, by Newton's method; None if there is none.
-
-        The Jacobian of the guess serves as long as the error falls to a tenth each time.
-        """
-        period = self.turns * TURN / speed
-        unknowns = np.append(guess.state, guess.voltage / self.volts)
-        jacobian, error = guess.jacobian, np.inf
-        target = np.eye(len(unknowns))[:, : len(unknowns) - 1]
-        try:
-            for _ in range(tries):
-                found = self.after(unknowns, period)
-                misfit = found - target @ unknowns[:-1]
-                last, error = error, float(np.abs(misfit).max())
-                if error < tolerance:
-                    jacobian = self.jacobian(unknowns, period, found)
-                    return Orbit(unknowns[-1] * self.volts, unknowns[:-1], jacobian)
-                if not jacobian.size or error > 0.1 * last:
-                    jacobian = self.jacobian(unknowns, period, found)
-                slope = jacobian[:, :-1] - np.column_stack([target, np.zeros(len(target))])
-                unknowns = unknowns - np.linalg.solve(slope, misfit)
-        except (FmuError, np.linalg.LinAlgError):  # masses through each other, or nothing to solve
-            return None
-        return None
-
-    def amplitude(self, orbit: Orbit, speed: float) -> float:
-        """Half the range of x1 over a period, m."""
-        h = self.turns * TURN / speed / self.count
-        master = self.master(orbit.state, orbit.voltage, h)
-        seen = [master.motion.x1]
+    def look(self, unknowns: Floats) -> Period:
+        """What a motion does over a period."""
+        master, voltage = self.begin(unknowns)
+        seen, gaps = [master.motion.x1], [master.motion.x2 - master.motion.x1]
 
         def watch(done: Step, h: float) -> None:
             ends = (master.motion, done.motion)
@@ -183,14 +183,73 @@ class Shooter:
 
         master.watch = watch
         for _ in range(self.count):
-            master.step(orbit.voltage)
+            master.step(voltage)
+            gaps.append(master.motion.x2 - master.motion.x1)
         master.close()
-        return 0.5 * (max(seen) - min(seen))
+        impacts = int(self.fmus[0].get("impact_count")[0])
+        clear = int(np.argmax(gaps))
+        share = gaps[0] / gaps[clear] if gaps[clear] > 0.0 else 1.0
+        return Period(0.5 * (max(seen) - min(seen)), impacts, self.turns, clear, share)
 
-    def multipliers(self, orbit: Orbit) -> np.ndarray:
-        """Floquet multipliers: of the map from the angle at the start to the same angle again."""
-        count = len(self.names)
-        flow, drift = orbit.jacobian[:, :count], orbit.jacobian[:, -1]
+    def begin_later(self, unknowns: Floats, steps: int) -> Floats:
+        """Begin periods some steps later from now on; the unknowns of the same motion there."""
+        master, voltage = self.begin(unknowns)
+        for _ in range(steps):
+            master.step(voltage)
+        self.angle = master.shaking.angle % TURN
+        found = np.append(self.state_of(master), unknowns[-2:])
+        master.close()
+        return found
+
+    # -- the equations --
+
+    def residual(self, unknowns: Floats) -> Floats:
+        """What a period changes: of the state, and of the angle beyond full turns."""
+        if self._last is not None and np.array_equal(self._last[0], unknowns):
+            return self._last[1]
+        found = self.after(unknowns)
+        found[: self.size] -= unknowns[: self.size]
+        return found
+
+    def jacobian(self, unknowns: Floats) -> Floats:
+        """The residual's derivative, by the secant from where it was last asked for."""
+        found = self.residual(unknowns)
+        if not self.matrix.size:
+            return self.renew(unknowns)
+        if self._last is not None:
+            way = unknowns - self._last[0]
+            length = float(way @ way)
+            if length > 0.0:
+                change = found - self._last[1] - self.matrix @ way
+                self.matrix = self.matrix + np.outer(change, way) / length
+        self._last = unknowns.copy(), found
+        return self.matrix
+
+    def renew(self, unknowns: Floats, change: float = 1e-5, central: bool = False) -> Floats:
+        """The Jacobian by differences at a root or near one."""
+        base = self.residual(unknowns)
+        columns = []
+        for i in range(len(unknowns)):
+            moved = unknowns.copy()
+            moved[i] += change
+            there = self.residual(moved)
+            if central:
+                moved[i] -= 2.0 * change
+                columns.append((there - self.residual(moved)) / (2.0 * change))
+            else:
+                columns.append((there - base) / change)
+        self.matrix = np.stack(columns, axis=1)
+        self._last = unknowns.copy(), base
+        return self.matrix
+
+    def multipliers(self) -> np.ndarray:
+        """Floquet multipliers by the Jacobian: of the map from the angle at the start to itself.
+
+        The angle's own, 1 for every motion, is not among them.
+        """
+        count = self.size
+        flow = self.matrix[:, :count] + np.eye(count + 1, count)
+        drift = self.matrix[:, -1]  # a longer period is a slower mean speed
         section = flow[:count] - np.outer(drift[:count], flow[count]) / drift[count]
         values = np.linalg.eigvals(section)
         return np.asarray(values[np.argsort(-np.abs(values))])

@@ -1,0 +1,210 @@
+"""A branch of stationary motions, followed by its arclength, with the bifurcations on the way.
+
+A fold is where the voltage turns back along the branch; elsewhere a multiplier leaves the unit
+circle at -1, or a pair of them does. Each is located on the branch itself, not between its points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from ..dynamics.closed_form import Floats
+from ..dynamics.continuation import NoConvergenceError, Root, Walk, corrected, held, null_vector
+from .shooting import Period, Shooter
+
+FOLD, FLIP, TORUS = "fold", "period doubling", "Neimark-Sacker"
+LIMIT, STUCK, LONG, NONE = "limit", "no convergence", "most points", "no motion at the start"
+NOT_BEGUN = "not begun: the other leg has gone all the way"
+ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN)
+ON_CIRCLE = 1e-3  # of a pair that has been located: how far its size may be from 1
+NEAR = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere
+
+
+class Motion(NamedTuple):
+    """A stationary motion on a branch.
+
+    Attributes
+    ----------
+    root : Root
+    matrix : ndarray
+        Jacobian there.
+    multipliers : ndarray of complex
+        Floquet multipliers, the largest first.
+    period : Period
+    """
+
+    root: Root
+    matrix: Floats
+    multipliers: np.ndarray
+    period: Period
+
+
+class Bifurcation(NamedTuple):
+    """A motion at which stability changes, or the voltage turns back."""
+
+    kind: str
+    motion: Motion
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How a branch is followed.
+
+    Attributes
+    ----------
+    longest : float
+        Longest step, in unknowns.
+    most : int
+        Points.
+    """
+
+    longest: float
+    most: int
+
+
+@dataclass
+class Leg:
+    """A branch from one end of the speeds.
+
+    Attributes
+    ----------
+    motions : list of Motion
+    bifurcations : list of Bifurcation
+    end : str
+        Why it ends.
+    """
+
+    motions: list[Motion] = field(default_factory=list)
+    bifurcations: list[Bifurcation] = field(default_factory=list)
+    end: str = ""
+
+
+# -- functions that change their sign at a bifurcation ---------------------------------------------
+
+
+def voltage_ahead(motion: Motion) -> float:
+    """Whether the voltage rises along the branch."""
+    return float(motion.root.tangent[-2])
+
+
+def not_doubled(motion: Motion) -> float:
+    """Product of all 1 + multiplier."""
+    return float(np.prod(1.0 + motion.multipliers).real)
+
+
+def pairs_inside(motion: Motion) -> float:
+    """Product of 1 less the product of two multipliers, over all twos."""
+    return float(np.prod([1.0 - a * b for a, b in combinations(motion.multipliers, 2)]).real)
+
+
+TESTS: dict[str, Callable[[Motion], float]] = {
+    FOLD: voltage_ahead,
+    FLIP: not_doubled,
+    TORUS: pairs_inside,
+}
+
+
+def happens(kind: str, motion: Motion) -> bool:
+    """Whether it is a pair that leaves the circle: two real ones of product 1 do not."""
+    turning = motion.multipliers[np.abs(motion.multipliers.imag) > 1e-6]
+    return kind != TORUS or bool((np.abs(np.abs(turning) - 1.0) < ON_CIRCLE).any())
+
+
+# -- along the branch ------------------------------------------------------------------------------
+
+
+def motion_at(shooter: Shooter, root: Root, ahead: Floats, central: bool = False) -> Motion:
+    """A root as a motion, with its own Jacobian; ``ahead`` is the side of its tangent."""
+    matrix = shooter.renew(root.unknowns, central=central)
+    tangent = null_vector(np.vstack([matrix, ahead]))
+    values = shooter.multipliers()
+    return Motion(replace(root, tangent=tangent), matrix, values, shooter.look(root.unknowns))
+
+
+def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
+    """The motion of a given speed near a guess, to go on up or down the speeds.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where there is none.
+    """
+    shooter.renew(guess)
+    root = corrected(shooter, guess, held(shooter, -1), most=12)
+    ahead = np.zeros_like(guess)
+    ahead[-1] = 1.0 if up else -1.0
+    return motion_at(shooter, root, ahead)
+
+
+def clear_start(shooter: Shooter, motion: Motion) -> Motion:
+    """The same motion, begun where the gap is wide: an impact at the start has no derivative."""
+    if motion.period.share > NEAR:
+        return motion
+    root = motion.root
+    unknowns = shooter.begin_later(root.unknowns, motion.period.clear)
+    matrix = shooter.renew(unknowns)
+    tangent = null_vector(np.vstack([matrix, held(shooter, -2)]))
+    if tangent[-2:] @ root.tangent[-2:] < 0.0:  # voltage and speed are those of before
+        tangent = -tangent
+    moved = replace(root, unknowns=unknowns, tangent=tangent)
+    return motion._replace(root=moved, matrix=matrix)
+
+
+def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: Pace) -> Leg:
+    """Follow a branch until it leaves a range of speeds, over omega, or is lost."""
+    leg = Leg([start])
+    begin = clear_start(shooter, start)
+    walk = Walk(shooter, begin.root, pace.longest, pace.longest, shortest=1e-3 * pace.longest)
+    while not leg.end:
+        if len(leg.motions) >= pace.most:
+            leg.end = LONG
+            break
+        try:
+            root, length, arrived = walk.inside(shooter.size + 1, [speeds])
+            after = motion_at(shooter, root, walk.root.tangent)
+        except NoConvergenceError:
+            leg.end = STUCK
+            break
+        leg.bifurcations += located(walk, leg.motions[-1], after, length)
+        leg.motions.append(after)
+        leg.end = LIMIT if arrived else ""
+        shooter.matrix = after.matrix
+        walk.root = clear_start(shooter, after).root
+    return leg
+
+
+def located(walk: Walk[Shooter], before: Motion, after: Motion, length: float) -> list[Bifurcation]:
+    """Bifurcations in a step, in order."""
+    found = []
+    for kind, test in TESTS.items():
+        if test(before) * test(after) < 0.0:
+            there = locate(walk, test, length)
+            if there is not None and happens(kind, there[1]):
+                found.append((there[0], Bifurcation(kind, there[1])))
+    return [one for _, one in sorted(found, key=lambda each: each[0])]
+
+
+def locate(
+    walk: Walk[Shooter], test: Callable[[Motion], float], length: float, accuracy: float = 1e-3
+) -> tuple[float, Motion] | None:
+    """Where on the way a test is 0: length, to ``accuracy`` of the step, and the motion."""
+    from scipy.optimize import brentq
+
+    known: dict[float, Motion] = {}
+    shooter, ahead = walk.curve, walk.root.tangent
+
+    def value(place: float) -> float:
+        root = walk.at(place) if place else walk.root
+        known[place] = motion_at(shooter, root, ahead, central=True)
+        return test(known[place])
+
+    try:
+        place = brentq(value, 0.0, length, xtol=accuracy * length)
+    except (NoConvergenceError, ValueError):  # ValueError: no change of sign, looked at closely
+        return None
+    return place, known.get(place) or known[min(known, key=lambda other: abs(other - place))]
