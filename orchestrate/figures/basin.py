@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from .style import in_our_look, panels
+from .labels import about, symbol
+from .style import BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, entitle, in_our_look, panels
 
-COLOURS = ("#1b3a5c", "#e8a33d", "#5fa777", "#b8412f", "#8a6bb1")  # of the most frequent attractors
-OTHER = "#cccccc"
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the most frequent attractors
+OTHER = "#bbbbbb"
 
 
 @in_our_look
@@ -24,8 +26,9 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     data : xarray.Dataset
         Of :func:`orchestrate.basin`.
     title : str
+        By default the structure and the excitation.
     names : (str, str)
-        Of both axes; by default those of the coordinates.
+        Of both axes; by default those of the coordinates, with their units.
     """
     figure, (plane,) = panels(1, 1, (8, 6.5))
     y, x = map(str, data.attractor_of.dims)
@@ -34,18 +37,27 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     limits: Any = {"vmin": -0.5, "vmax": len(COLOURS) + 0.5}
     plane.pcolormesh(data[x], data[y], labels, cmap=shades, rasterized=True, **limits)
     label_attractors(plane, data)
-    plane.set(xlabel=names[0] or x, ylabel=names[1] or y, title=title)
+    plane.set(xlabel=names[0] or symbol(x), ylabel=names[1] or symbol(y))
     plane.grid(False)
-    plane.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1))
+    eta = [rf"$\eta$ = {float(data.eta):.4g}"] if "eta" in data.coords else []
+    entitle(figure, title or ", ".join([about(data, ("eta", x, y)), *eta]))
+    figure.legend(loc="outside lower left")
     return figure
 
 
 def label_attractors(plane: Axes, data: xr.Dataset) -> None:
-    """A line in the legend for each attractor that has a colour."""
+    """A line in the legend for each attractor that has a colour, and for what has none."""
     for index, colour in zip(range(data.sizes["attractor"]), COLOURS, strict=False):
         part = data.isel(attractor=index)
         n, impacts = int(part.multiplicity), float(part.impacts_per_period)
-        kind = f"{n if n > 1 else ''}T" if n else "not periodic"
+        kind = f"{n if n > 1 else ''}T-periodic" if n else "not periodic"
         gap, share = float(part.xi_rel_max), float(part.share)
-        text = f"{kind}, {impacts:.2f} impacts per T, largest gap {gap:.3g}: {share:.1%}"
+        text = f"{share:.1%}: {kind}, {impacts:.2f} impacts per T, largest {XI_REL} = {gap:.3g}"
         plane.plot([], [], "s", color=colour, label=text)
+    rest = data.share.values[len(COLOURS) :].sum()
+    if rest:
+        words = f"{rest:.1%}: {data.sizes['attractor'] - len(COLOURS)} others"
+        plane.plot([], [], "s", color=OTHER, label=words)
+    none = float(np.mean(data.attractor_of.values < 0))
+    if none:
+        plane.plot([], [], "s", color="white", markeredgecolor=OTHER, label=f"{none:.1%}: none")

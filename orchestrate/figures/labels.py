@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import xarray as xr
 
@@ -24,7 +26,16 @@ SYMBOLS = {
     "k2": "$k_2$ in N/m",
     "d1": "$d_1$ in N s/m",
     "d2": "$d_2$ in N s/m",
+    "x1": "$x_1$ in m",
+    "x2": "$x_2$ in m",
+    "v1": r"$\dot{x}_1$ in m/s",
+    "v2": r"$\dot{x}_2$ in m/s",
+    "x_rel": "gap $x_2 - x_1$ in m",
+    "v_rel": r"gap velocity $\dot{x}_2 - \dot{x}_1$ in m/s",
+    "phase": "phase of the box in rad",
 }
+USUAL = {"mu": 1.0, "kappa": 1.2, "gamma": 1e-4, "omega": 1.0}  # what a title leaves out
+EXCITATION = ("eta", "frequency", "amplitude")
 
 
 def symbol(name: str) -> str:
@@ -39,6 +50,53 @@ def parameters_text(values: Mapping[str, float]) -> str:
         letter, _, unit = symbol(name).partition(" in ")
         parts.append(f"{letter} = {value:g} {unit}".rstrip())
     return ", ".join(parts)
+
+
+def about(data: xr.Dataset, beside: Iterable[str] = ()) -> str:
+    r"""A dataset's structure and excitation for a title: e, D, and what is not usual.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        With the structure's SI parameters as attributes, as questions give them.
+    beside : iterable of str
+        Names that are told elsewhere, beside the dataset's dimensions.
+
+    Examples
+    --------
+    >>> about(xr.Dataset(attrs=dict(m1=1.0, m2=2.0, k1=1.0, k2=1.2, d1=0.01, d2=0.02, e=0.7)))
+    '$e$ = 0.7, $D$ = 0.005, $\\mu$ = 2'
+    """
+    known = {name: float(value) for name, value in data.attrs.items() if is_number(value)}
+    told = {*map(str, data.dims), *beside}
+    found = {"e": known["e"]} if "e" in known else {}
+    found |= ratios(known)
+    usual = {name for name, value in USUAL.items() if found.get(name) == value}
+    moved = {"D", "D1", "D2"} if "D" in told else set()
+    left_out = told | usual | moved
+    found |= {name: known[name] for name in EXCITATION if name in known}
+    text = parameters_text({name: value for name, value in found.items() if name not in left_out})
+    return text + ", bonded" * bool(known.get("bonded", 0.0))
+
+
+def is_number(value: Any) -> bool:
+    """Whether an attribute is one finite number."""
+    try:
+        return not isinstance(value, str) and math.isfinite(value)
+    except TypeError:
+        return False
+
+
+def ratios(known: Mapping[str, float]) -> dict[str, float]:
+    """The paper's numbers of a structure given in SI (6) to (8), as far as it is known."""
+    if not {"m1", "m2", "k1", "k2", "d1", "d2"} <= set(known):
+        return {}
+    m1, m2, k1, k2 = (known[name] for name in ("m1", "m2", "k1", "k2"))
+    omega = math.sqrt(k1 / m1)
+    D1, D2 = (round(known[d] / (2.0 * omega * m), 12) for d, m in (("d1", m1), ("d2", m2)))
+    damping = {"D": D1} if D1 == D2 else {"D1": D1, "D2": D2}
+    found = {**damping, "mu": m2 / m1, "kappa": k2 / k1, "omega": omega}
+    return found | ({"gamma": known["gamma"]} if "gamma" in known else {})
 
 
 def kind_of(multiplicity: int) -> str:

@@ -1,42 +1,66 @@
-"""Largest Lyapunov exponents over the frequency ratio, coloured by verdict."""
+"""Largest Lyapunov exponents over a parameter, coloured by verdict."""
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import meanings
-from .style import BLACK, BLUE, RED, in_our_look, panels
+from .labels import about, meanings
+from .scales import along, parameter_of
+from .style import BLACK, BLUE, RED, in_our_look, legend_above, panels
 
-COLOURS = {1: RED, 0: BLUE, -1: BLACK}  # by verdict: chaotic, neutral, periodic
-SIGMAS = 3.0  # standard errors a bar is long, up and down
-LOWEST = -0.1
+VERDICTS = {1: (RED, "o"), 0: (BLUE, "s"), -1: (BLACK, ".")}  # chaotic, neutral, periodic
 
 
 @in_our_look
-def draw(*cases: xr.Dataset, titles: tuple[str, ...] = ()) -> Figure:
-    """One panel a case.
+def draw(
+    *cases: xr.Dataset, title: str = "", titles: tuple[str, ...] = (), lowest: float = -0.1
+) -> Figure:
+    """One panel a case; a bar is one standard error, up and down.
 
     Parameters
     ----------
     *cases : xarray.Dataset
-        Of :func:`orchestrate.lyapunov`.
+        Of :func:`orchestrate.lyapunov`, over the same parameter.
+    title : str
+        Of a single case.
     titles : tuple of str
-        One a case, or none.
+        One a case; by default the structures.
+    lowest : float
+        End of the axis; exponents below it are marked at its edge.
     """
-    figure, axes = panels(len(cases), 1, (12, 3.0 * len(cases)), sharex=True, sharey=True)
-    for plane, data, title in zip(axes, cases, titles or ("",) * len(cases), strict=True):
-        names = meanings(data.verdict)
-        for verdict, colour in COLOURS.items():
-            part = data.isel(eta=data.verdict.values == verdict)
-            bars = {"yerr": SIGMAS * part.standard_error, "markersize": 3, "linewidth": 0.5}
-            plane.errorbar(
-                part.eta, part.exponent, fmt=".", color=colour, label=names[verdict], **bars
-            )
-        plane.axhline(0.0, color="0.5", linewidth=0.8)
-        plane.set(ylabel=r"$\lambda$", title=title)
+    size = (12, 0.6 + 2.8 * len(cases))
+    figure, axes = panels(len(cases), 1, size, sharex=True, sharey=True)
     highest = max(float(data.exponent.max()) for data in cases)
-    axes[0].set_ylim(LOWEST, max(0.05, 1.2 * highest))
-    axes[0].legend()
-    axes[-1].set_xlabel(r"$\eta$")
+    least = min(float(data.exponent.min()) for data in cases)
+    lowest = min(max(1.2 * least, lowest), -0.01)
+    axes[0].set_ylim(lowest, max(0.05, 1.2 * highest))
+    names = titles or (*([title] if title else map(about, cases)),)
+    for plane, data, words in zip(axes, cases, names, strict=True):
+        draw_case(plane, data, lowest)
+        plane.axhline(0.0, color="0.5", linewidth=0.8)
+        plane.set(ylabel=r"$\lambda$ per unit of $\tau$", title=words)
+    axes[-1].set_xlabel(along(cases[-1], parameter_of(cases[-1].exponent)).label)
+    legend_above(figure, axes, 6, title="bars: one standard error")
     return figure
+
+
+def draw_case(axes: Axes, data: xr.Dataset, lowest: float) -> None:
+    """Exponents of one case by verdict, each verdict in the legend."""
+    names, parameter = meanings(data.verdict), parameter_of(data.exponent)
+    x = along(data, parameter).values
+    size = float(np.clip(1000.0 / len(x), 2.0, 4.0))
+    for verdict, (colour, shape) in VERDICTS.items():
+        here = data.verdict.values == verdict
+        exponent, error = data.exponent.values[here], data.standard_error.values[here]
+        style: Any = {"fmt": shape, "color": colour, "markersize": size, "linewidth": 0.7}
+        axes.errorbar(x[here], exponent, yerr=error, label=names[verdict], **style)
+    below = data.exponent.values < lowest
+    if below.any():
+        edge = axes.get_xaxis_transform()
+        style = {"color": BLACK, "markersize": 4, "label": f"periodic, below {lowest:.2g}"}
+        axes.plot(x[below], np.full(below.sum(), 0.02), "v", transform=edge, **style)

@@ -1,4 +1,4 @@
-"""Maps over frequency and another parameter: impacts, multiplicity, largest gap and impulse."""
+"""Maps over two parameters: impacts, multiplicity, largest gap and impulse, exponent."""
 
 from __future__ import annotations
 
@@ -9,65 +9,101 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
-from .labels import symbol
-from .style import in_our_look, panels
+from .labels import about, symbol
+from .scales import along
+from .style import (
+    BLACK,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    XI_REL,
+    YELLOW,
+    entitle,
+    in_our_look,
+    panels,
+)
+
+FREQUENCIES = ("eta", "frequency")
 
 COLUMNS = {
     "impacts_per_period": "impacts per $T$",
     "multiplicity": "multiplicity",
-    "xi_rel_max": r"max $\xi_{Rel}$",
-    "impulse_max": "largest impulse",
+    "xi_rel_max": f"largest {XI_REL}",
+    "impulse_max": r"largest impulse over $m_1 \omega a \eta^2$",
+    "exponent": r"$\lambda$ per unit of $\tau$",
 }
 SHADES = (
-    *("#1f77b4", "#ff7f0e", "#2ca02c", "#9467bd", "#8c564b", "#e377c2", "#bcbd22"),  # 1 to 7
-    *("#17becf", "#222222"),  # 8 and more, none
+    *("#dfe6ee", SKY, GREEN, YELLOW, ORANGE, RED, PURPLE),  # 1 to 7
+    *("#7a4a1e", BLACK),  # 8 and more, none
 )
 KINDS = ("1", "2", "3", "4", "5", "6", "7", "8+", "none")
+NOTHING = "#d9d9d9"  # no impacts
 
 
 @in_our_look
-def draw(*maps: xr.Dataset) -> Figure:
+def draw(*maps: xr.Dataset, title: str = "") -> Figure:
     """One row of maps a dataset.
 
     Parameters
     ----------
     *maps : xarray.Dataset
-        Of :func:`orchestrate.map`, over ``eta`` and another parameter; of ``COLUMNS`` those
-        are drawn that all datasets have.
+        Of :func:`orchestrate.map`; of ``COLUMNS`` those are drawn that all datasets have. The
+        frequency, if it is one of the parameters, runs to the right.
+    title : str
+        Of all; by default the structure of each row.
     """
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
-    figure, axes = panels(len(maps), len(columns), (3.75 * len(columns), 3.4 * len(maps)))
+    size = (max(3.75 * len(columns), 5.0), 0.4 + 3.3 * len(maps))
+    figure, axes = panels(len(maps), len(columns), size)
+    entitle(figure, title)
     for row, data in enumerate(maps):
-        (parameter,) = map(str, set(data[columns[0]].dims) - {"eta"})
+        first, second = map(str, data[columns[0]].dims)
+        up, right = (second, first) if first in FREQUENCIES else (first, second)
         for column, name in enumerate(columns):
             plane = axes[row * len(columns) + column]
-            draw_map(plane, data[name].transpose(parameter, "eta"))
-            plane.set_title(COLUMNS[name] if row == 0 else "")
-            plane.set(ylabel="" if column else symbol(parameter), xlabel=r"$\eta$")
+            draw_map(plane, data[name].transpose(up, right), along(data, right).values)
+            words = "" if column or title else about(data)
+            plane.set_title("\n".join(filter(None, [words, COLUMNS[name]])))
+            label = along(data, right).label
+            plane.set(ylabel="" if column else symbol(up), xlabel=label)
     return figure
 
 
-def draw_map(plane: Axes, data: xr.DataArray) -> None:
+def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray) -> None:
     """One map with its colour bar; a parameter in equal ratios on a logarithmic axis."""
-    parameter = data.dims[0]
+    parameter = str(data.dims[0])
     values, shades = shading(str(data.name), data.values)
-    picture = plane.pcolormesh(data.eta, data[parameter], values, rasterized=True, **shades)
+    picture = plane.pcolormesh(x, data[parameter], values, rasterized=True, **shades)
     bar = plane.figure.colorbar(picture, ax=plane)
     if data.name == "multiplicity":
         bar.set_ticks(range(1, 10), labels=KINDS)
+        bar.ax.minorticks_off()
+    if data.name == "impacts_per_period":
+        bar.ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        bar.ax.yaxis.set_major_formatter("{x:g}")
+        bar.ax.minorticks_off()
+    if np.ma.is_masked(values):
+        plane.set_facecolor(NOTHING)
+        bar.ax.set_xlabel("grey: none", fontsize=7)
     plane.set_yscale("log" if in_equal_ratios(data[parameter].values) else "linear")
     plane.grid(False)
 
 
 def shading(name: str, values: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
-    """The values of a quantity as they are coloured, and how."""
+    """The values of a quantity as they are coloured, and how; what is 0 has no logarithm."""
     if name == "multiplicity":
         shown = np.where(values == 0, 9, np.minimum(values, 8))
         return shown, {"vmin": 0.5, "vmax": 9.5, "cmap": ListedColormap(SHADES)}
-    if name == "impacts_per_period":
-        return values, {"vmin": 0, "vmax": 10}
-    return values, {"norm": LogNorm(*np.quantile(values[values > 0.0], (0.01, 1.0)))}
+    if name == "exponent":
+        reach = float(np.nanmax(np.abs(values)))
+        return values, {"vmin": -reach, "vmax": reach, "cmap": "PuOr_r"}
+    some = values[values > 0.0]
+    shown = np.ma.masked_less_equal(values, 0.0)
+    return shown, {"norm": LogNorm(some.min(), some.max()) if some.size else None}
 
 
 def in_equal_ratios(values: np.ndarray) -> bool:

@@ -1,42 +1,140 @@
-"""A motion in time: both masses, the gap with its impacts, and the contact force."""
+"""A motion in time: both masses, gap, impacts and contact force; phase planes and spectrum."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLACK, BLUE, GREY, RED, in_our_look, panels
+from .labels import about
+from .scales import in_si, prefix
+from .style import BLACK, BLUE, GREY, RED, entitle, in_our_look, say
+
+PLACES: list[Any] = [["masses", "phases"], ["gap", "relative"], ["force", "spectrum"]]
+MASSES: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("1", {"color": BLUE, "linewidth": 1.4, "label": "mass 1"}),
+    ("2", {"color": RED, "linewidth": 1.0, "linestyle": "--", "label": "mass 2"}),
+)
+GLUED: dict[str, Any] = {"color": GREY, "linewidth": 3.0, "alpha": 0.6, "zorder": 1}
+GLUED["label"] = "both, bonded"
+LEAST = 4  # periods that a spectrum takes
 
 
 @in_our_look
 def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
-    """Draw a motion over the periods of the excitation.
+    """Draw a motion over the periods of the excitation, and what it is made of.
 
     Parameters
     ----------
     data : xarray.Dataset
         Of :func:`orchestrate.simulate`.
     title : str
-        What moves.
+        What moves; by default the structure and the excitation.
     bonded : xarray.Dataset, optional
-        The same of the bonded structure, drawn beside it.
+        The same of the bonded structure, drawn behind it.
     """
-    figure, (top, middle, bottom) = panels(3, 1, (12, 8), sharex=True, height_ratios=(2, 2, 1))
-    turns = data.periods_done.values
-    top.plot(turns, data.x1, color=BLUE, linewidth=1.0, label="$x_1$")
-    top.plot(turns, data.x2, "--", color=RED, linewidth=1.0, label="$x_2$")
+    figure = Figure(figsize=(13, 8), layout="constrained")
+    axes = figure.subplot_mosaic(PLACES, width_ratios=(2.2, 1))
+    entitle(figure, title or about(data))
+    reach = max(float(np.abs(data[name]).max()) for name in ("x1", "x2"))
+    factor, letter = prefix(reach)
+    draw_histories(axes, data, factor, letter)
+    draw_planes(axes["phases"], axes["relative"], data, factor, letter)
+    top = draw_spectrum(axes["spectrum"], data, MASSES)
     if bonded is not None:
-        label = "$x_1 = x_2$, bonded"
-        top.plot(bonded.periods_done, bonded.x1, color=GREY, linewidth=1.0, label=label)
-    top.set(ylabel="displacement in m", title=title)
-    top.legend(loc="upper right")
-    middle.plot(turns, data.x_rel, color=BLACK, linewidth=1.0)
-    at = np.interp(data.impact_time.values, data.time.values, turns)
-    label = f"{data.sizes['impact']} impacts"
-    middle.plot(at, np.zeros_like(at), "|", color=RED, markersize=8, label=label)
-    middle.set_ylabel("gap $x_2 - x_1$ in m")
-    middle.legend(loc="upper right")
-    bottom.plot(turns, data.contact_force, color=GREY, linewidth=1.0)
-    bottom.set(ylabel="contact force in N", xlabel="$t/T$", xlim=(turns[0], turns[-1]))
+        axes["masses"].plot(bonded.periods_done, bonded.x1 / factor, **GLUED)
+        axes["phases"].plot(bonded.x1 / factor, bonded.v1 / prefix(speed_of(data))[0], **GLUED)
+        top = max(top, draw_spectrum(axes["spectrum"], bonded, (("1", GLUED),)))
+    axes["spectrum"].set_ylim(1e-5 * (top or 1.0), 2.0 * (top or 1.0))
+    above: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
+    axes["masses"].legend(ncols=3, **above)
+    axes["gap"].legend(**above)
     return figure
+
+
+def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, letter: str) -> None:
+    """Both masses, the gap with its impacts, and the contact force."""
+    turns = data.periods_done.values
+    time, gap, _ = relative(data)
+    for number, style in MASSES:
+        axes["masses"].plot(turns, data[f"x{number}"] / factor, **style)
+    axes["masses"].set_ylabel(f"displacement in {letter}m")
+    at = np.interp(data.impact_time.values, data.time.values, turns)
+    axes["gap"].plot(np.interp(time, data.time, turns), gap / factor, color=BLACK, linewidth=1.0)
+    axes["gap"].set_ylabel(f"gap $x_2 - x_1$ in {letter}m")
+    count = data.sizes["impact"]
+    label = f"{count} impact{'s' * (count != 1)}" if count else "no impacts"
+    axes["gap"].plot(at, np.zeros_like(at), "|", color=RED, markersize=8, label=label)
+    axes["force"].set(ylabel="contact force in N", xlabel="time in periods, $t/T$")
+    if float(data.contact_force.max()):
+        axes["force"].plot(turns, data.contact_force, color=BLACK, linewidth=1.0)
+    else:
+        say(axes["force"], "no permanent contact")
+    for name in ("masses", "gap"):
+        axes[name].sharex(axes["force"])
+        axes[name].tick_params(labelbottom=False)
+    axes["force"].set_xlim(turns[0], turns[-1])
+
+
+def draw_planes(masses: Axes, plane: Axes, data: xr.Dataset, factor: float, letter: str) -> None:
+    """The phase planes of both masses, and of their relative motion."""
+    slow, prefixed = prefix(speed_of(data))
+    for number, style in MASSES:
+        masses.plot(data[f"x{number}"] / factor, data[f"v{number}"] / slow, **style)
+    masses.set(xlabel=f"displacement in {letter}m", ylabel=f"velocity in {prefixed}m/s")
+    _, gap, rate = relative(data)
+    plane.plot(gap / factor, rate / slow, color=BLACK, linewidth=0.8)
+    plane.set(xlabel=f"gap in {letter}m", ylabel=f"gap velocity in {prefixed}m/s")
+
+
+def speed_of(data: xr.Dataset) -> float:
+    """The largest speed of a mass."""
+    return max(float(np.abs(data[name]).max()) for name in ("v1", "v2"))
+
+
+def relative(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time, gap and gap velocity, with both sides of each impact (14) among the points."""
+    at, closing = data.impact_time.values, data.impact_velocity.values
+    after = np.where(data.sticks.values == 1, 0.0, float(data.attrs.get("e", 0.0)) * closing)
+    time = np.concatenate([data.time.values, at, at])
+    gap = np.concatenate([data.x_rel.values, 0.0 * at, 0.0 * at])
+    rate = np.concatenate([data.v_rel.values, -closing, after])
+    order = np.argsort(time, kind="stable")
+    return time[order], gap[order], rate[order]
+
+
+def draw_spectrum(
+    axes: Axes, data: xr.Dataset, masses: Iterable[tuple[str, dict[str, Any]]], highest: float = 20
+) -> float:
+    """Amplitudes of accelerations in the box, the impacts' impulses in them; the largest."""
+    turns, time = data.periods_done.values, data.time.values
+    periods = float(turns[-1] - turns[0])
+    if periods < LEAST:
+        if not axes.texts:
+            say(axes, f"a spectrum takes {LEAST} periods")
+        return 0.0
+    base, top = periods / (time[-1] - time[0]), 0.0
+    for number, style in masses:
+        frequency, amplitude = spectrum(data[f"x{number}"].values[1:], time[1] - time[0])
+        shown = (frequency > 0.25 * base) & (frequency <= highest * base)
+        top = max(top, float(amplitude[shown].max(initial=0.0)))
+        orders = frequency / (1.0 if in_si(data) else base)
+        axes.semilogy(orders[shown], amplitude[shown], **style)
+    unit = "in Hz" if in_si(data) else r"over $\Omega/2\pi$"
+    axes.set(xlabel=f"frequency {unit}", ylabel="acceleration in m/s$^2$")
+    return top
+
+
+def spectrum(displacement: np.ndarray, interval: float) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies in Hz, and (2 pi f)^2 times the displacement's amplitudes (Hann window).
+
+    An impulse is a kink of the displacement, so it is in them.
+    """
+    from scipy.signal import periodogram
+
+    frequency, power = periodogram(displacement, 1.0 / interval, "hann", scaling="spectrum")
+    return frequency, (2.0 * np.pi * frequency) ** 2 * np.sqrt(2.0 * power)

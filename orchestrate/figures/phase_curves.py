@@ -11,7 +11,17 @@ from matplotlib.figure import Figure
 
 from .curve_data import panel_of, relative
 from .labels import meanings
-from .style import BLACK, BLUE, GREY, RED, XI_REL, XI_REL_RATE, in_our_look, panels
+from .style import (
+    BLACK,
+    BLUE,
+    GREY,
+    RED,
+    XI_REL,
+    XI_REL_RATE,
+    in_our_look,
+    legend_above,
+    panels,
+)
 
 KIND_COLOURS = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent contact
 CONTACT = 2
@@ -36,7 +46,7 @@ def draw_states(data: xr.Dataset) -> Figure:
     title = r"(a) both masses: solid $\xi_1$, dashed $\xi_2$"
     left.set(title=title, xlabel=r"$\xi_i$", ylabel=r"$\xi'_i$")
     right.set(title="(b) relative motion", xlabel=XI_REL, ylabel=XI_REL_RATE)
-    right.legend()
+    legend_above(figure, [right])
     return figure
 
 
@@ -80,5 +90,5 @@ def draw_masses(data: xr.Dataset) -> Figure:
         plane.set_xlabel(r"$\xi_i$")
         plane.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
     axes[0].set_ylabel(r"$\xi'_i$")
-    axes[0].legend()
+    legend_above(figure, axes[:1])
     return figure

@@ -1,43 +1,77 @@
-"""Amplitude spectra under harmonic excitation, bonded against delaminated."""
+"""Amplitude spectra under harmonic excitation, bonded beside delaminated."""
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLACK, BLUE, RED, in_our_look, panels
+from .labels import about
+from .scales import in_si
+from .style import BLACK, BLUE, ORANGE, entitle, in_our_look, legend_above, panels
 
-FLOOR = 1e-4  # of the largest amplitude: the lower end of the axis
-LINES = {  # by kind, in the order of drawing: colour, width, label
-    "delaminated": (BLACK, 0.9, "delaminated"),
-    "sampled": (RED, 0.6, "delaminated, sampled acceleration"),
-    "bonded": (BLUE, 1.6, "bonded"),
-}
+SIDES: tuple[dict[str, dict[str, Any]], ...] = (  # left and right; a thin line lies on a wide one
+    {"bonded": {"color": BLUE, "linewidth": 1.2, "label": "bonded"}},
+    {
+        "delaminated": {"color": BLACK, "linewidth": 1.3, "label": "delaminated"},
+        "sampled": {
+            "color": ORANGE,
+            "linewidth": 0.6,
+            "label": "delaminated, sampled: without the impulses of the impacts",
+        },
+    },
+)
 
 
 @in_our_look
-def draw(data: xr.Dataset, mass: int = 1) -> Figure:
-    """One panel a frequency.
+def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> Figure:
+    """A row a frequency, the bonded structure left and the delaminated one right.
 
     Parameters
     ----------
     data : xarray.Dataset
         Of :func:`orchestrate.spectra`.
+    title : str
+        What is the same in all panels; by default the structure.
     mass : int
         1 or 2.
+    decades : int
+        Of the axis, down from the largest line of each row.
     """
-    along = data.acceleration.dims[0]
+    shown = data.acceleration.sel(mass=mass)
+    along = str(shown.dims[0])
     count = data.sizes[along]
-    figure, axes = panels(count, 1, (11, 3.0 * count), sharex=True)
-    for index, plane in enumerate(axes):
-        part = data.acceleration.sel(mass=mass).isel({along: index})
-        top = float(part.max())
-        for kind, (colour, width, label) in LINES.items():
-            amplitude = part.sel(kind=kind)
-            plane.semilogy(data.order, amplitude, color=colour, linewidth=width, label=label)
-        title = rf"$\eta = {float(part.eta):.3f}$"
-        plane.set(title=title, ylabel="amplitude in m/s$^2$", ylim=(FLOOR * top, 2.0 * top))
-    axes[0].legend()
-    axes[-1].set_xlabel(r"multiples of $\eta$")
-    axes[-1].set_xlim(0, float(data.order.max()))
+    figure, axes = panels(count, 2, (12, 0.8 + 2.6 * count), sharex=not in_si(data), sharey="row")
+    entitle(figure, title or about(data))
+    for index in range(count):
+        part = shown.isel({along: index})
+        for plane, kinds in zip(axes[2 * index : 2 * index + 2], SIDES, strict=True):
+            draw_panel(plane, data, part, kinds)
+        top = float(part.max()) or 1.0
+        axes[2 * index].set_ylim(10.0**-decades * top, 2.0 * top)
+        axes[2 * index].set_ylabel(f"acceleration\nof mass {mass} in m/s$^2$")
+    for plane in axes if in_si(data) else axes[-2:]:
+        unit = "in Hz" if in_si(data) else r"over $\Omega$"
+        plane.set_xlabel(f"frequency of the line {unit}")
+    columns = sum(map(len, SIDES))
+    left_out = f"what is below {10.0**-decades:g} of the largest line is left out"
+    legend_above(figure, axes[:2], columns, title=left_out)
     return figure
+
+
+def draw_panel(
+    axes: Axes, data: xr.Dataset, amplitudes: xr.DataArray, kinds: dict[str, dict[str, Any]]
+) -> None:
+    """Some kinds of lines at one frequency."""
+    si = in_si(data)
+    speed = float(amplitudes.frequency)
+    lines = data.order.values * (speed / (2.0 * np.pi) if si else 1.0)
+    for kind, style in kinds.items():
+        if kind in data.kind.values:
+            axes.semilogy(lines, amplitudes.sel(kind=kind), **style)
+    place = f"{speed / (2.0 * np.pi):.4g} Hz" if si else rf"$\eta$ = {float(amplitudes.eta):.4g}"
+    axes.set_title(f"{next(iter(kinds))}, {place}")
+    axes.set_xlim(0.0, float(lines.max()))

@@ -3,29 +3,40 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+import textwrap
+from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 from typing import Any, ParamSpec
 
 import matplotlib.style
+from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+# colours that people tell apart however they see them: Okabe and Ito, Color Universal Design (2008)
+BLACK, GREY = "#000000", "#8c8c8c"
+BLUE, RED, GREEN = "#0072b2", "#d55e00", "#009e73"
+ORANGE, SKY, PURPLE, YELLOW = "#e69f00", "#56b4e9", "#cc79a7", "#f0e442"
+PALETTE = (BLUE, ORANGE, GREEN, RED, PURPLE, SKY, YELLOW)
 LOOK: dict[str, Any] = {
     "axes.grid": True,
+    "axes.axisbelow": True,
     "grid.alpha": 0.25,
+    "axes.prop_cycle": cycler(color=PALETTE),
     "axes.titlelocation": "left",
     "axes.titlesize": 9,
     "axes.labelsize": 10,
     "xtick.labelsize": 8,
     "ytick.labelsize": 8,
     "legend.fontsize": 8,
+    "legend.title_fontsize": 8,
+    "figure.titlesize": 10,
     "savefig.dpi": 130,
     "svg.fonttype": "none",
     "svg.hashsalt": "vibroimpact",  # the same picture is the same bytes
 }
-BLACK, BLUE, RED, GREY = "black", "tab:blue", "tab:red", "0.55"
 XI_REL, XI_REL_RATE = r"$\xi_{\mathrm{Rel}}$", r"$\xi'_{\mathrm{Rel}}$"
+LETTERS_AN_INCH = 14  # of a title
 
 Arguments = ParamSpec("Arguments")
 
@@ -62,3 +73,37 @@ def panels(
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, **more)
     return figure, list(axes.ravel())
+
+
+def entitle(figure: Figure, title: str) -> None:
+    """A title above all panels, on as many lines as it needs."""
+    if title:
+        letters = int(LETTERS_AN_INCH * figure.get_figwidth())
+        figure.suptitle(textwrap.fill(title, letters), x=0.01, ha="left")
+
+
+def legend_above(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:
+    """One legend for some panels, above them, where it covers nothing; each word once.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    axes : iterable of Axes
+    columns : int
+        At the most.
+    **more
+        Of :meth:`matplotlib.figure.Figure.legend`.
+    """
+    words: dict[str, Any] = {}
+    for plane in axes:
+        handles, labels = plane.get_legend_handles_labels()
+        words = {**dict(zip(labels, handles, strict=True)), **words}
+    if words:
+        place: Any = {"loc": "outside upper right", "ncols": min(columns, len(words))}
+        figure.legend(list(words.values()), list(words), **place, **more)
+
+
+def say(axes: Axes, words: str) -> None:
+    """Words in the middle of a panel that has nothing to show."""
+    middle: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
+    axes.text(0.5, 0.5, words, color=GREY, fontsize=11, **middle)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from ..running.executors import Processes, at_work
 from ..running.store import load
-from .cases import CASES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,19 +20,11 @@ ORBITS = {"6": "elastic", "10": "damped", "11": "plastic"}  # figures that are s
 FORMATS = ("png", "pdf")
 
 
-def title(case: str) -> str:
-    """Restitution and damping of one of the paper's structures."""
-    from ..figures.labels import parameters_text
-
-    structure = CASES[case]
-    return parameters_text({"e": structure.e, "D": structure.get("D")})
-
-
 def orbit(name: str, data: xr.Dataset) -> Figure:
     """Figures 6, 10 and 11."""
     from ..figures import orbit_diagram
 
-    return orbit_diagram.draw(data, title(ORBITS[name]))
+    return orbit_diagram.draw(data)
 
 
 def curves(name: str, data: xr.Dataset) -> Figure:
@@ -52,7 +43,7 @@ def exponents(name: str, *data: xr.Dataset) -> Figure:
     """Exponents of the three cases."""
     from ..figures import lyapunov
 
-    return lyapunov.draw(*data, titles=tuple(map(title, CASES)))
+    return lyapunov.draw(*data)
 
 
 def attractors(name: str, data: xr.Dataset) -> Figure:
@@ -65,10 +56,12 @@ def attractors(name: str, data: xr.Dataset) -> Figure:
 def basin(name: str, data: xr.Dataset) -> Figure:
     """The plane of starts."""
     from ..figures import basin as figure
+    from ..figures.labels import about
     from ..figures.style import XI_REL, XI_REL_RATE
 
-    eta = float(data.eta)
-    return figure.draw(data, rf"$\eta = {eta:.3f}$", (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
+    replaced = "frequency", "amplitude"  # by what the job has found
+    title = rf"{about(data, replaced)}, $\eta$ = {float(data.eta):.3f}"
+    return figure.draw(data, title, (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
 
 
 def maps(name: str, *data: xr.Dataset) -> Figure:

@@ -1,0 +1,68 @@
+"""Which numbers an axis shows: hertz and metres for a structure in SI, else the paper's ratios."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from .labels import is_number, symbol
+from .style import XI_REL
+
+PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
+HERTZ = r"frequency $\Omega/2\pi$ in Hz"
+
+
+class Along(NamedTuple):
+    """What the horizontal axis shows.
+
+    Attributes
+    ----------
+    values : ndarray
+    label : str
+    """
+
+    values: np.ndarray
+    label: str
+
+
+def parameter_of(data: xr.DataArray) -> str:
+    """The dimension that a quantity runs along, beside the direction and the structure."""
+    (name,) = (str(name) for name in data.dims if name not in ("direction", "structure"))
+    return name
+
+
+def in_si(data: xr.Dataset) -> bool:
+    """Whether a structure is told in SI: omega is not 1 rad/s, or frequencies were asked for."""
+    known = all(is_number(data.attrs.get(name)) for name in ("k1", "m1"))
+    own = known and not math.isclose(data.attrs["k1"], data.attrs["m1"], rel_tol=1e-9)
+    return bool(own or "frequency" in data.dims)
+
+
+def along(data: xr.Dataset, parameter: str) -> Along:
+    """The parameter's values: frequencies of a structure in SI in hertz."""
+    if parameter in ("eta", "frequency") and "frequency" in data.coords and in_si(data):
+        return Along(data.frequency.values / (2.0 * np.pi), HERTZ)
+    return Along(data[parameter].values, symbol(parameter))
+
+
+def prefix(largest: float) -> tuple[float, str]:
+    """The largest SI prefix of a length that leaves it at least 1, and its factor.
+
+    Examples
+    --------
+    >>> prefix(0.004)
+    (0.001, 'm')
+    """
+    return next(((f, name) for f, name in PREFIXES if largest >= f), PREFIXES[0])
+
+
+def gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
+    """Gaps over a eta^2 as an axis shows them, in m for a structure in SI, and their label."""
+    if not (in_si(data) and {"amplitude", "eta"} <= set(data.coords)):
+        return values, XI_REL
+    metres = values * data.amplitude * data.eta**2
+    factor, name = prefix(float(metres.max()))
+    return metres / factor, f"gap $x_2 - x_1$ in {name}m"
