@@ -11,12 +11,13 @@ What is described
     harmonic motion, and a motor of limited power that shakes the box; in SI or by the paper's
     numbers, in Python or in TOML files.
 What is asked
-    :func:`simulate`, :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`,
-    :func:`attractors`, :func:`basin`, :func:`impact_statistics`; :func:`orbit`, :func:`branch`,
-    :func:`border` for what is periodic; :func:`couple`, :func:`capture`, :func:`passage`,
-    :func:`waterfall`, :func:`jump_voltages`, :func:`drive_branch` and :func:`drive_spectra` for
-    the weak drive, its voltage a :class:`Course`, a :class:`SpeedControl` or a
-    :class:`SpeedGradient` too; :func:`write_ssp` for other tools.
+    :func:`simulate`, :func:`resonance`, :func:`sweep`, :func:`spectra`; :func:`map`,
+    :func:`lyapunov`, :func:`attractors`, :func:`basin`, :func:`impact_statistics`;
+    :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
+    :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
+    :func:`drive_branch` and :func:`drive_spectra` for the weak drive, its voltage a
+    :class:`Course`, a :class:`SpeedControl` or a :class:`SpeedGradient` too; :func:`write_ssp`
+    for other tools.
 What is answered
     An :class:`xarray.Dataset` with units, long names, all parameters, and where it comes from.
 
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from .dynamics.orbits import orbit
     from .dynamics.parameter_map import map
     from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
+    from .response.resonance import resonance
     from .response.simulate import simulate
     from .response.spectra import spectra
     from .response.sweep import sweep
@@ -83,6 +85,7 @@ __all__ = [
     "map",
     "orbit",
     "passage",
+    "resonance",
     "simulate",
     "spectra",
     "sweep",
@@ -96,6 +99,7 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
         *("VibroimpactError", "WorkerError"),
     ),
     "response.simulate": ("simulate",),
+    "response.resonance": ("resonance",),
     "response.sweep": ("sweep",),
     "response.spectra": ("spectra",),
     "dynamics.parameter_map": ("map",),

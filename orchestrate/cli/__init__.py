@@ -15,15 +15,35 @@ from pathlib import Path
 
 from ..errors import InputError, StaleError, VibroimpactError
 from ..version import __version__
-from . import build, couple, paper, simulate, spectra, sweep
+from . import (
+    attractors,
+    basin,
+    border,
+    branch,
+    build,
+    couple,
+    lyapunov,
+    map,
+    orbit,
+    paper,
+    resonance,
+    simulate,
+    spectra,
+    sweep,
+)
 from .options import Commands, sets_text
 
-COMMANDS = (build, simulate, sweep, spectra, couple, paper)
+COMMANDS = (
+    *(build, simulate, resonance, spectra, sweep, map),
+    *(lyapunov, attractors, basin, orbit, branch, border),
+    *(couple, paper),
+)
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 EXAMPLES = """examples:
   {program} build
   {program} sweep
   {program} sweep --set e=0.3 --eta 0.9:1.1:0.001
+  {program} resonance --structure beam --hz 8:20:0.05 --g 0.02
   {program} COMMAND --help
 
 sets of parameters that come with the package, for --structure and --drive:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -151,19 +151,6 @@ def structure_of(arguments: argparse.Namespace) -> Structure:
     return Structure.from_file(arguments.structure).replace(**changes_of(arguments.set))
 
 
-def title_of(structure: Structure) -> str:
-    """A structure for the title of a picture: restitution and damping, and what is not default."""
-    from ..figures.labels import parameters_text
-
-    one_ratio = structure.D1 == structure.D2
-    names = ["e", *(("D",) if one_ratio else ("D1", "D2"))]
-    usual = type(structure)()
-    for name in ("mu", "kappa", "gamma", "omega"):
-        if structure.get(name) != usual.get(name):
-            names.append(name)
-    return parameters_text({name: structure.get(name) for name in names})
-
-
 # -- motor and box ---------------------------------------------------------------------------------
 
 
@@ -294,23 +281,58 @@ def each(change: Callable[[float], float], values: float | tuple[float, ...]) ->
     return tuple(map(change, values)) if isinstance(values, tuple) else change(values)
 
 
-def excitation_text(question: Mapping[str, Any]) -> dict[str, float]:
-    """The box's motion in numbers for a title: what is one number of it."""
-    names = ("eta", "frequency", "amplitude")
-    return {name: question[name] for name in names if isinstance(question.get(name), float)}
+# -- plain numbers --------------------------------------------------------------------------------
+
+
+def add_numbers(option: Callable[..., Any], **numbers: tuple[int | float, str]) -> None:
+    """Options for numbers, whole where the default is.
+
+    Parameters
+    ----------
+    option : callable
+        Adds an option to a group.
+    **numbers
+        Default and meaning of each.
+    """
+    for name, (default, text) in numbers.items():
+        option(
+            f"--{name.replace('_', '-')}",
+            type=type(default),
+            default=default,
+            metavar="N" if isinstance(default, int) else "X",
+            help=f"{text} (default: %(default)s)",
+        )
+
+
+def numbers_of(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
+    """Some of the options as keywords of the public API."""
+    return {name: getattr(arguments, name) for name in names}
+
+
+def state_of(option: str, text: str | None) -> tuple[float, ...] | None:
+    """A state of ``X1,X2,V1,V2``."""
+    if text is None:
+        return None
+    try:
+        found = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        found = ()
+    if len(found) != 4:
+        raise InputError(f"{option} {text}: expected X1,X2,V1,V2, four numbers in m and m/s")
+    return found
 
 
 # -- a parameter that varies ----------------------------------------------------------------------
 
 
-def add_over(option: Callable[..., Any]) -> None:
-    """``--over`` and ``--values``."""
-    option(
-        "--over",
-        metavar="NAME",
-        help="another parameter that varies, at one frequency: of the structure, as for --set",
-    )
-    option("--values", metavar="VALUES", help="its values, FIRST:LAST:STEP or a list A,B,...")
+def add_over(option: Callable[..., Any], twice: bool = False) -> None:
+    """``--over`` and ``--values``, once or twice."""
+    action: dict[str, Any] = {"action": "append", "default": []} if twice else {}
+    more = "; twice at one frequency" if twice else ", at one frequency"
+    text = f"a parameter of the structure that varies, as for --set{more}"
+    option("--over", metavar="NAME", help=text, **action)
+    text = "its values, FIRST:LAST:STEP or a list A,B,..."
+    option("--values", metavar="VALUES", help=text, **action)
 
 
 def along(

@@ -164,20 +164,32 @@ def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> 
 
 def digest(*told: Any) -> str:
     """A few letters that differ where what is told differs."""
-    text = json.dumps(told, sort_keys=True, default=repr)
+
+    def other(value: Any) -> str:  # a stored result is what it answers
+        return str(getattr(value, "attrs", {}).get("identity") or repr(value))
+
+    text = json.dumps(told, sort_keys=True, default=other)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
 def brief(name: str, value: Any) -> str:
     """What a file's name says of a keyword: the frequency, what varies, the direction."""
+    from ..structures import PARAMETERS
+
     if name in ("direction", "over"):
-        return str(value)
-    if name not in ("eta", "frequency", "values", "limits"):
+        return "-".join(value) if isinstance(value, tuple) else str(value)
+    if name in ("bifurcation", "switch"):
+        return "" if value is None else f"{name}{value}"
+    varied = isinstance(value, tuple) and name in (*PARAMETERS, "values", "limits")
+    if name not in ("eta", "frequency") and not varied:
         return ""
     hertz = 1.0 / (2.0 * math.pi) if name == "frequency" else 1.0
     ends = (value[0], value[-1]) if isinstance(value, tuple) else (value,)
+    if isinstance(ends[0], tuple):  # limits of two parameters
+        return ""
     text = "-".join(f"{hertz * end:.6g}" for end in dict.fromkeys(ends))
-    return {"eta": f"eta{text}", "frequency": f"{text}Hz"}.get(name, text)
+    letters = "" if name in ("values", "limits") else name
+    return f"{text}Hz" if name == "frequency" else f"{letters}{text}"
 
 
 # -- files ----------------------------------------------------------------------------------------
@@ -266,7 +278,7 @@ def exported(data: xr.Dataset, result: Path, formats: tuple[str, ...], fresh: bo
     places = [result.with_suffix(f".{ending}") for ending in formats if ending != "nc"]
     found: list[Path] = []
     for path in places:
-        found += write(data, path) if fresh or not there(path) else there(path)
+        found += sorted(write(data, path)) if fresh or not there(path) else there(path)
     return found
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .options import excitation_text, title_of
+from ..errors import InputError, StoreError
 from .output import Files, name_of, running_of
 
 if TYPE_CHECKING:
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 
 TURN = 2.0 * math.pi
 Question = Mapping[str, Any]
-Draw = Callable[["xr.Dataset", str], Any]
+Draw = Callable[["xr.Dataset"], Any]
 
 
 def carry_out(
@@ -40,7 +42,7 @@ def carry_out(
     report : callable
         Prints what came out.
     draw : callable, optional
-        From the result and a title to a picture; none where there is nothing to draw.
+        From the result to a picture; none where there is nothing to draw.
     ending : str
         Of the files' names, where their pictures show more than this result.
 
@@ -60,8 +62,7 @@ def carry_out(
     for line in notes(structure):
         print(line)
     report(data)
-    title = heading(structure, question)
-    files.write(data, (lambda: draw(data, title)) if draw else None)
+    files.write(data, partial(draw, data) if draw else None)
     return data
 
 
@@ -81,14 +82,6 @@ def tell_one(data: xr.Dataset, name: str) -> None:
             print(f"  {key:20} {values} {unit}".rstrip())
 
 
-def heading(structure: Structure, question: Question) -> str:
-    """What is the same in the whole picture, for its title."""
-    from ..figures.labels import parameters_text
-
-    shaken = parameters_text(excitation_text(question))
-    return ", ".join(filter(None, [title_of(structure), shaken]))
-
-
 def notes(structure: Structure) -> list[str]:
     """What makes an answer trivial."""
     if structure.bonded:
@@ -100,7 +93,8 @@ def notes(structure: Structure) -> list[str]:
 
 def along_of(data: xr.Dataset) -> str:
     """The parameter along which a result lies."""
-    (name,) = {str(dim) for dim in data.impacts_per_period.dims} - {"direction", "structure"}
+    others = {"direction", "structure", "attractor"}
+    (name,) = {str(dim) for dim in data.impacts_per_period.dims} - others
     return name
 
 
@@ -136,3 +130,46 @@ def ranges(name: str, values: Any, flags: Any, most: int = 8) -> str:
     text = ", ".join(" to ".join(pair) for pair in ends)
     left = len(runs) - len(longest)
     return f"{text}{unit}" + (f" and {left} shorter ranges" if left else "")
+
+
+def tell_attractors(data: xr.Dataset, of: str) -> None:
+    """Attractors and their shares, a line each.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        With variables over ``attractor`` alone.
+    of : str
+        What the shares are of.
+    """
+    for number in range(data.sizes["attractor"]):
+        one = data.isel(attractor=number)
+        if not float(one.share) > 0.0:
+            continue
+        kind = int(one.multiplicity)
+        word = f"repeats after {kind} period{'s' * (kind > 1)}" if kind else "not periodic"
+        print(
+            f"  {number}: {float(one.share):6.1%} of {of}, {word}, "
+            f"{float(one.impacts_per_period):.4g} impacts per period, "
+            f"largest gap xi_Rel = {float(one.xi_rel_max):.5g}"
+        )
+        state = ",".join(f"{value:.6g}" for value in one.state.values)
+        print(f"     a state on it at phase 0, x1, x2 in m, v1, v2 in m/s: {state}")
+
+
+def stored(option: str, path: Path) -> xr.Dataset:
+    """A result of an earlier command.
+
+    Raises
+    ------
+    InputError
+        Where the file is none.
+    """
+    from ..running.store import load
+
+    if not path.is_file():
+        raise InputError(f"{option} {path}: no such file; expected a result of an earlier command")
+    try:
+        return load(path)
+    except StoreError:
+        raise InputError(f"{option} {path}: not readable; expected a NetCDF file") from None

@@ -7,7 +7,16 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import Commands, add_excitation, add_structure, excitation_of, structure_of
+from .options import (
+    Commands,
+    add_excitation,
+    add_numbers,
+    add_structure,
+    excitation_of,
+    numbers_of,
+    state_of,
+    structure_of,
+)
 from .output import add_files, add_running
 from .question import carry_out
 
@@ -26,27 +35,17 @@ def add_parser(commands: Commands) -> None:
     parser = commands.add("simulate", run, text, EXAMPLES)
     add_structure(parser)
     option = add_excitation(parser, several=False).add_argument
-    option("--phase", type=float, default=0.0, help="phase of the box at the start, rad")
-    option("--periods", type=int, default=20, help="periods kept (default: %(default)s)")
-    option("--transient", type=int, default=0, help="periods dropped (default: %(default)s)")
-    option("--points", type=int, default=200, help="points a period (default: %(default)s)")
+    add_numbers(
+        option,
+        periods=(20, "periods kept"),
+        transient=(0, "periods dropped before"),
+        points=(200, "points a period"),
+        phase=(0.0, "phase of the box at the start, rad"),
+    )
     option("--start", metavar="X1,X2,V1,V2", help="state at the start, m and m/s (default: rest)")
     option("--beside", action="store_true", help="the same of the bonded structure, beside it")
     add_files(parser)
     add_running(parser)
-
-
-def state_of(option: str, text: str | None) -> tuple[float, ...] | None:
-    """A state, four numbers."""
-    if text is None:
-        return None
-    try:
-        found = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        found = ()
-    if len(found) != 4:
-        raise InputError(f"{option} {text}: expected X1,X2,V1,V2, four numbers in m and m/s")
-    return found
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -55,11 +54,8 @@ def run(arguments: argparse.Namespace) -> None:
     start = state_of("--start", arguments.start)
     question = {
         **excitation_of(arguments, structure, si=True, one=True),
-        "periods": arguments.periods,
-        "transient": arguments.transient,
-        "points": arguments.points,
+        **numbers_of(arguments, "periods", "transient", "points", "phase"),
         "start": start,
-        "phase": arguments.phase,
     }
     if not arguments.beside:
         carry_out(arguments, structure, question, report, picture_of)
@@ -72,11 +68,11 @@ def run(arguments: argparse.Namespace) -> None:
     carry_out(arguments, structure.as_delaminated(), question, report, draw, "with_bonded")
 
 
-def picture_of(data: xr.Dataset, title: str, bonded: xr.Dataset | None = None) -> Any:
+def picture_of(data: xr.Dataset, bonded: xr.Dataset | None = None) -> Any:
     """The histories."""
     from ..figures.motion import draw
 
-    return draw(data, title, bonded) if bonded is not None else draw(data, title)
+    return draw(data, bonded=bonded)
 
 
 def report(data: xr.Dataset) -> None:

@@ -12,10 +12,12 @@ from .options import (
     Commands,
     add_drive,
     add_excitation,
+    add_numbers,
     amplitude_of,
     changes_of,
     described,
     excitation_of,
+    numbers_of,
     options,
 )
 from .output import Files, add_files, add_running, digest, running_of
@@ -47,9 +49,12 @@ def add_parser(commands: Commands) -> None:
     )
     option("--voltage", type=float, help="the same in V")
     option = add_excitation(parser, usual="none: shaken by the motor").add_argument
-    option("--transient", type=int, default=2000, help="periods dropped (default: %(default)s)")
-    option("--periods", type=int, default=64, help="periods of the record (default: %(default)s)")
-    option("--points", type=int, default=1024, help="samples a period (default: %(default)s)")
+    add_numbers(
+        option,
+        transient=(2000, "periods dropped"),
+        periods=(64, "periods of the record"),
+        points=(1024, "samples a period"),
+    )
     add_files(parser)
     add_running(parser, several=True)
 
@@ -97,14 +102,12 @@ def shaken_harmonically(arguments: argparse.Namespace) -> None:
     structure = structure.replace(**changes_of(arguments.set))
     question = {
         **excitation_of(arguments, structure, si=True),
-        "transient": arguments.transient,
-        "periods": arguments.periods,
-        "points": arguments.points,
+        **numbers_of(arguments, "transient", "periods", "points"),
     }
     carry_out(arguments, structure, question, report, picture_of)
 
 
-def picture_of(data: xr.Dataset, title: str) -> Any:
+def picture_of(data: xr.Dataset) -> Any:
     """The spectra, a panel a frequency."""
     from ..figures.spectra import draw
 

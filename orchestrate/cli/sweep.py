@@ -5,7 +5,16 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from .options import Commands, add_excitation, add_over, add_structure, along, structure_of
+from .options import (
+    Commands,
+    add_excitation,
+    add_numbers,
+    add_over,
+    add_structure,
+    along,
+    numbers_of,
+    structure_of,
+)
 from .output import add_files, add_running
 from .question import along_of, carry_out, place, ranges, several, tell_one
 
@@ -35,10 +44,12 @@ def add_parser(commands: Commands) -> None:
         help="order of the values, each started from the end of the last (default: up for a "
         "range, a list as it stands)",
     )
-    option("--transient", type=int, default=500, help="periods dropped (default: %(default)s)")
-    option("--samples", type=int, default=200, help="periods kept (default: %(default)s)")
-    tolerance = "relative deviation within which a state repeats (default: %(default)s)"
-    option("--tolerance", type=float, default=1e-2, help=tolerance)
+    add_numbers(
+        option,
+        transient=(500, "periods dropped"),
+        samples=(200, "periods kept"),
+        tolerance=(1e-2, "relative deviation within which a state repeats"),
+    )
     add_files(parser)
     add_running(parser)
 
@@ -50,18 +61,16 @@ def run(arguments: argparse.Namespace) -> None:
     question = {
         **asked,
         "direction": arguments.direction or ("up" if is_range else "given"),
-        "transient": arguments.transient,
-        "samples": arguments.samples,
-        "tolerance": arguments.tolerance,
+        **numbers_of(arguments, "transient", "samples", "tolerance"),
     }
     carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
 
 
-def picture_of(data: xr.Dataset, title: str) -> Any:
+def picture_of(data: xr.Dataset) -> Any:
     """The orbit diagram."""
     from ..figures.orbit_diagram import draw
 
-    return draw(data, title)
+    return draw(data)
 
 
 def report(data: xr.Dataset) -> None:

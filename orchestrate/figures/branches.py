@@ -48,7 +48,8 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
     low = min(float(found[name].min()) for found in branches)
     high = max(float(found[name].max()) for found in branches)
     plane.set(xlabel=symbol(name), ylabel=rf"{XI_REL}$(nT)$", title=title, xlim=(low, high))
-    plane.legend(loc="upper right", ncols=2)
+    if shown:
+        plane.legend(loc="upper right", ncols=2)
     return figure
 
 

@@ -14,7 +14,7 @@ from ..access import OSCILLATOR, Instance
 from ..response.curves import KINDS, trace
 from ..response.labels import flags, variable
 from ..response.questions import Point
-from ..response.resonance import follow_to_peak
+from ..response.relative_resonance import follow_to_peak
 from ..running.job import Inputs, Job, Table
 from ..structures import Excitation, Structure
 from .windows import relative_peak, window

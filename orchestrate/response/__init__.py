@@ -11,7 +11,7 @@ module                 idea
 :mod:`.peaks`          amplitudes and peak accelerations of both masses
 :mod:`.simulate`       a motion in time
 :mod:`.sweep`          responses along a parameter, each from the end of the last
-:mod:`.resonance`      a response followed until its largest gap has passed a maximum
+:mod:`.resonance`      resonance curves, bonded against delaminated, with peaks and jumps
 :mod:`.curves`         phase curves with both sides of each impact
 :mod:`.spectra`        amplitude spectra of the masses' accelerations
 =====================  ============================================================================

@@ -1,85 +1,260 @@
-"""A response followed in frequency until its largest gap has passed a maximum."""
+"""Resonance curves: bonded against delaminated, up and down, with their peaks and jumps."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from ..access import Instance
+from ..access import finder
+from ..errors import InputError
+from ..running.job import Inputs, Table
+from ..running.runner import answer
 from ..structures import Structure
-from .questions import series
-from .respond import Response, follow
+from .labels import Variable, variable, yes_or_no
+from .peaks import PEAKS
+from .questions import Point, asked_along, positive, whole
+from .sweep import MULTIPLICITY, NUMBERS, Direction, SweepJob
+from .turns_and_jumps import jumps, maxima
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+KINDS = ("bonded", "delaminated")
+ALONG = ("structure", "direction")
+TOLD = {**NUMBERS, "x_rel_max": ("m", "largest gap over the sampled periods")}
+OF_PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max", "impacts_per_period")
 
 
-@dataclass(frozen=True)
-class Peak:
-    """A relative resonance.
+@dataclass(frozen=True, kw_only=True)
+class ResonanceJob(SweepJob):
+    """Sweeps of a structure, bonded and delaminated.
 
     Attributes
     ----------
-    eta : float
-        Frequency ratio of the largest gap.
-    state : tuple of float
-        The response there at phase 0: x1, x2 in m, v1, v2 in m/s.
+    prominence, jump : float
+        As in :func:`resonance`.
     """
 
-    eta: float
-    state: tuple[float, ...]
+    prominence: float = 0.1
+    jump: float = 0.15
+    asked: ClassVar[str] = "resonance"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.direction == "given":
+            raise InputError("direction = 'given': expected one of up, down, both")
+
+    def lanes(self) -> int:
+        """Each structure in each direction knows nothing of the others."""
+        return len(KINDS) * super().lanes()
+
+    def items(self, inputs: Inputs) -> Sequence[Point]:
+        """Bonded first."""
+        both = self.structure.as_bonded(), self.structure.as_delaminated()
+        points = super().items(inputs)
+        return [Point(structure, point.excitation) for structure in both for point in points]
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Everything over structure, direction and frequency."""
+        import xarray as xr
+
+        curves = xr.Dataset(
+            self.variables({name: self.in_order(values) for name, values in table.items()}),
+            self.coordinates(),
+            {"title": f"Resonance curves: {self.structure.label()}"},
+        )
+        return curves.assign(self.peaks(curves) | self.jumps(curves))
+
+    def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
+        """Rows over structure, direction and the values as they were given."""
+        found = []
+        for part in np.split(values, len(KINDS)):
+            rows = super().in_order(part)
+            found.append(rows if self.direction == "both" else rows[None])
+        return np.array(found)
+
+    def variables(self, table: Table) -> dict[str, Variable]:
+        """Amplitudes, accelerations and what goes with them."""
+        along = (*ALONG, self.series.name)
+        length = self.series.scales()[:, 0]
+        numbers = {
+            **{name: table[name] for name in (*PEAKS, "x_rel_max", "impacts_per_period")},
+            "xi_rel_max": table["x_rel_max"] / length,
+            **{f"xi{i}_max": table[f"x{i}_max"] / length for i in (1, 2)},
+        }
+        contact = "whether permanent contact occurs in the sampled periods"
+        return {
+            **{name: variable(along, numbers[name], *TOLD[name]) for name in TOLD},
+            "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
+            "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
+        }
+
+    def coordinates(self) -> dict[str, Variable]:
+        """Structure, direction and the excitation, in Hz too."""
+        name = self.series.name
+        turns = [point.excitation.frequency / (2.0 * np.pi) for point in self.series.points]
+        directions = ["up", "down"] if self.direction == "both" else [self.direction]
+        text = "whether the masses are glued or can part"
+        return {
+            **self.series.coordinates(),
+            "hertz": variable(name, turns, "Hz", "frequency of the box"),
+            "structure": variable("structure", np.array(KINDS), "1", text),
+            "direction": variable(
+                "direction", np.array(directions), "1", "order in which frequencies were computed"
+            ),
+        }
+
+    def curves(self, data: xr.Dataset) -> list[xr.Dataset]:
+        """The curves that differ, by increasing frequency: bonded, both directions are one."""
+        ordered = data.sortby(self.series.name)
+        glued = [ordered.isel(structure=0, direction=0)]
+        return glued + [ordered.isel(structure=1, direction=i) for i in range(data.direction.size)]
+
+    def peaks(self, data: xr.Dataset) -> dict[str, Variable]:
+        """Where the larger one of both displacements has its maxima."""
+        rows = [
+            curve.isel({self.series.name: index})
+            for curve in self.curves(data)
+            for index in maxima(reach(curve), self.prominence)
+        ]
+        return {
+            **self.named("peak", rows),
+            **{
+                f"peak_{name}": variable("peak", [float(row[name]) for row in rows], *TOLD[name])
+                for name in OF_PEAKS
+            },
+        }
+
+    def jumps(self, data: xr.Dataset) -> dict[str, Variable]:
+        """Where the largest gap jumps on the way in its direction."""
+        rows, sizes = [], []
+        for curve in self.curves(data):
+            down = str(curve.direction.values) == "down"
+            passed = curve.isel({self.series.name: np.s_[::-1]}) if down else curve
+            gaps = passed.x_rel_max.values
+            for index in jumps(gaps, self.jump):
+                rows.append(passed.isel({self.series.name: index + 1}))
+                sizes.append((gaps[index], gaps[index + 1]))
+        text = "largest gap {} the jump"
+        before, after = np.reshape(sizes, (-1, 2)).T
+        return {
+            **self.named("jump", rows),
+            "jump_before": variable("jump", before, "m", text.format("before")),
+            "jump_after": variable("jump", after, "m", text.format("after")),
+        }
+
+    def named(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
+        """Structure, direction and frequency of peaks or of jumps."""
+        words = {
+            f"{what}_{name}": variable(
+                what, np.array([str(row[name].values) for row in rows], dtype="U11"), "1", name
+            )
+            for name in ALONG
+        }
+        name, text = self.series.name, {"peak": "of the maximum", "jump": "just after the jump"}
+        return words | {
+            f"{what}_{key}": variable(
+                what,
+                [float(row[key]) for row in rows],
+                {"eta": "1", "hertz": "Hz"}.get(key, "rad/s"),
+                f"{'frequency ratio' if key == 'eta' else 'frequency'} {text[what]}",
+            )
+            for key in dict.fromkeys((name, "hertz"))
+        }
 
 
-def follow_to_peak(
-    instance: Instance,
+def reach(curve: xr.Dataset) -> NDArray[np.float64]:
+    """The larger one of both displacements."""
+    return np.maximum(curve.x1_max.values, curve.x2_max.values)
+
+
+def resonance(
     structure: Structure,
-    eta: float,
-    start: ArrayLike,
-    multiplicity: int,
     *,
-    step: float = 0.001,
-    reach: float = 1.0,
-    fall: float = 0.02,
+    eta: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: ArrayLike | None = None,
+    direction: Direction = "both",
     transient: int = 500,
-    samples: int = 80,
+    samples: int = 60,
     tolerance: float = 1e-2,
-) -> Peak:
-    """Go on upwards in eta from a response with one impact in its period, to its largest gap.
+    peak_periods: int = 8,
+    prominence: float = 0.1,
+    jump: float = 0.15,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Resonance curves of a structure, bonded against delaminated, with their peaks and jumps.
 
     Parameters
     ----------
-    instance : Instance
     structure : Structure
-    eta : float
-        Frequency ratio of the response that is known; the box's amplitude is 1/eta^2 m throughout.
-    start : array_like of 4 floats
-        Its state at phase 0.
-    multiplicity : int
-        Of the responses that count.
-    step, reach : float
-        Of eta, and how far to go at the most.
-    fall : float
-        Part of the maximum by which the gap must have fallen before the search ends.
-    transient, samples, tolerance
-        At each eta, as in :func:`.respond.respond`.
+        Whether it is bonded does not matter: both kinds are answered.
+    eta : array_like, optional
+        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m.
+    frequency, amplitude : array_like, optional
+        The physical form instead: rad/s and m, one amplitude or one for each frequency.
+    direction : {"up", "down", "both"}
+        Order of the frequencies, each started from the end of the last.
+    transient, samples : int
+        Periods dropped, and looked at after them, at each frequency.
+    tolerance : float
+        Relative deviation within which a state counts as repeated.
+    peak_periods : int
+        As in :func:`orchestrate.sweep`.
+    prominence : float
+        By what part of itself a peak of the larger one of both displacements stands out at least.
+    jump : float
+        By what part of itself the largest gap jumps at least, from one frequency to the next.
+    **running
+        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
 
     Returns
     -------
-    Peak
-        The known response itself where none larger of its kind is found.
+    xarray.Dataset
+        Over ``structure`` (bonded, delaminated), ``direction`` and the frequency, which is there in
+        ``hertz`` too: largest distances of both masses from the box's middle ``x1_max``, ``x2_max``
+        in m and over a eta^2 as ``xi1_max``, ``xi2_max``; largest accelerations in space between
+        impacts ``a1_max``, ``a2_max`` in m/s2; the largest gap ``x_rel_max`` and ``xi_rel_max``;
+        ``impacts_per_period``, ``multiplicity``, ``permanent_contact``. Over ``peak`` and ``jump``:
+        structure, direction and frequency of each, and how large it is. What peaks is the larger
+        one of both displacements; what jumps is the largest gap, in which a change from one motion
+        to another shows best.
+
+    Raises
+    ------
+    InputError
+        Where the question is not whole, or a number is out of its range.
+
+    Notes
+    -----
+    A sweep of (6), (10) and (15) as in section 3.1 of the paper, see :func:`orchestrate.sweep`;
+    peaks lie on the frequencies asked for.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.response.resonance import resonance
+    >>> found = resonance(Structure(), eta=np.arange(0.9, 1.3, 0.005), transient=300)
+    >>> found.peak_structure.values[0], found.peak_eta.values[0].round(3)
+    ('bonded', 1.05)
     """
-    etas = np.round(eta + step * np.arange(1, round(reach / step)), 9)
-    points = series(structure, tuple(etas.tolist()), None, None).points
-    found, largest = Peak(eta, tuple(np.asarray(start, dtype=float).tolist())), 0.0
-    responses = follow(instance, points, start, transient, samples, tolerance)
-    for there, response in zip(etas, responses, strict=True):
-        if response.x_rel_max < (1.0 - fall) * largest:
-            break
-        if response.x_rel_max > largest and is_simple(response, multiplicity):
-            found, largest = Peak(float(there), response.end), response.x_rel_max
-    return found
-
-
-def is_simple(response: Response, multiplicity: int, slack: float = 0.1) -> bool:
-    """Whether a response has the multiplicity and one impact in its period, but for ``slack``."""
-    impacts = response.impacts_per_period * multiplicity
-    return response.multiplicity == multiplicity and abs(impacts - 1.0) < slack
+    job = ResonanceJob(
+        **asked_along(structure, eta, frequency, amplitude),
+        name=f"resonance_{structure.label()}",
+        direction=direction,
+        transient=whole("transient", transient, 0),
+        samples=whole("samples", samples, 1),
+        tolerance=positive("tolerance", tolerance),
+        peak_periods=whole("peak_periods", peak_periods, 1),
+        prominence=positive("prominence", prominence),
+        jump=positive("jump", jump),
+    )
+    return answer(job, running, finder(running))

@@ -17,7 +17,7 @@ from orchestrate import Drive, InputError, Structure
 
 ROOT = Path(__file__).resolve().parents[2]
 FUNCTIONS = (
-    *("simulate", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
+    *("simulate", "resonance", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
     *("impact_statistics", "orbit", "branch", "border", "couple"),
 )
 HEAVY = ("xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "pandas", "numba", "loky", "tqdm")
@@ -42,6 +42,7 @@ def questions() -> dict[str, xr.Dataset]:
     volts = motor().volts(OWN)
     return {
         "simulate": orchestrate.simulate(OWN, **box, periods=3, points=20),
+        "resonance": orchestrate.resonance(OWN, frequency=many, amplitude=1e-3, **short),
         "sweep": orchestrate.sweep(OWN, frequency=many, amplitude=1e-3, **short),
         "sweep both": orchestrate.sweep(
             OWN, frequency=many, amplitude=1e-3, direction="both", **short

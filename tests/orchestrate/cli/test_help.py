@@ -15,7 +15,10 @@ from orchestrate.cli.options import values_of
 
 from .commands import ROOT
 
-COMMANDS = ("build", "simulate", "sweep", "spectra", "couple", "paper")
+COMMANDS = (
+    *("build", "simulate", "resonance", "spectra", "sweep", "map", "lyapunov", "attractors"),
+    *("basin", "orbit", "branch", "border", "couple", "paper"),
+)
 
 
 def help_of(*arguments):
@@ -46,6 +49,17 @@ def test_examples_can_be_typed_as_they_stand(capsys, monkeypatch, command, calle
         words = example.removeprefix(program).split("   ")[0].split()
         arguments = cli.make_parser().parse_args(cli.with_negative_values(words))
         assert callable(arguments.run)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_quantity_is_defined(capsys, command):
+    help_of(command)
+    text = capsys.readouterr().out
+    for formula in (
+        *("omega = sqrt(k1/m1)", "eta = Omega/omega", "mu = m2/m1, kappa = k2/k1"),
+        *("D1 = d1/(2 omega m1)", "xi = x/(a eta^2)", "gamma  ", "tau = omega t"),
+    ):
+        assert formula in text
 
 
 def test_it_starts_at_once():

@@ -1,23 +1,68 @@
-"""A response followed to its largest gap."""
+"""Resonance curves against what is known: linear theory, sweeps, scaling, the time it may take."""
 
 from __future__ import annotations
 
+import time
+
+import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR, Instance, find
-from orchestrate.response.resonance import follow_to_peak
+from orchestrate.errors import InputError
+from orchestrate.response.resonance import resonance
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Structure
 
+BEAM = Structure.from_file("beam")
+OMEGA = 2.0 * np.pi * np.linspace(8.0, 20.0, 60)
+HELD = {"frequency": OMEGA, "amplitude": 0.02 * 9.80665 / OMEGA**2}
+pytestmark = pytest.mark.usefixtures("exported")
 
-@pytest.mark.usefixtures("exported")
-def test_a_response_is_followed_to_its_peak():
-    structure = Structure.nondimensional(D=0.05)
-    start = sweep(structure, eta=1.9, transient=300, samples=1).end_state.values[0]
-    with Instance(find(OSCILLATOR).path) as instance:
-        peak = follow_to_peak(instance, structure, 1.9, start, 1)
-        none = follow_to_peak(instance, structure, 1.9, start, 2, reach=0.005)
-    assert peak.eta == pytest.approx(2.054, abs=0.0015)
-    here, above = sweep(structure, eta=[peak.eta, peak.eta + 0.02], start=peak.state).xi_rel_max
-    assert here > above
-    assert none.eta == 1.9
+
+@pytest.fixture(scope="module")
+def found(exported):
+    return resonance(BEAM, **HELD, progress=False)
+
+
+def test_bonded_is_the_linear_oscillator(found):
+    stiffness, damper, mass = BEAM.k1 + BEAM.k2, BEAM.d1 + BEAM.d2, BEAM.m1 + BEAM.m2
+    force = mass * HELD["amplitude"] * OMEGA**2
+    exact = force / np.hypot(stiffness - mass * OMEGA**2, damper * OMEGA)
+    for direction in ("up", "down"):
+        curve = found.sel(structure="bonded", direction=direction)
+        np.testing.assert_allclose(curve.x1_max, exact, rtol=1e-4)  # what is left of the transient
+        np.testing.assert_array_equal(curve.x_rel_max, 0.0)
+    (peak,) = np.flatnonzero(found.peak_structure.values == "bonded")
+    assert float(found.peak_frequency[peak]) == OMEGA[np.argmax(exact)]
+    np.testing.assert_allclose(found.hertz, OMEGA / (2.0 * np.pi))
+
+
+def test_delaminated_is_what_a_sweep_finds(found):
+    swept = sweep(BEAM, **HELD, direction="both", samples=60, progress=False)
+    part = found.sel(structure="delaminated")
+    for name in ("x1_max", "x2_max", "a1_max", "a2_max", "impacts_per_period", "multiplicity"):
+        np.testing.assert_array_equal(part[name], swept[name])
+    np.testing.assert_allclose(part.xi_rel_max, swept.xi_rel_max)
+
+
+def test_where_two_motions_exist_both_jumps_are_told():
+    found = resonance(Structure(), eta=np.arange(1.2, 1.45, 0.01), transient=400)
+    up, down = (found.jump_eta[found.jump_direction == word].values for word in ("up", "down"))
+    assert up.max() == pytest.approx(1.37, abs=0.011) and 1.27 < down.min() < 1.31
+    assert set(found.jump_structure.values) == {"delaminated"}
+    one_way = resonance(Structure(), eta=np.arange(1.2, 1.45, 0.01), transient=400, direction="up")
+    assert one_way.direction.values.tolist() == ["up"]
+    np.testing.assert_array_equal(one_way.x1_max[:, 0], found.x1_max.sel(direction="up"))
+
+
+def test_500_frequencies_take_less_than_three_seconds():
+    many = 2.0 * np.pi * np.linspace(8.0, 20.0, 500)
+    begin = time.process_time()
+    resonance(BEAM, frequency=many, amplitude=0.196 / many**2, progress=False, jobs=1)
+    assert time.process_time() - begin < 3.0
+
+
+def test_what_is_no_question():
+    with pytest.raises(InputError, match="expected one of up, down, both"):
+        resonance(BEAM, eta=1.0, direction="given")
+    with pytest.raises(InputError, match="jump = 0"):
+        resonance(BEAM, eta=1.0, jump=0)

@@ -1,0 +1,89 @@
+"""``attractors``: what random starts lead to."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from .options import (
+    Commands,
+    add_excitation,
+    add_numbers,
+    add_over,
+    add_structure,
+    along,
+    numbers_of,
+    one_value,
+    structure_of,
+)
+from .output import add_files, add_running
+from .question import along_of, carry_out, place, ranges, several, tell_attractors
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+EXAMPLES = """\
+  {program} attractors --eta 1.32 --starts 200 --seed 1
+  {program} attractors --eta 1.2:1.4:0.01
+  {program} attractors --structure beam --hz 15.5,16 --g 0.02 --scale 1e-3"""
+FEW = 5  # values whose attractors are all told
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "coexisting motions: how many, and how many random starts lead to each"
+    parser = commands.add("attractors", run, text, EXAMPLES)
+    add_structure(parser)
+    option = add_excitation(parser).add_argument
+    add_over(option)
+    option(
+        "--scale",
+        metavar="X",
+        help="half width of the box of starts, m (default: --width times the gap from rest)",
+    )
+    add_numbers(
+        option,
+        starts=(60, "random starts at each value"),
+        seed=(0, "of the random numbers: the same seed, the same starts"),
+        width=(3.0, "half width of the box of starts over the largest gap from rest"),
+        transient=(400, "periods dropped at least"),
+        settle=(300.0, "periods dropped at least, over eta"),
+        samples=(48, "periods looked at"),
+    )
+    add_files(parser)
+    add_running(parser)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    structure = structure_of(arguments)
+    asked, _ = along(arguments, structure)
+    names = ("starts", "seed", "width", "transient", "settle", "samples")
+    scale = None if arguments.scale is None else one_value("--scale", arguments.scale)
+    question = {**asked, "scale": scale, **numbers_of(arguments, *names)}
+    carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
+
+
+def picture_of(data: xr.Dataset) -> Any:
+    """Attractors and their shares."""
+    from ..figures.attractors import draw
+
+    return draw(data)
+
+
+def report(data: xr.Dataset) -> None:
+    """Attractors and their shares, or where there are several."""
+    name = along_of(data)
+    if data.sizes[name] <= FEW:
+        for i in range(data.sizes[name]):
+            here = data.isel({name: i})
+            where = place(name, float(here[name]))
+            print(f"{int(here.number)} found at {where}, of {data.sizes['start']} starts")
+            tell_attractors(here, "starts")
+        return
+    ordered = data.sortby(name)
+    for number in range(1, int(data.number.max()) + 1):
+        holds = ordered.number.values == number
+        if holds.any():
+            where = ranges(name, ordered[name].values, holds)
+            print(f"{number} found at {int(holds.sum())} of {holds.size} values: {where}")

@@ -1,0 +1,111 @@
+"""``basin``: which attractor each start of a plane leads to."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from .options import (
+    Commands,
+    add_excitation,
+    add_numbers,
+    add_structure,
+    excitation_of,
+    numbers_of,
+    state_of,
+    structure_of,
+)
+from .output import add_files, add_running
+from .question import carry_out, tell_attractors
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Side = tuple[str, float, float, int]
+EXAMPLES = """\
+  {program} basin --eta 1.32 --x x_rel,0,0.8,60 --y v_rel,-1,1,60
+  {program} basin --eta 1.32 --x phase,0,6.28,40 --y v1,-2,2,40
+  {program} basin --structure beam --hz 15.8 --g 0.02 --x x_rel,0,1e-3,40 --y v_rel,-0.1,0.1,40
+Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not varied is that of
+--at."""
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "basins of attraction: which motion each start of a plane leads to"
+    parser = commands.add("basin", run, text, EXAMPLES)
+    add_structure(parser)
+    option = add_excitation(parser, several=False).add_argument
+    side = "NAME,FIRST,LAST,COUNT"
+    usual = "x_rel from 0 to a eta^2, 80 values"
+    option("--x", metavar=side, help=f"horizontal side of the plane (default: {usual})")
+    usual = "v_rel from -omega a eta^2 to omega a eta^2, 80 values"
+    option("--y", metavar=side, help=f"vertical side of the plane (default: {usual})")
+    rest = "state that the plane goes through, m and m/s (default: rest)"
+    option("--at", metavar="X1,X2,V1,V2", help=rest)
+    add_numbers(
+        option,
+        phase=(0.0, "phase of the box at the start, rad"),
+        transient=(400, "periods dropped at least"),
+        settle=(300.0, "periods dropped at least, over eta"),
+        samples=(48, "periods looked at"),
+    )
+    add_files(parser)
+    add_running(parser)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    from ..structures import Excitation
+
+    structure = structure_of(arguments)
+    asked = excitation_of(arguments, structure, si=True, one=True)
+    if "eta" in asked:
+        excitation = Excitation.nondimensional(asked["eta"], structure)
+    else:
+        excitation = Excitation(**asked)
+    length = excitation.length(structure)
+    speed = structure.omega * length
+    question = {
+        **asked,
+        "x": side_of("--x", arguments.x) or ("x_rel", 0.0, length, 80),
+        "y": side_of("--y", arguments.y) or ("v_rel", -speed, speed, 80),
+        "at": state_of("--at", arguments.at),
+        **numbers_of(arguments, "phase", "transient", "settle", "samples"),
+    }
+    carry_out(arguments, structure, question, report, picture_of)
+
+
+def side_of(option: str, text: str | None) -> Side | None:
+    """A side of the plane of ``NAME,FIRST,LAST,COUNT``.
+
+    Raises
+    ------
+    InputError
+    """
+    if text is None:
+        return None
+    try:
+        name, first, last, count = (part.strip() for part in text.split(","))
+        return name, float(first), float(last), int(count)
+    except ValueError:
+        expected = "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60"
+        raise InputError(f"{option} {text}: expected {expected}") from None
+
+
+def picture_of(data: xr.Dataset) -> Any:
+    """The plane."""
+    from ..figures.basin import draw
+
+    return draw(data)
+
+
+def report(data: xr.Dataset) -> None:
+    """The attractors and their shares of the plane."""
+    labels = data.attractor_of.values
+    there, apart = int((labels >= 0).sum()), int((labels < 0).sum())
+    print(f"{data.sizes['attractor']} found, of {there} starts")
+    tell_attractors(data, "the plane")
+    if apart:
+        print(f"{apart} starts left out: there the masses would overlap")

@@ -1,0 +1,136 @@
+"""``branch``: periodic motions along a parameter, with their bifurcations."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from .options import (
+    UNITS,
+    Commands,
+    add_excitation,
+    add_numbers,
+    add_structure,
+    amplitude_of,
+    ends_of,
+    excitation_of,
+    frequency_option,
+    numbers_of,
+    structure_of,
+)
+from .output import add_files, add_running
+from .question import carry_out, place, stored
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..structures import Structure
+
+EXAMPLES = """\
+  {program} branch --eta 2.5 --limits 2.4:2.8
+  {program} branch --over e --eta 2.5 --limits 0.5:0.9
+  {program} branch --structure beam --over hz --limits 20:30 --amplitude 1e-4
+  {program} branch --start branch.nc --switch 1 --limits 2.4:2.9   the branch that leaves there
+The excitation says where a first orbit is looked for; without it that is the lower limit."""
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "follow periodic motions along a parameter, stable and unstable, to their bifurcations"
+    parser = commands.add("branch", run, text, EXAMPLES)
+    add_structure(parser)
+    option = add_excitation(parser, several=False).add_argument
+    names = "eta, hz, rpm, frequency, amplitude, box_acceleration or a parameter of the structure"
+    over = f"what varies: {names} (default: %(default)s)"
+    option("--over", default="eta", metavar="NAME", help=over)
+    option("--limits", metavar="FIRST:LAST", help="between which it is followed, in its own unit")
+    start = "NetCDF file of an orbit or a branch to begin with"
+    option("--start", type=Path, metavar="FILE", help=start)
+    switch = "number of a bifurcation of --start: the branch that leaves there"
+    option("--switch", type=int, metavar="N", help=switch)
+    add_numbers(
+        option,
+        period=(1, "excitation periods of the first orbit"),
+        box_acceleration=(0.0, "constant acceleration of the box beside the harmonic one, m/s2"),
+        longest=(0.03, "longest step along the branch"),
+        most=(1000, "points in one direction, at most"),
+    )
+    add_files(parser)
+    add_running(parser)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    structure = structure_of(arguments)
+    over, limits = over_of(arguments)
+    start = None if arguments.start is None else stored("--start", arguments.start)
+    question = {
+        **shaken(arguments, structure, over, start is not None),
+        "over": over,
+        "limits": limits,
+        "start": start,
+        "switch": arguments.switch,
+        **numbers_of(arguments, "period", "box_acceleration", "longest", "most"),
+    }
+    carry_out(arguments, structure, question, report, picture_of)
+
+
+def over_of(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
+    """What varies by its name in the public API, and its limits in that one's unit."""
+    from ..structures.sections import TO_RAD_S
+
+    if arguments.limits is None:
+        raise InputError("--limits: nothing given; expected FIRST:LAST")
+    first, last = ends_of("--limits", arguments.limits)
+    if arguments.over in UNITS:
+        turns = TO_RAD_S[UNITS[arguments.over]]
+        return "frequency", (turns(first), turns(last))
+    return arguments.over, (first, last)
+
+
+def shaken(
+    arguments: argparse.Namespace, structure: Structure, over: str, begun: bool
+) -> dict[str, Any]:
+    """The box's motion where the first orbit is looked for; what varies may be left out."""
+    name, amplitude = frequency_option(arguments), amplitude_of(arguments)
+    if over == "frequency" and arguments.g is not None:
+        raise InputError("--g: over the frequency; expected --amplitude, which stays the same")
+    if name is None and over in ("eta", "frequency") or begun and name is None:
+        return {} if amplitude is None else {"amplitude": amplitude}
+    found = excitation_of(arguments, structure, one=True)
+    wanted = "frequency" if over in ("frequency", "amplitude") else over
+    if over in ("eta", "frequency", "amplitude") and wanted not in found:
+        expected = "--eta without an amplitude" if over == "eta" else "a frequency and --amplitude"
+        raise InputError(f"--over {over}: expected {expected} with it")
+    return found
+
+
+def picture_of(data: xr.Dataset) -> Any:
+    """The branch over its parameter."""
+    from ..figures.branches import draw
+    from ..figures.labels import about
+
+    return draw(data, title=about(data))
+
+
+def report(data: xr.Dataset) -> None:
+    """Bifurcations as a table, and why the branch ends."""
+    from ..figures.labels import meanings
+
+    name = str(data.attrs["over"])
+    stable = int(data.stable.sum())
+    print(f"{data.sizes['point']} orbits, {stable} of them stable")
+    low, high = float(data[name].min()), float(data[name].max())
+    print(f"from {place(name, low)} to {place(name, high)}")
+    count = data.sizes.get("bifurcation", 0)
+    if not count:
+        print("no bifurcation in this range")
+    else:
+        words = meanings(data.bifurcation_kind)
+        print(f"number  {'bifurcation':28}{name} ({data.bifurcation_value.attrs['units']})")
+        for i in range(count):
+            kind = words[int(data.bifurcation_kind[i])]
+            print(f"{i:6}  {kind:28}{float(data.bifurcation_value[i]):.8f}")
+    print(f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}")

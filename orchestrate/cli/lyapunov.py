@@ -1,0 +1,85 @@
+"""``lyapunov``: largest Lyapunov exponents along a parameter."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from .options import (
+    Commands,
+    add_excitation,
+    add_numbers,
+    add_over,
+    add_structure,
+    along,
+    numbers_of,
+    structure_of,
+)
+from .output import add_files, add_running
+from .question import along_of, carry_out, place, ranges, several
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+EXAMPLES = """\
+  {program} lyapunov --eta 2.5:3.8:0.02
+  {program} lyapunov --eta 1.2 --over e --values 0.1:0.9:0.02
+  {program} lyapunov --structure beam --hz 12.5,16.7 --amplitude 1e-4
+Chaotic, periodic: the exponent is three standard errors from zero. Neutral: quasi-periodic, or not
+decided with so few --periods."""
+WORDS = {1: "chaotic", 0: "neutral", -1: "periodic"}
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "largest Lyapunov exponents of responses from rest: periodic, neutral or chaotic"
+    parser = commands.add("lyapunov", run, text, EXAMPLES)
+    add_structure(parser)
+    option = add_excitation(parser).add_argument
+    add_over(option)
+    add_numbers(
+        option,
+        transient=(500, "periods dropped"),
+        periods=(2500, "periods followed"),
+        sigmas=(3.0, "standard errors from zero that decide"),
+    )
+    add_files(parser)
+    add_running(parser)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    structure = structure_of(arguments)
+    asked, _ = along(arguments, structure)
+    question = {**asked, **numbers_of(arguments, "transient", "periods", "sigmas")}
+    carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
+
+
+def picture_of(data: xr.Dataset) -> Any:
+    """The exponents with their errors."""
+    from ..figures.lyapunov import draw
+
+    return draw(data)
+
+
+def report(data: xr.Dataset) -> None:
+    """Verdicts, and where they hold."""
+    name = along_of(data)
+    ordered = data.sortby(name)
+    if data.sizes[name] <= 10:
+        for value, exponent, error, verdict in zip(
+            *(ordered[key].values for key in (name, "exponent", "standard_error", "verdict")),
+            strict=True,
+        ):
+            where = place(name, float(value))
+            print(f"{where}: exponent {exponent:.5f} +- {error:.5f} per tau, {WORDS[int(verdict)]}")
+        return
+    top = data.isel(data.exponent.argmax(...))
+    print(
+        f"largest exponent {float(top.exponent):.5f} +- {float(top.standard_error):.5f} per tau "
+        f"at {place(name, float(top[name]))}"
+    )
+    for verdict, word in WORDS.items():
+        holds = ordered.verdict.values == verdict
+        where = f" at {ranges(name, ordered[name].values, holds)}" if holds.any() else ""
+        print(f"{word}: {int(holds.sum())} of {holds.size}{where}")

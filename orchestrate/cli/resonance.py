@@ -1,0 +1,110 @@
+"""``resonance``: amplitude and acceleration over frequency, bonded against delaminated."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from .options import (
+    Commands,
+    add_excitation,
+    add_numbers,
+    add_structure,
+    excitation_of,
+    numbers_of,
+    structure_of,
+)
+from .output import add_files, add_running
+from .question import along_of, carry_out, place, several, tell_one
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+EXAMPLES = """  {program} resonance --structure beam --hz 8:20:0.05 --g 0.02
+  {program} resonance --structure beam --rpm 500:1200:5 --amplitude 3e-5 --format nc,csv
+  {program} resonance --eta 0.3:4:0.005 --set e=0.3             the paper's structure"""
+COLUMNS = {  # of a printed peak: title, format
+    "x1_max": ("|x1| m", "11.4g"),
+    "x2_max": ("|x2| m", "11.4g"),
+    "a1_max": ("|a1| m/s2", "11.4g"),
+    "a2_max": ("|a2| m/s2", "11.4g"),
+    "x_rel_max": ("gap m", "11.4g"),
+}
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "resonance curves: amplitude and peak acceleration, bonded against delaminated"
+    parser = commands.add("resonance", run, text, EXAMPLES)
+    add_structure(parser)
+    option = add_excitation(parser).add_argument
+    directions = "order of the frequencies (default: %(default)s)"
+    option("--direction", choices=("up", "down", "both"), default="both", help=directions)
+    add_numbers(
+        option,
+        transient=(500, "periods dropped"),
+        samples=(60, "periods kept"),
+        prominence=(0.1, "by what part of itself a peak stands out at least"),
+        jump=(0.15, "by what part of itself the gap jumps at least"),
+    )
+    add_files(parser)
+    add_running(parser)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    structure = structure_of(arguments)
+    asked = excitation_of(arguments, structure, si=True)
+    names = ("direction", "transient", "samples", "prominence", "jump")
+    question = {**asked, **numbers_of(arguments, *names)}
+    carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
+
+
+def picture_of(data: xr.Dataset) -> Any:
+    """The curves."""
+    from ..figures.resonance import draw
+
+    return draw(data)
+
+
+def report(data: xr.Dataset) -> None:
+    """Peaks and jumps, a line each."""
+    name = along_of(data)
+    if data.sizes[name] == 1:
+        tell_one(data, name)
+        return
+    tell_peaks(data, name)
+    tell_jumps(data, name)
+
+
+def tell_peaks(data: xr.Dataset, name: str) -> None:
+    """Where amplitudes are largest."""
+    ends = " to ".join(place(name, float(end)) for end in (data[name].min(), data[name].max()))
+    if not data.sizes["peak"]:
+        print(f"no peak from {ends}: amplitudes rise or fall from end to end")
+        return
+    titles = "".join(f"{title:>11}" for title, _ in COLUMNS.values())
+    print(f"peaks{'':31}{titles}")
+    for i in range(data.sizes["peak"]):
+        peak = data.isel(peak=i)
+        told = [format(float(peak[f"peak_{key}"]), form) for key, (_, form) in COLUMNS.items()]
+        where = place(name, float(peak[f"peak_{name}"]))
+        print(f"  {way(peak, 'peak')} {where:>16}{''.join(told)}")
+
+
+def tell_jumps(data: xr.Dataset, name: str) -> None:
+    """Where the gap jumps."""
+    if not data.sizes["jump"]:
+        print("no jump: the response follows the frequency without one in this range")
+        return
+    print("jumps of the largest gap")
+    for i in range(data.sizes["jump"]):
+        jump = data.isel(jump=i)
+        sizes = f"{float(jump.jump_before):.4g} to {float(jump.jump_after):.4g} m"
+        print(f"  {way(jump, 'jump')} {place(name, float(jump[f'jump_{name}'])):>16}  {sizes}")
+
+
+def way(row: xr.Dataset, what: str) -> str:
+    """Structure and direction of a peak or a jump; bonded, both directions are one."""
+    structure, direction = (str(row[f"{what}_{key}"].values) for key in ("structure", "direction"))
+    return f"{structure if structure == 'bonded' else f'{structure}, {direction}':18}"

@@ -1,0 +1,85 @@
+"""A response followed in frequency until its largest gap has passed a maximum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..access import Instance
+from ..structures import Structure
+from .questions import series
+from .respond import Response, follow
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A relative resonance.
+
+    Attributes
+    ----------
+    eta : float
+        Frequency ratio of the largest gap.
+    state : tuple of float
+        The response there at phase 0: x1, x2 in m, v1, v2 in m/s.
+    """
+
+    eta: float
+    state: tuple[float, ...]
+
+
+def follow_to_peak(
+    instance: Instance,
+    structure: Structure,
+    eta: float,
+    start: ArrayLike,
+    multiplicity: int,
+    *,
+    step: float = 0.001,
+    reach: float = 1.0,
+    fall: float = 0.02,
+    transient: int = 500,
+    samples: int = 80,
+    tolerance: float = 1e-2,
+) -> Peak:
+    """Go on upwards in eta from a response with one impact in its period, to its largest gap.
+
+    Parameters
+    ----------
+    instance : Instance
+    structure : Structure
+    eta : float
+        Frequency ratio of the response that is known; the box's amplitude is 1/eta^2 m throughout.
+    start : array_like of 4 floats
+        Its state at phase 0.
+    multiplicity : int
+        Of the responses that count.
+    step, reach : float
+        Of eta, and how far to go at the most.
+    fall : float
+        Part of the maximum by which the gap must have fallen before the search ends.
+    transient, samples, tolerance
+        At each eta, as in :func:`.respond.respond`.
+
+    Returns
+    -------
+    Peak
+        The known response itself where none larger of its kind is found.
+    """
+    etas = np.round(eta + step * np.arange(1, round(reach / step)), 9)
+    points = series(structure, tuple(etas.tolist()), None, None).points
+    found, largest = Peak(eta, tuple(np.asarray(start, dtype=float).tolist())), 0.0
+    responses = follow(instance, points, start, transient, samples, tolerance)
+    for there, response in zip(etas, responses, strict=True):
+        if response.x_rel_max < (1.0 - fall) * largest:
+            break
+        if response.x_rel_max > largest and is_simple(response, multiplicity):
+            found, largest = Peak(float(there), response.end), response.x_rel_max
+    return found
+
+
+def is_simple(response: Response, multiplicity: int, slack: float = 0.1) -> bool:
+    """Whether a response has the multiplicity and one impact in its period, but for ``slack``."""
+    impacts = response.impacts_per_period * multiplicity
+    return response.multiplicity == multiplicity and abs(impacts - 1.0) < slack

@@ -1,0 +1,64 @@
+"""Where a curve has a maximum that counts, and where it jumps."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Rows = NDArray[np.intp]
+NEIGHBOURS, TIMES = 2, 3.0  # of the curve's own slope, which a jump must stand out from
+
+
+def maxima(curve: ArrayLike, prominence: float) -> Rows:
+    """Indices of maxima inside a curve that stand out.
+
+    Parameters
+    ----------
+    curve : array_like, shape (n,)
+        Not negative.
+    prominence : float
+        By what part of itself a maximum lies above the curve on both sides, before the curve rises
+        above it or ends.
+
+    Examples
+    --------
+    >>> maxima([1.0, 2.0, 1.9, 2.0, 5.0, 2.0], 0.1)
+    array([4])
+    """
+    from scipy.signal import find_peaks
+
+    values = np.asarray(curve, dtype=float)
+    ratios = np.log(np.maximum(values, np.finfo(float).tiny))
+    found: Rows = find_peaks(ratios, prominence=np.log1p(prominence))[0]
+    return found
+
+
+def jumps(curve: ArrayLike, least: float) -> Rows:
+    """Indices of values from which a curve jumps to the next one.
+
+    Parameters
+    ----------
+    curve : array_like, shape (n,)
+    least : float
+        Part of the larger one of both values that a jump is at least. It must also be some times
+        as large as the steps next to it: a steep curve does not jump, nor does an irregular one.
+
+    Examples
+    --------
+    >>> jumps([1.0, 1.1, 1.2, 2.0, 2.1, 2.2], 0.15)
+    array([2])
+    >>> jumps([1.0, 1.3, 1.7, 2.2, 2.9, 3.8], 0.15)
+    array([], dtype=int64)
+    """
+    values = np.asarray(curve, dtype=float)
+    steps = np.abs(np.diff(values))
+    large = steps > least * np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
+    padded = np.pad(steps, NEIGHBOURS)
+    around = [np.roll(padded, shift)[NEIGHBOURS:-NEIGHBOURS] for shift in offsets()]
+    found: Rows = np.flatnonzero(large & (steps > TIMES * np.max(around, axis=0, initial=0.0)))
+    return found
+
+
+def offsets() -> list[int]:
+    """Places next to a step."""
+    return [shift for shift in range(-NEIGHBOURS, NEIGHBOURS + 1) if shift]
