@@ -37,8 +37,9 @@ CURVES = (
 def orbit(number: int, e: float, D: float) -> Caption:
     """The words of an orbit diagram."""
     text = (
-        f"Bifurcation diagram for e = {e:g}, D = {D:g}: stroboscopic samples of the gap, and below "
-        "them the impacts per excitation period."
+        f"Bifurcation diagram for e = {e:g}, D = {D:g}: all stroboscopic samples of the gap, and "
+        "below them the impacts per excitation period. The axis is logarithmic down to its grey "
+        "part, and linear in it, down to 0."
     )
     return Caption(f"Figure {number}", text, ORBIT)
 
@@ -83,7 +84,7 @@ CAPTIONS = {
     "lyapunov": Caption(
         "Largest Lyapunov exponent",
         "Largest Lyapunov exponent per unit of tau along the up-sweeps (e, D) = (0.7, 0.005), "
-        "(0.7, 0.05), (0.3, 0.005), bars of three standard errors. Red: chaotic; blue: neutral, "
+        "(0.7, 0.05), (0.3, 0.005), bars of one standard error. Red: chaotic; blue: neutral, "
         "that is quasi-periodic or not decided; black: periodic.",
         "Exact solutions of the variational equations between the impacts that the FMU reports, "
         "and saltation matrices at them; chattering's end projects the deviation on the common "
@@ -119,8 +120,8 @@ CAPTIONS = {
     ),
     "spectra": Caption(
         "Spectra (the paper's Figure 3)",
-        "Amplitude spectra of the absolute acceleration of mass 1, bonded (blue) and delaminated "
-        "(black), at the resonance peak and at two other frequencies; e = 0.7, D = 0.005. Red: "
+        "Amplitude spectra of the absolute acceleration of mass 1, bonded (left) and delaminated "
+        "(right), at the resonance peak and at two other frequencies; e = 0.7, D = 0.005. Orange: "
         "what sampled accelerations show, without the impacts' impulses.",
         "64 settled periods, 1024 states each sampled inside the FMU; the acceleration's spectrum "
         "is omega^2 times that of the absolute displacement, which holds the impulses as kinks. A "

@@ -89,8 +89,8 @@ def sweep_job(structure: Structure, direction: str, resolution: Resolution) -> S
         structure=structure,
         eta=resolution.etas(),
         direction="up" if direction == "up" else "down",
-        transient=resolution.transient,
-        samples=resolution.samples,
+        transient=resolution.transient - 1,  # n = 500(1)700 has both ends
+        samples=resolution.samples + 1,
     )
 
 

@@ -3,17 +3,45 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import jinja2
+from markupsafe import Markup
 
 from ..files import write_whole
+from ..running.store import now
 from ..version import __version__
 from .captions import CAPTIONS
-from .claims.claim import WORDS
+from .claims.claim import NO, PARTLY, WORDS
 from .plan import Part
+from .typeset import typeset
+
+PAPER = {
+    "title": "A vibro-impacting model for the detection of delamination",
+    "source": "The text of the paper that this is made from names no authors, no year and no DOI.",
+}
+COLUMNS = {  # of both tables, with their headings
+    "claims": {
+        "section": "Section",
+        "text": "The paper",
+        "printed": "Paper's value",
+        "found": "Found",
+        "tolerance": "Tolerance",
+        "verdict": "Verdict",
+        "how": "How it was found, and why it differs",
+    },
+    "regions": {
+        "case": "Case",
+        "region": "Region",
+        "count": "Frequencies",
+        "chaotic": "Chaotic",
+        "neutral": "Neutral",
+        "largest": "Largest exponent",
+        "verdict": "Verdict",
+    },
+}
 
 
 def write(
@@ -42,22 +70,51 @@ def write(
         autoescape=True,
         undefined=jinja2.StrictUndefined,
     )
-    claims = content["claims"]
-    counts = {verdict: sum(row["verdict"] == verdict for row in claims) for verdict in WORDS}
-    figures = [entry(parts[name], picture) for name, picture in pictures.items()]
-    shown = {"figures": figures, "counts": counts, "words": WORDS, "version": __version__}
+    environment.filters["typeset"] = typeset
+    resolution = content["resolution"]
+    first = resolution.transient
+    shown = {
+        **summary(content["claims"]),
+        "figures": [entry(parts[name], picture) for name, picture in pictures.items()],
+        "columns": COLUMNS,
+        "words": WORDS,
+        "paper": PAPER,
+        "css": Markup(environment.get_template("report.css").render()),
+        "version": __version__,
+        "date": now().replace("T", " ").removesuffix(":00Z").removesuffix("Z"),
+        "count": len(resolution.etas()),
+        "sampled": f"$n = {first}(1){first + resolution.samples}$",
+    }
     page = environment.get_template("report.html.j2").render(**shown, **content)
     return write_whole(output / "report.html", lambda place: place.write_bytes(page.encode()))
+
+
+def summary(claims: Sequence[Mapping[str, str]]) -> dict[str, Any]:
+    """How many claims have which verdict, and those that differ from the paper."""
+    numbered = [{**row, "number": number} for number, row in enumerate(claims, 1)]
+    return {
+        "counts": {verdict: sum(row["verdict"] == verdict for row in claims) for verdict in WORDS},
+        "differing": [row for row in numbered if row["verdict"] in (NO, PARTLY)],
+    }
 
 
 def entry(part: Part, picture: Path) -> dict[str, Any]:
     """What the page shows of a part."""
     caption = CAPTIONS[part.name]
+    content = picture.read_bytes()
     return {
         "anchor": picture.stem,
+        "file": picture.stem,
         "title": caption.title,
         "caption": caption.text,
         "method": caption.method,
-        "picture": base64.b64encode(picture.read_bytes()).decode(),
+        "picture": base64.b64encode(content).decode(),
         "data": [f"{name}.nc" for name in part.jobs],
+        **size_of(content),
     }
+
+
+def size_of(png: bytes) -> dict[str, int]:
+    """Width and height of a picture in pixels, from its header: the page keeps their place."""
+    width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))
+    return {"width": width, "height": height}

@@ -15,7 +15,7 @@ class Resolution:
     ----------
     name : str
     transient, samples : int
-        Periods dropped and kept at each eta of a sweep.
+        Number of the first sample at each eta of a sweep, and of periods sampled after it.
     steady : int
         Periods after the sweep followed impact by impact.
     skip, keep : int

@@ -1,0 +1,72 @@
+r"""Formulas in plain sentences as MathML, which browsers show without any script.
+
+What the paper's letters are called in plain text, in claims, captions and answers, becomes a
+formula: ``xi_Rel``, ``eta``, ``e = 0.7``, ``1e-4``; so does what stands between dollars, in LaTeX.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+
+from docutils.utils.math.latex2mathml import tex2mathml
+from markupsafe import Markup, escape
+
+LETTERS = ("eta", "kappa", "lambda", "omega", "gamma", "tau", "mu")
+WORDS = {  # regular expressions and what they become, the longest first
+    r"\$(?P<latex>[^$]+)\$": r"\g<latex>",
+    r"e\^\(-D tau\)": r"e^{-D\\tau}",
+    r"\bm_1 omega a\s+eta\^2": r"m_1 \\omega a \\eta^2",
+    r"\ba eta\^2": r"a \\eta^2",
+    r"\(1\+e\) mu/\(1\+mu\)": r"(1+e)\\mu/(1+\\mu)",
+    r"\bmax xi_Rel\b": r"\\max \\xi_\\mathrm{Rel}",
+    r"\bxi_Rel\b": r"\\xi_\\mathrm{Rel}",
+    r"\b(?P<mass>[mkdx])_(?P<index>[12])\b": r"\g<mass>_\g<index>",
+    rf"\b(?P<power>{'|'.join(LETTERS)})\^2": r"\\\g<power>^2",
+    rf"\b(?P<letter>{'|'.join(LETTERS)})\b": r"\\\g<letter>",
+    r"(?P<digits>\d+(?:\.\d+)?)e(?P<minus>-?)\+?0*(?P<ten>\d+)\b": (
+        r"\g<digits>\\cdot 10^{\g<minus>\g<ten>}"
+    ),
+    r"\b10\^(?P<exponent>-?[\d.]+)": r"10^{\g<exponent>}",
+    r"\((?P<pair>e, D)\)": r"(\g<pair>)",
+    r"\b(?P<name>[eDT])(?= [=<>])": r"\g<name>",
+    r"\b(?P<periods>[\dn]?T)\b(?!-)": r"\g<periods>",
+}
+FORMULA = re.compile("|".join(f"(?P<word{i}>{word})" for i, word in enumerate(WORDS)))
+LATEX = tuple(WORDS.values())
+SIGNS = {"+-": "±", "<=": "≤", ">=": "≥"}
+MEANT = {"nan": "not found", "True": "yes", "False": "no", "inf": "without bound"}
+
+
+@functools.cache
+def mathml(latex: str) -> Markup:
+    """A formula of LaTeX in a line of text."""
+    return Markup(tex2mathml(latex).replace("\n", ""))
+
+
+def latex_of(found: re.Match[str]) -> str:
+    """The LaTeX of a formula found in a sentence."""
+    return found.expand(LATEX[int(str(found.lastgroup).removeprefix("word"))])
+
+
+def plain(text: str) -> str:
+    """A sentence without what only a program says."""
+    text = re.sub(rf"\b({'|'.join(MEANT)})\b", lambda match: MEANT[match[0]], text)
+    for sign, better in SIGNS.items():
+        text = text.replace(sign, better)
+    return text
+
+
+def typeset(text: str) -> Markup:
+    r"""A sentence as HTML, its formulas typeset.
+
+    Examples
+    --------
+    >>> print(typeset("x < 2 at eta"))
+    x &lt; 2 at <math xmlns="http://www.w3.org/1998/Math/MathML">  <mi>η</mi></math>
+    """
+    parts, end, text = [], 0, plain(text)
+    for match in FORMULA.finditer(text):
+        parts += [escape(text[end : match.start()]), mathml(latex_of(match))]
+        end = match.end()
+    return Markup("").join([*parts, escape(text[end:])])
