@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 KINDS = ("bonded", "delaminated")
 LEGS = ("from below", "from above")
 EVENTS = tuple(TESTS)
-LONGER = (1.0, 4.0)  # times to settle, where the first is too short
 MULTIPLIERS = 4  # the largest ones, that are kept
 TOLD: dict[str, tuple[str, str]] = {  # of a motion, with units
     "speed": ("rad/s", "mean speed"),
@@ -120,18 +119,14 @@ class DriveBranchJob(Job):
         return [below, Leg(end=NOT_BEGUN) if passed else self.leg(shooter, (low, high), up=False)]
 
     def leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
-        """The branch from one of two speeds over omega, where a simulation settles."""
+        """The branch from one of two speeds over omega, which a simulation is held at."""
         speed = speeds[0] if up else speeds[1]
         voltage = float(averaged.no_load_speed(shooter.structure, self.drive, speed))
         omega = shooter.structure.omega
-        for longer in LONGER:
-            state = shooter.settle(voltage * shooter.volts, speed * omega, longer * self.settle)
-            try:
-                start = motion_near(shooter, np.append(state, [voltage, speed]), up)
-                break
-            except NoConvergenceError:
-                continue
-        else:
+        state = shooter.settle(voltage * shooter.volts, speed * omega, self.settle)
+        try:
+            start = motion_near(shooter, np.append(state, [voltage, speed]), up)
+        except NoConvergenceError:
             return Leg(end=NONE)
         return follow(shooter, start, speeds, self.pace)
 

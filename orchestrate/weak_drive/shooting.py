@@ -27,6 +27,7 @@ STARTS = {  # start values of the shaker and of the structure by the outputs tha
     **{name: f"{name}_start" for name in ("x1", "v1", "x2", "v2")},
     "motor_current": "current_start",
 }
+HEAVY = 1e6  # times its inertia, a rotor that keeps its speed
 
 
 class Period(NamedTuple):
@@ -139,12 +140,23 @@ class Shooter:
         return np.array([values[name] for name in self.names]) / self.units
 
     def settle(self, voltage: float, speed: float, time: float) -> Floats:
-        """The state after a time at a voltage, with the masses apart unless they are bonded."""
+        """The state after a time at a speed, with the masses apart unless they are bonded.
+
+        The speed is held by a heavy rotor: so motions are found that a motor would not stay on.
+        """
+        own = self.drive
+        self.drive = own.replace(rotor_inertia=HEAVY * own.rotor_inertia)
         state = np.zeros(self.size)
         state[self.names.index("speed")] = speed / self.structure.omega
-        master = self.master(state, voltage, 0.1 / self.structure.omega)
-        while master.time < time or self._touching(master):
-            master.step(voltage)
+        if "motor_current" in self.names:
+            current = (voltage - own.motor_constant * speed) / own.armature_resistance
+            state[-1] = current / self.units[-1]
+        try:
+            master = self.master(state, voltage, 0.1 / self.structure.omega)
+            while master.time < time or self._touching(master):
+                master.step(voltage)
+        finally:
+            self.drive = own
         self.angle = master.shaking.angle % TURN
         found = self.state_of(master)
         master.close()
