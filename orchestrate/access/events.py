@@ -34,7 +34,7 @@ class Impacts:
     state : ndarray, shape (n, 4)
         x1, x2 in m, v1, v2 in m/s just after each.
     closing : ndarray, shape (n,)
-        Closing speed before it, m/s, >= 0; the impulse is ``m1 mu/(1+mu) (1+e)`` times this (15).
+        Closing speed before it, m/s, >= 0.
     sticks : ndarray of bool, shape (n,)
         Whether permanent contact follows (17).
     """
@@ -53,9 +53,14 @@ class Impacts:
         return state
 
     def impulse(self, structure: Structure) -> NDArray[np.float64]:
-        """Impulse of each impact, N s, shape (n,) (15)."""
-        mu = structure.mu
-        return structure.m1 * (mu / (1.0 + mu)) * (1.0 + structure.e) * self.closing
+        """Impulse of each impact on each mass, N s, shape (n,) (15); plastic where contact begins.
+
+        Of non-dimensional impacts it is over omega a eta^2, so that its unit is that of a mass.
+        """
+        m1, m2 = structure.m1, structure.m2
+        restitution = np.where(self.sticks, 0.0, structure.e)
+        found: NDArray[np.float64] = (1.0 + restitution) * m1 * m2 / (m1 + m2) * self.closing
+        return found
 
 
 class EventInstance(Instance):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from typing import TYPE_CHECKING, Any
 
 from .options import (
@@ -73,6 +74,7 @@ def report(data: xr.Dataset) -> None:
         ):
             where = place(name, float(value))
             print(f"{where}: exponent {exponent:.5f} +- {error:.5f} per tau, {WORDS[int(verdict)]}")
+        tell_undecided(ordered)
         return
     top = data.isel(data.exponent.argmax(...))
     print(
@@ -83,3 +85,23 @@ def report(data: xr.Dataset) -> None:
         holds = ordered.verdict.values == verdict
         where = f" at {ranges(name, ordered[name].values, holds)}" if holds.any() else ""
         print(f"{word}: {int(holds.sum())} of {holds.size}{where}")
+    tell_undecided(ordered)
+
+
+def tell_undecided(data: xr.Dataset) -> None:
+    """How many periods would decide what is neutral, if it is not quasi-periodic."""
+    neutral = data.isel({along_of(data): data.verdict.values == 0})
+    sizes = abs(neutral.exponent.values)
+    if not (sizes > 0.0).any():
+        return
+    wander = math.log(float(data.attrs["wander"]))
+    needed = max(
+        wander / (size * period)
+        for size, period in zip(sizes, neutral.period.values, strict=True)
+        if size > 0.0
+    )
+    if needed > float(data.attrs["periods"]):
+        print(
+            f"neutral: quasi-periodic, or too few periods: exponents of these sizes take about "
+            f"--periods {math.ceil(needed)}"
+        )

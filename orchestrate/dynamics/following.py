@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from abc import ABC
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import REST, STATE, EventInstance, Impacts, Instance, begin
+from ..access import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin
 from ..errors import InputError
 from ..response.questions import Point, SeriesQuestion, states
-from ..running.job import Inputs
+from ..running.job import Inputs, Table
 from .variational import nondimensional
 
 if TYPE_CHECKING:
@@ -37,8 +38,8 @@ class FollowingQuestion(SeriesQuestion, ABC):
 
     Attributes
     ----------
-    transient : int
-        Periods dropped before.
+    transient, periods : int
+        Periods dropped, and followed after them.
     start : tuple of float
         One state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
         parameter, or one for each.
@@ -47,6 +48,7 @@ class FollowingQuestion(SeriesQuestion, ABC):
     """
 
     transient: int = 500
+    periods: int = 100
     start: tuple[float, ...] = REST
     follows: str = ""
 
@@ -62,6 +64,29 @@ class FollowingQuestion(SeriesQuestion, ABC):
             rows = ends_of(inputs[self.follows], series)
         starts = np.broadcast_to(rows, (len(series.points), 4)).tolist()
         return [Followed(*item) for item in zip(series.points, map(tuple, starts), strict=True)]
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
+    ) -> Table:
+        """Some responses, settled and followed."""
+        rows = []
+        with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
+            for item in items:
+                start = settled(plain, item, self.transient)
+                impacts = impacts_of(eventful, item.point, start, self.periods)
+                rows.append(self.row(impacts, item))
+        return {"rows": np.array(rows, dtype=float)}
+
+    @abstractmethod
+    def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
+        """What is told of one response.
+
+        Parameters
+        ----------
+        impacts : Impacts
+            Non-dimensional, of ``periods`` periods.
+        item : Followed
+        """
 
 
 def ends_of(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, EventInstance, Impacts, Instance, finder
+from ..access import Impacts, finder
 from ..response.labels import variable
 from ..response.questions import asked_along, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import Followed, FollowingQuestion, impacts_of, settled, starts_of
+from .following import Followed, FollowingQuestion, starts_of
 from .lyapunov import Exponent, largest_exponent, without_impacts
 from .variational import period
 
@@ -45,30 +44,15 @@ FIELDS = {
 
 @dataclass(frozen=True, kw_only=True)
 class ImpactStatisticsJob(FollowingQuestion):
-    """Responses along a parameter, impact by impact.
+    """Responses along a parameter, impact by impact."""
 
-    Attributes
-    ----------
-    periods : int
-        Excitation periods followed.
-    """
-
-    periods: int = 100
     asked: ClassVar[str] = "impact_statistics"
     chunk: ClassVar[int] = 40
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
-    ) -> Table:
-        """Some responses."""
-        rows = []
-        with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
-            for item in items:
-                start = settled(plain, item, self.transient)
-                impacts = impacts_of(eventful, item.point, start, self.periods)
-                found = statistics(impacts, item, self.periods)
-                rows.append([found[name] for name in FIELDS])
-        return {"rows": np.array(rows, dtype=float)}
+    def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
+        """In the order of ``FIELDS``."""
+        found = statistics(impacts, item, self.periods)
+        return [found[name] for name in FIELDS]
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """One variable a property, over the parameter."""

@@ -9,22 +9,21 @@ distance at all.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, EventInstance, Impacts, Instance, finder
+from ..access import Impacts, finder
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
 from ..response.questions import asked_along, positive, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import Followed, FollowingQuestion, impacts_of, settled, starts_of
+from .following import Followed, FollowingQuestion, starts_of
 from .variational import Branches, period, slowest_rate, steps
 
 if TYPE_CHECKING:
@@ -179,8 +178,6 @@ class LyapunovJob(FollowingQuestion):
 
     Attributes
     ----------
-    periods : int
-        Excitation periods followed at each value.
     blocks, batches : int
         As in :func:`largest_exponent`.
     sigmas, wander : float
@@ -195,18 +192,9 @@ class LyapunovJob(FollowingQuestion):
     asked: ClassVar[str] = "lyapunov"
     chunk: ClassVar[int] = 5
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
-    ) -> Table:
-        """Some values."""
-        rows = []
-        with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
-            for item in items:
-                start = settled(plain, item, self.transient)
-                impacts = impacts_of(eventful, item.point, start, self.periods)
-                exponent = self.exponent(impacts, item)
-                rows.append([*exponent, len(impacts.time) / self.periods])
-        return {"rows": np.array(rows)}
+    def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
+        """Exponent, error, impacts per period."""
+        return [*self.exponent(impacts, item), len(impacts.time) / self.periods]
 
     def exponent(self, impacts: Impacts, item: Followed) -> Exponent:
         """Of one response.

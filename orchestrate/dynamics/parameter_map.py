@@ -159,8 +159,7 @@ class MapJob(Question):
         kept = self.samples, self.tolerance
         response = respond(plain, structure, excitation, self.start, dropped, *kept)
         impacts = impacts_of(eventful, item, response.end, self.samples // 2)
-        mu = structure.mu
-        impulse = (1.0 + structure.e) * mu / (1.0 + mu) * impacts.closing.max(initial=0.0)
+        impulse = impacts.impulse(structure).max(initial=0.0) / structure.m1
         found = [response.impacts_per_period, response.multiplicity]
         found += [response.x_rel_max / item.length, impulse]
         return [*found, *self.exponent_of(eventful, item, response.end)] if self.exponent else found

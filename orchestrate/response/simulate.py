@@ -86,8 +86,8 @@ class SimulateJob(Question):
             rows, touching, impacts = recorded(instance, grid)
         found = dict(zip(OUTPUTS, rows.T, strict=True))
         found["in_contact"] = touching
-        closing, sticks = impacts.closing, impacts.sticks
-        found |= {"impact_time": impacts.time, "impact_velocity": closing, "sticks": sticks}
+        found |= {"impact_time": impacts.time, "impact_velocity": impacts.closing}
+        found |= {"impulse": impacts.impulse(self.structure), "sticks": impacts.sticks}
         return {**found, **self.accelerations(rows, touching)}
 
     def accelerations(
@@ -120,9 +120,7 @@ class SimulateJob(Question):
 
     def impacts(self, table: Table) -> dict[str, Variable]:
         """The impacts of the time kept."""
-        m1, m2, closing = self.structure.m1, self.structure.m2, table["impact_velocity"]
-        restitution = np.where(table["sticks"], 0.0, self.structure.e)
-        impulse = (1.0 + restitution) * m1 * m2 / (m1 + m2) * closing
+        closing, impulse = table["impact_velocity"], table["impulse"]
         text = "whether permanent contact follows the impact (17)"
         return {
             "impact_time": variable("impact", table["impact_time"], "s", "time of the impact"),

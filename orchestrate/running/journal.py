@@ -101,6 +101,10 @@ class Journal:
                 self._query("DELETE FROM chunks WHERE i = ?", index)
         return found
 
+    def is_empty(self) -> bool:
+        """Whether there is no chunk at all."""
+        return not self._query("SELECT 1 FROM chunks LIMIT 1")
+
     def get(self, index: int) -> Table:
         """One chunk."""
         ((digest, data),) = self._query(

@@ -7,6 +7,7 @@ import logging
 import os
 import time
 from abc import ABC, abstractmethod
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -200,8 +201,11 @@ class Disk(Store):
         return load(self.path)
 
     def close(self) -> None:
-        """Close the journal and let others at it."""
+        """Close the journal and let others at it; where nothing is in it, it goes."""
         if self._journal is not None:
+            with suppress(StoreError):
+                if self._journal.is_empty():
+                    self._journal.remove()
             self._journal.close()
         self._lock.release()
 

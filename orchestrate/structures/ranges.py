@@ -153,7 +153,8 @@ NUMBERS = {
 def one_of(name: str, known: Iterable[str]) -> str:
     """What is expected instead of an unknown name, the nearest one first where there is one."""
     names = list(known)
-    near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    near = [other for other in names if other.lower() == name.lower()]
+    near = near or difflib.get_close_matches(name, names, n=1, cutoff=0.5)
     return f"expected one of {', '.join(names)}" + (f" (did you mean {near[0]}?)" if near else "")
 
 

@@ -43,7 +43,7 @@ QUESTIONS = {  # command line, words that must be said, pictures
         True,
     ),
     "branch": (
-        ("--eta", "2.5", "--limits", "2.6:2.7"),
+        ("--eta", "2.62", "--limits", "2.6:2.7"),
         ("Neimark-Sacker", "2.64796105", "from eta = 2.6 to eta = 2.7", "limit"),
         True,
     ),
