@@ -32,7 +32,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "dynamics": BELOW_ANSWERS | {"response"},
     "weak_drive": BELOW_ANSWERS | {"response", "dynamics"},
     "figures": GROUND,
-    "paper": BELOW_ANSWERS | {"response", "dynamics", "figures"},
+    "paper": BELOW_ANSWERS | {"response", "dynamics", "weak_drive", "figures"},
     "__init__": BELOW_ANSWERS | {"response", "dynamics", "weak_drive"},
     "cli": BELOW_ANSWERS | {"__init__", "weak_drive", "figures", "paper"},
     "__main__": {"cli"},

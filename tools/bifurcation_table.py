@@ -26,6 +26,7 @@ from orchestrate.figures.files import save
 from orchestrate.files import write_whole
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
+from tools.marked import put
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
@@ -54,7 +55,6 @@ WINDOWS = {  # the same branches, where all three cases have orbits on them
     "3T/1": (6.3, 3, (1.37, 9.5)),
     "4T/1": (8.3, 4, (1.37, 9.5)),
 }
-MARK = "<!-- {}: {} -->\n"
 
 
 NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_closing")
@@ -192,14 +192,6 @@ def all_windows() -> list[str]:
             found = branch(structure, start=start, limits=limits)
             lines += [window_line(case, label, window) for window in stable_windows(found)]
     return lines
-
-
-def put(text: str, name: str, lines: list[str]) -> str:
-    """A page's text with lines between two marks."""
-    before, rest = text.split(MARK.format(name, "begin"))
-    after = rest.split(MARK.format(name, "end"))[1]
-    own = "\n".join(lines)
-    return f"{before}{MARK.format(name, 'begin')}{own}\n{MARK.format(name, 'end')}{after}"
 
 
 def main() -> None:

@@ -30,6 +30,7 @@ FIRST_STEP = 1e-3
 SWITCHED = 1e-3  # step away from a bifurcation onto the branch that leaves there
 SHORT_OF = 1.0 - 1e-6  # of a step to the branch's end: where multipliers are looked at
 AT_BEGIN = 1e-7  # of a step: what is found before was there when the step began
+SHORTER = 0.3  # a step in which a bifurcation was not found, over the one before
 CHANGES = 10  # impacts of a chattering that come or go in one step
 LIMIT, STUCK, LONG, CLOSED = (
     "limit",
@@ -109,32 +110,48 @@ def follow(start: Look, pace: Pace) -> Leg:
 
 def advance(leg: Leg, walk: Walk[Family]) -> None:
     """One step on, or the end."""
-    before = leg.looks[-1]
     try:
-        family = walk.curve
-        root, length, arrived = walk.inside(
-            family.size, family.setting.limits, lambda root: orderly(family, root)
-        )
-        after, leg.end = Look(family, root), LIMIT if arrived else ""
-        step = Step(walk, before, after, length, leg.rates)
-        found = located(step)
-        leg.rates = {kind: step.rate(kind) for kind in SIGNS}
+        step, found, arrived = stepped(leg, walk)
     except NoConvergenceError:
         leg.end = STUCK
         return
+    after, leg.end = step.after, LIMIT if arrived else ""
+    leg.rates = {kind: step.rate(kind) for kind in SIGNS}
     last = len(leg.looks) - 1
     for place, look, kind in found:
         ends = kind in ENDS
-        leg.events.append(Event(kind, look, last + (1.0 if ends else place / length)))
+        leg.events.append(Event(kind, look, last + (1.0 if ends else place / step.length)))
         if ends:
             leg.looks.append(look)
             leg.end = KINDS[kind]
             return
     if after.wrong_contact:
-        after = resequenced(leg, walk, after, length)
+        after = resequenced(leg, walk, after, step.length)
     walk.curve, walk.root = after.family, after.root
     leg.looks.append(after)
     rescale(walk)
+
+
+def stepped(leg: Leg, walk: Walk[Family]) -> tuple[Step, list[tuple[float, Look, int]], bool]:
+    """The next step with its bifurcations, and whether it ends at a limit; shorter where they hide.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where no step is short enough.
+    """
+    family = walk.curve
+    while True:
+        root, length, arrived = walk.inside(
+            family.size, family.setting.limits, lambda root: orderly(family, root)
+        )
+        step = Step(walk, leg.looks[-1], Look(family, root), length, leg.rates)
+        try:
+            return step, located(step), arrived
+        except NoConvergenceError:
+            walk.step = SHORTER * length
+            if walk.step < walk.shortest:
+                raise
 
 
 def rescale(walk: Walk[Family]) -> None:

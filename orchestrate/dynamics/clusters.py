@@ -36,6 +36,8 @@ class Telling:
         Relative deviation within which a state nearly repeats.
     converged : float
         Relative deviation within which a repeated state decides.
+    apart : float
+        Over ``converged``: states differ by more after fewer periods than those of the response.
     longest : int
         Periods after which a response that does not repeat is irregular.
     irregular_samples : int
@@ -52,6 +54,7 @@ class Telling:
     samples: int = 48
     tolerance: float = 1e-2
     converged: float = 1e-6
+    apart: float = 1e3
     longest: int = 20_000
     irregular_samples: int = 400
     alike: float = 0.02
@@ -90,16 +93,25 @@ def response_from(instance: Instance, point: Point, start: ArrayLike, telling: T
     while True:
         response = respond(instance, *point, start, dropped, telling.samples, telling.converged)
         done, start = done + dropped + telling.samples, response.end
-        if response.multiplicity:
+        if response.multiplicity and decided(response, telling):
             return Settled(response, done)
         nearly, left = deviation(response.samples, telling.tolerance)
         if done >= telling.longest:
             break
         before, dropped = left, min(done, telling.longest - done)
-    if 2.0 * left < before:
+    if 2.0 * left < before < np.inf:
         return Settled(replace(response, multiplicity=nearly), done)
     response = respond(instance, *point, start, 0, telling.irregular_samples, telling.converged)
     return Settled(response, done + telling.irregular_samples)
+
+
+def decided(response: Response, telling: Telling) -> bool:
+    """Whether a state that repeats does so after no fewer periods.
+
+    A deviation that dies while it turns round is smaller after some periods than after one.
+    """
+    nearly = multiplicity(response.samples, telling.apart * telling.converged)
+    return nearly == response.multiplicity
 
 
 def deviation(samples: Floats, tolerance: float) -> tuple[int, float]:

@@ -30,7 +30,8 @@ ORBIT = (
 )
 CURVES = (
     "Each started from the up-sweep's response; states sampled inside the FMU and both sides of "
-    "each impact, after the periods dropped."
+    "each impact, after the periods dropped. nT: the state repeats within 1e-6; a torus that "
+    "nearly repeats is irregular."
 )
 
 
@@ -97,10 +98,11 @@ CAPTIONS = {
         "size the share of starts that lead to it; black: periodic, red: not periodic. Below: "
         "number of attractors; where responses are irregular the number depends on the "
         "clustering's threshold.",
-        "At each frequency random starts in a box three times the up-sweep's largest gap, followed "
-        "for at least 300 eta periods and sampled; responses are clustered by multiplicity, "
-        "impacts per period, largest gap, mean and deviation of the samples (2 % for periodic "
-        f"ones, 25 % for others). {ARTEFACT}",
+        "At each frequency random starts in a box three times the up-sweep's largest gap, each run "
+        "on until its state repeats within 1e-6, at most for 8,000 periods: what has not repeated "
+        "then is irregular, a torus or chaos. Responses are clustered by multiplicity, impacts per "
+        "period, largest gap, mean and deviation of the samples (2 % for periodic ones, 25 % for "
+        f"others). {ARTEFACT}",
     ),
     "basin": Caption(
         "Basins of attraction",

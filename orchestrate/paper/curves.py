@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access import OSCILLATOR, Instance
+from ..dynamics.clusters import Telling, response_from
 from ..response.curves import KINDS, trace
 from ..response.labels import flags, variable
 from ..response.questions import Point
@@ -37,7 +38,7 @@ class Panel:
     start : tuple of float
         State at phase 0 that the motion starts from.
     multiplicity : int
-        Found in the sweep, 0 where irregular.
+        0 where irregular.
     """
 
     structure: Structure
@@ -95,8 +96,11 @@ class CurvesJob(Job):
         """The responses."""
 
     def settled(self, fmu: Path, panel: Panel) -> Panel:
-        """The response that a panel shows, in a worker."""
-        return panel
+        """The response that a panel shows, in a worker, with the multiplicity that it has then."""
+        telling = Telling(transient=self.skip, settle=0.0)
+        with Instance(fmu) as instance:
+            response, _ = response_from(instance, panel.point, panel.start, telling)
+        return replace(panel, multiplicity=response.multiplicity)
 
     def items(self, inputs: Inputs) -> list[tuple[int, Panel]]:
         """The panels with their numbers."""
@@ -125,7 +129,7 @@ class CurvesJob(Job):
         time = "non-dimensional time from the first period shown"
         state = ("point", "coordinate"), table["state"], "1", "non-dimensional state"
         e, D, eta, multiplicity = table["about"].T
-        text = "multiplicity of the sweep's response; 0: irregular"
+        text = "excitation periods after which the settled response repeats; 0: irregular"
         variables = {
             "tau": variable("point", table["tau"], "1", time),
             "state": variable(*state),
@@ -205,7 +209,7 @@ class CurvesInWindows(CurvesJob):
         """A panel without a peak is followed upwards to one beyond the sweep."""
         n = -panel.multiplicity
         if n <= 0:
-            return panel
+            return super().settled(fmu, panel)
         with Instance(fmu) as instance:
             peak = follow_to_peak(instance, panel.structure, panel.eta, panel.start, n)
         return replace(panel, eta=peak.eta, start=peak.state, multiplicity=n)

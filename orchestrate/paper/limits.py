@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -115,7 +115,7 @@ class LimitsJob(Job):
         """One branch."""
         ((number, structure, state),) = items
         one = self.branches[number]
-        given = {"progress": False, "fmu": fmus[OSCILLATOR]}
+        given: Any = {"progress": False, "fmu": fmus[OSCILLATOR]}
         start = orbit(structure, eta=one.eta, period=one.period, guess=state, **given)
         windows = stable_windows(branch(structure, start=start, limits=one.limits, **given))
         return {

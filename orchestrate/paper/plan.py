@@ -22,8 +22,11 @@ from .basin import EvenBasinJob
 from .cases import CASES, MAP_ETAS, MAPS, map_values
 from .curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
 from .gamma import GammaJob
+from .limits import LimitsJob
+from .low_speed import LowSpeedJob
 from .pictures import ORBITS
 from .resolution import Resolution
+from .settled import SettledJob
 from .spectra import PeakSpectraJob
 
 FIRST_REGION = (0.45, 0.49, 0.59, 0.63, 0.70, 0.80, 0.88, 1.047, 1.08, 1.13, 1.24, 1.31)
@@ -94,16 +97,27 @@ def sweep_job(structure: Structure, direction: str, resolution: Resolution) -> S
     )
 
 
-def exponent_job(sweep: SweepJob, resolution: Resolution) -> LyapunovJob:
-    """Exponents of each fifth response of an up-sweep; below 0.43 all have permanent contact."""
-    etas = tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5]
-    return LyapunovJob(
-        name=f"exponent_{sweep.structure.label()}",
+def settled_job(sweep: SweepJob, resolution: Resolution) -> SettledJob:
+    """What each fifth response of an up-sweep settles to; below 0.43 most have contact."""
+    return SettledJob(
+        name=sweep.name.replace("orbit", "settled"),
         structure=sweep.structure,
-        eta=etas,
+        eta=tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5],
+        transient=0,
+        follows=sweep.name,
+        telling=Telling(transient=0, settle=0.0, longest=resolution.longest),
+    )
+
+
+def exponent_job(settled: SettledJob, resolution: Resolution) -> LyapunovJob:
+    """Exponents of settled responses: chaos that dies out is gone."""
+    return LyapunovJob(
+        name=f"exponent_{settled.structure.label()}",
+        structure=settled.structure,
+        eta=settled.eta,
         transient=0,
         periods=resolution.long_run,
-        follows=sweep.name,
+        follows=settled.name,
     )
 
 
@@ -129,7 +143,7 @@ def attractors_job(sweep: SweepJob, resolution: Resolution) -> AttractorsJob:
         seed=2026,
         width=3.0,
         follows=sweep.name,
-        telling=Telling(transient=resolution.settle),
+        telling=Telling(transient=resolution.settle, longest=resolution.settle_most),
     )
 
 
@@ -190,29 +204,34 @@ def make(resolution: Resolution) -> Plan:
     ups = [sweep_job(structure, "up", resolution) for structure in CASES.values()]
     downs = [sweep_job(structure, "down", resolution) for structure in CASES.values()]
     statistics = [statistics_job(sweep, resolution) for sweep in ups]
-    curves, gamma = curve_jobs(ups, resolution), GammaJob(name="gamma")
-    further = further_jobs(ups, resolution)
+    curves = curve_jobs(ups, resolution)
+    limits = LimitsJob(name="limits", sweeps=names_of(ups))
+    own: list[Job] = [GammaJob(name="gamma"), limits, LowSpeedJob(name="low_speed")]
+    settled = [settled_job(sweep, resolution) for sweep in ups]
+    further = further_jobs(ups, settled, resolution)
     shown: dict[str, list[Job]] = {
         **{number: [ups[list(CASES).index(case)]] for number, case in ORBITS.items()},
         **{number: [job] for number, job in curves.items()},
     }
     beyond = [job for some in further.values() for job in some]
-    evidence = [*ups, *downs, *statistics, gamma, *beyond]
+    evidence = [*ups, *downs, *statistics, *own, *settled, *beyond]
     evidence += [curves[number] for number in ("5", "7", "12")]
     parts = [Part("claims", "", names_of(evidence))]
     parts += [Part(n, f"figure{n}", names_of(shown[n])) for n in sorted(shown, key=int)]
     parts += [Part(name, name, names_of(some)) for name, some in further.items()]
-    jobs = [*ups, *downs, *statistics, *curves.values(), gamma, *beyond]
+    jobs = [*ups, *downs, *statistics, *curves.values(), *own, *settled, *beyond]
     return Plan({job.name: job for job in jobs}, {part.name: part for part in parts})
 
 
-def further_jobs(ups: Sequence[SweepJob], resolution: Resolution) -> dict[str, list[Job]]:
+def further_jobs(
+    ups: Sequence[SweepJob], settled: Sequence[SettledJob], resolution: Resolution
+) -> dict[str, list[Job]]:
     """What goes beyond the paper's figures, by part."""
     first = ups[0]
     attractors = attractors_job(first, resolution)
     spectra = PeakSpectraJob(name="spectra", sweep=first.name, structure=first.structure)
     return {
-        "lyapunov": [exponent_job(sweep, resolution) for sweep in ups],
+        "lyapunov": [exponent_job(job, resolution) for job in settled],
         "attractors": [attractors],
         "basin": [basin_job(attractors, first, resolution)],
         "maps": [map_job(parameter, first.structure, resolution) for parameter in MAPS],

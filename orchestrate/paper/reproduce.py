@@ -69,16 +69,16 @@ def reproduce(
     drawn = [part for part in parts if part.picture]
     pictures = draw_all(drawn, output, options.processes)
     asked = [part for part in parts if not part.picture]
-    found = check_claims(output, asked[0].jobs) if asked else NOTHING
+    found = check_claims(output, asked[0].jobs, resolution.decides) if asked else NOTHING
     content = {"resolution": resolution, "fmu": find(OSCILLATOR), **found}
     return Outcome(found, pictures, report.write(output, pictures, whole.parts, content))
 
 
-def check_claims(output: Path, names: Sequence[str]) -> dict[str, Any]:
+def check_claims(output: Path, names: Sequence[str], full: bool) -> dict[str, Any]:
     """The claims, and what goes beyond them, kept beside the report as JSON too."""
     data = {name: load(output / f"{name}.nc") for name in names}
     found = {
-        "claims": claims.table(data),
+        "claims": claims.table(data, full),
         "regions": answers.regions(data),
         "answers": answers.sentences(data),
     }

@@ -22,14 +22,17 @@ class Resolution:
         Periods dropped and kept for phase curves (section 3.2).
     long_run : int
         Periods of the long runs that decide between regular and chaotic.
-    attractor_step : float
-        Of eta, where coexisting attractors are looked for.
+    longest : int
+        Periods up to which a response is run on that does not repeat.
+    attractor_step, fine_step : float
+        Of eta, where coexisting attractors are looked for; the fine one where sweeps up and down
+        differ.
     starts : int
         Random starts at each.
     basin : int
         Starts along each side of the basin picture.
-    settle : int
-        Periods before a response from a random start counts as settled.
+    settle, settle_most : int
+        Periods before a response from a random start counts as settled; up to which it is run on.
     map_etas, map_rows : int
         Values along the sides of a parameter map.
     map_settle, map_keep : int
@@ -43,10 +46,13 @@ class Resolution:
     skip: int = 2000
     keep: int = 500
     long_run: int = 2500
+    longest: int = 20_000
     attractor_step: float = 0.005
+    fine_step: float = 0.002
     starts: int = 60
     basin: int = 160
     settle: int = 400
+    settle_most: int = 8000
     map_etas: int = 181
     map_rows: int = 51
     map_settle: int = 300
@@ -57,10 +63,16 @@ class Resolution:
         return tuple(float(eta) for eta in np.arange(100, 8001) / 1000.0)
 
     def attractor_etas(self) -> tuple[float, ...]:
-        """Frequencies of the random starts: finely up to 1.4, coarsely beyond."""
-        step = self.attractor_step
-        etas = np.concatenate([np.arange(0.44, 1.4, step), np.arange(1.4, 8.0, 10 * step)])
-        return tuple(float(eta) for eta in np.round(etas, 6))
+        """Frequencies of the random starts: finest around 1.07 to 1.37, coarsely from 1.4 on."""
+        step, fine = self.attractor_step, self.fine_step
+        ranges = [(0.44, 1.4, step), (1.06, 1.38, fine), (1.4, 8.0, 10 * step)]
+        etas = np.concatenate([np.arange(*ends) for ends in ranges])
+        return tuple(float(eta) for eta in np.unique(np.round(etas, 6)))
+
+    @property
+    def decides(self) -> bool:
+        """Whether it has the paper's 500 periods at each frequency, and counts are dense enough."""
+        return self.transient >= 500
 
 
 FULL = Resolution()
@@ -72,10 +84,13 @@ QUICK = Resolution(
     skip=300,
     keep=100,
     long_run=400,
+    longest=2000,
     attractor_step=0.02,
+    fine_step=0.02,
     starts=16,
     basin=40,
     settle=150,
+    settle_most=1000,
     map_etas=41,
     map_rows=11,
     map_settle=80,

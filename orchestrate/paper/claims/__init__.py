@@ -6,19 +6,28 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from . import section3, section3_influence, section4, section5
+from . import section1, section2, section3, section3_influence, section4, section5
 from .results import Results
 
-CLAIMS = (*section3.CLAIMS, *section3_influence.CLAIMS, *section4.CLAIMS, *section5.CLAIMS)
+CLAIMS = (
+    *section1.CLAIMS,
+    *section2.CLAIMS,
+    *section3.CLAIMS,
+    *section3_influence.CLAIMS,
+    *section4.CLAIMS,
+    *section5.CLAIMS,
+)
 
 
-def table(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
+def table(datasets: Mapping[str, xr.Dataset], full: bool = True) -> list[dict[str, str]]:
     """All claims with what was found, as texts.
 
     Parameters
     ----------
     datasets : mapping of xarray.Dataset
         By name.
+    full : bool
+        Whether at the full resolution; else what it takes is not decided.
     """
-    results = Results(datasets)
+    results = Results(datasets, full)
     return [claim.row(results) for claim in CLAIMS]

@@ -6,60 +6,41 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from ...dynamics.lyapunov import SIGMAS
 from ..cases import CASES, MAPS
-from .results import Results, between, shares
+from .results import Region, Results, between, shares
 
-REGIONS = (
-    (0.43, 0.89),
-    (0.9, 1.06),
-    (1.07, 1.37),
-    (1.37, 2.61),
-    (2.61, 3.77),
-    (3.77, 4.72),
-    (4.72, 5.75),
-    (5.75, 6.76),
-    (6.76, 7.96),
-)
 LEAST = 0.01  # share of chaotic or neutral responses from which a region is called so
 
 
 def regions(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
-    """The verdict on each region of each case, as a list of dicts of text.
+    """The verdict on each region of each case, between exact limits, as a list of dicts of text.
 
     Parameters
     ----------
     datasets : mapping of xarray.Dataset
         By name.
     """
-    results, rows = Results(datasets), []
-    for name, case in CASES.items():
-        for low, high in REGIONS:
-            chaotic, neutral, top, error, eta = shares(results.exponent(name), low, high)
-            count = between(results.exponent(name), low, high).sizes["eta"]
-            verdict = (
-                "chaotic in part"
-                if chaotic > LEAST
-                else "neutral in part"
-                if neutral > LEAST
-                else "periodic"
-            )
-            numbers = {
-                "chaotic": f"{100 * chaotic:.0f} %",
-                "neutral": f"{100 * neutral:.0f} %",
-                "count": str(count),
-            }
-            largest = f"{top:.4f} ± {SIGMAS * error:.4f} at {eta:.3f}"
-            rows.append(
-                {
-                    "case": f"e = {case.e:g}, D = {case.get('D'):g}",
-                    "region": f"{low:g} to {high:g}",
-                    **numbers,
-                    "largest": largest,
-                    "verdict": verdict,
-                }
-            )
-    return rows
+    results = Results(datasets)
+    return [
+        {"case": f"e = {case.e:g}, D = {case.get('D'):g}", **told(results, name, region)}
+        for name, case in CASES.items()
+        for region in results.regions(name)
+    ]
+
+
+def told(results: Results, case: str, region: Region) -> dict[str, str]:
+    """One region; the largest exponent with one standard error."""
+    low, high, name = region
+    chaotic, neutral, top, error, eta = shares(results, case, low, high)
+    kinds = {"chaotic in part": chaotic, "neutral in part": neutral, "periodic": 1.0}
+    return {
+        "region": f"{low:.5f} to {high:.5f} ({name})",
+        "chaotic": f"{100 * chaotic:.0f} %",
+        "neutral": f"{100 * neutral:.0f} %",
+        "count": str(between(results.exponent(case), low, high).sizes["eta"]),
+        "largest": f"{top:.4f} ± {error:.4f} at {eta:.3f}",
+        "verdict": next(word for word, share in kinds.items() if share > LEAST),
+    }
 
 
 def sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
@@ -101,9 +82,12 @@ def coexisting(data: xr.Dataset) -> str:
         kind = f"{n if n > 1 else ''}T-periodic" if n else "not periodic"
         impacts, share = float(data.impacts_per_period[k]), 100 * float(data.share[k])
         kinds.append(f"{kind} with {impacts:.2f} impacts per T from {share:.1f} %")
+    y, x = (data[name].values for name in data.attractor_of.dims)
     return (
-        f"At eta = {float(data.eta):.3f} a plane of {data.attractor_of.size} starts leads to: "
-        f"{'; '.join(kinds)}."
+        f"At eta = {float(data.eta):.3f} the plane of starts with mass 1 at rest in its middle at "
+        f"phase 0, gap {x[0]:.3g} to {x[-1]:.3g}, gap velocity {y[0]:.3g} to {y[-1]:.3g} "
+        f"({data.attractor_of.size} starts) leads to: {'; '.join(kinds)}. Of another plane the "
+        "shares are others."
     )
 
 

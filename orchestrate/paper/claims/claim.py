@@ -5,10 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from .results import Edges, Results
+from .results import Edges, Limit, Results
 
-YES, PARTLY, NO = "yes", "partly", "no"
-WORDS = {YES: "borne out", PARTLY: "in part", NO: "not borne out"}
+YES, PARTLY, NO, UNDECIDED = "yes", "partly", "no", "undecided"
+WORDS = {
+    YES: "borne out",
+    PARTLY: "in part",
+    NO: "not borne out",
+    UNDECIDED: "not decided at this resolution",
+}
+LIMIT = (
+    "half a unit of the last printed digit; the sweep's limit within one step, a response counts "
+    "as periodic within 1 %; the exact limit to eight digits"
+)
+NUMBER = "half a unit of the last printed digit"
+BOTH, SWEPT, EXACT, NEITHER = (
+    "both",
+    "the paper's protocol, not the exact limit",
+    "the exact limit, not the paper's protocol",
+    "neither",
+)
 
 
 @dataclass(frozen=True)
@@ -22,11 +38,14 @@ class Finding:
         Of ``WORDS``.
     why : str
         A sentence with numbers where the verdict is not plain.
+    agrees : str
+        Of a limit: with which of the two that were found the paper's number agrees.
     """
 
     value: str
     verdict: str
     why: str = ""
+    agrees: str = ""
 
 
 Check = Callable[[Results], Finding]
@@ -48,6 +67,8 @@ class Claim:
     tolerance : str
     check : callable
         From :class:`.results.Results` to a :class:`Finding`.
+    full : bool
+        Whether it takes the full resolution to decide: the paper's 500 periods, or many starts.
     """
 
     section: str
@@ -56,16 +77,20 @@ class Claim:
     how: str
     tolerance: str
     check: Check
+    full: bool = False
 
     def row(self, results: Results) -> dict[str, str]:
         """The claim with its finding, as plain text."""
         finding = self.check(results)
+        if self.full and not results.full:
+            finding = Finding(finding.value, UNDECIDED)
         names = ("section", "text", "printed", "how", "tolerance")
         return {
             **{name: getattr(self, name) for name in names},
             "found": finding.value,
             "verdict": finding.verdict,
             "why": finding.why,
+            "agrees": finding.agrees,
         }
 
 
@@ -79,11 +104,29 @@ def rounds_to(value: float, printed: str) -> bool:
     return abs(value - float(printed)) <= half_unit(printed) + 1e-9
 
 
-def limit_at(edges: Edges, printed: str, why: str = "") -> Finding:
-    """The finding for a limit between two frequencies: do they touch what rounds to the printed?"""
+def border(edges: Edges, limit: Limit, printed: str, why: str = "") -> Finding:
+    """The finding for a limit: where the sweep passes it, and where it is.
+
+    Parameters
+    ----------
+    edges : (float, float)
+        Neighbouring frequencies of the sweep, the paper's protocol, between which it lies.
+    limit : Limit
+        Of stability.
+    printed : str
+    why : str
+    """
     (low, high), slack = edges, half_unit(printed) + 1e-9
-    found = low <= float(printed) + slack and high >= float(printed) - slack
-    return Finding(f"between {low:.3f} and {high:.3f}", YES if found else NO, why)
+    swept = low <= float(printed) + slack and high >= float(printed) - slack
+    exact = rounds_to(limit.value, printed)
+    agrees = {(True, True): BOTH, (True, False): SWEPT, (False, True): EXACT}.get(
+        (swept, exact), NEITHER
+    )
+    value = (
+        f"sweep: between {low:.3f} and {high:.3f}; exact: {limit.value:.{limit.digits}f} "
+        f"({limit.kind} of {limit.orbit}); the paper's number agrees with {agrees}"
+    )
+    return Finding(value, {BOTH: YES, NEITHER: NO}.get(agrees, PARTLY), why, agrees)
 
 
 def number_at(value: float, printed: str, digits: int, why: str = "") -> Finding:

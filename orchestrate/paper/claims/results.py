@@ -9,7 +9,9 @@ import numpy as np
 import xarray as xr
 
 from ...dynamics.lyapunov import CHAOTIC, NEUTRAL
+from ...dynamics.stable_windows import StableWindow
 from ..cases import CASES
+from ..limits import windows_of
 from ..windows import runs
 
 Edges = tuple[float, float]  # two neighbouring frequencies
@@ -33,6 +35,43 @@ class Shares(NamedTuple):
     eta: float
 
 
+class Limit(NamedTuple):
+    """An exact limit of stability.
+
+    Attributes
+    ----------
+    value : float
+    kind : str
+        What happens there.
+    orbit : str
+        mT/k: k impacts in m periods.
+    """
+
+    value: float
+    kind: str
+    orbit: str
+
+    @property
+    def digits(self) -> int:
+        """That are known: the loss of permanent contact depends on gamma."""
+        return 6 if "contact" in self.kind else 8
+
+
+class Region(NamedTuple):
+    """Frequencies between two limits of one-impact windows.
+
+    Attributes
+    ----------
+    low, high : float
+    name : str
+        The window, or the two it lies between.
+    """
+
+    low: float
+    high: float
+    name: str
+
+
 class Results:
     """Computed datasets.
 
@@ -40,10 +79,47 @@ class Results:
     ----------
     datasets : mapping of xarray.Dataset
         By name.
+    full : bool
+        Whether at the full resolution.
     """
 
-    def __init__(self, datasets: Mapping[str, xr.Dataset]) -> None:
+    def __init__(self, datasets: Mapping[str, xr.Dataset], full: bool = True) -> None:
         self._datasets = datasets
+        self.full = full
+
+    def window(self, case: str, orbit: str, inside: float) -> StableWindow:
+        """The stable window of an orbit that holds a frequency, or is nearest to it."""
+        found = windows_of(self.get("limits"), case, orbit)
+        return min(found, key=lambda one: max(one.low - inside, inside - one.high, 0.0))
+
+    def begins(self, case: str, orbit: str, inside: float) -> Limit:
+        """The lower limit of the window that holds a frequency."""
+        found = self.window(case, orbit, inside)
+        return Limit(found.low, found.below, orbit)
+
+    def ends(self, case: str, orbit: str, inside: float) -> Limit:
+        """The upper one."""
+        found = self.window(case, orbit, inside)
+        return Limit(found.high, found.above, orbit)
+
+    def regions(self, case: str) -> list[Region]:
+        """From the loss of contact to 8: windows with two impacts and one, and what lies between.
+
+        Irregular regions of the paper are between the exact limits of two windows.
+        """
+        inside = {"T/2": 1.05, "T/1": 2.0, "2T/1": 4.2, "3T/1": 6.3, "4T/1": 8.0}
+        last, label = self.ends(case, "T, contact", 0.4).value, "contact"
+        found = []
+        for orbit, eta in inside.items():
+            window = self.window(case, orbit, eta)
+            found.append(Region(last, window.low, f"{label} to {orbit}"))
+            found.append(Region(window.low, min(window.high, 8.0), orbit))
+            last, label = window.high, orbit
+        return [one for one in found if between(self.exponent(case), *one[:2]).sizes["eta"] > 1]
+
+    def settled(self, case: str) -> xr.Dataset:
+        """What the up-sweep's responses settle to."""
+        return self.of("settled", case, "_up")
 
     def get(self, name: str) -> xr.Dataset:
         """A dataset by name."""
@@ -119,13 +195,17 @@ def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
     return lower, (float(etas[last]), float(etas[min(last + 1, len(etas) - 1)]))
 
 
-def shares(exponents: xr.Dataset, low: float, high: float) -> Shares:
-    """Chaotic and neutral responses between two frequencies, and the largest exponent."""
-    part = between(exponents, low, high)
+def shares(results: Results, case: str, low: float, high: float) -> Shares:
+    """Settled responses between two frequencies: chaotic, neutral, and the largest exponent.
+
+    One whose state repeats is periodic, whatever the sign of its exponent in a finite time.
+    """
+    part = between(results.exponent(case), low, high)
+    repeats = between(results.settled(case), low, high).multiplicity.values > 0
     verdicts, top = part.verdict.values, int(part.exponent.values.argmax())
     return Shares(
-        chaotic=np.mean(verdicts == CHAOTIC),
-        neutral=np.mean(verdicts == NEUTRAL),
+        chaotic=float(np.mean((verdicts == CHAOTIC) & ~repeats)),
+        neutral=float(np.mean((verdicts == NEUTRAL) & ~repeats)),
         exponent=float(part.exponent[top]),
         error=float(part.standard_error[top]),
         eta=float(part.eta[top]),

@@ -79,6 +79,7 @@ def test_features_of_periodic_responses_are_over_whole_periods():
     ("eta", "multiplicity", "least", "most"),
     [
         (1.047, 1, 0, 5_000),
+        (2.06, 1, 0, 5_000),  # a deviation turns by half as it dies: 2T repeats earlier than T
         (2.655, 0, 20_000, 21_000),  # a torus, which T nearly is
         (0.8, 0, 20_000, 21_000),  # chaos
     ],

@@ -11,10 +11,14 @@ from orchestrate.access import OSCILLATOR, find, finder
 from orchestrate.dynamics.attractors import AttractorsJob
 from orchestrate.dynamics.basins import Side
 from orchestrate.dynamics.clusters import Telling
+from orchestrate.dynamics.lyapunov import LyapunovJob
 from orchestrate.paper.basin import EvenBasinJob
 from orchestrate.paper.cases import CASES
 from orchestrate.paper.curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
 from orchestrate.paper.gamma import GammaJob
+from orchestrate.paper.limits import Followed, LimitsJob, windows_of
+from orchestrate.paper.low_speed import LowSpeedJob
+from orchestrate.paper.settled import SettledJob
 from orchestrate.paper.spectra import PeakSpectraJob
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.runner import gather
@@ -81,6 +85,44 @@ def test_the_limit_of_permanent_contact_does_not_depend_on_gamma(exported):
     table = job.work({OSCILLATOR: find(OSCILLATOR).path}, job.items({})[:1], None)
     other = job.work({OSCILLATOR: find(OSCILLATOR).path}, job.items({})[1:], None)
     assert table["last"].tolist() == other["last"].tolist() == [0.417]
+
+
+def test_exact_limits_of_a_branch_through_a_sweep(swept):
+    """The period doubling that ends T/2 at D = 0.05, eight digits as in the manual's table."""
+    sweep, branches = swept[0], (Followed("damped", "T/2", 1.05, 1, (1.0, 1.1)),)
+    names = (sweep.name,) * len(CASES)
+    found = ask(sweep, LimitsJob(name="limits", sweeps=names, branches=branches))
+    (window,) = windows_of(found, "damped", "T/2")
+    assert window.high == pytest.approx(1.07716438, abs=1e-8)
+    assert (window.below, window.above) == ("limit", "period doubling")
+
+
+def test_a_response_is_followed_on_from_what_it_settles_to(exported):
+    """At D = 0.05 T/1 is unstable at 1.116, which 500 periods from 1.115 do not see."""
+    sweep = SweepJob(
+        name="sweep", structure=DAMPED, eta=(1.09, 1.115, 1.116), transient=500, samples=40
+    )
+    settled = SettledJob(name="settled", structure=DAMPED, eta=sweep.eta, follows="sweep")
+    found = ask(sweep, settled)
+    assert ask(sweep).multiplicity.values.tolist() == [1, 1, 1]
+    assert found.multiplicity.values.tolist() == [1.0, 1.0, 2.0]
+    assert found.impacts_per_period.values.tolist() == [1.0, 1.0, 1.5]
+    on = LyapunovJob(
+        name="exponent",
+        structure=DAMPED,
+        eta=sweep.eta,
+        transient=0,
+        periods=100,
+        follows="settled",
+    )
+    assert (ask(sweep, settled, on).verdict < 1).all()
+
+
+def test_masses_that_are_alike_do_not_knock(exported):
+    points = LowSpeedJob(name="low_speed").points[-3:]
+    found = ask(LowSpeedJob(name="low_speed", points=points, periods=50))
+    assert (found.impacts.values == 0).tolist() == [True, True, False]
+    assert found.mu.values.tolist() == [1.0, 2.0, 2.0]
 
 
 def test_spectra_at_the_peak(swept):

@@ -14,8 +14,8 @@ FOUND = [  # needs no long transients
     ("place of the peak", "1.047"),
     ("max xi_Rel", "2.6347"),
     ("max xi_Rel", "16.4099"),
-    ("three impacts from", "between 0.969 and 0.970"),
-    ("the first irregular region ends", "between 1.367 and 1.368"),
+    ("three impacts from", "exact: 0.96909804 (grazing of a flight of T/3)"),
+    ("the first irregular region ends", "exact: 1.36789415 (fold of 2T/3)"),
 ]
 PICTURES = [
     *(f"figure{number}" for number in range(5, 13)),
@@ -37,7 +37,9 @@ def test_the_whole_paper(exported, tmp_path):
     assert page.count("data:image/png;base64,") == len(PICTURES)
     claims = json.loads((commands.output / "claims.json").read_text(encoding="utf-8"))["claims"]
     for text, found in FOUND:
-        assert found in [row["found"] for row in claims if row["text"] == text], text
+        assert any(found in row["found"] for row in claims if row["text"] == text), text
+    undecided = {row["text"] for row in claims if row["verdict"] == "undecided"}
+    assert {"non-unique solutions in 1.07-1.37", "two impacts from"} <= undecided
     data = xr.load_dataset(commands.output / "exponent_e0.7_D0.005.nc")
     assert (data.verdict.sel(eta=slice(0.78, 0.84)) == 1).all()
     assert (data.verdict.sel(eta=slice(1.4, 2.4)) == -1).all()

@@ -8,8 +8,30 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from orchestrate.paper.claims.claim import NO, PARTLY, YES, half_unit, holds, limit_at, number_at
-from orchestrate.paper.claims.results import impacts_in_response, kind, lower_edge, upper_edge
+from orchestrate.paper.claims.claim import (
+    BOTH,
+    EXACT,
+    NEITHER,
+    NO,
+    PARTLY,
+    SWEPT,
+    UNDECIDED,
+    YES,
+    Claim,
+    Finding,
+    border,
+    half_unit,
+    holds,
+    number_at,
+)
+from orchestrate.paper.claims.results import (
+    Limit,
+    Results,
+    impacts_in_response,
+    kind,
+    lower_edge,
+    upper_edge,
+)
 from orchestrate.paper.windows import longest, relative_peak, runs, window
 
 
@@ -49,10 +71,30 @@ def test_what_rounds_to_a_printed_number():
     assert half_unit("0.43") == pytest.approx(0.005) and half_unit("1.1") == pytest.approx(0.05)
     assert number_at(21.558, "21.56", 3).verdict == YES
     assert number_at(1.047, "1.045", 3).verdict == NO
-    assert limit_at((1.224, 1.225), "1.23").verdict == YES
-    assert limit_at((1.223, 1.224), "1.23").verdict == NO
-    assert limit_at((0.436, 0.437), "0.43").verdict == NO
-    assert limit_at((math.nan, math.nan), "0.43").verdict == NO
+
+
+@pytest.mark.parametrize(
+    ("edges", "exact", "printed", "verdict", "agrees"),
+    [
+        ((0.891, 0.892), 0.89135, "0.89", YES, BOTH),
+        ((1.224, 1.225), 1.22421, "1.23", PARTLY, SWEPT),
+        ((1.117, 1.118), 1.10659, "1.11", PARTLY, EXACT),
+        ((0.417, 0.418), 0.41739, "0.43", NO, NEITHER),
+        ((1.223, 1.224), 1.22421, "1.23", NO, NEITHER),
+        ((math.nan, math.nan), 0.41739, "0.43", NO, NEITHER),
+    ],
+)
+def test_a_limit_is_read_twice(edges, exact, printed, verdict, agrees):
+    found = border(edges, Limit(exact, "fold", "T/2"), printed)
+    assert (found.verdict, found.agrees) == (verdict, agrees)
+    assert f"exact: {exact:.8f} (fold of T/2)" in found.value and agrees in found.value
+
+
+def test_what_takes_the_full_resolution_is_not_decided_at_another():
+    claim = Claim("3", "", "", "", "", lambda results: Finding("1", YES, "so"), full=True)
+    assert claim.row(Results({}))["verdict"] == YES
+    row = claim.row(Results({}, full=False))
+    assert (row["verdict"], row["found"]) == (UNDECIDED, "1")
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,146 @@
+"""Misprints of section 2: what is printed and what is right, each put into what it must fulfil."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from ...response.curves import CONTACT, FLIGHT
+from .claim import NO, YES, Claim, Finding
+from .results import Results
+
+ETA, D, STIFFNESS, BEGAN = 1.3, 0.02, 1.2, 0.7  # of an oscillator (6), and its separation time
+START = (0.4, -0.3)
+TAUS = np.linspace(0.1, 9.0, 40)
+ROUNDING = 1e-6
+
+
+def compared(what: str, printed: float, right: float, form: str) -> Finding:
+    """The finding for a misprint: what is left over with each form."""
+    text = f"{what}: {printed:.2g} as printed, {right:.2g} with {form}"
+    verdict = YES if printed < ROUNDING else NO
+    why = "" if right < ROUNDING else "The corrected form does not fulfil it either."
+    return Finding(text, verdict, why)
+
+
+def residual(motion: Callable[[np.ndarray], np.ndarray]) -> float:
+    """What is left of (6) at some instants, the motion's derivatives by differences."""
+    step = 1e-4
+    here, after, before = motion(TAUS), motion(TAUS + step), motion(TAUS - step)
+    rate, curvature = (after - before) / (2.0 * step), (after - 2.0 * here + before) / step**2
+    left = curvature + 2.0 * D * rate + STIFFNESS * here - np.sin(ETA * (TAUS + BEGAN))
+    return float(np.abs(left).max())
+
+
+def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndarray]:
+    """(10) with (11), and the frequency and damping of its free part."""
+    detuning, loss = STIFFNESS - ETA**2, 2.0 * D * ETA
+    a, b = -loss / (detuning**2 + loss**2), detuning / (detuning**2 + loss**2)
+    nu, phase = math.sqrt(STIFFNESS - D * D), ETA * BEGAN
+    alpha = START[0] - (a * math.cos(phase) + b * math.sin(phase))
+    rate = START[1] + D * alpha - ETA * (b * math.cos(phase) - a * math.sin(phase))
+
+    def motion(tau: np.ndarray) -> np.ndarray:
+        angle = ETA * (tau + BEGAN)
+        free = alpha * np.cos(frequency * tau) + rate / nu * np.sin(frequency * tau)
+        return a * np.cos(angle) + b * np.sin(angle) + np.exp(-damping * tau) * free
+
+    return motion
+
+
+def scale(results: Results) -> Finding:
+    """(3): x over a, times eta^2, or x over a eta^2."""
+    steady = 1.0 / math.hypot(1.0 - ETA**2, 2.0 * D * ETA)  # amplitude of (6), unit forcing
+    x_over_a = ETA**2 * steady  # of m x'' + d x' + k x = m a Omega^2 sin(Omega t)
+    printed, right = abs(x_over_a * ETA**2 - steady), abs(x_over_a / ETA**2 - steady)
+    return compared("steady amplitude less that of (6)", printed, right, "x/(a eta^2)")
+
+
+def free_part(results: Results) -> Finding:
+    """(10): kappa_i, or nu_i of (11)."""
+    nu = math.sqrt(STIFFNESS - D * D)
+    printed, right = residual(solution(STIFFNESS, D)), residual(solution(nu, D))
+    return compared("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
+
+
+def one_sided(results: Results) -> Finding:
+    """(12): unequal, or larger than zero."""
+    data = results.get("figure5")
+    flying = data.kind.values == FLIGHT
+    gap = (data.state.values[:, 1] - data.state.values[:, 0])[flying]
+    inside = gap[np.abs(gap) > 1e-6 * np.abs(gap).max()]
+    text = f"gap in flight at eta = 0.4: {inside.min():.2g} to {inside.max():.2g}"
+    why = "A negative gap, which (12) as printed allows, is the masses through each other: > 0."
+    return Finding(text, NO if (inside > 0.0).all() else YES, why)
+
+
+def momentum(results: Results) -> Finding:
+    """(15): the factor of its second line."""
+    e, mu, v1, v2 = 0.7, 0.5, 0.8, -0.4
+    part = (1.0 + e) / (1.0 + mu) * (v1 - v2)
+
+    def change(factor: float) -> float:
+        return abs((v1 - mu * part) + mu * (v2 + factor * part) - (v1 + mu * v2))
+
+    what = "momentum gained at m_2/m_1 = 0.5"
+    return compared(what, change(mu), change(1.0), "(1 + e)/(1 + mu) in the second line")
+
+
+def pulling(results: Results) -> Finding:
+    """(17): slow impacts after which the masses would have to pull each other."""
+    data = results.get("low_speed")
+    slow, pulled, sticking = (int(data[name].sum()) for name in ("slow", "pulled", "sticking"))
+    text = (
+        f"of {slow} impacts slower than gamma at {data.sizes['motion']} frequencies and structures "
+        f"{pulled} would stick although the contact force would pull; the FMU lets {sticking} stick"
+    )
+    why = "(17) needs f < 0 as well: masses that are pulled apart do not stay together."
+    return Finding(text, NO if pulled else YES, why)
+
+
+def next_state(results: Results) -> Finding:
+    """(20): the state that begins where contact ends."""
+    data = results.get("figure5")
+    kind, state = data.kind.values, data.state.values
+    ends = np.flatnonzero((kind[:-1] == CONTACT) & (kind[1:] != CONTACT))
+    rate = state[:, 3] - state[:, 2]
+    after = int(ends[0]) + 1
+    jumps = np.flatnonzero(np.diff(data.tau.values)[after:] == 0.0)
+    later = float(rate[after + jumps[0] + 1]) if len(jumps) else math.nan
+    largest = float(np.abs(rate).max())
+    first = abs(float(rate[after])) / largest
+    text = (
+        f"gap velocity after contact at eta = 0.4, over the largest: {first:.1e} in the (k+1)th "
+        f"state, {later / largest:.2g} at the beginning of the (k+2)th"
+    )
+    why = "With i = 2 (20) would be an impact's beginning: (k+1)."
+    return Finding(text, YES if abs(later) < first * largest else NO, why)
+
+
+def period(results: Results) -> Finding:
+    """(22): eta/2 pi, or 2 pi/eta."""
+
+    def change(span: float) -> float:
+        return float(np.abs(np.sin(ETA * (TAUS + span)) - np.sin(ETA * TAUS)).max())
+
+    what = "change of sin(eta tau) after T"
+    return compared(what, change(ETA / (2.0 * np.pi)), change(2.0 * np.pi / ETA), "2 pi/eta")
+
+
+def misprint(equation: str, text: str, check: Callable[[Results], Finding]) -> Claim:
+    """The row of an equation."""
+    how = "put into what it must fulfil"
+    return Claim("2", f"{equation}: {text}", "as printed", how, "1e-6", check)
+
+
+CLAIMS = (
+    misprint("(3)", "xi = x/a eta^2", scale),
+    misprint("(10)", "cos kappa_i tau, e^(-D tau)", free_part),
+    misprint("(12)", "xi_2 - xi_1 unequal 0", one_sided),
+    misprint("(15)", "(1 + e) mu/(1 + mu) in the second line", momentum),
+    misprint("(17)", "contact follows by the velocity alone", pulling),
+    misprint("(20)", "initial conditions of the (k+i)th state", next_state),
+    misprint("(22)", "T = eta/2 pi", period),
+)

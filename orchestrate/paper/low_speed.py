@@ -1,0 +1,101 @@
+"""Impacts that speed alone would let stick (17), and structures whose masses never knock.
+
+The printed inequality (17) knows the parting velocity alone. Where the contact force (18) would
+have to pull, the masses part again: an impact as slow as that is counted here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..access import OSCILLATOR, REST, EventInstance, begin
+from ..dynamics.closed_form import ClosedForm
+from ..dynamics.following import impacts_of
+from ..response.labels import variable
+from ..response.questions import Point
+from ..running.job import Inputs, Job, Table
+from ..structures import Excitation
+from .cases import CASES
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+ELASTIC = CASES["elastic"]
+COUNTS = {
+    "impacts": "impacts",
+    "sticking": "impacts after which permanent contact begins",
+    "slow": "impacts that part slower than gamma times the largest closing speed",
+    "pulled": "of these, those where the contact force (18) would pull",
+}
+
+
+def points() -> tuple[Point, ...]:
+    """Figure 6's structure at some frequencies; then structures that are alike, and one almost."""
+    etas = np.round(np.arange(0.45, 8.0, 0.15), 3).tolist()
+    alike = [ELASTIC.replace(mu=mu, kappa=kappa) for mu, kappa in ((1, 1), (2, 2), (2, 2.2))]
+    found = [Point(ELASTIC, Excitation.nondimensional(eta, ELASTIC)) for eta in etas]
+    return (*found, *(Point(one, Excitation.nondimensional(1.3, one)) for one in alike))
+
+
+@dataclass(frozen=True, kw_only=True)
+class LowSpeedJob(Job):
+    """Counts of impacts, from rest.
+
+    Attributes
+    ----------
+    points : tuple of Point
+    periods : int
+    gamma : float
+        Of (17), in units of the largest velocity of the gap (section 3).
+    """
+
+    points: tuple[Point, ...] = points()
+    periods: int = 2000
+    gamma: float = 1e-4
+    chunk: ClassVar[int] = 10
+
+    def count(self) -> int:
+        """Number of motions."""
+        return len(self.points)
+
+    def items(self, inputs: Inputs) -> Sequence[Point]:
+        """The structures under their excitations."""
+        return self.points
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+        """Some motions."""
+        with EventInstance(fmus[OSCILLATOR]) as instance:
+            return {"rows": np.array([self.counted(instance, point) for point in items])}
+
+    def counted(self, instance: EventInstance, point: Point) -> list[int]:
+        """What is counted of one motion, by ``COUNTS``."""
+        begin(instance, *point, REST)
+        impacts = impacts_of(instance, point, REST, self.periods)
+        form = ClosedForm.of(point.structure, point.excitation)
+        state, mu = impacts.state, form.mu
+        force = form.force(state[:, 0], (state[:, 2] + mu * state[:, 3]) / (1.0 + mu))
+        fastest = impacts.closing.max(initial=0.0)
+        slow = form.e * impacts.closing < self.gamma * fastest
+        pulled = slow & (force >= 0.0)
+        return [len(state), int(impacts.sticks.sum()), int(slow.sum()), int(pulled.sum())]
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Counts over the motions."""
+        import xarray as xr
+
+        variables = {
+            name: variable("motion", column, "1", text)
+            for (name, text), column in zip(COUNTS.items(), table["rows"].T, strict=True)
+        }
+        etas = [point.excitation.eta(point.structure) for point in self.points]
+        numbers = {"eta": etas} | {
+            name: [point.structure.get(name) for point in self.points] for name in ("mu", "kappa")
+        }
+        for name, values in numbers.items():
+            variables[name] = variable("motion", np.array(values), "1", name)
+        return xr.Dataset(variables, attrs={"title": f"Impacts in {self.periods} periods"})

@@ -1,0 +1,73 @@
+"""Responses of a sweep run on until a repeated state decides what they are, or 20,000 periods do.
+
+After the paper's 500 periods a transient may look like an attractor: chaos that dies out, a
+deviation from an unstable orbit that has not grown yet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..access import OSCILLATOR, Instance
+from ..dynamics.clusters import Telling, features, response_from
+from ..dynamics.following import Followed, FollowingQuestion
+from ..response.labels import nondimensional_state, variable, yes_or_no
+from ..running.job import Inputs, Table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FIELDS = {
+    "multiplicity": "excitation periods after which the settled response repeats; 0: irregular",
+    "impacts_per_period": "impacts per excitation period",
+    "xi_rel_max": "largest gap over a eta^2",
+    "periods": "periods after the sweep's until a repeated state decided",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class SettledJob(FollowingQuestion):
+    """What a sweep's responses settle to.
+
+    Attributes
+    ----------
+    telling : Telling
+    """
+
+    telling: Telling = Telling(transient=0, settle=0.0)
+    chunk: ClassVar[int] = 20
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
+    ) -> Table:
+        """Some responses."""
+        rows, ends, contacts = [], [], []
+        with Instance(fmus[OSCILLATOR]) as instance:
+            for point, start in items:
+                response, periods = response_from(instance, point, start, self.telling)
+                rows.append([*features(response, point.length)[:3], periods])
+                ends.append(response.end / point.scale)
+                contacts.append(response.permanent_contact)
+        return {"rows": np.array(rows), "end": np.array(ends), "contact": np.array(contacts)}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """What they are, over the parameter."""
+        import xarray as xr
+
+        along = self.series.name
+        variables = {
+            name: variable(along, column, "1", text)
+            for (name, text), column in zip(FIELDS.items(), table["rows"].T, strict=True)
+        }
+        contact = "whether permanent contact occurs"
+        variables["permanent_contact"] = yes_or_no(along, table["contact"], contact)
+        text = "state at phase 0 at the end"
+        variables["end_state"] = variable((along, "coordinate"), table["end"], "1", text)
+        coordinates = {**self.series.coordinates(), **nondimensional_state()}
+        title = f"Settled responses along {along}: {self.structure.label()}"
+        return xr.Dataset(variables, coordinates, {"title": title})

@@ -1,0 +1,15 @@
+"""Parts of a page that are made by a tool: lines between two marks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+MARK = "<!-- {}: {} -->\n"
+
+
+def put(text: str, name: str, lines: Sequence[str]) -> str:
+    """A page's text with lines between two marks."""
+    before, rest = text.split(MARK.format(name, "begin"))
+    after = rest.split(MARK.format(name, "end"))[1]
+    own = "\n".join(lines)
+    return f"{before}{MARK.format(name, 'begin')}{own}\n{MARK.format(name, 'end')}{after}"
