@@ -11,6 +11,8 @@ from filelock import FileLock
 
 from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
+from orchestrate.access.webassembly import web_kernel
+from orchestrate.errors import InputError
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build"
@@ -41,7 +43,7 @@ def refresh(build):
 
 
 def refresh_model(name, build):
-    """One model in all forms; returns as :func:`refresh`."""
+    """One model in all forms and for the web; returns as :func:`refresh`."""
     reasons = {}
     for form in forms.FORMS:
         if guid_inside(build / form / f"{name}.fmu") != forms.guid(name, form):
@@ -49,6 +51,10 @@ def refresh_model(name, build):
                 forms.export(name, form, build)
             except CannotExport as reason:
                 reasons[f"{form}/{name}"] = reason
+    try:
+        web_kernel(name, build)
+    except InputError as reason:
+        reasons[f"wasm/{name}"] = CannotExport(str(reason))
     return reasons
 
 

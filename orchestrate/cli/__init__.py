@@ -22,6 +22,7 @@ from . import (
     branch,
     build,
     couple,
+    explore,
     lyapunov,
     map,
     orbit,
@@ -36,7 +37,7 @@ from .options import Commands, sets_text
 COMMANDS = (
     *(build, simulate, resonance, spectra, sweep, map),
     *(lyapunov, attractors, basin, orbit, branch, border),
-    *(couple, paper),
+    *(couple, explore, paper),
 )
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 EXAMPLES = """examples:

@@ -17,7 +17,7 @@ from .commands import ROOT
 
 COMMANDS = (
     *("build", "simulate", "resonance", "spectra", "sweep", "map", "lyapunov", "attractors"),
-    *("basin", "orbit", "branch", "border", "couple", "paper"),
+    *("basin", "orbit", "branch", "border", "couple", "explore", "paper"),
 )
 
 

@@ -1,0 +1,89 @@
+"""The kernels as WebAssembly modules of the present sources: compiled where they are missing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+from fmu_src.export import webassembly as sources
+from fmu_src.export.errors import CannotExport
+from fmu_src.export.forms import MODELS
+
+from ..errors import InputError
+from ..files import open_folder, write_whole
+from .exported import SHIPPED, check, default_folder, log
+
+FORM = "wasm"
+
+
+@dataclass(frozen=True)
+class WebKernel:
+    """A model's kernel for a web page.
+
+    Attributes
+    ----------
+    module : bytes
+        The WebAssembly module.
+    slots : dict of str to int
+        Place of each variable in an instance's memory, and ``SIZE``, ``TIME`` and ``STOP``, the
+        place of the flag that ends a step at its first event.
+    starts : dict of str to float
+        Start values of variables, where they are not zero.
+    guid : str
+        Of the module.
+    """
+
+    module: bytes
+    slots: dict[str, int]
+    starts: dict[str, float]
+    guid: str
+
+
+def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKernel:
+    """A model's kernel as WebAssembly, compiled first where none is of the present sources.
+
+    Parameters
+    ----------
+    model : str
+        Of ``MODELS``.
+    folder : path-like, optional
+        Build folder; by default that of a clone, without a clone what came with the package and
+        the user's cache folder.
+
+    Raises
+    ------
+    InputError
+        Where there is none and it cannot be made here.
+    StoreError
+        Where the folder cannot be written.
+
+    Examples
+    --------
+    >>> kernel = web_kernel("TwoMassImpactOscillator")
+    >>> kernel.module[1:4], kernel.slots["m1"]
+    (b'asm', 0)
+    """
+    check(model, "fmi3")
+    places = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
+    wanted = sources.guid(MODELS[model])
+    tables = sources.slots(MODELS[model]), sources.starts(MODELS[model])
+    for place in places:
+        path = place / FORM / f"{model}.wasm"
+        module = path.read_bytes() if path.is_file() else b""
+        if sources.guid_inside(module) == wanted:
+            return WebKernel(module, *tables, wanted)
+    return WebKernel(compiled(model, places[0]), *tables, wanted)
+
+
+def compiled(model: str, folder: Path) -> bytes:
+    """Compile a model's kernel and keep it in ``folder/wasm/NAME.wasm``."""
+    path = open_folder(folder / FORM) / f"{model}.wasm"
+    log.info("compiling %s: takes up to a minute", path)
+    try:
+        module = sources.export(MODELS[model])
+    except CannotExport as reason:
+        text = f"{model}.wasm: there is none of the present sources, and none can be made here"
+        raise InputError(f"{text}: {reason}") from None
+    write_whole(path, lambda place: place.write_bytes(module))
+    return module

@@ -1,0 +1,74 @@
+"""``explore``: one page in the browser, the kernel of the FMU inside."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from .options import Commands, add_structure, structure_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+EXAMPLES = """  {program} explore                              the paper's first case
+  {program} explore results/orbit_e0.7_D0.005_up.nc   an own sweep: a click replays its responses
+  {program} explore --set e=0.3 --no-open --output page.html"""
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "open a page that shows orbit diagrams and motions, computed in the browser"
+    parser = commands.add("explore", run, text, EXAMPLES)
+    sweep = "NetCDF file of a sweep along the frequency (default: the page computes its own)"
+    parser.add_argument("result", type=Path, nargs="?", metavar="RESULT", help=sweep)
+    add_structure(parser)
+    option = parser.add_argument_group("page").add_argument
+    branches = "NetCDF file of branches over eta, drawn over the diagram"
+    option("--branches", type=Path, metavar="FILE", help=branches)
+    place = "the page (default: %(default)s)"
+    option("--output", type=Path, default=Path("explorer.html"), metavar="FILE", help=place)
+    option("--no-open", action="store_true", help="only write it")
+    folder = "where the compiled kernel is looked for and put"
+    option("--build-folder", type=Path, metavar="FOLDER", help=folder)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    from ..explorer.page import explore
+
+    data: Any = structure_of(arguments)
+    if arguments.result is not None:
+        if arguments.set or arguments.structure != "paper":
+            raise InputError(f"{arguments.result} with --structure or --set: expected one of them")
+        data = opened(arguments.result)
+    branches = None if arguments.branches is None else opened(arguments.branches)
+    page = explore(
+        data,
+        output=arguments.output,
+        branches=branches,
+        build_folder=arguments.build_folder,
+    )
+    print(f"{page}  {page.stat().st_size / 1024:.0f} kB")
+    if not arguments.no_open:
+        import webbrowser
+
+        webbrowser.open(page.resolve().as_uri())
+
+
+def opened(path: Path) -> xr.Dataset:
+    """A result.
+
+    Raises
+    ------
+    InputError
+    """
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(path) as data:
+            return data.load()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "no NetCDF file"
+        raise InputError(f"{path}: {reason}; expected a result in a NetCDF file") from None

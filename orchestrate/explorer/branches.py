@@ -1,0 +1,77 @@
+"""Branches of periodic orbits as lines over the diagram, and their bifurcations."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def overlay(found: xr.Dataset | None) -> dict[str, Any]:
+    """Lines and points of a branch for the page.
+
+    Parameters
+    ----------
+    found : xarray.Dataset, optional
+        Of :func:`orchestrate.branch` over ``eta``.
+
+    Raises
+    ------
+    InputError
+        Where it is over something else, or no branch.
+    """
+    if found is None:
+        return {"branches": [], "bifurcations": []}
+    if found.attrs.get("over") != "eta":
+        over = found.attrs.get("over", "nothing")
+        raise InputError(f"branches over {over}: expected a result of orchestrate.branch over eta")
+    stable = found.stable.values == 1
+    lines = [
+        {"x": along.tolist(), "y": gaps.tolist(), "stable": bool(flag)}
+        for samples in found.xi_rel.transpose("sample", "point").values
+        for along, gaps, flag in runs(found["eta"].values, samples, stable)
+    ]
+    return {"branches": lines, "bifurcations": bifurcations(found)}
+
+
+def runs(
+    along: NDArray[np.float64], gaps: NDArray[np.float64], stable: NDArray[np.bool_]
+) -> list[tuple[NDArray[np.float64], NDArray[np.float64], bool]]:
+    """Parts of a line of one stability, each up to the first point of the next, gaps above 0."""
+    kept = gaps > 0.0
+    along, gaps, stable = along[kept], gaps[kept], stable[kept]
+    cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(along)]
+    return [
+        (along[a : b + 1], gaps[a : b + 1], bool(stable[a]))
+        for a, b in zip(cuts[:-1], cuts[1:], strict=True)
+        if b > a
+    ]
+
+
+def bifurcations(found: xr.Dataset) -> list[dict[str, Any]]:
+    """Where they are, and of which kind."""
+    if not found.sizes.get("bifurcation"):
+        return []
+    kinds = found.bifurcation_kind
+    words = str(kinds.attrs["flag_meanings"]).split()
+    names = dict(zip(np.atleast_1d(kinds.attrs["flag_values"]).tolist(), words, strict=True))
+    return [
+        {
+            "eta": float(value),
+            "gap": float(np.max(gaps)),
+            "kind": names[int(kind)].replace("_", " "),
+        }
+        for value, kind, gaps in zip(
+            found.bifurcation_value.values,
+            kinds.values,
+            found.bifurcation_xi_rel.values,
+            strict=True,
+        )
+        if np.max(gaps) > 0.0
+    ]

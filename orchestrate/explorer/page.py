@@ -1,0 +1,155 @@
+"""The page, put together: sources, the compiled kernel, a sweep's starts, all in one HTML file."""
+
+from __future__ import annotations
+
+import base64
+import functools
+import json
+import re
+import zlib
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..access import OSCILLATOR
+from ..access.webassembly import WebKernel, web_kernel
+from ..errors import InputError
+from ..files import open_folder, write_whole
+from ..structures import Structure
+from ..structures.ranges import STRUCTURE
+from ..version import __version__
+from .branches import overlay
+from .bundle import bundle
+from .shipped import Shipped, nothing, shipped
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+SOURCES = Path(__file__).parent / "page"
+
+
+def explore(
+    data: xr.Dataset | Structure | None = None,
+    *,
+    output: str | PathLike[str] = "explorer.html",
+    branches: xr.Dataset | None = None,
+    build_folder: str | PathLike[str] | None = None,
+) -> Path:
+    """Write the explorer, one HTML file that needs nothing else.
+
+    Parameters
+    ----------
+    data : xarray.Dataset or Structure, optional
+        A sweep along the frequency, whose responses the page replays; or a structure, the paper's
+        by default, whose responses the page computes itself.
+    output : path-like
+        The file.
+    branches : xarray.Dataset, optional
+        Of :func:`orchestrate.branch` over ``eta``, drawn over the diagram.
+    build_folder : path-like, optional
+        Where the kernel's WebAssembly is looked for and compiled to.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        Where the data are no sweep along the frequency, or the kernel cannot be compiled here.
+    StoreError
+        Where the file cannot be written.
+
+    Notes
+    -----
+    A click replays a response from its start with the same kernel: the samples of the sweep, to
+    the last bit, where the sweep was told by ``eta`` and computed by an FMU of these sources; where
+    lengths and speeds were scaled the starts are so to rounding.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> page = explore(output=Path(tempfile.mkdtemp()) / "page.html")
+    >>> page.stat().st_size < 1_500_000
+    True
+    """
+    if data is None or isinstance(data, Structure):
+        chosen = nothing(data or Structure())
+    else:
+        chosen = shipped(data)
+    path = Path(output)
+    if path.is_dir():
+        raise InputError(f"output = {str(output)!r}: is a folder; expected a file to write")
+    open_folder(path.parent)
+    text = page(chosen, overlay(branches), web_kernel(OSCILLATOR, build_folder))
+    return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
+
+
+def page(chosen: Shipped, drawn: dict[str, Any], kernel: WebKernel) -> str:
+    """The HTML of the page."""
+    scripts = modules()
+    made_by = f"vibroimpact {__version__}, kernel {kernel.guid}"
+    parts = {
+        "style": source("style.css"),
+        "title": title(chosen.structure),
+        "branches": "" if drawn["branches"] else "hidden",
+        "source": f"{made_by}; sweep by {chosen.source}" if chosen.source else made_by,
+        "table": as_json(
+            {**table(chosen), **drawn, "slots": kernel.slots, "starts": kernel.starts}
+        ),
+        "kernel": packed(kernel.module),
+        "data": packed(chosen.numbers.astype("<f8").tobytes()),
+        "worker": bundle(scripts, "worker"),
+        "script": bundle(scripts, "main"),
+    }
+    return re.sub(r"\{(\w+)\}", lambda match: parts[match[1]], source("page.html"))
+
+
+def table(chosen: Shipped) -> dict[str, Any]:
+    """What the page has to know of the sweep and of structures."""
+    return {
+        "structure": numbers(chosen.structure),
+        "usual": numbers(Structure()),
+        "ranges": {name: [q.minimum, q.maximum] for name, q in STRUCTURE.items()},
+        "settings": chosen.settings,
+        "directions": chosen.directions,
+        "count": chosen.count,
+        "low": chosen.low,
+        "high": chosen.high,
+        "command": chosen.command,
+    }
+
+
+def numbers(structure: Structure) -> dict[str, float]:
+    """A structure's parameters as the kernel takes them."""
+    return {name: float(value) for name, value in structure.parameters().items()}
+
+
+def title(structure: Structure) -> str:
+    """A structure in a few words."""
+    ratios = {name: structure.get(name) for name in ("e", "D1", "D2", "mu", "kappa")}
+    signs = {"D1": "D₁", "D2": "D₂", "mu": "μ", "kappa": "κ"}
+    told = ", ".join(f"{signs.get(name, name)} = {value:g}" for name, value in ratios.items())
+    return f"A delaminated beam in a shaken box: {told}"
+
+
+def as_json(value: Any) -> str:
+    """JSON that may stand inside HTML."""
+    return json.dumps(value).replace("<", "\\u003c")
+
+
+def packed(content: bytes) -> str:
+    """Compressed, in letters."""
+    return base64.b64encode(zlib.compress(content, 9)).decode()
+
+
+@functools.cache
+def source(name: str) -> str:
+    """A source of the page."""
+    return (SOURCES / name).read_text(encoding="utf-8")
+
+
+def modules() -> dict[str, str]:
+    """The page's JavaScript modules by name."""
+    return {path.stem: source(path.name) for path in sorted(SOURCES.glob("*.js"))}

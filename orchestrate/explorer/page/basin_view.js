@@ -1,0 +1,124 @@
+/** The basin of attraction as a picture that fills in, coarse first; a click starts there. */
+
+import { label, startAt } from "./basin.js";
+import { drawFrame, areaOf } from "./chart.js";
+import { Picture } from "./picture.js";
+import { shown } from "./scale.js";
+import { channels } from "./theme.js";
+
+/**
+ * @typedef {import("./basin.js").Plane} Plane
+ * @typedef {import("./basin.js").Attractor} Attractor
+ * @typedef {import("./structure.js").Point} Point
+ */
+
+const COLOURS = ["#5b8ff9", "#e8a33d", "#5ad8a6", "#d9468f", "#9270ca", "#7a7a7a"];
+
+/** Cells of a square, coarse ones first. @param {number} side @returns {[number, number][]} */
+export function coarseFirst(side) {
+  /** @type {[number, number][]} */
+  const cells = [];
+  for (let step = 8; step >= 1; step /= 2) {
+    for (let row = 0; row < side; row += step) {
+      for (let column = 0; column < side; column += step) {
+        const before = step < 8 && row % (2 * step) === 0 && column % (2 * step) === 0;
+        if (!before) cells.push([column, row]);
+      }
+    }
+  }
+  return cells;
+}
+
+export class BasinView {
+  /** @param {HTMLCanvasElement} canvas @param {(start: number[]) => void} choose */
+  constructor(canvas, choose) {
+    /** @type {Plane | null} */
+    this.plane = null;
+    /** @type {Point | null} */
+    this.point = null;
+    /** @type {Attractor[]} */
+    this.attractors = [];
+    this.labels = new Int16Array(0);
+    this.cells = document.createElement("canvas");
+    this.picture = new Picture(canvas, (pen, size, theme) => this.draw(pen, size, theme));
+    canvas.addEventListener("click", (event) => {
+      const cell = this.cellAt(event.offsetX, event.offsetY);
+      if (cell && this.plane && this.point) choose(startAt(this.point, this.plane, ...cell));
+    });
+  }
+
+  /** @param {Point} point @param {Plane} plane */
+  begin(point, plane) {
+    Object.assign(this, { point, plane, attractors: [] });
+    this.labels = new Int16Array(plane.side * plane.side).fill(-1);
+    Object.assign(this.cells, { width: plane.side, height: plane.side });
+    this.picture.redraw();
+  }
+
+  /** @param {{column: number, row: number} & Attractor} part */
+  take({ column, row, ...found }) {
+    const { side } = /** @type {Plane} */ (this.plane);
+    this.labels[row * side + column] = label(this.attractors, found, 0.03);
+    this.picture.redraw();
+  }
+
+  /** What was found, in words. */
+  words() {
+    const total = this.labels.reduce((sum, one) => sum + (one >= 0 ? 1 : 0), 0) || 1;
+    return this.attractors.map(({ multiplicity, impacts }, number) => {
+      const share = this.labels.reduce((sum, one) => sum + (one === number ? 1 : 0), 0) / total;
+      const kind = multiplicity ? `period ${multiplicity}` : "irregular";
+      return { colour: colourOf(number), text: `${kind}, ${shown(impacts, 3)} impacts per period: ${(100 * share).toFixed(1)} %` };
+    });
+  }
+
+  /** @param {number} x @param {number} y @returns {[number, number] | null} */
+  cellAt(x, y) {
+    if (!this.plane) return null;
+    const [left, top, width, height] = areaOf(this.picture.size);
+    const column = Math.floor(((x - left) / width) * this.plane.side);
+    const row = Math.floor((1 - (y - top) / height) * this.plane.side);
+    const inside = [column, row].every((index) => index >= 0 && index < (this.plane?.side ?? 0));
+    return inside ? [column, row] : null;
+  }
+
+  /** @param {import("./pen.js").Pen} pen @param {import("./picture.js").Size} size @param {import("./theme.js").Theme} theme */
+  draw(pen, size, theme) {
+    const place = areaOf(size);
+    const { plane } = this;
+    if (!plane) return pen.text(size.width / 2, size.height / 2, "not computed yet", { fill: theme.soft });
+    this.paintCells(plane.side);
+    pen.image(this.cells, ...place);
+    const x = { low: 0, high: plane.gap, label: "gap ξ₂ − ξ₁ at the start" };
+    drawFrame(pen, place, { ...theme, grid: "transparent" }, x, { low: -plane.speed, high: plane.speed, label: "gap velocity" });
+  }
+
+  /** Cells that are still to come have the colour of the coarser cell they lie in. @param {number} side */
+  paintCells(side) {
+    const context = /** @type {CanvasRenderingContext2D} */ (this.cells.getContext("2d"));
+    const image = context.createImageData(side, side);
+    for (let row = 0; row < side; row++) {
+      for (let column = 0; column < side; column++) {
+        const found = this.labelNear(column, row, side);
+        if (found < 0) continue;
+        const place = 4 * ((side - 1 - row) * side + column);
+        image.data.set([...channels(colourOf(found)), 255], place);
+      }
+    }
+    context.putImageData(image, 0, 0);
+  }
+
+  /** @param {number} column @param {number} row @param {number} side */
+  labelNear(column, row, side) {
+    for (let step = 1; step <= 8; step *= 2) {
+      const found = this.labels[(row - (row % step)) * side + column - (column % step)];
+      if (found >= 0) return found;
+    }
+    return -1;
+  }
+}
+
+/** @param {number} number */
+function colourOf(number) {
+  return COLOURS[Math.min(number, COLOURS.length - 1)];
+}

@@ -1,0 +1,93 @@
+/** Line charts: a frame with ticks, lines, dots, and shaded spans. */
+
+import { scaleOf, shown, tickText, ticksOf } from "./scale.js";
+
+/**
+ * @typedef {import("./pen.js").Pen} Pen
+ * @typedef {import("./scale.js").Axis} Axis
+ * @typedef {import("./theme.js").Theme} Theme
+ * @typedef {{x: ArrayLike<number>, y: ArrayLike<number>, colour: keyof Theme, dots?: number,
+ *   label?: string, alpha?: number, width?: number}} Series
+ * @typedef {{x: Axis, y: Axis, series: Series[], spans?: [number, number][], empty?: string}} Chart
+ * @typedef {[number, number, number, number]} Place x, y, width, height
+ */
+
+const MARGIN = { left: 58, right: 18, top: 20, bottom: 38 };
+
+/** The plotting area of a picture. @param {import("./picture.js").Size} size @returns {Place} */
+export function areaOf({ width, height }) {
+  const { left, right, top, bottom } = MARGIN;
+  return [left, top, Math.max(width - left - right, 10), Math.max(height - top - bottom, 10)];
+}
+
+/** @param {Pen} pen @param {import("./picture.js").Size} size @param {Theme} theme @param {Chart} chart */
+export function drawChart(pen, size, theme, chart) {
+  const place = areaOf(size);
+  const [left, top, width, height] = place;
+  const px = scaleOf(chart.x, left, left + width);
+  const py = scaleOf(chart.y, top + height, top);
+  for (const [from, to] of chart.spans ?? []) {
+    pen.box(px(from), top, Math.max(px(to) - px(from), 0.5), height, { fill: theme.contact, alpha: 0.5 });
+  }
+  drawFrame(pen, place, theme, chart.x, chart.y);
+  pen.inside(place, () => chart.series.forEach((series) => drawSeries(pen, series, px, py, theme)));
+  drawLegend(pen, place, theme, chart.series);
+  if (chart.empty) pen.text(left + width / 2, top + height / 2, chart.empty, { fill: theme.soft });
+}
+
+/** @param {Pen} pen @param {Series} series @param {(v: number) => number} px @param {(v: number) => number} py @param {Theme} theme */
+function drawSeries(pen, { x, y, colour, dots, alpha, width = 1.3 }, px, py, theme) {
+  const [xs, ys] = [Float64Array.from(x, px), Float64Array.from(y, py)];
+  if (dots) pen.dots(xs, ys, dots, { fill: theme[colour], alpha });
+  else pen.line(xs, ys, { stroke: theme[colour], width, alpha });
+}
+
+/** @param {Pen} pen @param {Place} place @param {Theme} theme @param {Series[]} series */
+function drawLegend(pen, [left, top, width], theme, series) {
+  let x = left + width;
+  for (const { label, colour } of [...series].reverse()) {
+    if (!label) continue;
+    pen.text(x, top - 10, label, { anchor: "end", fill: theme[colour] });
+    x -= 8 + 6.6 * label.length;
+  }
+}
+
+/**
+ * Frame, grid, ticks and labels.
+ * @param {Pen} pen
+ * @param {Place} place
+ * @param {Theme} theme
+ * @param {Axis} x
+ * @param {Axis} y
+ */
+export function drawFrame(pen, [left, top, width, height], theme, x, y) {
+  const px = scaleOf(x, left, left + width);
+  const py = scaleOf(y, top + height, top);
+  const [right, bottom] = [left + width, top + height];
+  for (const tick of ticksOf(x, width / 80)) {
+    pen.line([px(tick), px(tick)], [top, bottom], { stroke: theme.grid });
+    if (x.label !== undefined) pen.text(px(tick), bottom + 12, shown(tick, 6), { fill: theme.soft });
+  }
+  for (const tick of ticksOf(y, height / 30)) {
+    pen.line([left, right], [py(tick), py(tick)], { stroke: theme.grid });
+    pen.text(left - 6, py(tick), tickText(tick, y), { anchor: "end", fill: theme.soft });
+  }
+  pen.box(left, top, width, height, { stroke: theme.soft });
+  if (x.label) pen.text(left + width / 2, bottom + 28, x.label, { fill: theme.ink });
+  if (y.label) pen.text(10, top + height / 2, y.label, { turn: true, fill: theme.ink });
+}
+
+/** An axis around values, with some room. @param {ArrayLike<number>[]} columns @param {string} label @returns {Axis} */
+export function axisAround(columns, label) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const column of columns) {
+    for (let i = 0; i < column.length; i++) {
+      if (column[i] < low) low = column[i];
+      if (column[i] > high) high = column[i];
+    }
+  }
+  if (!(low <= high)) [low, high] = [-1, 1];
+  const least = 1e-6 * Math.max(Math.abs(low), Math.abs(high)); // a point, but for rounding
+  const room = high - low > least ? 0.05 * (high - low) : 1e4 * least || 1;
+  return { low: low - room, high: high + room, label };
+}

@@ -1,0 +1,79 @@
+/** The workers: tasks are handed to them, parts of answers come back, tasks can be called off. */
+
+/**
+ * @typedef {import("./kernel.js").Compiled} Compiled
+ * @typedef {{cancel: () => void, done: Promise<void>}} Order
+ */
+
+export class Crew {
+  /**
+   * @param {string} source of the worker
+   * @param {Compiled} compiled
+   * @param {number} size
+   */
+  constructor(source, compiled, size) {
+    const place = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+    this.number = 0;
+    /** @type {Map<number, (message: any) => void>} */
+    this.waiting = new Map();
+    /** @type {(text: string) => void} */
+    this.onerror = () => {};
+    this.workers = Array.from({ length: size }, () => {
+      const worker = new Worker(place);
+      worker.postMessage({ compiled });
+      worker.onmessage = ({ data }) => this.waiting.get(data.id)?.(data);
+      return worker;
+    });
+  }
+
+  /** Worker least recently given something to do. */
+  next() {
+    this.workers.push(/** @type {Worker} */ (this.workers.shift()));
+    return this.workers[this.workers.length - 1];
+  }
+
+  /**
+   * Have a task computed.
+   * @param {string} task
+   * @param {unknown} asked
+   * @param {(parts: any[]) => void} onparts
+   * @returns {Order}
+   */
+  ask(task, asked, onparts) {
+    const id = ++this.number;
+    const worker = this.next();
+    worker.postMessage({ id, task, asked });
+    /** @type {() => void} */
+    let finish = () => {};
+    const done = /** @type {Promise<void>} */ (new Promise((resolve) => (finish = () => resolve())));
+    const leave = () => {
+      this.waiting.delete(id);
+      finish();
+    };
+    this.waiting.set(id, (message) => {
+      if (message.parts.length) onparts(message.parts);
+      if (message.error) this.onerror(message.error);
+      if (message.done) leave();
+    });
+    const cancel = () => {
+      if (this.waiting.has(id)) worker.postMessage({ cancel: id });
+      leave();
+    };
+    return { cancel, done };
+  }
+
+  /**
+   * Have several tasks computed as one.
+   * @param {string} task
+   * @param {unknown[]} shares
+   * @param {(parts: any[]) => void} onparts
+   * @returns {Order}
+   */
+  askAll(task, shares, onparts) {
+    const orders = shares.map((asked) => this.ask(task, asked, onparts));
+    return {
+      cancel: () => orders.forEach((order) => order.cancel()),
+      done: Promise.all(orders.map((order) => order.done)).then(() => {}),
+    };
+  }
+}

@@ -1,0 +1,94 @@
+/** An orbit diagram: responses along the frequency, some of them still to come. */
+
+import { niceStep } from "./scale.js";
+import { pointAt } from "./structure.js";
+
+/**
+ * @typedef {import("./structure.js").Structure} Structure
+ * @typedef {import("./structure.js").Point} Point
+ * @typedef {"up" | "down" | "both"} Direction
+ * @typedef {{index: number, gaps: Float64Array, peak: number, impacts: number, contact: boolean,
+ *   multiplicity: number, start: number[], end: number[]}} Found
+ * @typedef {{direction: "up" | "down", found: (Found | undefined)[], starts: Float64Array | null, from: number[] | null}} Lane
+ *   `starts`: where each response begins, if that is known beforehand; `from`: where a chain does
+ * @typedef {{structure: Structure, direction: Direction, low: number, high: number, points: Point[],
+ *   lanes: Lane[], settings: import("./response.js").Settings, origin: string}} Diagram
+ */
+
+export const LOWEST = 1e-5; // gaps below are drawn in the strip of zero
+
+/**
+ * Frequency ratios on a decimal grid, as `orchestrate sweep --eta FIRST:LAST:STEP` has them.
+ * @param {number} low
+ * @param {number} high
+ * @param {number} count at most
+ */
+export function decimalGrid(low, high, count) {
+  const step = niceStep((high - low) / count);
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const unit = Math.round(step * 10 ** digits);
+  const first = Math.ceil(Math.round(low * 10 ** digits) / unit - 1e-9) * unit;
+  const etas = [];
+  for (let i = Math.max(first, unit); i <= Math.round(high * 10 ** digits); i += unit) {
+    etas.push(Number(`${i}e-${digits}`));
+  }
+  return { etas, step: Number(`${unit}e-${digits}`) };
+}
+
+/** @param {Direction} direction @returns {("up" | "down")[]} */
+export function lanesOf(direction) {
+  return direction === "both" ? ["up", "down"] : [direction];
+}
+
+/**
+ * A diagram that is still to be computed.
+ * @param {Structure} structure
+ * @param {{low: number, high: number, direction: Direction}} region
+ * @param {number} count of frequencies, at most
+ * @param {import("./response.js").Settings} settings
+ * @returns {Diagram}
+ */
+export function empty(structure, { low, high, direction }, count, settings) {
+  const points = decimalGrid(low, high, count).etas.map((eta) => pointAt(structure, eta));
+  const lanes = lanesOf(direction).map((way) => ({
+    direction: way,
+    found: new Array(points.length),
+    starts: null,
+    from: null,
+  }));
+  return { structure, direction, low, high, points, lanes, settings, origin: "" };
+}
+
+/** Index of the frequency nearest to `eta`. @param {Diagram} diagram @param {number} eta */
+export function nearest({ points }, eta) {
+  let best = 0;
+  points.forEach((point, i) => {
+    if (Math.abs(point.eta - eta) < Math.abs(points[best].eta - eta)) best = i;
+  });
+  return best;
+}
+
+/** Where the response at an index begins; null where that is not known yet. @param {Lane} lane @param {number} index */
+export function startAt(lane, index) {
+  if (lane.starts) return Array.from(lane.starts.subarray(4 * index, 4 * index + 4));
+  return lane.found[index]?.start ?? null;
+}
+
+/**
+ * Where a new chain through a region begins: what another diagram of the same structure has there.
+ * @param {Diagram | null} other
+ * @param {Point} point the first of the chain
+ * @param {"up" | "down"} direction
+ */
+export function startFrom(other, point, direction) {
+  const rest = [0, 0, 0, 0];
+  const lane = other?.lanes.find((one) => one.direction === direction);
+  if (!other || !lane) return rest;
+  const sign = direction === "up" ? 1 : -1;
+  let best = -1;
+  other.points.forEach(({ eta }, i) => {
+    if (sign * (point.eta - eta) < -1e-12 || !startAt(lane, i)) return;
+    if (best < 0 || sign * (eta - other.points[best].eta) > 0) best = i;
+  });
+  return best < 0 ? rest : startAt(lane, best) ?? rest;
+}

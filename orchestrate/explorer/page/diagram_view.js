@@ -1,0 +1,264 @@
+/** Draws an orbit diagram: gaps on a logarithmic axis with a strip for zero, impacts below. */
+
+import { areaOf, drawFrame } from "./chart.js";
+import { LOWEST } from "./diagram.js";
+import { Picture } from "./picture.js";
+import { scaleOf } from "./scale.js";
+import { channels } from "./theme.js";
+
+/**
+ * @typedef {import("./diagram.js").Diagram} Diagram
+ * @typedef {import("./diagram.js").Found} Found
+ * @typedef {import("./picture.js").Size} Size
+ * @typedef {import("./theme.js").Theme} Theme
+ * @typedef {import("./pen.js").Pen} Pen
+ * @typedef {import("./chart.js").Place} Place
+ * @typedef {import("./scale.js").Axis} Axis
+ */
+
+export const STRIP = 16; // px
+const SHARE = 0.72; // of the height, for the gaps
+
+/** Places of both panels. @param {Size} size @returns {{gaps: Place, impacts: Place}} */
+export function panels(size) {
+  const [left, top, width, height] = areaOf(size);
+  const upper = Math.round(height * SHARE);
+  const from = top + upper + 16;
+  return { gaps: [left, top, width, upper], impacts: [left, from, width, top + height - from] };
+}
+
+/** What the axes of a diagram hold so far. */
+export class Reach {
+  constructor() {
+    this.low = Infinity;
+    this.high = LOWEST;
+    this.most = 1;
+  }
+
+  /** Take a response in; whether it reaches beyond. @param {Found} found */
+  take({ gaps, impacts }) {
+    let beyond = false;
+    for (const gap of gaps) {
+      if (gap > this.high) [this.high, beyond] = [2 * gap, true];
+      if (gap < this.low && gap > LOWEST) [this.low, beyond] = [Math.max(gap / 2, LOWEST * 0.5), true];
+    }
+    if (impacts > this.most) [this.most, beyond] = [2 * impacts, true];
+    return beyond;
+  }
+
+  /** @param {Diagram} diagram */
+  axes({ low, high }) {
+    const [least, largest] = this.low < this.high ? [this.low, this.high] : [0.01, 10];
+    return {
+      x: { low, high, label: "frequency ratio η" },
+      gaps: { low: least, high: largest, log: true, label: "gap ξ₂ − ξ₁ at phase 0" },
+      impacts: { low: 0.1, high: this.most, log: true, label: "impacts / T" },
+    };
+  }
+}
+
+/** @typedef {{x: Axis, gaps: Axis, impacts: Axis}} Axes */
+
+/** Dots of a diagram, in pixels of the screen. */
+export class Plate {
+  constructor() {
+    this.canvas = document.createElement("canvas");
+    this.dot = 1; // pixels wide
+    this.alpha = 1; // of a dot
+  }
+
+  /** @param {Size} size @param {number} density @param {Axes} axes @param {number} count of responses that will come */
+  clear({ width, height }, density, axes, count) {
+    Object.assign(this.canvas, { width: Math.round(width * density), height: Math.round(height * density) });
+    this.context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
+    this.data = this.context.createImageData(this.canvas.width, this.canvas.height);
+    const { gaps, impacts } = panels({ width, height });
+    const [left, top, wide, high] = gaps.map((number) => number * density);
+    this.bottom = top + high;
+    this.strip = STRIP * density;
+    this.px = scaleOf(axes.x, left, left + wide);
+    this.py = scaleOf(axes.gaps, this.bottom - this.strip, top);
+    this.ends = [left, left + wide];
+    this.top = top;
+    const [, below, , deep] = impacts.map((number) => number * density);
+    this.counts = scaleOf(axes.impacts, below + deep, below);
+    this.countsEnds = [below, below + deep];
+    this.dot = Math.max(1, Math.round(density));
+    this.alpha = Math.min(0.6, Math.max(0.1, 0.6 * Math.sqrt(wide / Math.max(count, 1) / this.dot)));
+  }
+
+  /** @param {Diagram["points"][number]} point @param {Found} found @param {string} colour */
+  add(point, found, colour) {
+    const { px, py, counts, bottom = 0, strip = 0, top = 0 } = this;
+    if (!px || !py || !counts || !this.ends || !this.countsEnds) return;
+    const x = Math.floor(px(point.eta));
+    if (x < this.ends[0] || x > this.ends[1]) return;
+    const rgb = channels(colour);
+    for (const gap of found.gaps) {
+      const y = gap > LOWEST ? py(gap) : bottom - strip / 2;
+      if (y >= top && y <= bottom) this.mark(x, Math.floor(y), rgb);
+    }
+    const y = found.impacts > 0.1 ? counts(found.impacts) : this.countsEnds[1] - 2;
+    if (y >= this.countsEnds[0]) for (let i = 0; i < 3; i++) this.mark(x, Math.floor(y), rgb);
+  }
+
+  /** @param {number} x @param {number} y @param {[number, number, number]} rgb */
+  mark(x, y, [r, g, b]) {
+    const { data } = /** @type {ImageData} */ (this.data);
+    for (let dx = 0; dx < this.dot; dx++) {
+      for (let dy = 0; dy < this.dot; dy++) {
+        const place = 4 * ((y + dy) * this.canvas.width + x + dx);
+        const old = data[place + 3] / 255;
+        const share = this.alpha * (1 - old);
+        const all = old + share;
+        data[place] = (data[place] * old + r * share) / all;
+        data[place + 1] = (data[place + 1] * old + g * share) / all;
+        data[place + 2] = (data[place + 2] * old + b * share) / all;
+        data[place + 3] = 255 * all;
+      }
+    }
+  }
+
+  /** Bring the dots onto the canvas. */
+  show() {
+    if (this.context && this.data) this.context.putImageData(this.data, 0, 0);
+    return this.canvas;
+  }
+}
+
+/** Frames of both panels. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axes} axes */
+export function drawFrames(pen, size, theme, axes) {
+  const { gaps, impacts } = panels(size);
+  const [left, top, width, height] = gaps;
+  pen.box(left, top + height - STRIP, width, STRIP, { fill: theme.grid });
+  pen.text(left - 6, top + height - STRIP / 2, "0", { anchor: "end", fill: theme.soft });
+  const above = /** @type {Place} */ ([left, top, width, height - STRIP]);
+  drawFrame(pen, above, theme, { ...axes.x, label: undefined }, axes.gaps);
+  drawFrame(pen, impacts, theme, axes.x, axes.impacts);
+}
+
+/** The chosen frequency, and the span that is being dragged. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axis} axis @param {{eta: number | null, drag: [number, number] | null}} marks */
+export function drawMarks(pen, size, theme, axis, { eta, drag }) {
+  const { gaps, impacts } = panels(size);
+  const [left, top, width] = gaps;
+  const bottom = impacts[1] + impacts[3];
+  const px = scaleOf(axis, left, left + width);
+  if (drag) {
+    const [from, to] = drag.map(px);
+    pen.box(Math.min(from, to), top, Math.abs(to - from), bottom - top, { fill: theme.two, alpha: 0.25 });
+  }
+  if (eta !== null && eta >= axis.low && eta <= axis.high) {
+    pen.line([px(eta), px(eta)], [top, bottom], { stroke: theme.hit, dash: [4, 3] });
+  }
+}
+
+/** The diagram on the page: what has come is drawn with the frames, a few milliseconds each. */
+export class DiagramView {
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    this.plate = new Plate();
+    /** @type {Diagram | null} */
+    this.diagram = null;
+    /** @type {Diagram | null} */
+    this.below = null; // shown until the new one has come
+    /** @type {[Diagram, "up" | "down", number][]} */
+    this.queue = [];
+    this.done = 0; // of the queue
+    this.reach = new Reach();
+    this.stale = true;
+    /** @type {{eta: number | null, drag: [number, number] | null}} */
+    this.marks = { eta: null, drag: null };
+    /** @type {((pen: Pen, size: Size, theme: Theme) => void) | null} */
+    this.overlay = null;
+    this.picture = new Picture(canvas, (pen, size, theme) => this.draw(pen, size, theme));
+    new ResizeObserver(() => this.refresh()).observe(canvas);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.refresh());
+  }
+
+  get axes() {
+    return this.reach.axes(/** @type {Diagram} */ (this.diagram));
+  }
+
+  /** @param {Diagram} diagram @param {Diagram | null} below */
+  show(diagram, below) {
+    this.diagram = diagram;
+    this.below = below;
+    this.reach = new Reach();
+    for (const one of [below, diagram]) {
+      for (const { found } of one?.lanes ?? []) {
+        found.forEach((response, i) => {
+          const eta = one?.points[i].eta ?? NaN;
+          if (response && eta >= diagram.low && eta <= diagram.high) this.reach.take(response);
+        });
+      }
+    }
+    this.refresh();
+  }
+
+  /** Draw everything anew. */
+  refresh() {
+    this.stale = true;
+    this.picture.redraw();
+  }
+
+  /** A response has come. @param {"up" | "down"} direction @param {number} index @param {Found} found */
+  add(direction, index, found) {
+    if (this.reach.take(found)) this.stale = true;
+    this.queue.push([/** @type {Diagram} */ (this.diagram), direction, index]);
+    this.picture.redraw();
+  }
+
+  /** Only the diagram itself from now on: it is complete. */
+  complete() {
+    if (this.below) this.refresh();
+    this.below = null;
+  }
+
+  restart() {
+    this.stale = false;
+    const { points, lanes } = /** @type {Diagram} */ (this.diagram);
+    const count = points.length * lanes.length;
+    this.plate.clear(this.picture.size, window.devicePixelRatio || 1, this.axes, count);
+    this.queue = [];
+    for (const one of [this.below, this.diagram]) {
+      for (const lane of one?.lanes ?? []) {
+        lane.found.forEach((found, i) => {
+          if (found && one) this.queue.push([one, lane.direction, i]);
+        });
+      }
+    }
+    this.done = 0;
+  }
+
+  /** @param {Pen} pen @param {Size} size @param {Theme} theme */
+  draw(pen, size, theme) {
+    if (!this.diagram) return;
+    if (this.stale) this.restart();
+    this.work(theme);
+    drawFrames(pen, size, theme, this.axes);
+    pen.image(this.plate.show(), 0, 0, size.width, size.height);
+    this.overlay?.(pen, size, theme);
+    drawMarks(pen, size, theme, this.axes.x, this.marks);
+    if (this.queue.length > this.done) this.picture.redraw();
+  }
+
+  /** Put dots on the plate for some milliseconds. @param {Theme} theme */
+  work(theme) {
+    const end = performance.now() + 10;
+    let done = this.done;
+    while (done < this.queue.length && performance.now() < end) {
+      const [diagram, direction, index] = this.queue[done++];
+      const found = diagram.lanes.find((lane) => lane.direction === direction)?.found[index];
+      if (found) this.plate.add(diagram.points[index], found, theme[direction]);
+    }
+    this.done = done;
+    if (done === this.queue.length) [this.queue, this.done] = [[], 0];
+  }
+
+  /** Frequency at a place. @param {number} x in CSS pixels from the canvas's left side */
+  etaAt(x) {
+    const [left, , width] = panels(this.picture.size).gaps;
+    const { low, high } = this.axes.x;
+    return Math.min(Math.max(low + ((x - left) / width) * (high - low), low), high);
+  }
+}

@@ -1,0 +1,174 @@
+/** The chosen response: its motion, section, spectrum, sound; each asked of the workers. */
+
+import { Animation } from "./animation.js";
+import { historyChart, motionPictures, numbersOf, phaseChart, sectionChart, spectrumChart, columnsOf } from "./motion_view.js";
+import { shown } from "./scale.js";
+import { Sound } from "./sound.js";
+import { periodOf } from "./structure.js";
+
+/**
+ * @typedef {import("./structure.js").Point} Point
+ * @typedef {import("./response.js").Response} Response
+ * @typedef {import("./response.js").Settings} Settings
+ * @typedef {import("./motion.js").Motion} Motion
+ * @typedef {{point: Point, start: number[], settings: Settings}} Choice
+ */
+
+const POINTS = 200; // a period
+const LONG = 20000; // periods of a section that runs on
+
+export class Inspector {
+  /** @param {(id: string) => HTMLElement} at @param {import("./crew.js").Crew} crew @param {() => void} told */
+  constructor(at, crew, told) {
+    this.at = at;
+    this.crew = crew;
+    this.told = told;
+    this.pictures = motionPictures(at);
+    this.animation = new Animation(/** @type {HTMLCanvasElement} */ (at("animation")));
+    this.sound = new Sound();
+    this.periods = 10;
+    /** @type {Choice | null} */
+    this.choice = null;
+    /** @type {import("./crew.js").Order[]} */
+    this.orders = [];
+    /** @type {{response: Response, motion: Motion} | null} */
+    this.found = null;
+    /** @type {any} */
+    this.spectra = null;
+    /** @type {Motion | null} */
+    this.bonded = null;
+    /** @type {Float64Array} */
+    this.section = new Float64Array(0);
+  }
+
+  /** Show the motion of a response. @param {Choice} choice */
+  choose(choice) {
+    this.stop();
+    Object.assign(this, { choice, found: null, spectra: null, bonded: null });
+    this.at("exponent").textContent = "…";
+    this.ask("motion", { ...choice, periods: this.periods, points: POINTS }, ([found]) => this.take(found));
+    const glued = { ...choice.point, structure: { ...choice.point.structure, bonded: 1 } };
+    const settled = { transient: 2000, samples: 1, tolerance: 1e-2 };
+    const asked = { point: glued, start: [0, 0, 0, 0], settings: settled, periods: this.periods, points: POINTS };
+    this.ask("motion", asked, ([{ motion }]) => {
+      this.bonded = motion;
+      this.drawMotion();
+    });
+  }
+
+  /** @param {string} task @param {unknown} asked @param {(parts: any[]) => void} take */
+  ask(task, asked, take) {
+    const order = this.crew.ask(task, asked, take);
+    this.orders.push(order);
+    return order;
+  }
+
+  /** Call off what is still being computed, and be silent. */
+  stop() {
+    this.orders.forEach((order) => order.cancel());
+    this.orders = [];
+    this.sound.stop();
+  }
+
+  /** @param {{response: Response, motion: Motion}} found */
+  take(found) {
+    this.found = found;
+    this.section = found.response.states;
+    const { point } = /** @type {Choice} */ (this.choice);
+    this.ask("spectra", { point, start: found.response.end }, (parts) => parts.forEach((part) => this.takeSpectra(part)));
+    this.drawMotion();
+    this.drawSection();
+    this.animation.load(found.motion, point);
+    this.animation.picture.describe(`Animation of box and masses at frequency ratio ${point.eta}, ${found.motion.impactTime.length} impacts`);
+    this.showNumbers();
+    this.told();
+  }
+
+  showNumbers() {
+    const { point } = /** @type {Choice} */ (this.choice);
+    const { response } = /** @type {{response: Response}} */ (this.found);
+    const list = this.at("numbers");
+    list.querySelectorAll(".told").forEach((row) => row.remove());
+    for (const [name, value] of Object.entries(numbersOf(response, point)).reverse()) {
+      const row = document.createElement("div");
+      row.className = "told";
+      row.append(tagged("dt", name), tagged("dd", value));
+      list.prepend(row);
+    }
+  }
+
+  drawMotion() {
+    if (!this.found || !this.choice) return;
+    const { motion } = this.found;
+    const { point } = this.choice;
+    const history = historyChart(motion, point, this.periods);
+    const phase = phaseChart(motion, point);
+    const beside = /** @type {HTMLInputElement} */ (this.at("beside")).checked;
+    if (beside && this.bonded) {
+      const { x1, v1 } = columnsOf(this.bonded, point);
+      const { turns } = columnsOf(motion, point);
+      const look = /** @type {const} */ ({ colour: "soft", label: "bonded", width: 2, alpha: 0.8 });
+      history.series.unshift({ x: turns, y: x1, ...look });
+      phase.series.unshift({ x: x1, y: v1, ...look });
+    }
+    const words = `at frequency ratio ${point.eta}`;
+    this.pictures.show("history", history, `Time histories of both masses ${words}: ${motion.impactTime.length} impacts in ${this.periods} periods, permanent contact in ${history.spans?.length ?? 0} spans`);
+    this.pictures.show("phase", phase, `Phase curves of both masses ${words}`);
+  }
+
+  drawSection() {
+    const { point } = /** @type {Choice} */ (this.choice);
+    const count = this.section.length / 4;
+    this.pictures.show("section", sectionChart(this.section, point), `Stroboscopic section at frequency ratio ${point.eta}: ${count} samples of gap and gap velocity`);
+    this.at("section-count").textContent = `${count} periods`;
+  }
+
+  /** Let the section grow. */
+  runOn() {
+    if (!this.choice || !this.found) return;
+    const { point } = this.choice;
+    const end = Array.from(this.section.subarray(this.section.length - 4));
+    this.ask("section", { point, start: end, periods: LONG }, (parts) => {
+      const joined = new Float64Array(this.section.length + parts.reduce((sum, part) => sum + part.length, 0));
+      joined.set(this.section);
+      let place = this.section.length;
+      for (const part of parts) {
+        joined.set(part, place);
+        place += part.length;
+      }
+      this.section = joined;
+      this.drawSection();
+    });
+  }
+
+  /** @param {any} part */
+  takeSpectra(part) {
+    if (part.exponent !== undefined) {
+      const verdict = part.exponent > 0.005 ? " (chaotic)" : part.exponent < -0.002 ? " (regular)" : "";
+      this.at("exponent").textContent = `${shown(part.exponent, 3)}${verdict}`;
+      return;
+    }
+    this.spectra = part;
+    this.pictures.show("spectrum", spectrumChart(part), "Amplitude spectrum of the acceleration of mass 1, delaminated beside bonded");
+  }
+
+  /** Play the impacts of many periods as they come from the kernel. @param {number} pitch periods a second */
+  listen(pitch) {
+    if (!this.choice || !this.found) return;
+    const { point, settings } = this.choice;
+    const periods = Math.max(1, Math.round(pitch * (pitch < 8 ? 4 : 2)));
+    const asked = { point, start: this.found.response.end, settings: { ...settings, transient: 0, samples: 1 }, periods, points: 1 };
+    this.ask("motion", asked, ([{ motion }]) => {
+      const time = motion.impactTime.map((/** @type {number} */ t) => t / periodOf(point) - motion.first);
+      this.sound.play({ time, energy: motion.impactEnergy, turns: periods }, pitch);
+      this.told();
+    });
+  }
+}
+
+/** @param {string} tag @param {string} text */
+function tagged(tag, text) {
+  const element = document.createElement(tag);
+  element.textContent = text;
+  return element;
+}

@@ -1,0 +1,60 @@
+/** The largest Lyapunov exponent, estimated: how fast two motions that begin close by part. */
+
+import { lengthOf, omegaOf, periodOf } from "./structure.js";
+
+/**
+ * @typedef {import("./kernel.js").Oscillator} Oscillator
+ * @typedef {import("./structure.js").Point} Point
+ */
+
+/**
+ * Mean growth rate per unit of tau of a small difference, made small again after each period.
+ * @param {Oscillator} instance
+ * @param {Point} point
+ * @param {number[]} start on the attractor, at phase 0
+ * @param {{periods: number, distance: number}} settings
+ * @returns {number} minus infinity where permanent contact forgets the difference
+ */
+export function exponentOf(instance, point, start, { periods, distance }) {
+  const period = periodOf(point);
+  const length = lengthOf(point);
+  const speed = length * omegaOf(point.structure);
+  const scale = [length, length, speed, speed];
+  /** @param {number[]} state */
+  const next = (state) => {
+    instance.begin(point, state);
+    instance.step(0, period);
+    return instance.state();
+  };
+  let state = start;
+  let difference = [-0.5, 0.5, 0.5, -0.5].map((part) => part * distance);
+  let sum = 0;
+  for (let n = 0; n < periods; n++) {
+    const twin = beside(state, difference, scale);
+    const moved = twin.map((value, i) => (value - state[i]) / scale[i]);
+    [state, difference] = separate(next(state), next(twin), scale);
+    const growth = norm(difference) / norm(moved);
+    if (!(growth > 0)) return -Infinity;
+    sum += Math.log(growth);
+    const factor = distance / norm(difference);
+    difference = difference.map((part) => part * factor);
+  }
+  return sum / (periods * period * omegaOf(point.structure));
+}
+
+/** A state close by whose gap is none below zero. @param {number[]} state @param {number[]} d @param {number[]} scale */
+function beside(state, d, scale) {
+  const sign = state[1] + d[1] * scale[1] < state[0] + d[0] * scale[0] ? -1 : 1;
+  const twin = state.map((value, i) => value + sign * d[i] * scale[i]);
+  return twin[1] < twin[0] ? [twin[0], twin[0], twin[2], twin[3]] : twin;
+}
+
+/** @param {number[]} state @param {number[]} twin @param {number[]} scale @returns {[number[], number[]]} */
+function separate(state, twin, scale) {
+  return [state, twin.map((value, i) => (value - state[i]) / scale[i])];
+}
+
+/** @param {number[]} vector */
+function norm(vector) {
+  return Math.hypot(...vector);
+}

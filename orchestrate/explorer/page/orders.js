@@ -1,0 +1,75 @@
+/** What is asked of the workers, and in which order. */
+
+import { lanesOf, startAt, startFrom } from "./diagram.js";
+
+/**
+ * @typedef {import("./crew.js").Crew} Crew
+ * @typedef {import("./crew.js").Order} Order
+ * @typedef {import("./diagram.js").Diagram} Diagram
+ * @typedef {import("./diagram.js").Lane} Lane
+ * @typedef {import("./diagram.js").Found} Found
+ * @typedef {(lane: Lane, found: Found) => void} Take
+ */
+
+/** Indices of a list, coarse ones first. @param {number} count */
+export function coarseFirst(count) {
+  const found = [];
+  for (let step = 32; step >= 1; step /= 2) {
+    for (let i = 0; i < count; i += step) {
+      if (step === 32 || i % (2 * step) !== 0) found.push(i);
+    }
+  }
+  return found;
+}
+
+/** Every `size`-th of a list, from each of the first on. @template T @param {T[]} list @param {number} size */
+export function shares(list, size) {
+  return Array.from({ length: size }, (_, first) => list.filter((_, i) => i % size === first));
+}
+
+/** Compute what a diagram still lacks, each response from where it is known to begin. @param {Crew} crew @param {Diagram} diagram @param {Take} take @returns {Order} */
+export function replay(crew, diagram, take) {
+  const orders = diagram.lanes.map((lane) => {
+    const missing = coarseFirst(diagram.points.length).filter((i) => !lane.found[i]);
+    const asked = shares(missing, crew.workers.length).map((indices) => ({
+      indices,
+      points: indices.map((i) => diagram.points[i]),
+      starts: indices.map((i) => startAt(lane, i)),
+      settings: diagram.settings,
+    }));
+    return crew.askAll("replay", asked, (parts) => parts.forEach((part) => enter(lane, part, take)));
+  });
+  return together(orders);
+}
+
+/** Compute a diagram, each response from the end of the last. @param {Crew} crew @param {Diagram} diagram @param {Diagram | null} parent where the first may begin from @param {Take} take @returns {Order} */
+export function chain(crew, diagram, parent, take) {
+  const orders = diagram.lanes.map((lane) => {
+    const indices = diagram.points.map((_, i) => i);
+    if (lane.direction === "down") indices.reverse();
+    const points = indices.map((i) => diagram.points[i]);
+    lane.from = startFrom(parent, points[0], lane.direction);
+    const asked = { indices, points, start: lane.from, settings: diagram.settings };
+    return crew.ask("chain", asked, (parts) => parts.forEach((part) => enter(lane, part, take)));
+  });
+  return together(orders);
+}
+
+/** @param {Lane} lane @param {Found} found @param {Take} take */
+function enter(lane, found, take) {
+  lane.found[found.index] = found;
+  take(lane, found);
+}
+
+/** @param {Order[]} orders @returns {Order} */
+function together(orders) {
+  return {
+    cancel: () => orders.forEach((order) => order.cancel()),
+    done: Promise.all(orders.map((order) => order.done)).then(() => {}),
+  };
+}
+
+/** Whether a diagram can show a direction. @param {Diagram} diagram @param {import("./diagram.js").Direction} direction */
+export function shows(diagram, direction) {
+  return lanesOf(direction).every((way) => diagram.lanes.some((lane) => lane.direction === way));
+}

@@ -1,0 +1,57 @@
+/** What the page carries: the compiled kernel, tables, and where the responses of a sweep begin. */
+
+/**
+ * @typedef {import("./structure.js").Structure} Structure
+ * @typedef {{slots: import("./kernel.js").Slots, starts: Record<string, number>,
+ *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>,
+ *   settings: import("./response.js").Settings, directions: ("up" | "down")[], count: number,
+ *   low: number, high: number, title: string, command: string,
+ *   branches: {x: number[], y: number[], stable: boolean}[],
+ *   bifurcations: {eta: number, gap: number, kind: string}[]}} Table
+ */
+
+/** @param {string} id */
+function text(id) {
+  return document.getElementById(id)?.textContent ?? "";
+}
+
+/** Bytes of an element of the page. @param {string} id @returns {Promise<ArrayBuffer>} */
+async function bytes(id) {
+  const packed = Uint8Array.from(atob(text(id).trim()), (letter) => letter.charCodeAt(0));
+  const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Response(unpacked).arrayBuffer();
+}
+
+/** Everything the page carries. */
+export async function load() {
+  /** @type {Table} */
+  const table = JSON.parse(text("table"));
+  const [kernel, data] = await Promise.all([bytes("kernel"), bytes("data")]);
+  const module = await WebAssembly.compile(kernel);
+  const compiled = { module, slots: table.slots, starts: table.starts };
+  return { table, compiled, worker: text("worker"), diagram: shipped(table, new Float64Array(data)) };
+}
+
+/**
+ * The sweep that the page was made of; null where it was made of none.
+ * @param {Table} table
+ * @param {Float64Array} data eta, frequency, amplitude, then four numbers a start for each direction
+ * @returns {import("./diagram.js").Diagram | null}
+ */
+function shipped({ structure, settings, directions, count, low, high, command }, data) {
+  if (!count) return null;
+  const points = Array.from({ length: count }, (_, i) => ({
+    structure,
+    eta: data[i],
+    frequency: data[count + i],
+    amplitude: data[2 * count + i],
+  }));
+  const lanes = directions.map((direction, i) => ({
+    direction,
+    found: new Array(count),
+    starts: data.subarray((3 + 4 * i) * count, (7 + 4 * i) * count),
+    from: null,
+  }));
+  const direction = directions.length === 2 ? /** @type {const} */ ("both") : directions[0];
+  return { structure, direction, low, high, points, lanes, settings, origin: command };
+}

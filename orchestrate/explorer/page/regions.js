@@ -1,0 +1,142 @@
+/** The diagrams that were looked at: the whole, dragged regions, other parameters; back and forth. */
+
+import { empty } from "./diagram.js";
+import { DiagramView } from "./diagram_view.js";
+import { chain, replay } from "./orders.js";
+import { USUAL } from "./response.js";
+import { sameStructure } from "./structure.js";
+
+/**
+ * @typedef {import("./diagram.js").Diagram} Diagram
+ * @typedef {import("./diagram.js").Direction} Direction
+ * @typedef {import("./structure.js").Structure} Structure
+ * @typedef {{low: number, high: number, direction: Direction}} Region
+ */
+
+const QUICK = { transient: 100, samples: 40, tolerance: 1e-2 };
+const LEAST = 1e-6; // width of a region
+
+export class Regions {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {import("./crew.js").Crew} crew
+   * @param {Diagram | null} shipped
+   * @param {(complete: boolean) => void} told when something has come
+   */
+  constructor(canvas, crew, shipped, told) {
+    this.crew = crew;
+    this.shipped = shipped;
+    this.told = told;
+    this.view = new DiagramView(canvas);
+    /** @type {Diagram[]} */
+    this.seen = [];
+    this.place = -1;
+    this.complete = false;
+    /** @type {import("./crew.js").Order | null} */
+    this.order = null;
+    this.timer = 0;
+    this.quick = false; // whether the present diagram is one of low resolution
+    /** @type {number | undefined} */
+    this.first = undefined; // ms until a response came,
+    this.took = { first: 0, all: 0 }; // and until all had
+  }
+
+  get diagram() {
+    return this.seen[this.place];
+  }
+
+  /** Frequencies that a diagram may have: as many as the screen shows apart. */
+  get count() {
+    return Math.max(300, Math.min(800, Math.round(this.view.picture.size.width)));
+  }
+
+  /** Look at a region of a structure's responses. @param {Structure} structure @param {Region} region @param {boolean} [quick] at low resolution, in place of the last quick one */
+  open(structure, region, quick = false) {
+    const { shipped } = this;
+    const whole = shipped && sameStructure(shipped.structure, structure) && covers(shipped, region);
+    if (whole && shipped) return this.enter(shipped, null, false);
+    const parent = this.diagram && sameStructure(this.diagram.structure, structure) ? this.parentOf(region) : null;
+    const settings = quick ? QUICK : USUAL;
+    const diagram = empty(structure, widened(region), quick ? 160 : this.count, settings);
+    this.enter(diagram, parent, quick);
+  }
+
+  /** The diagram whose states a new one may begin from. @param {Region} region */
+  parentOf(region) {
+    const known = [this.diagram, this.shipped].find(
+      (one) => one && one.low <= region.low && one.high >= region.high && sameStructure(one.structure, this.diagram.structure),
+    );
+    return known ?? this.diagram;
+  }
+
+  /** @param {Diagram} diagram @param {Diagram | null} parent @param {boolean} quick */
+  enter(diagram, parent, quick) {
+    if (this.quick) this.seen.splice(this.place--, 1);
+    this.quick = quick;
+    this.seen.splice(this.place + 1, this.seen.length, diagram);
+    if (this.seen.length > 30) this.seen.shift();
+    this.place = this.seen.length - 1;
+    this.compute(diagram, parent);
+  }
+
+  /** @param {Diagram} diagram @param {Diagram | null} parent */
+  compute(diagram, parent) {
+    this.order?.cancel();
+    this.complete = false;
+    this.view.show(diagram, parent && parent !== diagram ? parent : null);
+    const began = performance.now();
+    /** @type {import("./orders.js").Take} */
+    const take = (lane, found) => {
+      this.view.add(lane.direction, found.index, found);
+      this.first ??= performance.now() - began;
+    };
+    this.first = undefined;
+    const replayed = diagram.lanes.every((lane) => lane.starts);
+    const order = replayed ? replay(this.crew, diagram, take) : chain(this.crew, diagram, parent, take);
+    this.order = order;
+    void order.done.then(() => {
+      if (this.order !== order) return;
+      this.complete = true;
+      this.took = { first: this.first ?? 0, all: performance.now() - began };
+      this.view.complete();
+      this.told(true);
+    });
+    this.told(false);
+  }
+
+  /** What was seen before, or after. @param {number} steps */
+  go(steps) {
+    const place = Math.min(Math.max(this.place + steps, 0), this.seen.length - 1);
+    if (place === this.place) return;
+    this.place = place;
+    this.quick = false;
+    const { diagram } = this;
+    const whole = diagram.lanes.every(({ found }) => diagram.points.every((_, i) => found[i]));
+    if (!whole) return this.compute(diagram, null);
+    this.order?.cancel();
+    this.order = null;
+    this.complete = true;
+    this.view.show(diagram, null);
+    this.told(true);
+  }
+
+  /** Follow parameters that are being changed: quickly now, in full once they rest. @param {Structure} structure */
+  follow(structure) {
+    const { low, high, direction } = this.diagram;
+    clearTimeout(this.timer);
+    this.open(structure, { low, high, direction }, true);
+    this.timer = window.setTimeout(() => this.open(structure, { low, high, direction }), 400);
+  }
+}
+
+/** Whether a region is the whole of a diagram. @param {Diagram} diagram @param {Region} region */
+function covers(diagram, { low, high, direction }) {
+  return diagram.direction === direction && low <= diagram.low && high >= diagram.high;
+}
+
+/** @param {Region} region @returns {Region} */
+function widened({ low, high, direction }) {
+  const middle = (low + high) / 2;
+  const half = Math.max((high - low) / 2, LEAST / 2);
+  return { low: Math.max(middle - half, LEAST), high: middle + half, direction };
+}

@@ -1,0 +1,99 @@
+/** What a worker computes, each task a generator that yields its answer part by part. */
+
+import { destination, startAt } from "./basin.js";
+import { exponentOf } from "./lyapunov.js";
+import { record } from "./motion.js";
+import { respond } from "./response.js";
+import { spectrumOf } from "./spectrum.js";
+
+/**
+ * @typedef {import("./kernel.js").Oscillator} Oscillator
+ * @typedef {import("./structure.js").Point} Point
+ * @typedef {import("./response.js").Settings} Settings
+ * @typedef {import("./response.js").Response} Response
+ */
+
+const REST = [0, 0, 0, 0];
+const SPAN = { periods: 64, points: 1024, highest: 20 };
+
+/**
+ * Responses at given starts.
+ * @param {Oscillator} instance
+ * @param {{points: Point[], starts: number[][], indices: number[], settings: Settings}} asked
+ */
+function* replay(instance, { points, starts, indices, settings }) {
+  for (let i = 0; i < points.length; i++) {
+    yield answer(indices[i], respond(instance, points[i], starts[i], settings));
+  }
+}
+
+/**
+ * Responses, each from the end of the last.
+ * @param {Oscillator} instance
+ * @param {{points: Point[], indices: number[], start: number[], settings: Settings}} asked
+ */
+function* chain(instance, { points, indices, start, settings }) {
+  for (let i = 0; i < points.length; i++) {
+    const found = respond(instance, points[i], start, settings);
+    start = found.end;
+    yield answer(indices[i], found);
+  }
+}
+
+/** @param {number} index @param {Response} found */
+function answer(index, { gaps, peak, impacts, contact, multiplicity, start, end }) {
+  return { index, gaps, peak, impacts, contact, multiplicity, start, end };
+}
+
+/**
+ * The response at a start and how it goes on.
+ * @param {Oscillator} instance
+ * @param {{point: Point, start: number[], settings: Settings, periods: number, points: number}} asked
+ */
+function* motion(instance, { point, start, settings, periods, points }) {
+  const first = settings.transient + settings.samples;
+  const response = respond(instance, point, start, settings);
+  yield { response, motion: record(instance, point, first, periods, points) };
+}
+
+/**
+ * Further stroboscopic samples of a response, 200 at a time.
+ * @param {Oscillator} instance
+ * @param {{point: Point, start: number[], periods: number}} asked
+ */
+function* section(instance, { point, start, periods }) {
+  for (let done = 0; done < periods; done += 200) {
+    const found = respond(instance, point, start, { transient: 0, samples: 200, tolerance: 1e-2 });
+    start = found.end;
+    yield found.states;
+  }
+}
+
+/**
+ * Spectra of mass 1, delaminated from a state on the attractor and bonded, and the exponent.
+ * @param {Oscillator} instance
+ * @param {{point: Point, start: number[]}} asked
+ */
+function* spectra(instance, { point, start }) {
+  instance.begin(point, start);
+  const delaminated = spectrumOf(instance, point, 0, SPAN);
+  const glued = { ...point, structure: { ...point.structure, bonded: 1 } };
+  const settled = respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 });
+  const bonded = spectrumOf(instance, glued, 2001, SPAN);
+  yield { delaminated, bonded, bondedState: settled.end };
+  yield { exponent: exponentOf(instance, point, start, { periods: 400, distance: 1e-7 }) };
+}
+
+/**
+ * Where the cells of a plane lead to.
+ * @param {Oscillator} instance
+ * @param {{point: Point, plane: import("./basin.js").Plane, cells: [number, number][]}} asked
+ */
+function* basin(instance, { point, plane, cells }) {
+  for (const [column, row] of cells) {
+    yield { column, row, ...destination(instance, point, startAt(point, plane, column, row)) };
+  }
+}
+
+/** @type {Record<string, (instance: Oscillator, asked: any) => Generator<unknown>>} */
+export const TASKS = { replay, chain, motion, section, spectra, basin };

@@ -1,0 +1,63 @@
+/** A worker: computes tasks in short slices, the newest first, so that it can be told to stop. */
+
+import { Oscillator } from "./kernel.js";
+import { TASKS } from "./tasks.js";
+
+const SLICE = 15; // ms
+
+/** @type {Oscillator} */
+let instance;
+/** @type {{id: number, run: Generator<unknown>}[]} */
+const tasks = [];
+const wake = new MessageChannel();
+let awake = false;
+const scope = /** @type {{onmessage: unknown, postMessage: (message: unknown) => void}} */ (
+  /** @type {unknown} */ (self)
+);
+
+scope.onmessage = (/** @type {MessageEvent} */ { data }) => {
+  if (data.compiled) instance = new Oscillator(data.compiled);
+  if (data.task) tasks.push({ id: data.id, run: TASKS[data.task](instance, data.asked) });
+  if (data.cancel !== undefined) drop(data.cancel);
+  rouse();
+};
+
+/** @param {number} id */
+function drop(id) {
+  const place = tasks.findIndex((task) => task.id === id);
+  if (place >= 0) tasks.splice(place, 1);
+}
+
+function rouse() {
+  if (!awake && tasks.length) {
+    awake = true;
+    wake.port2.postMessage(null); // lets messages that wait come first
+  }
+}
+
+wake.port1.onmessage = () => {
+  awake = false;
+  const task = tasks[tasks.length - 1];
+  if (!task) return;
+  const message = slice(task);
+  if (message.done) drop(task.id);
+  scope.postMessage(message);
+  rouse();
+};
+
+/** @param {{id: number, run: Generator<unknown>}} task */
+function slice({ id, run }) {
+  const end = performance.now() + SLICE;
+  /** @type {unknown[]} */
+  const parts = [];
+  try {
+    do {
+      const { value, done } = run.next();
+      if (done) return { id, parts, done: true };
+      parts.push(value);
+    } while (performance.now() < end);
+    return { id, parts, done: false };
+  } catch (error) {
+    return { id, parts, done: true, error: String(error) };
+  }
+}

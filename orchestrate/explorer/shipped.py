@@ -1,0 +1,140 @@
+"""What a sweep gives to the page: where each response begins, so that a click replays it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..structures import Excitation, Structure
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+EXPECTED = "expected a result of orchestrate.sweep along eta or frequency"
+SWEPT = ("eta", "frequency")
+SETTINGS = ("transient", "samples", "tolerance")
+PAPER = (0.1, 8.0)  # frequency ratios of Figure 6
+
+
+@dataclass(frozen=True)
+class Shipped:
+    """A sweep as the page needs it.
+
+    Attributes
+    ----------
+    structure : Structure
+    directions : tuple of str
+        ``up``, ``down`` or both.
+    settings : dict of str to float
+        Transient, samples and tolerance.
+    numbers : ndarray
+        Frequency ratio, frequency and amplitude of each response, then for each direction the four
+        numbers of each start, m and m/s.
+    count : int
+        Number of responses in a direction.
+    low, high : float
+        Ends of the frequency ratios.
+    command : str
+        How it was computed.
+    source : str
+        What computed it.
+    """
+
+    structure: Structure
+    directions: tuple[str, ...]
+    settings: dict[str, float]
+    numbers: NDArray[np.float64]
+    count: int
+    low: float
+    high: float
+    command: str
+    source: str
+
+
+def nothing(structure: Structure) -> Shipped:
+    """No sweep: the page computes its first diagram itself, over the paper's frequency ratios."""
+    settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
+    return Shipped(structure, ("up",), settings, np.empty(0), 0, *PAPER, "", "")
+
+
+def shipped(data: xr.Dataset) -> Shipped:
+    """What the page needs of a sweep.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.sweep` along ``eta`` or ``frequency``, in any direction but ``given``.
+
+    Raises
+    ------
+    InputError
+        Where it is something else.
+    """
+    direction = check(data)
+    structure = structure_of(data)
+    directions = ("up", "down") if direction == "both" else (direction,)
+    (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
+    data = data.sortby(parameter)
+    scale = scales(data, structure)
+    rows = [np.stack([data[name].values for name in ("eta", "frequency", "amplitude")])]
+    for way in directions:
+        lane = data.sel(direction=way) if "direction" in data.dims else data
+        ends = lane.end_state.transpose(parameter, "coordinate").values * scale
+        rows.append(starts(ends, numbers_of(data.attrs["start"]), way))
+    return Shipped(
+        structure=structure,
+        directions=directions,
+        settings={name: float(data.attrs[name]) for name in SETTINGS},
+        numbers=np.concatenate([row.ravel() for row in rows]),
+        count=data.sizes[parameter],
+        low=float(data.eta.min()),
+        high=float(data.eta.max()),
+        command=str(data.attrs["call"]),
+        source=f"{data.attrs['source']}, {data.attrs['fmu_model']} {data.attrs['fmu_guid']}",
+    )
+
+
+def check(data: xr.Dataset) -> str:
+    """The direction of a sweep that the page can show."""
+    needed = {"eta", "frequency", "amplitude", "impacts_per_period", "end_state"}
+    missing = needed - {str(name) for name in data.variables}
+    direction = str(data.attrs.get("direction"))
+    if missing or not {*SETTINGS, "start", "m1", "call"} <= set(data.attrs):
+        raise InputError(f"{data.attrs.get('title', 'data')!r}: no sweep; {EXPECTED}")
+    if not set(SWEPT) & {str(name) for name in data.impacts_per_period.dims}:
+        raise InputError(f"sweep over {data.impacts_per_period.dims[-1]}: {EXPECTED}")
+    if direction == "given" or data.sizes[str(data.impacts_per_period.dims[-1])] < 2:
+        raise InputError("sweep of single frequencies: expected a range, up, down or both")
+    return direction
+
+
+def structure_of(data: xr.Dataset) -> Structure:
+    """The structure that a dataset is about."""
+    names = ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma")
+    given: dict[str, Any] = {name: float(data.attrs[name]) for name in names}
+    return Structure(**given, bonded=bool(data.attrs["bonded"]))
+
+
+def numbers_of(text: Any) -> NDArray[np.float64]:
+    """Numbers of an attribute, a text such as ``[0.0, 1.0]``."""
+    return np.array([float(part) for part in str(text).strip("[]").split(",")])
+
+
+def scales(data: xr.Dataset, structure: Structure) -> NDArray[np.float64]:
+    """Units of the four co-ordinates of each state, shape (n, 4)."""
+    pairs = zip(data.frequency.values, data.amplitude.values, strict=True)
+    lengths = np.array([Excitation(frequency=f, amplitude=a).length(structure) for f, a in pairs])
+    return lengths[:, None] * np.array([1.0, 1.0, structure.omega, structure.omega])
+
+
+def starts(
+    ends: NDArray[np.float64], start: NDArray[np.float64], direction: str
+) -> NDArray[np.float64]:
+    """Where each response begins: at the end of the one before it, shape (n, 4)."""
+    if direction == "up":
+        return np.concatenate([start[None], ends[:-1]])
+    return np.concatenate([ends[1:], start[None]])

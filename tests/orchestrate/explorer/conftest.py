@@ -1,0 +1,42 @@
+"""A page made of a sweep, and one browser for all tests of it."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate.explorer.page import explore
+
+from .browser import Browser
+
+ETAS = np.round(np.linspace(0.1, 8.0, 211), 4)  # periodic, irregular, with permanent contact
+
+
+@pytest.fixture(scope="session")
+def swept(exported):
+    return orchestrate.sweep(orchestrate.Structure(), eta=ETAS, direction="up", progress=False)
+
+
+@pytest.fixture(scope="session")
+def page(swept, tmp_path_factory):
+    return explore(swept, output=tmp_path_factory.mktemp("explorer") / "explorer.html")
+
+
+@pytest.fixture(scope="session")
+def chromium(tmp_path_factory):
+    pytest.importorskip("selenium", reason="selenium drives the browser")
+    programs = shutil.which("chromium"), shutil.which("chromedriver")
+    if None in programs:
+        pytest.skip("no chromium with chromedriver here: the page is not tried in a browser")
+    browser = Browser(*programs, tmp_path_factory.mktemp("downloads"))
+    yield browser
+    browser.driver.quit()
+
+
+@pytest.fixture
+def browser(chromium, page):
+    """The browser with the page opened anew; afterwards its console must be empty."""
+    chromium.open(page)
+    yield chromium
+    assert chromium.console() == []

@@ -1,0 +1,60 @@
+"""The kernel in the page gives the bits of the FMU: the whole memory, after each period."""
+
+import struct
+
+import pytest
+
+from orchestrate.access.webassembly import web_kernel
+
+from .kernels import Native, Web, period
+
+pytest.importorskip("wasmtime", reason="wasmtime runs the WebAssembly module")
+REST = {}
+STARTED = {"x1_start": -0.4, "x2_start": 0.7, "v1_start": 1.3, "v2_start": -0.9}
+CASES = {  # frequency, periods, what is set
+    "chaos": (2.95, 1500, {"m2": 1.0}),
+    "chaos at low restitution": (1.2, 400, {"e": 0.3}),
+    "off rest": (1.2, 400, STARTED),
+    "contact": (0.4, 60, {}),
+    "contact, unequal masses and dampers": (0.5, 60, {"m2": 0.4, "d2": 0.2, "e": 0.2}),
+    "overdamped": (1.1, 60, {"d1": 3.0, "d2": 0.5}),
+    "bonded": (1.047, 40, {"bonded": True}),
+}
+
+
+@pytest.fixture(scope="module")
+def kernel(exported):
+    return web_kernel("TwoMassImpactOscillator")
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_every_number_of_the_memory_is_that_of_the_fmu(kernel, exported, case):
+    frequency, periods, values = CASES[case]
+    values = {**values, "box_frequency": frequency, "box_amplitude": 1.0 / frequency**2}
+    fmu = exported / "fmi2" / "TwoMassImpactOscillator.fmu"
+    both = Web(kernel), Native(fmu, kernel.slots["SIZE"])
+    for one in both:
+        one.begin(**values)
+        one.set(sample_count=7)
+    for n in range(periods):
+        for one in both:
+            one.step(n * period(frequency), (n + 1) * period(frequency))
+        web, native = (one.bytes() for one in both)
+        assert web == native, f"period {n}: slots {differing(web, native)}"
+    impacts = both[0].memory()[kernel.slots["impact_count"]]
+    assert impacts > (1500 if case == "chaos" else 0) or case == "bonded"
+
+
+def differing(one, other):
+    """Slots in which two memories differ."""
+    count = len(one) // 8
+    pairs = zip(struct.unpack(f"{count}d", one), struct.unpack(f"{count}d", other), strict=True)
+    return [i for i, (a, b) in enumerate(pairs) if a != b][:5]
+
+
+def test_the_module_bears_the_guid_of_its_sources(kernel):
+    from fmu_src.export import webassembly
+
+    assert webassembly.guid_inside(kernel.module) == webassembly.guid("oscillator") == kernel.guid
+    assert webassembly.guid_inside(b"\0asm") == ""
+    assert len(kernel.module) < 100_000

@@ -1,0 +1,93 @@
+"""What a page is made of, and what it refuses."""
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate import cli
+from orchestrate.errors import InputError
+from orchestrate.explorer.branches import runs
+from orchestrate.explorer.bundle import IMPORT, bundle
+from orchestrate.explorer.page import explore, modules
+from orchestrate.explorer.shipped import shipped
+
+
+def test_the_page_is_one_small_file_without_network(page):
+    text = page.read_text(encoding="utf-8")
+    assert page.stat().st_size < 1_500_000
+    assert not re.search(r'(?:src|href)="(?!data:|#|\$)', text)
+    assert not re.search(r"\b(?:fetch|XMLHttpRequest|WebSocket|cookie|localStorage)\b", text)
+    assert set(re.findall(r"https?://[^\s\"'`]+", text)) <= {"http://www.w3.org/2000/svg"}
+
+
+def test_each_module_imports_in_the_form_that_is_joined_and_is_used():
+    scripts = modules()
+    for name, text in scripts.items():
+        assert len(IMPORT.findall(text)) == text.count("\nimport ") + text.startswith("import ")
+        assert text.startswith("/** "), f"{name}.js: expected what it is for in the first line"
+        assert len(text.splitlines()) < 360, f"{name}.js is long"
+    reached = bundle(scripts, "main") + bundle(scripts, "worker")
+    assert all(f"const module_{name} = " in reached for name in scripts)
+
+
+def test_starts_are_the_ends_of_the_responses_before():
+    both = orchestrate.sweep(
+        orchestrate.Structure(), eta=[1.2, 1.21, 1.22], direction="both", transient=20, samples=5
+    )
+    found = shipped(both)
+    assert found.directions == ("up", "down") and found.count == 3
+    numbers = found.numbers.reshape(-1)
+    up, down = (numbers[9 + 12 * lane :][:12].reshape(3, 4) for lane in (0, 1))
+    ends = both.end_state.transpose("direction", "eta", "coordinate").values
+    assert np.array_equal(up, [[0.0] * 4, *ends[0][:-1]])
+    assert np.array_equal(down, [*ends[1][1:], [0.0] * 4])
+
+
+def test_starts_in_metres_where_the_excitation_is():
+    beam = orchestrate.Structure.from_file("beam")
+    data = orchestrate.sweep(
+        beam, frequency=[78.0, 79.0], amplitude=1e-3, transient=20, samples=5, direction="up"
+    )
+    start = shipped(data).numbers[6:].reshape(2, 4)[1]
+    motion = orchestrate.simulate(beam, frequency=78.0, amplitude=1e-3, transient=25, periods=1)
+    state = [float(motion[name][0]) for name in ("x1", "x2", "v1", "v2")]
+    assert start == pytest.approx(state, rel=1e-9)
+
+
+def test_what_is_no_sweep_along_the_frequency_is_refused(tmp_path):
+    structure = orchestrate.Structure()
+    over = orchestrate.sweep(
+        structure, over="e", values=[0.3, 0.4], eta=1.2, transient=5, samples=5
+    )
+    listed = orchestrate.sweep(structure, eta=[1.2, 1.1], direction="given", transient=5, samples=5)
+    for wrong in (xr.Dataset(), over, listed):
+        with pytest.raises(InputError, match="expected a r"):
+            explore(wrong, output=tmp_path / "page.html")
+    with pytest.raises(InputError, match="is a folder; expected a file"):
+        explore(output=tmp_path)
+    with pytest.raises(InputError, match="branches over nothing: expected"):
+        explore(output=tmp_path / "page.html", branches=xr.Dataset())
+    assert not list(tmp_path.glob("*.html"))
+
+
+def test_the_command_writes_a_page(tmp_path, capsys, swept):
+    swept.to_netcdf(tmp_path / "sweep.nc")
+    page = tmp_path / "page.html"
+    asked = ["explore", str(tmp_path / "sweep.nc"), "--no-open", "--output", str(page)]
+    assert cli.main(asked) == 0
+    assert capsys.readouterr().out.startswith(f"{page}  ")
+    (tmp_path / "none.nc").write_text("none")
+    for arguments in ([str(tmp_path / "none.nc")], [*asked[1:2], "--set", "e=0.3"]):
+        assert cli.main(["explore", *arguments, "--no-open", "--output", str(page)]) == 2
+        assert "expected" in capsys.readouterr().err
+
+
+def test_a_branch_is_cut_where_its_stability_changes():
+    along = np.arange(5.0)
+    gaps = np.array([1.0, 2.0, 3.0, 0.0, 5.0])
+    stable = np.array([True, True, False, False, False])
+    parts = [(list(x), list(y), flag) for x, y, flag in runs(along, gaps, stable)]
+    assert parts == [([0, 1, 2], [1, 2, 3], True), ([2, 4], [3, 5], False)]

@@ -1,0 +1,200 @@
+"""The page in headless Chromium: each way to use it, and the bits of what it shows."""
+
+import shlex
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import xarray as xr
+
+import orchestrate
+from orchestrate import cli
+from orchestrate.explorer.page import explore
+
+DIAGRAM = "explorer.regions.diagram"
+MOTION = "explorer.inspector.found.motion"
+
+
+def gaps(browser, lane=0):
+    """Samples of all responses of the diagram, a row each."""
+    found = browser.numbers(f"{DIAGRAM}.lanes[{lane}].found.flatMap((one) => Array.from(one.gaps))")
+    return found.reshape(browser.run(f"return {DIAGRAM}.points.length"), -1)
+
+
+def etas(browser):
+    return browser.numbers(f"{DIAGRAM}.points.map((point) => point.eta)")
+
+
+def test_every_response_has_the_samples_of_the_file_to_the_last_bit(browser, swept):
+    assert swept.sizes["eta"] > 200 and int((swept.multiplicity == 0).sum()) > 15
+    assert np.array_equal(etas(browser), swept.eta.values)
+    assert gaps(browser).tobytes() == swept.xi_rel.values.tobytes()
+    found = f"{DIAGRAM}.lanes[0].found"
+    for mine, theirs in (("impacts", "impacts_per_period"), ("peak", "xi_rel_max")):
+        numbers = browser.numbers(f"{found}.map((one) => one.{mine})")
+        assert numbers.tobytes() == swept[theirs].values.tobytes()
+    multiplicity = browser.numbers(f"{found}.map((one) => one.multiplicity)")
+    assert np.array_equal(multiplicity, swept.multiplicity.values)
+
+
+def test_a_click_shows_the_motion_that_the_command_computes(browser, swept, tmp_path, capsys):
+    browser.mouse("diagram", (0.37, 0.4))
+    eta = browser.chosen()
+    row = swept.sel(eta=eta)
+    samples = browser.numbers("explorer.inspector.found.response.gaps")
+    assert samples.tobytes() == row.xi_rel.values.tobytes()
+    command = shlex.split(browser.text("motion-command"))
+    assert command[:4] == ["python", "-m", "orchestrate", "simulate"]
+    assert cli.main([*command[3:], "--output", str(tmp_path)]) == 0
+    (path,) = tmp_path.glob("*.nc")
+    with xr.open_dataset(path) as motion:
+        states = browser.numbers(f"{MOTION}.states").reshape(-1, 4)
+        for column, name in enumerate(("x1", "x2", "v1", "v2")):
+            assert states[:, column].tobytes() == motion[name].values.tobytes()
+        times = browser.numbers(f"{MOTION}.impactTime")
+        assert len(times) > 5 and times.tobytes() == motion.impact_time.values.tobytes()
+    assert "impacts in 10 periods" in browser.at("history").get_attribute("aria-label")
+
+
+def test_a_dragged_region_is_computed_anew_and_there_is_a_way_back(browser, swept):
+    whole = etas(browser)
+    browser.mouse("diagram", (0.35, 0.3), (0.4, 0.3), (0.45, 0.3))
+    browser.until("return explorer.regions.complete")
+    region = etas(browser)
+    assert len(region) >= 300 and whole[0] < region[0] < region[-1] < whole[-1]
+    lane = f"{DIAGRAM}.lanes[0]"
+    start = browser.numbers(f"{lane}.from")
+    assert any(np.array_equal(start, state) for state in swept.end_state.values)
+    found = orchestrate.sweep(
+        orchestrate.Structure(), eta=region[:120], start=start, direction="up", progress=False
+    )
+    assert gaps(browser)[:120].tobytes() == found.xi_rel.values.tobytes()
+    browser.click("back")
+    assert np.array_equal(etas(browser), whole)
+    browser.click("forth")
+    assert np.array_equal(etas(browser), region)
+
+
+def test_sliders_change_the_structure_and_the_command_says_so(browser):
+    browser.open(page_of(browser), "#from=1.1&to=1.3&direction=up")
+    slider = browser.at("e")
+    slider.click()  # its middle
+    browser.until("return explorer.regions.complete && !explorer.regions.quick")
+    assert abs(browser.run("return explorer.structure.e") - 0.5) < 0.02
+    command = shlex.split(browser.text("command"))
+    arguments = cli.make_parser().parse_args(command[3:])
+    assert arguments.set == [f"e={browser.run('return explorer.structure.e')}"]
+    first, last, step = map(float, arguments.eta.split(":"))
+    region = etas(browser)
+    assert (first, last) == (region[0], region[-1]) and step > 0.0
+    structure = orchestrate.Structure().replace(e=browser.run("return explorer.structure.e"))
+    found = orchestrate.sweep(structure, eta=region[:60], direction="up", progress=False)
+    assert gaps(browser)[:60].tobytes() == found.xi_rel.values.tobytes()
+    browser.run(
+        "const box = document.getElementById('m2'); box.value = 0.5;"
+        "box.dispatchEvent(new Event('change'))"
+    )
+    assert float(browser.at("mu").get_attribute("value")) == 0.5
+    browser.click("reset")
+    assert browser.run("return explorer.structure.e") == 0.7
+
+
+def page_of(browser):
+    """The file that is open."""
+    from pathlib import Path
+    from urllib.parse import urlsplit
+
+    return Path(urlsplit(browser.driver.current_url).path)
+
+
+def test_both_directions_show_that_responses_are_not_unique(browser):
+    browser.run(
+        "const box = document.getElementById('direction'); box.value = 'both';"
+        "box.dispatchEvent(new Event('change')); explorer.open(1.2, 1.5)"
+    )
+    browser.until("return explorer.regions.complete")
+    assert not np.array_equal(gaps(browser, 0), gaps(browser, 1))
+
+
+def test_a_link_restores_the_view(browser):
+    browser.open(page_of(browser), "#from=2.8&to=3.1&direction=up&e=0.6&eta=2.95")
+    browser.chosen()
+    link = browser.run("return location.hash")
+    assert "start=" in link and "e=0.6" in link
+    before = browser.numbers(f"{MOTION}.states")
+    browser.open(page_of(browser), link)
+    browser.chosen()
+    assert browser.numbers(f"{MOTION}.states").tobytes() == before.tobytes()
+    assert browser.run("return location.hash") == link
+
+
+def test_the_basin_fills_and_a_click_on_it_starts_there(browser):
+    browser.run("explorer.choose(1.3)")
+    browser.chosen()
+    browser.click("basin-go")
+    browser.until("return document.getElementById('basins').dataset.complete === 'true'")
+    rows = browser.text("basins")
+    assert "impacts per period" in rows
+    assert browser.run("return explorer.basin.view.labels.every((label) => label >= 0)")
+    before = browser.run("return explorer.inspector.choice.start")
+    browser.mouse("basin", (0.5, 0.3))
+    after = browser.run("return explorer.inspector.choice.start")
+    assert before != after and after[1] > after[0]
+
+
+def test_what_is_shown_can_be_taken_home(browser):
+    browser.run("explorer.choose(0.4)")
+    browser.chosen()
+    browser.until("return explorer.inspector.spectra")
+    for name in ("diagram.csv", "diagram.svg", "diagram.png", "history.csv", "spectrum.svg"):
+        browser.run("explorer.save(arguments[0])", name)
+    for name in ("diagram", "spectrum"):
+        root = ET.fromstring(browser.download(f"{name}*.svg").read_text())
+        assert root.tag.endswith("svg") and len(list(root)) > 10
+    assert browser.download("diagram*.png").read_bytes().startswith(b"\x89PNG")
+    table = np.genfromtxt(browser.download("history*.csv"), delimiter=",", names=True)
+    states = browser.numbers(f"{MOTION}.states").reshape(-1, 4)
+    assert np.array_equal(table["x1"], states[:, 0])
+    assert browser.download("diagram*.csv").read_text().count("\n") == 1 + len(etas(browser))
+
+
+def test_keys_alone_do_it(browser):
+    from selenium.webdriver.common.keys import Keys
+
+    browser.run("document.getElementById('closer').focus()")
+    browser.keys(Keys.TAB, Keys.TAB)
+    assert browser.run("return document.activeElement.id") == "diagram"
+    browser.keys(Keys.ARROW_RIGHT)
+    first = browser.chosen()
+    browser.keys(Keys.ARROW_RIGHT, Keys.SHIFT + Keys.ARROW_RIGHT + Keys.SHIFT)
+    assert browser.chosen() > first
+    whole = browser.run(f"return {DIAGRAM}.high - {DIAGRAM}.low")
+    browser.keys("+")
+    assert browser.run(f"return {DIAGRAM}.high - {DIAGRAM}.low") < 0.4 * whole
+    browser.keys("b")
+    assert browser.run(f"return {DIAGRAM}.high - {DIAGRAM}.low") == whole
+
+
+def test_animation_and_sound_are_still_until_they_are_asked_for(browser):
+    browser.run("explorer.choose(1.2)")
+    browser.chosen()
+    assert browser.run("return explorer.inspector.sound.context === null")
+    assert browser.run("return !explorer.inspector.animation.running")
+    browser.click("impact")
+    turn = browser.run("return explorer.inspector.animation.turn")
+    times = browser.numbers(f"{MOTION}.impactTime") / browser.run(f"return {MOTION}.period") - 700
+    assert np.abs(times - turn).min() < 1e-9
+    browser.click("play")
+    browser.until(f"return explorer.inspector.animation.turn !== {turn}")
+    browser.click("listen")
+    browser.until("return explorer.inspector.sound.playing")
+    assert browser.text("listen") == "Silence"
+    browser.click("listen")
+    assert browser.run("return !explorer.inspector.sound.playing")
+
+
+def test_without_a_sweep_the_page_computes_its_own(chromium, tmp_path, exported):
+    structure = orchestrate.Structure(e=0.3)
+    chromium.open(explore(structure, output=tmp_path / "page.html"), "#from=1.0&to=1.1")
+    found = orchestrate.sweep(structure, eta=etas(chromium)[:40], progress=False)
+    assert gaps(chromium)[:40].tobytes() == found.xi_rel.values.tobytes()
+    assert chromium.console() == []
