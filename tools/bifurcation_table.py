@@ -175,9 +175,11 @@ def windows(found: dict[str, xr.Dataset]) -> list[xr.Dataset]:
 
 
 def window_line(case: str, label: str, window: StableWindow) -> str:
-    """A line of the table of windows."""
+    """A line of the table of windows; the loss of contact depends on gamma from 1e-6 on."""
     ends = [
-        f"{value:g}, limit" if kind == "limit" else f"{value:.8f}, {kind}"
+        f"{value:g}, limit"
+        if kind == "limit"
+        else f"{value:.{6 if 'contact' in kind else 8}f}, {kind}"
         for value, kind in ((window.low, window.below), (window.high, window.above))
     ]
     return f"| {case} | {label} | {ends[0]} | {ends[1]} |"

@@ -31,6 +31,7 @@ SWITCHED = 1e-3  # step away from a bifurcation onto the branch that leaves ther
 SHORT_OF = 1.0 - 1e-6  # of a step to the branch's end: where multipliers are looked at
 AT_BEGIN = 1e-7  # of a step: what is found before was there when the step began
 SHORTER = 0.3  # a step in which a bifurcation was not found, over the one before
+NOTHING = 1e-6  # of a permanent contact is left
 CHANGES = 10  # impacts of a chattering that come or go in one step
 LIMIT, STUCK, LONG, CLOSED = (
     "limit",
@@ -113,7 +114,7 @@ def advance(leg: Leg, walk: Walk[Family]) -> None:
     try:
         step, found, arrived = stepped(leg, walk)
     except NoConvergenceError:
-        leg.end = STUCK
+        stuck(leg)
         return
     after, leg.end = step.after, LIMIT if arrived else ""
     leg.rates = {kind: step.rate(kind) for kind in SIGNS}
@@ -130,6 +131,16 @@ def advance(leg: Leg, walk: Walk[Family]) -> None:
     walk.curve, walk.root = after.family, after.root
     leg.looks.append(after)
     rescale(walk)
+
+
+def stuck(leg: Leg) -> None:
+    """End a branch where no step is short enough: with its contact, if none of that is left."""
+    look = leg.looks[-1]
+    if look.ring.contact.any() and look.contact_test(CONTACT_LOST) < NOTHING:
+        leg.events.append(Event(CONTACT_LOST, look, len(leg.looks) - 1.0))
+        leg.end = KINDS[CONTACT_LOST]
+    else:
+        leg.end = STUCK
 
 
 def stepped(leg: Leg, walk: Walk[Family]) -> tuple[Step, list[tuple[float, Look, int]], bool]:

@@ -33,13 +33,11 @@ class Followed(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class FollowingQuestion(SeriesQuestion, ABC):
-    """A question to responses that are followed impact by impact.
+class OnwardQuestion(SeriesQuestion, ABC):
+    """A question to responses that go on from given states.
 
     Attributes
     ----------
-    transient, periods : int
-        Periods dropped, and followed after them.
     start : tuple of float
         One state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
         parameter, or one for each.
@@ -47,8 +45,6 @@ class FollowingQuestion(SeriesQuestion, ABC):
         Name of a sweep over the same parameter whose responses are followed instead.
     """
 
-    transient: int = 500
-    periods: int = 100
     start: tuple[float, ...] = REST
     follows: str = ""
 
@@ -64,6 +60,20 @@ class FollowingQuestion(SeriesQuestion, ABC):
             rows = ends_of(inputs[self.follows], series)
         starts = np.broadcast_to(rows, (len(series.points), 4)).tolist()
         return [Followed(*item) for item in zip(series.points, map(tuple, starts), strict=True)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FollowingQuestion(OnwardQuestion, ABC):
+    """A question to responses that are followed impact by impact.
+
+    Attributes
+    ----------
+    transient, periods : int
+        Periods dropped, and followed after them.
+    """
+
+    transient: int = 500
+    periods: int = 100
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None

@@ -103,7 +103,6 @@ def settled_job(sweep: SweepJob, resolution: Resolution) -> SettledJob:
         name=sweep.name.replace("orbit", "settled"),
         structure=sweep.structure,
         eta=tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5],
-        transient=0,
         follows=sweep.name,
         telling=Telling(transient=0, settle=0.0, longest=resolution.longest),
     )

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..access import OSCILLATOR, Instance
 from ..dynamics.clusters import Telling, features, response_from
-from ..dynamics.following import Followed, FollowingQuestion
+from ..dynamics.following import Followed, OnwardQuestion
 from ..response.labels import nondimensional_state, variable, yes_or_no
 from ..running.job import Inputs, Table
 
@@ -31,7 +31,7 @@ FIELDS = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class SettledJob(FollowingQuestion):
+class SettledJob(OnwardQuestion):
     """What a sweep's responses settle to.
 
     Attributes

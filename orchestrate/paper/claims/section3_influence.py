@@ -183,8 +183,14 @@ def non_unique(results: Results) -> Finding:
         "Each start is run on until its state repeats within 1e-6, at most 8,000 periods. Of "
         "irregular responses how many there are depends on how alike one's statistics must be."
     )
+    low = results.begins("elastic", "T/1", 2.0).value
+    high = results.ends("elastic", "2T/3", 1.36).value
+    why += (
+        f" By their exact limits T and 2T with three impacts coexist from {low:.5f} to {high:.5f}: "
+        "near its end few starts lead to the second."
+    )
     if len(several):
-        why += f" Frequencies: {told(several)}."
+        why += f" Frequencies at which starts find two: {told(several)}."
     return holds([len(sure) > 0, bool(differ.any())], text, why)
 
 
@@ -210,7 +216,7 @@ def second_region(results: Results, printed: str, upper: bool) -> Finding:
     why = (
         f"At {printed} the response is {'2T' if upper else 'T'}-periodic to {spread:.1e} after the "
         "periods dropped, exponent "
-        f"{float(row.exponent):.5f} +- {float(row.standard_error):.5f}: stable, but slowly "
+        f"{float(row.exponent):.5f} ± {float(row.standard_error):.5f}: stable, but slowly "
         f"decaying, e^(-D tau) being {remaining:.1e} after 500 T, so "
         "that transients widen the samples and the limit read depends on how narrow a band still "
         "counts as a line."
