@@ -6,14 +6,14 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .labels import symbol
-from .style import in_our_look, panels
+from .style import BLACK, BLUE, GREEN, ORANGE, RED, in_our_look, panels
 
 COLOURS = {
-    "fold": "tab:orange",
-    "period doubling": "tab:red",
-    "Neimark-Sacker": "tab:blue",
-    "grazing of an impact": "tab:green",
-    "grazing of a flight": "black",
+    "fold": ORANGE,
+    "period doubling": RED,
+    "Neimark-Sacker": BLUE,
+    "grazing of an impact": GREEN,
+    "grazing of a flight": BLACK,
 }
 
 

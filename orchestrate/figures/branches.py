@@ -7,9 +7,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import meanings, symbol
+from .labels import EXCITATION, about, meanings, symbol
+from .marks import Marks, draw_samples
 from .orbit_diagram import scale
-from .style import BLUE, GREY, RED, XI_REL, in_our_look, panels
+from .style import BLUE, GREY, RED, XI_REL, in_our_look, legend_above, panels
 
 MARKERS = {  # by the bifurcation's kind
     "fold": "<",
@@ -37,28 +38,21 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
     """
     figure, (plane,) = panels(1, 1, (12, 7))
     name = str(branches[0].attrs["over"])
-    if responses is not None:
-        draw_responses(plane, responses, name)
-    shown: set[str] = set()
-    for found in branches:
-        draw_branch(plane, found, name)
-        draw_bifurcations(plane, found, shown)
     gaps = np.concatenate([found.xi_rel.values.ravel() for found in branches])
     scale(plane, gaps if responses is None else np.append(gaps, responses.xi_rel.values.ravel()))
     low = min(float(found[name].min()) for found in branches)
     high = max(float(found[name].max()) for found in branches)
-    plane.set(xlabel=symbol(name), ylabel=rf"{XI_REL}$(nT)$", title=title, xlim=(low, high))
-    if shown:
-        plane.legend(loc="upper right", ncols=2)
+    plane.set(xlabel=symbol(name), ylabel=rf"{XI_REL}$(nT)$", xlim=(low, high))
+    plane.set_title(title or about(branches[0], EXCITATION))
+    if responses is not None:
+        samples = responses.xi_rel.transpose(name, "sample").values
+        draw_samples(plane, responses[name].values, samples, Marks(GREY))
+    shown: set[str] = set()
+    for found in branches:
+        draw_branch(plane, found, name)
+        draw_bifurcations(plane, found, shown)
+    legend_above(figure, [plane], columns=8)
     return figure
-
-
-def draw_responses(plane: Axes, data: xr.Dataset, name: str) -> None:
-    """The orbit diagram below, a pixel a sample."""
-    samples = data.xi_rel.transpose(name, "sample").values
-    along = np.repeat(data[name].values, samples.shape[1])
-    gaps = np.where(samples > 0.0, samples, np.nan).ravel()
-    plane.plot(along, gaps, ",", color=GREY, alpha=0.4, rasterized=True)
 
 
 def draw_branch(plane: Axes, found: xr.Dataset, name: str) -> None:
