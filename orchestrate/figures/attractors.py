@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from .labels import about
 from .marks import FEW
 from .scales import along, gaps, parameter_of
-from .style import BLACK, RED, entitle, in_our_look, legend_above, panels
+from .style import BLACK, RED, entitle, in_our_look, legend_below, panels
 
 WIDE = 4.0  # a parameter that grows by more is shown in equal ratios
 KINDS = ((BLACK, "o", "periodic"), (RED, "D", "not periodic"))
@@ -51,7 +51,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     bottom.yaxis.set_major_locator(MaxNLocator(integer=True))
     if len(x) > 1 and x.min() > 0.0 and x.max() > WIDE * x.min():
         in_ratios(bottom)
-    legend_above(figure, [top], title="larger: more starts lead there")
+    legend_below(figure, [top], title="larger: more starts lead there")
     return figure
 
 

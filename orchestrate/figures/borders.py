@@ -36,5 +36,5 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
         plane.plot(curve[first], curve[second], color=COLOURS[kind], linewidth=1.2, label=label)
         shown.add(kind)
     plane.set(xlabel=symbol(first), ylabel=symbol(second), title=title)
-    figure.legend(loc="outside upper right", ncols=len(shown))
+    figure.legend(loc="outside lower right", ncols=len(shown))
     return figure

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from .labels import EXCITATION, about, meanings, symbol
 from .marks import Marks, draw_samples
 from .orbit_diagram import scale
-from .style import BLUE, GREY, RED, XI_REL, in_our_look, legend_above, panels
+from .style import BLUE, GREY, RED, XI_REL, in_our_look, legend_below, panels
 
 MARKERS = {  # by the bifurcation's kind
     "fold": "<",
@@ -51,7 +51,7 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
     for found in branches:
         draw_branch(plane, found, name)
         draw_bifurcations(plane, found, shown)
-    legend_above(figure, [plane], columns=8)
+    legend_below(figure, [plane], columns=8)
     return figure
 
 

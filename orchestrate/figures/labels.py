@@ -36,6 +36,7 @@ SYMBOLS = {
 }
 USUAL = {"mu": 1.0, "kappa": 1.2, "gamma": 1e-4, "omega": 1.0}  # what a title leaves out
 EXCITATION = ("eta", "frequency", "amplitude")
+PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def symbol(name: str) -> str:
@@ -74,9 +75,37 @@ def about(data: xr.Dataset, beside: Iterable[str] = ()) -> str:
     usual = {name for name, value in USUAL.items() if found.get(name) == value}
     moved = {"D", "D1", "D2"} if "D" in told else set()
     left_out = told | usual | moved
-    found |= {name: known[name] for name in EXCITATION if name in known}
     text = parameters_text({name: value for name, value in found.items() if name not in left_out})
-    return text + ", bonded" * bool(known.get("bonded", 0.0))
+    shaken = [words for name, words in excitation(data, known).items() if name not in told]
+    return ", ".join(filter(None, [text, "bonded" if known.get("bonded") else "", *shaken]))
+
+
+def excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
+    """The box's motion by its parameters: what is one number in a dataset, in Hz and in m."""
+    found = {}
+    if "eta" in known:
+        found["eta"] = parameters_text({"eta": known["eta"]})
+    if "frequency" in known:
+        found["frequency"] = rf"$\Omega/2\pi$ = {known['frequency'] / (2.0 * math.pi):.5g} Hz"
+    if "amplitude" in known:
+        factor, letter = prefix(known["amplitude"])
+        found["amplitude"] = f"$a$ = {known['amplitude'] / factor:.4g} {letter}m"
+    elif "frequency" in data.dims and "amplitude" in data.coords:
+        level = (data.amplitude * data.frequency**2).values
+        if math.isclose(level.min(), level.max(), rel_tol=1e-9):
+            found["amplitude"] = rf"$a\,\Omega^2$ = {level.max():.4g} m/s$^2$"
+    return found
+
+
+def prefix(largest: float) -> tuple[float, str]:
+    """The largest SI prefix of a length that leaves it at least 1, and its factor.
+
+    Examples
+    --------
+    >>> prefix(0.004)
+    (0.001, 'm')
+    """
+    return next(((f, name) for f, name in PREFIXES if largest >= f), PREFIXES[0])
 
 
 def is_number(value: Any) -> bool:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from .labels import about, meanings
 from .scales import along, parameter_of
-from .style import BLACK, BLUE, RED, in_our_look, legend_above, panels
+from .style import BLACK, BLUE, RED, in_our_look, legend_below, panels
 
 VERDICTS = {1: (RED, "o"), 0: (BLUE, "s"), -1: (BLACK, ".")}  # chaotic, neutral, periodic
 
@@ -45,7 +45,7 @@ def draw(
         plane.axhline(0.0, color="0.5", linewidth=0.8)
         plane.set(ylabel=r"$\lambda$ per unit of $\tau$", title=words)
     axes[-1].set_xlabel(along(cases[-1], parameter_of(cases[-1].exponent)).label)
-    legend_above(figure, axes, 6, title="bars: one standard error")
+    legend_below(figure, axes, 6, title="bars: one standard error")
     return figure
 
 

@@ -10,8 +10,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import about
-from .scales import in_si, prefix
+from .labels import about, prefix
+from .scales import in_si
 from .style import BLACK, BLUE, GREY, RED, entitle, in_our_look, say
 
 PLACES: list[Any] = [["masses", "phases"], ["gap", "relative"], ["force", "spectrum"]]

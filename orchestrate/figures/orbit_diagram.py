@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from .labels import about
 from .marks import Marks, draw_samples, draw_steps
 from .scales import along, gaps, parameter_of
-from .style import BLACK, BLUE, GREY, RED, in_our_look, legend_above, panels, say
+from .style import BLACK, BLUE, GREY, RED, in_our_look, legend_below, panels, say
 
 MARKS = {"up": Marks(BLUE, 2.0, filled=False), "down": Marks(RED)}  # down lies on up
 WIDTHS = {"up": 2.6, "down": 1.0}
@@ -52,7 +52,7 @@ def draw(data: xr.Dataset, title: str = "", decades: int = 6) -> Figure:
     top.set_ylabel(f"{label}$(nT)$" if label.endswith("$") else f"{label}, at $t = nT$")
     bottom.set(ylabel="impacts per $T$", xlabel=name)
     if both:
-        legend_above(figure, [top])
+        legend_below(figure, [top])
     return figure
 
 

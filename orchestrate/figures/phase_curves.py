@@ -19,7 +19,7 @@ from .style import (
     XI_REL,
     XI_REL_RATE,
     in_our_look,
-    legend_above,
+    legend_below,
     panels,
 )
 
@@ -46,7 +46,7 @@ def draw_states(data: xr.Dataset) -> Figure:
     title = r"(a) both masses: solid $\xi_1$, dashed $\xi_2$"
     left.set(title=title, xlabel=r"$\xi_i$", ylabel=r"$\xi'_i$")
     right.set(title="(b) relative motion", xlabel=XI_REL, ylabel=XI_REL_RATE)
-    legend_above(figure, [right])
+    legend_below(figure, [right])
     return figure
 
 
@@ -90,5 +90,5 @@ def draw_masses(data: xr.Dataset) -> Figure:
         plane.set_xlabel(r"$\xi_i$")
         plane.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
     axes[0].set_ylabel(r"$\xi'_i$")
-    legend_above(figure, axes[:1])
+    legend_below(figure, axes[:1])
     return figure

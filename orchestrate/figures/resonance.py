@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,10 +10,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import about
+from .labels import about, prefix
 from .marks import FEW, Marks, mark
-from .scales import Along, along, parameter_of, prefix
-from .style import BLACK, BLUE, RED, entitle, in_our_look, legend_above
+from .scales import Along, along, parameter_of
+from .style import BLACK, BLUE, RED, entitle, in_our_look, legend_below
 
 COLOURS = {"delaminated": RED, "bonded": BLUE}
 STYLES: dict[str, Any] = {  # down lies on up
@@ -32,7 +32,7 @@ NAMES = {
 
 @in_our_look
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw resonance curves, with the largest value of each marked.
+    """Draw resonance curves, their peaks and their jumps.
 
     Parameters
     ----------
@@ -47,21 +47,24 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     rows = [row for row in PLACES if row[0] in data]
     axes = figure.subplot_mosaic(rows, sharex=True)
     entitle(figure, title or about(data))
-    x = along(data, parameter_of(data[rows[0][0]]))
+    parameter = parameter_of(data[rows[0][0]])
+    x = along(data, parameter)
     for name, plane in axes.items():
         draw_quantity(plane, data[name], x)
+        draw_peaks(plane, data, name, parameter, x)
+    if "x_rel_max" in axes:
+        draw_jumps(axes["x_rel_max"], data, parameter, x)
     for name in rows[-1]:
         axes[name].set_xlabel(x.label)
-    legend_above(figure, axes.values(), columns=6)
+    legend_below(figure, axes.values(), columns=6)
     return figure
 
 
 def draw_quantity(axes: Axes, values: xr.DataArray, x: Along) -> None:
-    """One quantity's curves; of the bonded structure no gap."""
+    """One quantity's curves, the largest value of each structure told; bonded there is no gap."""
     name = str(values.name)
-    length = name.startswith("x")
-    factor, letter = prefix(float(values.max())) if length else (1.0, "")
-    peaks, places = [], []
+    factor, letter = unit_of(values)
+    largest: dict[str, tuple[float, float]] = {}
     for words, part in curves(values):
         curve = part.values / factor
         if np.nanmax(curve, initial=0.0) <= 0.0:
@@ -73,12 +76,16 @@ def draw_quantity(axes: Axes, values: xr.DataArray, x: Along) -> None:
         if len(x.values) <= FEW // 4:
             axes.plot(x.values, curve, **mark(len(x.values), Marks(colour, 0.6)))
         at = int(np.nanargmax(curve))
-        axes.plot(x.values[at], curve[at], "v", color=colour, markersize=5.0)
-        peaks.append((f"{words}: {curve[at]:.4g} at {x.values[at]:.5g}".lstrip(": "), colour))
-        places.append(x.values[at])
+        largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[at], x.values[at]))
     axes.set(yscale="log", ylabel=NAMES[name].format(letter))
     axes.margins(x=0.0, y=0.12)
-    list_peaks(axes, peaks, np.mean(places) < np.mean(axes.get_xlim()) if places else True)
+    list_largest(axes, largest)
+
+
+def unit_of(values: xr.DataArray) -> tuple[float, str]:
+    """The prefix of a quantity's unit."""
+    length = str(values.name).startswith("x")
+    return prefix(float(values.max())) if length else (1.0, "")
 
 
 def curves(values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
@@ -94,9 +101,49 @@ def curves(values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
     return found
 
 
-def list_peaks(axes: Axes, peaks: Sequence[tuple[str, str]], right: bool) -> None:
-    """The largest value of each curve with its place, in the corner away from them."""
-    for row, (text, colour) in enumerate(peaks):
+def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: Along) -> None:
+    """A triangle on each peak that was found."""
+    if not data.sizes.get("peak"):
+        return
+    factor, _ = unit_of(data[name])
+    for i in range(data.sizes["peak"]):
+        peak = data.isel(peak=i)
+        height = float(peak[f"peak_{name}"]) / factor
+        if height > 0.0:
+            colour = COLOURS.get(str(peak.peak_structure.values), BLACK)
+            at = place(float(peak[f"peak_{parameter}"]), data[parameter], x)
+            axes.plot(at, height, "v", color=colour, markersize=6.0, markeredgecolor="white")
+
+
+def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: Along) -> None:
+    """A dotted line at each jump of the gap, with its frequency and its direction."""
+    count = data.sizes.get("jump", 0)
+    if count:
+        axes.set_ylim(bottom=axes.get_ylim()[0] / 4.0)  # room for words below the curves
+    for i in range(count):
+        jump = data.isel(jump=i)
+        way = str(jump.jump_direction.values)
+        at = place(float(jump[f"jump_{parameter}"]), data[parameter], x)
+        axes.axvline(at, color=BLACK, linestyle=":", linewidth=0.8)
+        beside: Any = {"fontsize": 7, "rotation": 90, "va": "bottom"}
+        side = "left" if way == "up" else "right"
+        words = f" {at:.5g}, jump {way}"
+        axes.text(at, 0.02, words, ha=side, transform=axes.get_xaxis_transform(), **beside)
+
+
+def place(value: float, parameter: xr.DataArray, x: Along) -> float:
+    """Where a value of the parameter is on the axis."""
+    order = np.argsort(parameter.values)
+    return float(np.interp(value, parameter.values[order], x.values[order]))
+
+
+def list_largest(axes: Axes, largest: Mapping[str, tuple[float, float]]) -> None:
+    """The largest value of each structure with its place, in the corner away from them."""
+    middle = float(np.mean(axes.get_xlim()))
+    right = all(at < middle for _, at in largest.values())
+    for row, (structure, (value, at)) in enumerate(largest.items()):
         style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}
-        place = (0.99 if right else 0.01, 0.97 - 0.075 * row)
-        axes.text(*place, text, color=colour, transform=axes.transAxes, **style)
+        corner = (0.99 if right else 0.01, 0.97 - 0.075 * row)
+        text = f"{structure}: {value:.4g} at {at:.5g}".lstrip(": ")
+        colour = COLOURS.get(structure, BLACK)
+        axes.text(*corner, text, color=colour, transform=axes.transAxes, **style)

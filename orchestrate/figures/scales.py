@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from .labels import is_number, symbol
+from .labels import is_number, prefix, symbol
 from .style import XI_REL
 
-PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 HERTZ = r"frequency $\Omega/2\pi$ in Hz"
 
 
@@ -46,17 +45,6 @@ def along(data: xr.Dataset, parameter: str) -> Along:
     if parameter in ("eta", "frequency") and "frequency" in data.coords and in_si(data):
         return Along(data.frequency.values / (2.0 * np.pi), HERTZ)
     return Along(data[parameter].values, symbol(parameter))
-
-
-def prefix(largest: float) -> tuple[float, str]:
-    """The largest SI prefix of a length that leaves it at least 1, and its factor.
-
-    Examples
-    --------
-    >>> prefix(0.004)
-    (0.001, 'm')
-    """
-    return next(((f, name) for f, name in PREFIXES if largest >= f), PREFIXES[0])
 
 
 def gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from .labels import about
 from .scales import in_si
-from .style import BLACK, BLUE, ORANGE, entitle, in_our_look, legend_above, panels
+from .style import BLACK, BLUE, ORANGE, entitle, in_our_look, legend_below, panels
 
 SIDES: tuple[dict[str, dict[str, Any]], ...] = (  # left and right; a thin line lies on a wide one
     {"bonded": {"color": BLUE, "linewidth": 1.2, "label": "bonded"}},
@@ -58,7 +58,7 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
         plane.set_xlabel(f"frequency of the line {unit}")
     columns = sum(map(len, SIDES))
     left_out = f"what is below {10.0**-decades:g} of the largest line is left out"
-    legend_above(figure, axes[:2], columns, title=left_out)
+    legend_below(figure, axes[:2], columns, title=left_out)
     return figure
 
 

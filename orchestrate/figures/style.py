@@ -82,8 +82,8 @@ def entitle(figure: Figure, title: str) -> None:
         figure.suptitle(textwrap.fill(title, letters), x=0.01, ha="left")
 
 
-def legend_above(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:
-    """One legend for some panels, above them, where it covers nothing; each word once.
+def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:
+    """One legend for some panels, below them, where it covers nothing; each word once.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def legend_above(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more:
         handles, labels = plane.get_legend_handles_labels()
         words = {**dict(zip(labels, handles, strict=True)), **words}
     if words:
-        place: Any = {"loc": "outside upper right", "ncols": min(columns, len(words))}
+        place: Any = {"loc": "outside lower right", "ncols": min(columns, len(words))}
         figure.legend(list(words.values()), list(words), **place, **more)
 
 

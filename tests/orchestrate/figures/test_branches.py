@@ -38,7 +38,7 @@ def test_bifurcations_are_marked_each_kind_once_in_the_legend():
     (plane,) = figure.axes
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert sorted(words) == ["Neimark-Sacker", "period doubling"]
-    marks = [line for line in plane.get_lines() if line.get_marker() in ("o", "s")]
+    marks = [line for line in plane.get_lines() if line.get_markerfacecolor() == "white"]
     assert {float(mark.get_xdata()[0]) for mark in marks} == set(window().bifurcation_value.values)
 
 

@@ -27,14 +27,15 @@ from orchestrate.figures import (
     style,
 )
 
-BEAM = {"m1": 1.5, "m2": 1.5, "k1": 8437.5, "k2": 10125.0, "d1": 1.125, "d2": 1.125}
+BEAM = {"m1": 1.5, "m2": 1.4, "k1": 8437.5, "k2": 9450.0, "d1": 1.125, "d2": 1.95}
 PAPER = {"m1": 1.0, "m2": 1.0, "k1": 1.0, "k2": 1.2, "d1": 0.01, "d2": 0.01}
 RANDOM = np.random.default_rng(1)
 
 
 def known(si: bool) -> dict:
     """Attributes of a dataset."""
-    return {**(BEAM if si else PAPER), "e": 0.7, "gamma": 1e-4, "bonded": 0}
+    gamma = 2e-4 if si else 1e-4
+    return {**(BEAM if si else PAPER), "e": 0.7, "gamma": gamma, "bonded": 0}
 
 
 def along(count: int, si: bool) -> dict:
@@ -110,7 +111,12 @@ def curves(si: bool) -> xr.Dataset:
     found = dict.fromkeys(("x1_max", "x2_max", "a1_max", "a2_max"), (over, shape))
     found["x_rel_max"] = (over, shape * np.array([1.0, 0.0])[:, None, None])
     names = {"structure": ["delaminated", "bonded"], "direction": ["up", "down"]}
-    return xr.Dataset(found, {**along(count, si), **names}, known(si))
+    told = {f"peak_{key}": ("peak", [0.9, 1.1]) for key in found}
+    told |= {f"{what}_{name}": (what, [75.0, 80.0]) for what in ("peak", "jump")}
+    told |= {"peak_structure": ("peak", ["delaminated", "bonded"])}
+    told |= {"jump_before": ("jump", [0.4, 0.1]), "jump_after": ("jump", [0.1, 0.4])}
+    told |= {"jump_direction": ("jump", ["up", "down"])}
+    return xr.Dataset(found | told, {**along(count, si), **names}, known(si))
 
 
 def lines(si: bool) -> xr.Dataset:
@@ -215,7 +221,7 @@ def test_every_axis_is_named_and_every_picture_says_what_it_shows(name):
             assert axes.get_xlabel(), axes
     texts = " ".join(words(figure, renderer))
     assert r"$\omega$ = 75 rad/s" in texts  # not usual, so it is told
-    assert r"$\kappa$" not in texts  # usual
+    assert "D_2" in texts and r"$\mu$" in texts and r"$\gamma$" in texts
     if name not in ("basin", "map", "motion"):
         assert " in Hz" in texts
 
@@ -298,14 +304,19 @@ def test_a_structure_in_si_is_told_in_hertz_and_metres():
 
 
 def test_resonance_has_all_curves_and_their_peaks():
-    figure = resonance.draw(curves(True))
+    data = curves(True)
+    figure = resonance.draw(data)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         f"{structure}, {way}" for structure in ("delaminated", "bonded") for way in ("up", "down")
     ]
     first, *_, gap = figure.axes
-    assert len(first.texts) == 4 and len(gap.texts) == 2  # glued masses have no gap
-    assert first.texts[0].get_text().startswith("delaminated, up: 0.92")
-    assert "in " in first.get_ylabel()
+    told = [text.get_text() for text in first.texts]
+    assert [words.partition(":")[0] for words in told] == ["delaminated", "bonded"]
+    assert told[0] == f"delaminated: {float(data.x1_max[0].max()):.4g} at 12.523"
+    assert len([line for line in first.lines if line.get_marker() == "v"]) == 2
+    jumps = [text.get_text() for text in gap.texts if text.get_rotation() == 90]
+    assert jumps == [" 11.937, jump up", " 12.732, jump down"]  # 75 and 80 rad/s
+    assert [line.get_color() for line in gap.lines].count(style.BLUE) == 1  # glued: no gap
     alone = curves(True).sel(structure="delaminated", direction="up", drop=True)
     assert len(resonance.draw(alone).axes[0].texts) == 1
 
@@ -362,6 +373,10 @@ def test_titles_tell_what_is_not_usual():
     swept = data.assign_attrs(bonded=0).assign_coords(D=[0.1, 0.2])
     assert labels.about(swept) == r"$e$ = 0.3, $\kappa$ = 2, $\gamma$ = 0.001"
     assert labels.about(xr.Dataset()) == ""
+    shaken = data.assign_attrs(frequency=20.0 * np.pi, amplitude=2.5e-5)
+    assert labels.about(shaken).endswith(r"$\Omega/2\pi$ = 10 Hz, $a$ = 25 µm")
+    held = sweep(si=True).assign_coords(amplitude=lambda data: 3.0 / data.frequency**2)
+    assert labels.about(held).endswith(r"$a\,\Omega^2$ = 3 m/s$^2$")
 
 
 DEUTERAN = np.array([[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]])
