@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from orchestrate.access import Instance, describe, find
-from orchestrate.figures import files, fmu_pictures, shaker_pictures
+from orchestrate.figures import files, fmu_pictures, icon, shaker_pictures
 
 from .references import MODELS, REFERENCES, SHAKER, Reference, reference_rows, write_reference
 
@@ -81,7 +81,7 @@ def draw(reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence
     scheme = shaker_pictures.draw_shaker if shaker else fmu_pictures.draw_scheme
     tight: Any = {"dpi": 100, "bbox_inches": "tight"}
     files.save(scheme(), folder / "documentation" / "scheme", **tight)
-    files.save(scheme(width=2.4), folder / "model", **tight)
+    files.save(icon.draw_icon(shaker), folder / "model", dpi=96)
     if shaker:
         values = dict(zip(("time", *reference.outputs), np.array(rows).T, strict=True))
         plot = shaker_pictures.draw_run_up(values["time"], values["speed"], values["box_position"])

@@ -55,7 +55,7 @@ def information(name: str) -> zipfile.ZipInfo:
     entry = zipfile.ZipInfo(name, EPOCH)
     entry.compress_type = zipfile.ZIP_DEFLATED
     entry.create_system = 3
-    entry.external_attr = (0o755 if name.endswith((".so", ".dll")) else 0o644) << 16
+    entry.external_attr = (0o755 if name.endswith((".so", ".dll", ".dylib")) else 0o644) << 16
     return entry
 
 

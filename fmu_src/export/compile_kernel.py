@@ -23,9 +23,8 @@ from .errors import CannotExport, require
 from .platforms import PLATFORMS, Platform
 from .sources import ROOT, Files, load
 
-CPU = "x86-64-v2"
 SETTINGS = {
-    "NUMBA_CPU_NAME": CPU,
+    "NUMBA_CPU_NAME": PLATFORMS["x86_64-linux"].cpu,
     "NUMBA_CPU_FEATURES": "",
     "NUMBA_OPT": "3",
     "NUMBA_CACHE_DIR": os.devnull,
@@ -34,18 +33,20 @@ SQRT = "declare double @llvm.sqrt.f64(double)"
 
 
 @functools.cache
-def compile_objects(folder: str) -> Files:
-    """Compile a model's kernel for every platform, in a process of its own.
+def compile_objects(folder: str, platforms: tuple[str, ...]) -> Files:
+    """Compile a model's kernel for platforms, in a process of its own.
 
     Parameters
     ----------
     folder : str
         The model's, below ``fmu_src/models``.
+    platforms : tuple of str
+        Of :data:`.platforms.PLATFORMS`.
 
     Returns
     -------
     dict of str to bytes
-        Object file by platform, of :data:`.platforms.PLATFORMS`.
+        Object file by platform.
 
     Raises
     ------
@@ -54,7 +55,7 @@ def compile_objects(folder: str) -> Files:
     """
     require("numba", "compiles the kernel")
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as target:
-        command = [sys.executable, "-m", __name__, folder, target]
+        command = [sys.executable, "-m", __name__, folder, target, *platforms]
         settings = {**os.environ, **SETTINGS}
         done = subprocess.run(
             command, cwd=ROOT.parent, env=settings, capture_output=True, text=True
@@ -62,7 +63,7 @@ def compile_objects(folder: str) -> Files:
         if done.returncode != 0:
             told = done.stderr.strip().splitlines()
             raise CannotExport(told[-1] if told else "the compiler gave no reason")
-        return {name: (Path(target) / f"{name}.o").read_bytes() for name in PLATFORMS}
+        return {name: (Path(target) / f"{name}.o").read_bytes() for name in platforms}
 
 
 def kernel_modules() -> list[str]:
@@ -133,14 +134,16 @@ def link_ir(entries: Mapping[str, tuple[str, str]]) -> Any:
     return module
 
 
-def emit_object(text: str, platform: Platform) -> bytes:
-    """Optimise for the baseline processor and emit a position-independent object."""
+def optimised(text: str, platform: Platform) -> tuple[Any, Any]:
+    """LLVM's target machine and the module optimised for its baseline processor."""
     import llvmlite.binding as llvm
 
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     target = llvm.Target.from_triple(platform.triple)
-    machine = target.create_target_machine(cpu=CPU, opt=3, reloc="pic", codemodel="default")
+    machine = target.create_target_machine(
+        cpu=platform.cpu, opt=3, reloc="pic", codemodel="default"
+    )
     module = llvm.parse_assembly(text)
     module.triple = platform.triple
     module.data_layout = str(machine.target_data)
@@ -153,22 +156,33 @@ def emit_object(text: str, platform: Platform) -> bytes:
     needed = ", ".join(name for name in declared if not name.startswith("llvm."))
     if needed:
         raise CannotExport(f"a kernel by this version of Numba needs {needed}: expected nothing")
+    return machine, module
+
+
+def emit_object(text: str, platform: Platform) -> bytes:
+    """A position-independent object file."""
+    machine, module = optimised(text, platform)
     made = machine.emit_object(module)
     assert isinstance(made, bytes)
     return made
 
 
-def main(folder: str, target: str) -> None:
-    """Write one object file a platform; see :func:`compile_objects`."""
+def kernel_ir(folder: str) -> str:
+    """LLVM IR of a model's entry points, of which every platform's object is made."""
     model = load(folder)
     dispatchers = jit_kernel(kernel_modules())
     entries = {
         f"kernel_{name}": entry_ir(dispatchers[function], model.memory_size)
         for name, function in model.entries.items()
     }
-    text = str(link_ir(entries))
-    for name, platform in PLATFORMS.items():
-        (Path(target) / f"{name}.o").write_bytes(emit_object(text, platform))
+    return str(link_ir(entries))
+
+
+def main(folder: str, target: str, *platforms: str) -> None:
+    """Write one object file a platform; see :func:`compile_objects`."""
+    text = kernel_ir(folder)
+    for name in platforms:
+        (Path(target) / f"{name}.o").write_bytes(emit_object(text, PLATFORMS[name]))
 
 
 def failure(error: Exception) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from xml.etree import ElementTree as ET
 
 from ..runtime.table import BOOLEAN, INTEGER, REAL, Model, Variable
@@ -35,6 +36,36 @@ UNITS = {  # SI exponents
     "Ohm": {"kg": 1, "m": 2, "s": -3, "A": -2},
     "H": {"kg": 1, "m": 2, "s": -2, "A": -2},
     "N.m/A": {"kg": 1, "m": 2, "s": -2, "A": -1},
+}
+QUANTITIES = {  # what a unit measures
+    "kg": "Mass",
+    "N/m": "Stiffness",
+    "N.s/m": "Damping",
+    "m": "Length",
+    "m/s": "Velocity",
+    "m/s2": "Acceleration",
+    "m/s3": "Jerk",
+    "rad": "Angle",
+    "rad/s": "AngularVelocity",
+    "s": "Time",
+    "N": "Force",
+    "N.s": "Impulse",
+    "N.m": "Torque",
+    "J": "Energy",
+    "W": "Power",
+    "kg.m2": "MomentOfInertia",
+    "A": "ElectricCurrent",
+    "V": "ElectricPotential",
+    "Ohm": "Resistance",
+    "H": "Inductance",
+}
+DISPLAY_UNITS = {  # how many of them an SI unit is
+    "m": {"mm": 1e3},
+    "m/s": {"mm/s": 1e3},
+    "m/s2": {"g": 1.0 / 9.80665},
+    "rad": {"deg": 180.0 / math.pi},
+    "rad/s": {"Hz": 0.5 / math.pi, "rpm": 30.0 / math.pi},
+    "s": {"ms": 1e3},
 }
 LOG_CATEGORIES = {
     "logStatusError": "Errors: what was wrong, its value and what is expected",
@@ -88,6 +119,8 @@ def add_units(parent: ET.Element, model: Model) -> None:
             unit = ET.SubElement(definitions, "Unit", name=name)
             base = {key: str(value) for key, value in exponents.items()}
             ET.SubElement(unit, "BaseUnit", base)
+            for other, factor in DISPLAY_UNITS.get(name, {}).items():
+                ET.SubElement(unit, "DisplayUnit", name=other, factor=number(factor))
 
 
 def attributes(variable: Variable, reference: int) -> dict[str, str]:
@@ -107,10 +140,14 @@ def add_values(typed: ET.Element, variable: Variable) -> None:
     limits = {"min": variable.minimum, "max": variable.maximum}
     given = {key: value for key, value in limits.items() if value is not None}
     if variable.type == REAL:
+        if variable.unit in QUANTITIES:
+            typed.set("quantity", QUANTITIES[variable.unit])
         typed.set("unit", variable.unit)
+        if variable.display_unit:
+            typed.set("displayUnit", variable.display_unit)
         for key, value in given.items():
             typed.set(key, number(value))
-        typed.set("nominal", number(variable.nominal))
+        typed.set("nominal", number(variable.nominal or abs(variable.start) or 1.0))
     if variable.type == INTEGER:
         for key, value in given.items():
             typed.set(key, str(int(value)))

@@ -16,7 +16,6 @@ PYTHON = {
 }
 NATIVE = {
     "canHandleVariableCommunicationStepSize": "true",
-    "canInterpolateInputs": "true",
     "maxOutputDerivativeOrder": "1",
     "canNotUseMemoryManagementFunctions": "true",
     "canGetAndSetFMUstate": "true",

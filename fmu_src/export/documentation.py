@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from .archive import read_folder
+from .companions import companions, icon_place
 from .sources import ROOT, Files, load
 
 
-def documentation_files(folder: str, digest: str) -> Files:
-    """Files of ``documentation/``, and ``model.png``.
+def documentation_files(folder: str, digest: str, form: str) -> Files:
+    """Files of ``documentation/``, the icon, and what other standards ask for beside.
 
     Parameters
     ----------
@@ -16,6 +17,8 @@ def documentation_files(folder: str, digest: str) -> Files:
         pictures, ``model.png`` and ``reference/``.
     digest : str
         Fingerprint of the sources, to be told on the page.
+    form : str
+        Of :mod:`.forms`: the page tells each form's own truth.
 
     Returns
     -------
@@ -24,17 +27,21 @@ def documentation_files(folder: str, digest: str) -> Files:
     place = ROOT / "models" / folder
     files = read_folder(place / "documentation", "documentation/")
     template = files.pop("documentation/index.html.in").decode()
-    files["documentation/index.html"] = page(template, folder, digest)
+    files["documentation/index.html"] = page(template, folder, digest, form)
     files.update(read_folder(place / "reference", "documentation/reference/"))
-    files["model.png"] = (place / "model.png").read_bytes()
-    return files
+    files[icon_place(form[:4])] = (place / "model.png").read_bytes()
+    return {**files, **companions(load(folder))}
 
 
-def page(template: str, folder: str, digest: str) -> bytes:
+def page(template: str, folder: str, digest: str, form: str) -> bytes:
     """The model's page, its variable table filled in."""
     import jinja2
 
     environment = jinja2.Environment(
-        autoescape=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        keep_trailing_newline=True,
+        loader=jinja2.FileSystemLoader(ROOT / "models"),
     )
-    return environment.from_string(template).render(model=load(folder), digest=digest).encode()
+    known = {"model": load(folder), "digest": digest, "form": form}
+    return environment.from_string(template).render(known).encode()

@@ -5,16 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 
 from . import native_form, pythonfmu_form
+from .platforms import chosen
 
+__all__ = ["FORMS", "MODELS", "PLAIN_FORMS", "chosen", "export", "guid"]
 PYTHON_FORM = "fmi2-python"
 FORMS = (PYTHON_FORM, "fmi2", "fmi3")
+PLAIN_FORMS = {"fmi2-plain": "fmi2", "fmi3-plain": "fmi3"}  # and the form each is made from
 MODELS = {  # the folder of each model below fmu_src/models
     "TwoMassImpactOscillator": "oscillator",
     "MotorShaker": "motor_shaker",
 }
 
 
-def export(name: str, form: str, build: Path) -> Path:
+def export(name: str, form: str, build: Path, platforms: tuple[str, ...] | None = None) -> Path:
     """Write ``build/FORM/NAME.fmu``, whole or not at all.
 
     Parameters
@@ -22,9 +25,11 @@ def export(name: str, form: str, build: Path) -> Path:
     name : str
         Of :data:`MODELS`.
     form : str
-        Of :data:`FORMS`.
+        Of :data:`FORMS` or :data:`PLAIN_FORMS`.
     build : Path
         The build folder; made where it is missing.
+    platforms : tuple of str, optional
+        Of :data:`.platforms.PLATFORMS`, for the native forms; :func:`.platforms.usual` by default.
 
     Returns
     -------
@@ -40,7 +45,8 @@ def export(name: str, form: str, build: Path) -> Path:
     """
     if form == PYTHON_FORM:
         return pythonfmu_form.export(MODELS[name], Path(build) / form)
-    return native_form.export(MODELS[name], form, Path(build) / form)
+    version, is_plain = PLAIN_FORMS.get(form, form), form in PLAIN_FORMS
+    return native_form.export(MODELS[name], version, Path(build) / form, platforms, is_plain)
 
 
 def guid(name: str, form: str) -> str:
@@ -51,7 +57,7 @@ def guid(name: str, form: str) -> str:
     name : str
         Of :data:`MODELS`.
     form : str
-        Of :data:`FORMS`.
+        Of :data:`FORMS` or :data:`PLAIN_FORMS`.
 
     Returns
     -------
@@ -60,4 +66,4 @@ def guid(name: str, form: str) -> str:
     """
     if form == PYTHON_FORM:
         return pythonfmu_form.guid(MODELS[name])
-    return native_form.guid(MODELS[name], form)
+    return native_form.guid(MODELS[name], PLAIN_FORMS.get(form, form), form in PLAIN_FORMS)

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from .errors import EXTRA, CannotExport
-from .platforms import PLATFORMS
+from .platforms import PLATFORMS, this_machine
 
 log = logging.getLogger(__name__)
 FLAGS = (
@@ -43,7 +43,7 @@ def compiler(name: str) -> list[str]:
     if importlib.util.find_spec("ziglang"):
         return [sys.executable, "-m", "ziglang", "cc", "-target", PLATFORMS[name].zig_target]
     own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    if own and name == "x86_64-linux" and sys.platform == "linux":
+    if own and name == this_machine():
         return [own]
     raise CannotExport(
         f"no C compiler for {name}: expected {EXTRA} (ziglang), or, for the machine's own "
@@ -102,7 +102,7 @@ def link_all(objects: Mapping[str, bytes], files: Mapping[str, bytes]) -> dict[s
         Where there is no library at all.
     """
     made, reasons = {}, []
-    for name in PLATFORMS:
+    for name in objects:
         try:
             made[name] = link(name, {**files, "kernel.o": objects[name]})
         except CannotExport as reason:

@@ -14,7 +14,7 @@ typedef struct {
     Type type;
     int calculated, fixed;
     double start, minimum, maximum;
-    int input_derivatives, derivative, element;
+    int input_derivatives, rate, element;
 } Variable;
 typedef struct { unsigned first, size; } Array;"""
 
@@ -31,7 +31,7 @@ def c_number(value: float) -> str:
     return float(value).hex()
 
 
-def c_variable(variable: Variable, slots: dict[str, int]) -> str:
+def c_variable(variable: Variable, model: Model) -> str:
     """One row of the C variable table."""
     minimum = -math.inf if variable.minimum is None else variable.minimum
     maximum = math.inf if variable.maximum is None else variable.maximum
@@ -46,7 +46,7 @@ def c_variable(variable: Variable, slots: dict[str, int]) -> str:
         c_number(minimum),
         c_number(maximum),
         str(variable.input_derivatives),
-        str(slots[variable.derivative]) if variable.derivative else "-1",
+        str(model.rate_slot(variable)),
         str(int(bool(variable.series))),
     ]
     return "    {" + ", ".join(cells) + "},"
@@ -59,7 +59,6 @@ def definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
         for v in model.variables
         if v.input_derivatives
     ]
-    outputs = [variable.name for variable in model.variables if variable.derivative]
     return {
         "MEMORY_SIZE": str(model.memory_size),
         "SKIP_FIRST": str(model.written_only[0]),
@@ -75,7 +74,6 @@ def definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
         "ARRAY_COUNT": f"{len(model.arrays)}u",
         "MESSAGE_COUNT": str(max(model.messages) + 1),
         "INPUT_DERIVATIVES": c_string(", ".join(inputs) or "none"),
-        "OUTPUT_DERIVATIVES": c_string(", ".join(outputs) or "none"),
     }
 
 
@@ -103,7 +101,7 @@ def model_header(model: Model, token: str, digest: str) -> bytes:
         *(f"#define {name} {value}" for name, value in known.items()),
         TYPES,
         "static const Variable VARIABLES[] = {",
-        *(c_variable(variable, slots) for variable in model.variables),
+        *(c_variable(variable, model) for variable in model.variables),
         "};",
         "static const Array ARRAYS[] = {",
         *(arrays or ["    {0, 0},"]),

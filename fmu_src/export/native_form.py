@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from .documentation import documentation_files
 from .errors import require
 from .linking import link_all
 from .model_header import model_header
-from .platforms import PLATFORMS
+from .platforms import binaries, usual
 from .sources import Files, exporters, load, model_digest, model_sources, read
 
 HEADERS = {
@@ -42,13 +43,30 @@ def fmi_headers(version: str) -> Files:
     return {name: (folder / name).read_bytes() for name in HEADERS[version]}
 
 
-def guid(folder: str, version: str) -> str:
+def guid(folder: str, version: str, is_plain: bool = False) -> str:
     """The GUID: of the sources, and of the exporters that make the FMU from them."""
-    model = {"sources": model_digest(folder).encode(), "version": version.encode()}
+    kind = f"{version} plain" if is_plain else version
+    model = {"sources": model_digest(folder).encode(), "version": kind.encode()}
     return guid_of({**exporters("export/native_form.py"), **model})
 
 
-def export(folder: str, version: str, target: Path) -> Path:
+def plain(model: Model) -> Model:
+    """A model as its plain form tells of it.
+
+    Scalars alone, without the states kept inside a step: tools' lists of variables stay short, and
+    what stumbles over arrays or clocks has none to stumble over.
+    """
+    scalars = [v for v in model.variables if not v.series and v.name != model.series_count]
+    return replace(model, variables=tuple(scalars), arrays=(), clock=None)
+
+
+def export(
+    folder: str,
+    version: str,
+    target: Path,
+    platforms: tuple[str, ...] | None = None,
+    is_plain: bool = False,
+) -> Path:
     """Write ``target/NAME.fmu``.
 
     Parameters
@@ -58,6 +76,10 @@ def export(folder: str, version: str, target: Path) -> Path:
     version : str
         ``"fmi2"`` or ``"fmi3"``.
     target : Path
+    platforms : tuple of str, optional
+        :func:`.platforms.usual` by default.
+    is_plain : bool
+        See :func:`plain`.
 
     Returns
     -------
@@ -69,15 +91,16 @@ def export(folder: str, version: str, target: Path) -> Path:
     CannotExport
         Where no binary can be made.
     """
-    model, token, digest = load(folder), guid(folder, version), model_digest(folder)
+    model, digest = load(folder), model_digest(folder)
+    token = guid(folder, version, is_plain)
     header = {"model.h": model_header(model, token, digest)}
     units = {**shim_sources(version), **fmi_headers(version), **header}
-    files = {"modelDescription.xml": XML[version](model, token)}
-    for name, binary in link_all(compile_objects(folder), units).items():
-        platform = PLATFORMS[name]
-        place = f"binaries/{platform.folders[version]}/{model.name}{platform.suffix}"
-        files[place] = binary
-    files.update(documentation_files(folder, digest))
+    told = plain(model) if is_plain else model
+    files = {"modelDescription.xml": XML[version](told, token)}
+    made = link_all(compile_objects(folder, platforms or usual()), units)
+    files.update(binaries(version, model.name, made))
+    form = f"{version}-plain" if is_plain else version
+    files.update(documentation_files(folder, digest, form))
     kernel = {k: v for k, v in model_sources(folder).items() if k.startswith("kernels/")}
     files.update({f"documentation/{name}": content for name, content in kernel.items()})
     path = target / f"{model.name}.fmu"

@@ -1,8 +1,14 @@
-"""The platforms that an FMU has binaries for."""
+"""The platforms that an FMU can have binaries for, and the folders tools look for them in."""
 
 from __future__ import annotations
 
+import platform as machine
+import struct
+import sys
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+
+from .errors import CannotExport
 
 
 @dataclass(frozen=True)
@@ -13,6 +19,8 @@ class Platform:
     ----------
     triple : str
         LLVM's target triple.
+    cpu : str
+        LLVM's name of the oldest processor it is to run on.
     zig_target : str
         With the oldest C library it is to run on.
     suffix : str
@@ -22,6 +30,7 @@ class Platform:
     """
 
     triple: str
+    cpu: str
     zig_target: str
     suffix: str
     folders: dict[str, str]
@@ -30,14 +39,114 @@ class Platform:
 PLATFORMS = {
     "x86_64-linux": Platform(
         "x86_64-unknown-linux-gnu",
+        "x86-64-v2",
         "x86_64-linux-gnu.2.17",
         ".so",
         {"fmi2": "linux64", "fmi3": "x86_64-linux"},
     ),
     "x86_64-windows": Platform(
         "x86_64-pc-windows-gnu",
+        "x86-64-v2",
         "x86_64-windows-gnu",
         ".dll",
         {"fmi2": "win64", "fmi3": "x86_64-windows"},
     ),
+    "x86_64-darwin": Platform(
+        "x86_64-apple-macosx11.0.0",
+        "x86-64-v2",
+        "x86_64-macos.11.0",
+        ".dylib",
+        {"fmi2": "darwin64", "fmi3": "x86_64-darwin"},
+    ),
+    "aarch64-linux": Platform(
+        "aarch64-unknown-linux-gnu",
+        "generic",
+        "aarch64-linux-gnu.2.17",
+        ".so",
+        {"fmi2": "aarch64-linux", "fmi3": "aarch64-linux"},
+    ),
+    "aarch64-windows": Platform(
+        "aarch64-pc-windows-gnu",
+        "generic",
+        "aarch64-windows-gnu",
+        ".dll",
+        {"fmi2": "aarch64-windows", "fmi3": "aarch64-windows"},
+    ),
+    "aarch64-darwin": Platform(
+        "arm64-apple-macosx11.0.0",
+        "apple-m1",
+        "aarch64-macos.11.0",
+        ".dylib",
+        {"fmi2": "aarch64-darwin", "fmi3": "aarch64-darwin"},
+    ),
 }
+ALL = tuple(PLATFORMS)
+ARCHITECTURES = {"amd64": "x86_64", "arm64": "aarch64"}
+SYSTEMS = {"win32": "windows"}
+FAT_MAGIC, FAT_ALIGNMENT = 0xCAFEBABE, 14  # of macOS; slices begin at multiples of 2**14 bytes
+CPU_TYPE = 4  # where a Mach-O file has its processor's type, and its subtype after it
+
+
+def this_machine() -> str:
+    """The platform's name that this process runs on; it need not be of :data:`PLATFORMS`."""
+    found = machine.machine().lower()
+    return f"{ARCHITECTURES.get(found, found)}-{SYSTEMS.get(sys.platform, sys.platform)}"
+
+
+def usual() -> tuple[str, ...]:
+    """What is built unless more is asked for: PCs with Linux and Windows, and this machine."""
+    return tuple(name for name in ALL if name in ("x86_64-linux", "x86_64-windows", this_machine()))
+
+
+def chosen(wanted: Iterable[str]) -> tuple[str, ...]:
+    """Platforms by name, in the table's order; ``all`` and ``this`` stand for what they say.
+
+    Raises
+    ------
+    CannotExport
+        Where a name is unknown.
+    """
+    names: set[str] = set()
+    for name in wanted:
+        names.update({"all": ALL, "this": (this_machine(),)}.get(name, (name,)))
+    for name in sorted(names - set(ALL)):
+        raise CannotExport(f"platform {name}: expected all, this, or one of {', '.join(ALL)}")
+    return tuple(name for name in ALL if name in names)
+
+
+def universal(slices: Iterable[bytes]) -> bytes:
+    """A macOS library for several processors, of one for each."""
+    libraries = list(slices)
+    offset, header, body = 1 << FAT_ALIGNMENT, b"", b""
+    for library in libraries:
+        cpu, subtype = struct.unpack_from("<II", library, CPU_TYPE)
+        header += struct.pack(">5I", cpu, subtype, offset, len(library), FAT_ALIGNMENT)
+        body += library + bytes(-len(library) % (1 << FAT_ALIGNMENT))
+        offset = (1 << FAT_ALIGNMENT) + len(body)
+    head = struct.pack(">II", FAT_MAGIC, len(libraries)) + header
+    return head.ljust(1 << FAT_ALIGNMENT, b"\0") + body
+
+
+def binaries(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Files of ``binaries/``.
+
+    FMI 2.0 names ``darwin64``, from before there were other processors: tools on both load what
+    lies there, so it serves both.
+
+    Parameters
+    ----------
+    version : str
+        ``"fmi2"`` or ``"fmi3"``.
+    name : str
+        Of the model.
+    made : mapping of str to bytes
+        Library by platform.
+    """
+    files = {}
+    for platform, library in made.items():
+        of = PLATFORMS[platform]
+        files[f"binaries/{of.folders[version]}/{name}{of.suffix}"] = library
+    apple = [library for platform, library in made.items() if platform.endswith("-darwin")]
+    if version == "fmi2" and apple:
+        files[f"binaries/darwin64/{name}.dylib"] = universal(apple)
+    return files

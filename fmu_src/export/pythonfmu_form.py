@@ -81,7 +81,7 @@ def export(folder: str, target: Path) -> Path:
             (package / name).write_bytes(library)
         files = run_pythonfmu(script, package, Path(scratch) / "built.fmu")
     files["modelDescription.xml"] = fmi2_xml(model, guid(folder), PYTHON)
-    files.update(documentation_files(folder, digest))
+    files.update(documentation_files(folder, digest, "fmi2-python"))
     path = target / f"{model.name}.fmu"
     write_archive(path, files)
     return path
@@ -107,7 +107,8 @@ def libraries(folder: str, model: Model) -> Files:
     refresh = b"#define REFRESH\n" if model.refresh else b""
     entry = refresh + (ROOT / "runtime" / "native" / "library.c").read_bytes()
     try:
-        made = link_all(compile_objects(folder), {"library.c": entry})
+        platforms = tuple(dict.fromkeys(platform for platform, _ in LIBRARIES.values()))
+        made = link_all(compile_objects(folder, platforms), {"library.c": entry})
     except CannotExport as reason:
         say_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")
         return {}

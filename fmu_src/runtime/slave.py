@@ -78,6 +78,7 @@ class Slave:
             self._memory[variable.slot] = 0.0 if variable.calculated else float(variable.start)
         self._phase = INSTANTIATED
         self._start_time = 0.0
+        self._stop_time = float("inf")  # of the experiment, not of the state
         self._stale = True  # outputs do not belong to the values set yet (initialisation mode)
         self._checked: dict[str, Any] = {REAL: None, INTEGER: None, BOOLEAN: None}
 
@@ -132,13 +133,17 @@ class Slave:
 
     # -- life cycle --------------------------------------------------------------------------------
 
-    def setup_experiment(self, start_time: float, *_: Any) -> None:
-        """Start time of the experiment; stop time and tolerance do not matter."""
+    def setup_experiment(self, start_time: float, stop_time: float | None = None, *_: Any) -> None:
+        """Start and stop time of the experiment; the tolerance does not matter."""
         if self._phase != INSTANTIATED:
             self.refuse("fmi2SetupExperiment: expected one call before initialisation")
         if start_time - start_time != 0.0:
             self.refuse(f"startTime = {start_time!r} s: expected every finite number")
-        self._start_time = start_time
+        stop = float("inf") if stop_time is None else stop_time
+        if not stop >= start_time:
+            text = f"startTime = {start_time!r} s with stopTime = {stop!r} s"
+            self.refuse(f"{text}: expected stopTime >= startTime")
+        self._start_time, self._stop_time = start_time, stop
 
     def enter_initialization_mode(self) -> None:
         """Begin initialisation."""
@@ -200,9 +205,14 @@ class Slave:
         if not 0.0 <= step_size < float("inf"):
             return f"communicationStepSize = {step_size!r} s: expected every finite number >= 0"
         reached = self._memory[self.model.time_slot]
-        if not abs(current_time - reached) <= 1e-9 * (abs(reached) + abs(step_size)):
+        rounding = 1e-9 * (abs(reached) + step_size)  # of the importer's own sum of steps
+        if not abs(current_time - reached) <= rounding:
             text = f"currentCommunicationPoint = {current_time!r} s: expected {reached!r} s"
             return f"{text}, where the last step ended"
+        target = current_time + step_size
+        if target - self._stop_time > rounding:
+            text = f"the step to time = {target!r} s: expected none past stopTime"
+            return f"{text} = {self._stop_time!r} s"
         return ""
 
     def step(self, time: float) -> str:

@@ -35,15 +35,15 @@ class Variable:
     minimum, maximum : float or None
         Range, both included.
     nominal : float
-        Order of magnitude.
+        Order of magnitude; 0: that of the start value, or 1.
+    display_unit : str
+        Unit in which tools show it, where that is not ``unit``.
     dependencies : tuple of str
         The inputs that the output follows at once, without a step.
     initial_dependencies : tuple of str
         The variables known at the start that the calculated initial value depends on.
     input_derivatives : int
         How many of the variables that follow in the table are its time derivatives.
-    derivative : str
-        The output that is its time derivative, where there is one.
     series : str
         Name of the array it is an element of, where FMI 3.0 has the array alone.
     slot : int
@@ -61,11 +61,11 @@ class Variable:
     start: float = 0.0
     minimum: float | None = None
     maximum: float | None = None
-    nominal: float = 1.0
+    nominal: float = 0.0
+    display_unit: str = ""
     dependencies: tuple[str, ...] = ()
     initial_dependencies: tuple[str, ...] = ()
     input_derivatives: int = 0
-    derivative: str = ""
     series: str = ""
     slot: int = -1
 
@@ -179,6 +179,22 @@ class Clock:
 
 
 @dataclass(frozen=True)
+class Terminal:
+    """Variables that are connected together with those of another model.
+
+    Attributes
+    ----------
+    name, description : str
+    members : mapping of str to str
+        Variables by their names within the terminal: those of the same name belong together.
+    """
+
+    name: str
+    description: str
+    members: Mapping[str, str]
+
+
+@dataclass(frozen=True)
 class Model:
     """A model as the exporters see it.
 
@@ -197,6 +213,11 @@ class Model:
         event.
     initialize, advance : callable
         The kernel's entry points, ``(memory, time) -> code``; 0 is success.
+    differentiate : callable
+        Another one: rates of change of the outputs at the point reached, the inputs as they are,
+        into ``rates``.
+    rates : int
+        Slot of the first output's rate; those of the others follow as the outputs do.
     refresh : callable or None
         A third one, of a model with outputs that follow an input at once: the outputs for the
         inputs as set now.
@@ -206,6 +227,9 @@ class Model:
         Default experiment, s.
     arrays : tuple of Array
     clock : Clock or None
+    terminals : tuple of Terminal
+    series_count : str
+        The parameter that says how many elements of the series a step fills.
     """
 
     name: str
@@ -220,17 +244,33 @@ class Model:
     stop_slot: int
     initialize: Entry
     advance: Entry
+    differentiate: Entry
+    rates: int
     messages: Mapping[int, str]
     stop_time: float
     step_size: float
     arrays: tuple[Array, ...] = ()
     clock: Clock | None = None
+    terminals: tuple[Terminal, ...] = ()
+    series_count: str = ""
     refresh: Entry | None = None
+
+    def rate_slot(self, variable: Variable) -> int:
+        """Slot of a variable's rate of change; -1 where it has none: no continuous output."""
+        if variable.causality != "output" or variable.variability != "continuous":
+            return -1
+        first = next(other.slot for other in self.variables if other.causality == "output")
+        return self.rates + variable.slot - first
 
     @property
     def entries(self) -> dict[str, Entry]:
         """The kernel's entry points by name, in the order in which compiled forms give them."""
-        given = {"initialize": self.initialize, "advance": self.advance, "refresh": self.refresh}
+        given = {
+            "initialize": self.initialize,
+            "advance": self.advance,
+            "differentiate": self.differentiate,
+            "refresh": self.refresh,
+        }
         return {name: function for name, function in given.items() if function is not None}
 
 

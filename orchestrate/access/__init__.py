@@ -18,7 +18,7 @@ from .begin import REST, begin, sampled
 from .channel import Channel
 from .description import Description, describe
 from .events import STATE, EventInstance, Impacts
-from .exported import FORMS, MODELS, build, find, finder, up_to_date
+from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, up_to_date
 from .instance import Instance
 from .models import OSCILLATOR, SHAKER
 
@@ -26,6 +26,7 @@ __all__ = [
     "FORMS",
     "MODELS",
     "OSCILLATOR",
+    "PLAIN_FORMS",
     "REST",
     "SHAKER",
     "STATE",

@@ -21,6 +21,7 @@ from .description import Description, describe
 log = logging.getLogger(__name__)
 
 FORMS: tuple[str, ...] = sources.FORMS
+PLAIN_FORMS: tuple[str, ...] = tuple(sources.PLAIN_FORMS)
 MODELS: tuple[str, ...] = tuple(sources.MODELS)
 WITHOUT_COMPILER = sources.PYTHON_FORM
 SHIPPED = Path(__file__).parent / "fmus"
@@ -31,6 +32,7 @@ def build(
     folder: str | PathLike[str] | None = None,
     forms: Iterable[str] = FORMS,
     names: Iterable[str] = MODELS,
+    platforms: Iterable[str] = (),
 ) -> list[Path]:
     """Export models in the given forms.
 
@@ -39,9 +41,13 @@ def build(
     folder : path-like, optional
         The build folder; :func:`default_folder` where none is given.
     forms : iterable of str
-        Of ``FORMS``. Native ones are left out, and said to be, where there is no compiler.
+        Of ``FORMS`` or ``PLAIN_FORMS``. Native ones are left out, and said to be, where there is no
+        compiler.
     names : iterable of str
         Of ``MODELS``.
+    platforms : iterable of str
+        That the native FMUs get binaries for: names such as ``"aarch64-linux"``, ``"all"``,
+        ``"this"``. By default Linux and Windows on x86-64, and this machine.
 
     Returns
     -------
@@ -57,7 +63,11 @@ def build(
     """
     forms = tuple(forms)
     wanted = [(form, name) for name in names for form in forms]
-    return export_all(wanted, default_folder() if folder is None else Path(folder))
+    try:
+        chosen = sources.chosen(platforms)
+    except CannotExport as reason:
+        raise InputError(str(reason)) from None
+    return export_all(wanted, default_folder() if folder is None else Path(folder), chosen)
 
 
 def refresh(folder: str | PathLike[str] | None = None, forms: Iterable[str] = FORMS) -> list[Path]:
@@ -68,12 +78,14 @@ def refresh(folder: str | PathLike[str] | None = None, forms: Iterable[str] = FO
     return export_all([pair for pair in wanted if not up_to_date(*pair, target)], target)
 
 
-def export_all(wanted: Iterable[tuple[str, str]], folder: Path) -> list[Path]:
+def export_all(
+    wanted: Iterable[tuple[str, str]], folder: Path, platforms: tuple[str, ...] = ()
+) -> list[Path]:
     """Export models in forms; those that cannot be made here are left out, unless all are."""
     written, reasons = [], []
     for form, name in wanted:
         try:
-            written.append(export(name, form, folder))
+            written.append(export(name, form, folder, platforms))
         except CannotExport as reason:
             reasons.append(f"{form}/{name}.fmu cannot be made: {reason}")
     if reasons and not written:
@@ -83,7 +95,7 @@ def export_all(wanted: Iterable[tuple[str, str]], folder: Path) -> list[Path]:
     return written
 
 
-def export(name: str, form: str, folder: Path) -> Path:
+def export(name: str, form: str, folder: Path, platforms: tuple[str, ...] = ()) -> Path:
     """Export one model in one form to ``folder/FORM/NAME.fmu``, whole or not at all.
 
     Raises
@@ -98,7 +110,7 @@ def export(name: str, form: str, folder: Path) -> Path:
     announce(folder)
     log.info("exporting %s", folder / form / f"{name}.fmu")
     try:
-        return sources.export(name, form, folder)
+        return sources.export(name, form, folder, platforms or None)
     except OSError as error:
         reason = error.strerror or error
         raise StoreError(f"{folder}: {reason}; expected a folder that can be written") from None
@@ -121,8 +133,8 @@ def check(name: str, form: str) -> None:
     """Whether there is such a model and such a form."""
     if name not in MODELS:
         raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
-    if form not in FORMS:
-        raise InputError(f"form {form}: expected one of {', '.join(FORMS)}")
+    if form not in FORMS + PLAIN_FORMS:
+        raise InputError(f"form {form}: expected one of {', '.join(FORMS + PLAIN_FORMS)}")
 
 
 def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:

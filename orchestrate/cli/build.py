@@ -8,7 +8,9 @@ from pathlib import Path
 from .options import Commands
 
 EXAMPLES = """  {program} build
-  {program} build --folder /tmp/fmus"""
+  {program} build --folder /tmp/fmus
+  {program} build --platforms all
+  {program} build --plain"""
 
 
 def add_parser(commands: Commands) -> None:
@@ -20,11 +22,26 @@ def add_parser(commands: Commands) -> None:
         type=Path,
         help="where to (default: build/ of a clone, else a cache folder of the user's)",
     )
+    parser.add_argument(
+        "--platforms",
+        default="",
+        metavar="LIST",
+        help="binaries in the native FMUs: all, this, or names such as aarch64-linux,x86_64-darwin "
+        "(default: Linux and Windows on x86-64, and this machine)",
+    )
+    parser.add_argument(
+        "--plain",
+        action="store_true",
+        help="instead, into fmi2-plain/ and fmi3-plain/: native FMUs for tools that stumble over "
+        "arrays, clocks or long lists of variables; the same numbers",
+    )
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
-    from ..access import build
+    from ..access import FORMS, PLAIN_FORMS, build
 
-    for path in build(arguments.folder):
+    forms = PLAIN_FORMS if arguments.plain else FORMS
+    platforms = [name for name in arguments.platforms.split(",") if name]
+    for path in build(arguments.folder, forms, platforms=platforms):
         print(f"{path}  {path.stat().st_size / 1024:.0f} kB")

@@ -110,7 +110,8 @@ def test_documentation_is_inside(fmu):
         assert (
             f"documentation/{picture}" in files or str(Path("documentation", picture)) in files
         ), picture
-    assert files["model.png"].startswith(b"\x89PNG")
+    icon = "terminalsAndIcons/icon.png" if fmu.parent.name == "fmi3" else "model.png"
+    assert files[icon].startswith(b"\x89PNG")
     reference = [
         name
         for name in files
@@ -183,4 +184,5 @@ def test_compiled_kernel_stands_alone(tmp_path):
     assert {line.split()[-1] for line in defined.splitlines() if " T " in line} == {
         "initialize",
         "advance",
+        "differentiate",
     }

@@ -129,6 +129,15 @@ def test_libcosim(form, tmp_path, reference):
     assert "error" not in done.stderr.lower()
 
 
+@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
+def test_fmuloader(form, tmp_path, reference):
+    """Another way to the binary, with the stop time told: bits again."""
+    pytest.importorskip("fmuloader")
+    count = int(STOP / EXACT_STEP)
+    rows = run("loader.simulate", FMUS[form], VALUES, NAMES, EXACT_STEP, count, cwd=tmp_path)
+    assert np.array_equal(np.array(rows), reference)
+
+
 def test_two_importers_at_once(tmp_path):
     """Two processes share nothing but the file."""
     folders = [tmp_path / str(k) for k in range(3)]

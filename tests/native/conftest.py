@@ -9,6 +9,7 @@ import pytest
 from fmu_src.export import compile_kernel, linking, native_form, pythonfmu_form
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS
+from fmu_src.export.platforms import usual
 
 from ..exports import guid_inside, once, refresh
 from . import importers
@@ -40,7 +41,7 @@ def compiled_once_more():
     """The oscillator's kernel, or why it cannot be compiled."""
     compile_kernel.compile_objects.cache_clear()
     try:
-        return compile_kernel.compile_objects("oscillator")
+        return compile_kernel.compile_objects("oscillator", usual())
     except CannotExport as reason:
         return reason
 
@@ -58,7 +59,7 @@ def hide(monkeypatch, kernel_objects):
     machine's.
     """
     for form in (native_form, pythonfmu_form):
-        monkeypatch.setattr(form, "compile_objects", lambda _: kernel_objects)
+        monkeypatch.setattr(form, "compile_objects", lambda *_: kernel_objects)
     linking.say_once.cache_clear()
 
     def away(*names):

@@ -28,7 +28,7 @@ void refused(fmi2Component c, fmi2Status status, const char *file, int line, con
 fmi2Component in_phase(int phase) {
     fmi2Component c = fmu_open("%s%n%d");
     if (phase == NEW) return c;
-    IS_OK(fmi.SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2True, 10.0));
+    IS_OK(fmi.SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2True, 1000.0));
     IS_OK(fmi.EnterInitializationMode(c));
     double x;
     IS_OK(fmi.GetReal(c, &named("x1")->reference, 1, &x));
@@ -124,6 +124,29 @@ static void values(void) {
     c = in_phase(NEW);
     double starts[] = {NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 3; i++) { REFUSED(c, fmi.SetupExperiment(c, fmi2False, 0.0, starts[i], fmi2False, 0.0)); SAYS("startTime = "); }
+    double stops[] = {NAN, -INFINITY, 0.5};
+    for (int i = 0; i < 3; i++) { REFUSED(c, fmi.SetupExperiment(c, fmi2False, 0.0, 1.0, fmi2True, stops[i])); SAYS("stopTime = "); }
+    IS_OK(fmi.SetupExperiment(c, fmi2False, 0.0, 1.0, fmi2False, 0.5)); /* not defined: not looked at */
+    IS_OK(fmi.SetupExperiment(c, fmi2False, 0.0, 1.0, fmi2True, INFINITY));
+    fmi.FreeInstance(c);
+}
+
+/* No step past the end of the experiment; its end, and a rounding more, is inside. */
+static void stop_time(void) {
+    fmi2Component c = fmu_open("stop");
+    IS_OK(fmi.SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2True, 1.0));
+    IS_OK(fmi.EnterInitializationMode(c));
+    IS_OK(fmi.ExitInitializationMode(c));
+    REFUSED(c, fmi.DoStep(c, 0.0, 1.001, fmi2True)); SAYS("stopTime = 1.0 s");
+    for (int k = 0; k < 10; k++) IS_OK(fmi.DoStep(c, 0.1 * k, 0.1, fmi2True));
+    REFUSED(c, fmi.DoStep(c, 1.0, 0.1, fmi2True)); SAYS("stopTime = 1.0 s");
+    char *saved;
+    size_t size = fmu_save(c, &saved);
+    IS_OK(fmi.Reset(c));
+    fmu_initialize(c, 0.0);
+    CHECK(fmu_restore(c, saved, size)); /* the end is the experiment's, not the state's */
+    IS_OK(fmi.DoStep(c, 1.0, 0.1, fmi2True));
+    free(saved);
     fmi.FreeInstance(c);
 }
 
@@ -219,6 +242,7 @@ void hostile(void) {
     instantiation();
     order();
     values();
+    stop_time();
     failing_steps();
     fmi2Component c = in_phase(STEPPING), twin = in_phase(STEPPING);
     null_pointers(c);

@@ -34,7 +34,7 @@ fmi3Status step_to(fmi3Instance c, double time, double size) {
 fmi3Instance in_phase(int phase) {
     fmi3Instance c = open_with("%s%n%d", phase >= STEPPING, false);
     if (phase == NEW) return c;
-    IS_OK(fmi.EnterInitializationMode(c, false, 0.0, 0.0, true, 10.0));
+    IS_OK(fmi.EnterInitializationMode(c, false, 0.0, 0.0, true, 1000.0));
     double x;
     IS_OK(fmi.GetFloat64(c, VR("x1"), 1, &x, 1));
     if (phase == INITIALIZING) return c;
@@ -72,7 +72,7 @@ static const struct { fmi3Status (*call)(fmi3Instance); bool allowed[PHASES]; } 
     {terminate, {0, 0, 1, 1, 1, 0}}, {get_real, {0, 1, 1, 1, 1, 1}}, {get_integer, {0, 1, 1, 1, 1, 1}}, {get_boolean, {0, 1, 1, 1, 1, 1}},
     {get_array, {0, 1, 1, 1, 1, 1}}, {set_input, {1, 1, 1, 1, 1, 0}}, {set_fixed, {1, 1, 0, 0, 0, 0}}, {set_fixed_boolean, {1, 1, 0, 0, 0, 0}},
     {set_tunable, {1, 1, 1, 1, 1, 0}}, {set_integer, {1, 1, 1, 1, 1, 0}}, {do_step, {0, 0, 1, 1, 0, 0}}, {get_derivative, {0, 1, 1, 1, 1, 1}},
-    {get_clock, {0, 0, 0, 0, 1, 0}}, {update, {0, 0, 0, 0, 1, 0}},
+    {get_clock, {0, 1, 0, 0, 1, 0}}, {update, {0, 0, 0, 0, 1, 0}},
 };
 
 static void order(void) {
@@ -128,6 +128,43 @@ static void values(void) {
     c = in_phase(NEW);
     double starts[] = {NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 3; i++) { REFUSED(c, fmi.EnterInitializationMode(c, false, 0.0, starts[i], false, 0.0)); SAYS("startTime = "); }
+    double stops[] = {NAN, -INFINITY, 0.5};
+    for (int i = 0; i < 3; i++) { REFUSED(c, fmi.EnterInitializationMode(c, false, 0.0, 1.0, true, stops[i])); SAYS("stopTime = "); }
+    fmi.FreeInstance(c);
+}
+
+/* No step past the end of the experiment; its end, and a rounding more, is inside. */
+static void stop_time(void) {
+    fmi3Instance c = open_with("stop", false, false);
+    IS_OK(fmi.EnterInitializationMode(c, false, 0.0, 0.0, true, 1.0));
+    IS_OK(fmi.ExitInitializationMode(c));
+    REFUSED(c, step_to(c, 0.0, 1.001)); SAYS("stopTime = 1.0 s");
+    for (int k = 0; k < 10; k++) IS_OK(step_to(c, 0.1 * k, 0.1));
+    REFUSED(c, step_to(c, 1.0, 0.1)); SAYS("stopTime = 1.0 s");
+    char *saved;
+    size_t size = fmu_save(c, &saved);
+    IS_OK(fmi.Reset(c));
+    fmu_initialize(c, 0.0);
+    CHECK(fmu_restore(c, saved, size)); /* the end is the experiment's, not the state's */
+    IS_OK(step_to(c, 1.0, 0.1));
+    free(saved);
+    fmi.FreeInstance(c);
+}
+
+/* Before initialization mode: start values, and nothing that is calculated. */
+static void start_values(void) {
+    fmi3Instance c = in_phase(NEW);
+    for (size_t i = 0; i < NAME_COUNT; i++) {
+        const Name *name = &NAMES[i];
+        double x;
+        fmi3Int32 n;
+        fmi3Boolean b;
+        fmi3Status status = name->type == 'R'   ? (picture(c), fmi.GetFloat64(c, &name->reference, 1, &x, 1))
+                            : name->type == 'I' ? (picture(c), fmi.GetInt32(c, &name->reference, 1, &n, 1))
+                                                : (picture(c), fmi.GetBoolean(c, &name->reference, 1, &b, 1));
+        if (name->settable) IS_OK(status);
+        else { refused(c, status, __FILE__, __LINE__, name->name); SAYS(name->name); }
+    }
     fmi.FreeInstance(c);
 }
 
@@ -210,6 +247,8 @@ void hostile(void) {
     instantiation();
     order();
     values();
+    stop_time();
+    start_values();
     event_mode();
     fmi3Instance c = in_phase(PLAIN), twin = in_phase(PLAIN);
     absent(c);

@@ -15,7 +15,6 @@ import fmpy
 
 from fmu_src.export import native_form, sources
 from fmu_src.export.model_header import model_header
-from fmu_src.models.oscillator.model import MODEL
 
 HERE = Path(__file__).parent
 TYPES = {"Real": "R", "Float64": "R", "Integer": "I", "Int32": "I", "Boolean": "B"}
@@ -55,7 +54,7 @@ def binary(fmu, version, folder, windows=False):
     suffix = ".dll" if windows else ".so"
     with zipfile.ZipFile(fmu) as archive:
         return Path(
-            archive.extract(f"binaries/{FOLDERS[version][windows]}/{MODEL.name}{suffix}", folder)
+            archive.extract(f"binaries/{FOLDERS[version][windows]}/{fmu.stem}{suffix}", folder)
         )
 
 
@@ -81,6 +80,7 @@ def names_header(fmu):
         )
     token = description.guid or description.instantiationToken
     defines = ["#include <math.h>", f'#define TOKEN "{token}"', f"#define TIME_REFERENCE {time}u"]
+    defines += ["#define MOTOR_SHAKER"] * (description.modelName == "MotorShaker")
     return "\n".join([*defines, "static const Name NAMES[] = {", *rows, "};", ""])
 
 
@@ -97,10 +97,9 @@ def compile_importer(version, fmu, folder, command=None, options=("-O1", "-g")):
     for name, content in native_form.fmi_headers(version).items():
         (folder / name).write_bytes(content)
     number = version[-1]
-    sources = [
-        HERE / name
-        for name in ("modes.c", f"importer{number}.c", f"hostile{number}.c", f"arguments{number}.c")
-    ]
+    hostile = (f"hostile{number}.c", f"arguments{number}.c")  # with the oscillator's variables
+    names = ("modes.c", f"importer{number}.c", f"fuzz{number}.c")
+    sources = [HERE / name for name in (*names, *(() if "Shaker" in fmu.name else hostile))]
     target = folder / f"importer{number}.exe"
     windows = any("windows" in word for word in command or ())
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
@@ -125,20 +124,28 @@ def units(version):
     return [name for name in native_form.shim_sources(version) if name.endswith(".c")]
 
 
-def rebuild_shim(version, folder, objects, options=SANITIZE):
+def rebuild_shim(version, folder, objects, options=SANITIZE, model="oscillator", command=None):
     """The FMU's binary again, from its own C sources and kernel, with other options; returns its
     path.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    token = native_form.guid("oscillator", version)
-    header = model_header(MODEL, token, sources.model_digest("oscillator"))
+    token = native_form.guid(model, version)
+    header = model_header(sources.load(model), token, sources.model_digest(model))
     files = {**native_form.shim_sources(version), **native_form.fmi_headers(version)}
     files |= {"model.h": header, "kernel.o": objects["x86_64-linux"]}
     for name, content in files.items():
         (folder / name).write_bytes(content)
     target = folder / "rebuilt.so"
     fixed = ("-shared", "-fPIC", "-fvisibility=hidden", "-g", "-O1", "-ffp-contract=off")
-    command = [*compiler(), *fixed, *options, "-o", target, *units(version), "kernel.o"]
+    command = [
+        *(command or compiler()),
+        *fixed,
+        *options,
+        "-o",
+        target,
+        *units(version),
+        "kernel.o",
+    ]
     run_compiler(command, folder)
     return target
 

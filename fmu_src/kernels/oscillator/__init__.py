@@ -26,6 +26,7 @@ module                    the paper's equations
 :mod:`.motion`            the states and their sequence                    (1) (4) (5) (12) (14)
 :mod:`.maximum`           the largest gap over a step
 :mod:`.outputs`           what an importer sees at a communication point
-:mod:`.stepper`           the two entry points: ``initialize`` and ``advance``
+:mod:`.rates`             time derivatives of the outputs: the entry point ``differentiate``  (6)
+:mod:`.stepper`           the other entry points: ``initialize`` and ``advance``
 ========================  =====================================================================
 """

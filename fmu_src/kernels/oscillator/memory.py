@@ -150,6 +150,8 @@ SERIES = slot()  # order of the Taylor series that describe a short flight; 0: t
 SERIES_X = slot(SERIES_LONGEST + 1)  # derivatives of xi_1 at its start
 SERIES_GAP = slot(SERIES_LONGEST + 5)  # and of the gap; zeros after the last
 SERIES_BOUND = slot()  # of the gap's fifth derivative
+STEP = slot()  # length of the last step, s
+RATES = slot(CONTACT_COUNT - X1)  # of the outputs, in their order, where they were asked for
 SIZE = slot.used
 
 # -- return codes of the entry points --------------------------------------------------------------

@@ -109,6 +109,7 @@ def advance(m, time):
         time = min(time, m[at.IMPACT_TIME])
         h = time - before
     m[at.TIME] = time
+    m[at.STEP] = h
     write(m, tau)
     if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
         m[at.X_REL_MAX] = m[at.X_REL]

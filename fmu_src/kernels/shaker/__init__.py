@@ -14,6 +14,7 @@ module                idea
 :mod:`.equations`     mass matrix, motor, force over the step: the right-hand side
 :mod:`.integrate`     one sub-step and its error; sub-steps through a communication step
 :mod:`.outputs`       what an importer sees, with the inputs as set now
-:mod:`.stepper`       the entry points: ``initialize``, ``advance``, ``refresh``
+:mod:`.rates`         time derivatives of the outputs: the entry point ``differentiate``
+:mod:`.stepper`       the other entry points: ``initialize``, ``advance``, ``refresh``
 ====================  =====================================================================
 """

@@ -73,6 +73,7 @@ WORK_LIMIT = slot()  # and allowed in this step
 TARGET = slot()  # for messages: the time a step was to reach,
 REPORT = slot()  # and the one it did
 STOP = slot()  # the exporters' flag to end a step at an event; there are none
+OUTPUT_RATES = slot(TIME - BOX_POSITION)  # time derivatives of the outputs, where asked for
 SIZE = slot.used
 
 # -- return codes of the entry points --------------------------------------------------------------

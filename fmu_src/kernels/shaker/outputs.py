@@ -24,7 +24,7 @@ def write(m):
     m[at.BOX_POSITION] = position
     m[at.BOX_VELOCITY] = velocity
     m[at.BOX_ACCELERATION] = box
-    m[at.BOX_JERK] = jerk(m, sine, cosine, box, rotor)
+    m[at.BOX_JERK] = jerks(m, sine, cosine, box, rotor)[0]
     m[at.SPEED] = speed
     m[at.MOTOR_CURRENT] = current
     m[at.MOTOR_TORQUE] = torque
@@ -40,25 +40,27 @@ def write(m):
     m[at.STORED_ENERGY] = kinetic + 0.5 * m[at.BOX_STIFFNESS] * position * position
 
 
-def jerk(m, sine, cosine, box, rotor):
-    """Time derivative of the box's acceleration.
+def current_rate(m, rotor):
+    """Time derivative of the current, A/s, with the voltage constant."""
+    constant = m[at.MOTOR_CONSTANT]
+    if m[at.ARMATURE_INDUCTANCE] > 0.0:
+        drop = m[at.VOLTAGE] - m[at.ARMATURE_RESISTANCE] * m[at.STATE + at.CURRENT]
+        drop -= constant * m[at.STATE + at.ROTATION_SPEED]
+        return drop / m[at.ARMATURE_INDUCTANCE]
+    return -constant * rotor / m[at.ARMATURE_RESISTANCE]
+
+
+def jerks(m, sine, cosine, box, rotor):
+    """Time derivatives of the accelerations of box and rotor.
 
     The equations differentiated once, with the voltage constant.
     """
     unbalance, speed = m[at.UNBALANCE], m[at.STATE + at.ROTATION_SPEED]
-    constant = m[at.MOTOR_CONSTANT]
-    if m[at.ARMATURE_INDUCTANCE] > 0.0:
-        drop = (
-            m[at.VOLTAGE] - m[at.ARMATURE_RESISTANCE] * m[at.STATE + at.CURRENT] - constant * speed
-        )
-        current_rate = drop / m[at.ARMATURE_INDUCTANCE]
-    else:
-        current_rate = -constant * rotor / m[at.ARMATURE_RESISTANCE]
     p = (
         m[at.BOX_FORCE_1]
         - m[at.BOX_DAMPING] * box
         - m[at.BOX_STIFFNESS] * m[at.STATE + at.VELOCITY]
     )
     p += unbalance * speed * (3.0 * rotor * sine + speed * speed * cosine)
-    q = constant * current_rate + unbalance * box * speed * sine
-    return accelerations(m, sine, cosine, p, q)[0]
+    q = m[at.MOTOR_CONSTANT] * current_rate(m, rotor) + unbalance * box * speed * sine
+    return accelerations(m, sine, cosine, p, q)

@@ -1,8 +1,8 @@
 """``MotorShaker`` as the exporters see it. Standard library only: it travels inside the FMU."""
 
 from ...kernels.shaker import memory as at
-from ...kernels.shaker import stepper
-from ...runtime.table import Model
+from ...kernels.shaker import rates, stepper
+from ...runtime.table import Model, Terminal
 from .messages import MESSAGES
 from .variables import VARIABLES
 
@@ -20,8 +20,17 @@ MODEL = Model(
     stop_slot=at.STOP,
     initialize=stepper.initialize,
     advance=stepper.advance,
+    differentiate=rates.differentiate,
+    rates=at.OUTPUT_RATES,
     refresh=stepper.refresh,
     messages=MESSAGES,
     stop_time=10.0,
     step_size=0.001,
+    terminals=(
+        Terminal(
+            "box",
+            "What is fastened to the box: its force, and the box's acceleration",
+            {"force": "box_force", "acceleration": "box_acceleration", "jerk": "box_jerk"},
+        ),
+    ),
 )

@@ -33,16 +33,18 @@ def not_negative(name: str, unit: str, start: float, description: str) -> Variab
     return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE)
 
 
-def start(name: str, unit: str, description: str, limit: float = LIMIT) -> Variable:
+def start(name: str, unit: str, description: str, limit: float = LIMIT, **more: Any) -> Variable:
     """The start value of a state."""
-    return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit)
+    return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit, **more)
 
 
-def given(name: str, unit: str, description: str, **more: Any) -> Variable:
-    """An input, 0 until it is set."""
-    return drive(name, unit, 0.0, description, minimum=-LIMIT, maximum=LIMIT, **more)
+def given(name: str, unit: str, description: str, start: float = 0.0, **more: Any) -> Variable:
+    """An input."""
+    return drive(name, unit, start, description, minimum=-LIMIT, maximum=LIMIT, **more)
 
 
+RPM: dict[str, Any] = {"display_unit": "rpm"}
+MILLIMETRES: dict[str, Any] = {"display_unit": "mm"}
 PARAMETERS = (
     positive("box_mass", "kg", 5.5, "Box with motor and unbalance, M_t"),
     not_negative("box_stiffness", "N/m", 309.375, "Stiffness of the box's suspension, k_b"),
@@ -58,13 +60,13 @@ PARAMETERS = (
         "armature_inductance", "H", 0.0, "Inductance of the armature, L; 0: static torque line"
     ),
     start("angle_start", "rad", "Angle of the unbalance at the start", 1e6),
-    start("speed_start", "rad/s", "Speed of the rotor at the start", 1e9),
-    start("position_start", "m", "Position of the box at the start"),
+    start("speed_start", "rad/s", "Speed of the rotor at the start", 1e9, nominal=100.0, **RPM),
+    start("position_start", "m", "Position of the box at the start", nominal=1e-3, **MILLIMETRES),
     start("velocity_start", "m/s", "Velocity of the box at the start"),
     start("current_start", "A", "Current at the start, where armature_inductance > 0"),
 )
 INPUTS = (
-    given("voltage", "V", "Voltage of the motor, U, constant over the step"),
+    given("voltage", "V", "Voltage of the motor, U, constant over the step", start=8.0),
     given(
         "box_force",
         "N",
@@ -86,21 +88,21 @@ OUTPUTS = (
         "m",
         "Position of the box, y",
         ("position_start",),
-        derivative="box_velocity",
+        nominal=1e-3,
+        **MILLIMETRES,
     ),
     output(
         "box_velocity",
         "m/s",
         "Velocity of the box",
         ("velocity_start",),
-        derivative="box_acceleration",
+        nominal=1e-2,
     ),
     output(
         "box_acceleration",
         "m/s2",
         "Acceleration of the box, with the inputs as set now",
         (*ALL, "box_force"),
-        derivative="box_jerk",
         **NOW,
     ),
     output(
@@ -108,6 +110,7 @@ OUTPUTS = (
         "m/s3",
         "Time derivative of box_acceleration, with the inputs as set now",
         (*ALL, *FORCE),
+        nominal=100.0,
         **JERK,
     ),
     output(
@@ -115,9 +118,9 @@ OUTPUTS = (
         "rad",
         "Angle of the unbalance since angle_start = 0, phi, full turns included",
         ("angle_start",),
-        derivative="speed",
+        nominal=100.0,
     ),
-    output("speed", "rad/s", "Speed of the rotor", ("speed_start",)),
+    output("speed", "rad/s", "Speed of the rotor", ("speed_start",), nominal=100.0, **RPM),
     output("motor_current", "A", "Current of the motor", (*CIRCUIT, "voltage"), **ELECTRIC),
     output(
         "motor_torque",

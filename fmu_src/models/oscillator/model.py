@@ -4,8 +4,8 @@ Standard library only: it travels inside the FMU.
 """
 
 from ...kernels.oscillator import memory as at
-from ...kernels.oscillator import stepper
-from ...runtime.table import Array, Clock, Model
+from ...kernels.oscillator import rates, stepper
+from ...runtime.table import Array, Clock, Model, Terminal
 from .messages import MESSAGES
 from .variables import VARIABLES
 
@@ -23,6 +23,8 @@ MODEL = Model(
     stop_slot=at.STOP_AT_IMPACT,
     initialize=stepper.initialize,
     advance=stepper.advance,
+    differentiate=rates.differentiate,
+    rates=at.RATES,
     messages=MESSAGES,
     stop_time=157.0,
     step_size=0.1,
@@ -39,5 +41,13 @@ MODEL = Model(
         Array("v1_sample", "v1 at equal parts of the last step", "v1_sample[1]", at.SAMPLES),
         Array("v2_sample", "v2 at equal parts of the last step", "v2_sample[1]", at.SAMPLES),
     ),
+    terminals=(
+        Terminal(
+            "box",
+            "The structure's fastening to the box: its force, and the box's acceleration",
+            {"force": "box_force", "acceleration": "box_acceleration", "jerk": "box_jerk"},
+        ),
+    ),
+    series_count="sample_count",
     clock=Clock("impact", "Ticks at each impact", "impact_count"),
 )

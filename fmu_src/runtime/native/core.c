@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TEXT 1024
 
 /* The shortest decimal that reads back as the same number. */
 void number(char *text, double value) {
@@ -87,6 +86,7 @@ void instance_reset(Instance *instance) {
     for (unsigned i = 0; i < VARIABLE_COUNT; i++) if (!VARIABLES[i].calculated) state->memory[i] = VARIABLES[i].start;
     state->phase = INSTANTIATED;
     state->stale = true;
+    instance->stop_time = INFINITY;
 }
 
 /* A kernel's message with its slots filled in: {12}, or {12:one|two}. */
@@ -140,15 +140,27 @@ Status refresh(Instance *instance) {
     return OK;
 }
 
-Status enter_initialization(Instance *instance, const char *call, double start_time) {
+Status set_experiment(Instance *instance, const char *call, double start_time, double stop_time) {
     if (!in_phase(instance, call, INSTANTIATED)) return FAILED;
+    char text[TEXT] = "startTime = ";
+    append_number(text, start_time);
     if (!isfinite(start_time)) {
-        char text[TEXT] = "startTime = ";
-        append_number(text, start_time);
         append(text, " s: expected every finite number");
         return refuse(instance, call, text);
     }
+    if (!(stop_time >= start_time)) {
+        append(text, " s with stopTime = ");
+        append_number(text, stop_time);
+        append(text, " s: expected stopTime >= startTime");
+        return refuse(instance, call, text);
+    }
     instance->state.start_time = start_time;
+    instance->stop_time = stop_time;
+    return OK;
+}
+
+Status enter_initialization(Instance *instance, const char *call) {
+    if (!in_phase(instance, call, INSTANTIATED)) return FAILED;
     instance->state.phase = INITIALIZING;
     return OK;
 }
@@ -180,6 +192,15 @@ Status step(Instance *instance, const char *call, double current, double size) {
         return refuse(instance, call, text);
     }
     double target = current + size;
+    /* rounding of the importer's own sum of steps is no step past the end */
+    if (target - instance->stop_time > 1e-9 * (fabs(reached) + size)) {
+        append(text, "the step to time = ");
+        append_number(text, target);
+        append(text, " s: expected none past stopTime = ");
+        append_number(text, instance->stop_time);
+        append(text, " s");
+        return refuse(instance, call, text);
+    }
     if (target < reached) target = reached;  /* the importer's clock may be a rounding behind */
     double before[MEMORY_SIZE - SKIP_COUNT];  /* what the step only writes need not be put back */
     size_t head = SKIP_FIRST * sizeof(double), tail = sizeof before - head;
@@ -195,6 +216,28 @@ Status step(Instance *instance, const char *call, double current, double size) {
     memcpy(state->memory, before, head);
     memcpy(state->memory + SKIP_FIRST + SKIP_COUNT, before + SKIP_FIRST, tail);
     return refuse(instance, call, text);
+}
+
+Status may_get(Instance *instance, const char *call, const Variable *variable) {
+    if (!variable->calculated || instance->state.phase != INSTANTIATED) return OK;
+    char text[TEXT] = "";
+    append(text, variable->name);
+    append(text, " is calculated: expected when initialization mode has been entered");
+    return refuse(instance, call, text);
+}
+
+bool has_rate(Instance *instance, const char *call, const Variable *variable, int order) {
+    if (order == 1 && variable->rate >= 0) return true;
+    char text[TEXT] = "";
+    append(text, variable->name);
+    append(text, ": expected order 1 of a continuous output");
+    refuse(instance, call, text);
+    return false;
+}
+
+void differentiate(const Instance *instance, double memory[MEMORY_SIZE]) {
+    memcpy(memory, instance->state.memory, sizeof instance->state.memory);
+    kernel_differentiate(memory, memory[TIME_SLOT]);
 }
 
 const Variable *find(Instance *instance, const char *call, unsigned reference, Type type) {

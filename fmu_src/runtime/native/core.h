@@ -14,11 +14,12 @@
 int kernel_initialize(double *memory, double time);
 int kernel_advance(double *memory, double time);
 int kernel_refresh(double *memory, double time);  /* where REFRESH is 1 */
+int kernel_differentiate(double *memory, double time);  /* rates of the continuous outputs into their slots */
 
 typedef enum { OK, WARNING, DISCARD, FAILED, FATAL } Status;  /* numbered as in FMI 2.0 and 3.0 */
 typedef enum { INSTANTIATED = 1, INITIALIZING = 2, STEPPING = 4, EVENT = 8, STOPPED = 16, TERMINATED = 32 } Phase;
 #define ANY_PHASE (INSTANTIATED | INITIALIZING | STEPPING | EVENT | STOPPED | TERMINATED)
-#define NO_LIMIT (-1)
+#define TEXT 1024  /* longest message */
 
 typedef struct Instance Instance;
 typedef void (*Report)(Instance *, Status, const char *text);
@@ -33,6 +34,7 @@ typedef struct {  /* what saving an instance has to keep */
 
 struct Instance {
     State state;
+    double stop_time;  /* of the experiment, not of the state: a saved state may go on in a longer one */
     Report report;
     void *environment;
     void *logger;
@@ -48,7 +50,9 @@ void instance_reset(Instance *);
 Status refuse(Instance *, const char *call, const char *text);
 bool in_phase(Instance *, const char *call, int phases);
 
-Status enter_initialization(Instance *, const char *call, double start_time);
+/* `stop_time` is INFINITY where none is defined. */
+Status set_experiment(Instance *, const char *call, double start_time, double stop_time);
+Status enter_initialization(Instance *, const char *call);
 Status exit_initialization(Instance *, const char *call);
 Status step(Instance *, const char *call, double current, double size);
 
@@ -56,6 +60,14 @@ Status step(Instance *, const char *call, double current, double size);
 const Variable *find(Instance *, const char *call, unsigned reference, Type type);
 Status may_set(Instance *, const char *call, const Variable *, double value);
 Status refresh(Instance *);
+
+Status may_get(Instance *, const char *call, const Variable *);
+
+/* Whether a variable has a derivative of this order: continuous outputs have the first. */
+bool has_rate(Instance *, const char *call, const Variable *, int order);
+
+/* A copy of the memory with all rates of change in their slots: reading them changes no state. */
+void differentiate(const Instance *, double memory[MEMORY_SIZE]);
 
 void number(char *text, double value);
 

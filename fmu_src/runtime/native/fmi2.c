@@ -10,8 +10,16 @@
 
 static void report(Instance *instance, Status status, const char *text) {
     const fmi2CallbackFunctions *callbacks = instance->logger;
-    if (callbacks && callbacks->logger)  /* errors are told whether debug logging is on or not */
-        callbacks->logger(instance->environment, instance->name, (fmi2Status)status, "logStatusError", "%s", text);
+    if (!callbacks || !callbacks->logger) return;
+    /* Some importers show the format as it is: finished text, its percent signs doubled for those that do not. */
+    char format[2 * TEXT], *to = format;
+    for (const char *from = text; *from; from++) {
+        if (*from == '%') *to++ = '%';
+        *to++ = *from;
+    }
+    *to = 0;
+    /* errors are told whether debug logging is on or not */
+    callbacks->logger(instance->environment, instance->name, (fmi2Status)status, "logStatusError", format);
 }
 
 static fmi2Status refuse2(Instance *instance, const char *call, const char *text) {
@@ -48,18 +56,11 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, co
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start, fmi2Boolean stop_defined, fmi2Real stop) {
     (void)tolerance_defined;
     (void)tolerance;
-    (void)stop_defined;
-    (void)stop;
-    Instance *instance = c;
-    if (!instance) return fmi2Error;
-    Status status = enter_initialization(instance, "fmi2SetupExperiment", start);
-    if (status == OK) instance->state.phase = INSTANTIATED;
-    return (fmi2Status)status;
+    return c ? (fmi2Status)set_experiment(c, "fmi2SetupExperiment", start, stop_defined ? stop : INFINITY) : fmi2Error;
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-    Instance *instance = c;
-    return instance ? (fmi2Status)enter_initialization(instance, "fmi2EnterInitializationMode", instance->state.start_time) : fmi2Error;
+    return c ? (fmi2Status)enter_initialization(c, "fmi2EnterInitializationMode") : fmi2Error;
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
@@ -219,9 +220,11 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     for (size_t i = 0; i < count; i++) {
         const Variable *output = find(instance, call, refs[i], REAL);
         if (!output) return fmi2Error;
-        if (output->derivative < 0 || orders[i] != 1) return refuse2(instance, call, "expected first derivatives of " OUTPUT_DERIVATIVES);
-        values[i] = instance->state.memory[output->derivative];
+        if (!has_rate(instance, call, output, orders[i])) return fmi2Error;
     }
+    double memory[MEMORY_SIZE];
+    differentiate(instance, memory);
+    for (size_t i = 0; i < count; i++) values[i] = memory[VARIABLES[refs[i]].rate];
     return fmi2OK;
 }
 
@@ -229,6 +232,24 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real current, fmi2Real size, fmi2Bool
     (void)no_set_state_prior;
     return c ? (fmi2Status)step(c, "fmi2DoStep", current, size) : fmi2Error;
 }
+
+/* Functions of model exchange: some importers look for all that the header has. */
+static fmi2Status co_simulation(fmi2Component c, const char *call) {
+    return c ? refuse2(c, call, "this is co-simulation") : fmi2Error;
+}
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#define ABSENT(NAME, ...) \
+    fmi2Status NAME(fmi2Component c, __VA_ARGS__) { return co_simulation(c, #NAME); }
+ABSENT(fmi2NewDiscreteStates, fmi2EventInfo *info)
+ABSENT(fmi2CompletedIntegratorStep, fmi2Boolean no_set_state_prior, fmi2Boolean *enter_event_mode, fmi2Boolean *terminate)
+ABSENT(fmi2SetTime, fmi2Real time)
+ABSENT(fmi2SetContinuousStates, const fmi2Real states[], size_t count)
+ABSENT(fmi2GetDerivatives, fmi2Real derivatives[], size_t count)
+ABSENT(fmi2GetEventIndicators, fmi2Real indicators[], size_t count)
+ABSENT(fmi2GetContinuousStates, fmi2Real states[], size_t count)
+ABSENT(fmi2GetNominalsOfContinuousStates, fmi2Real nominals[], size_t count)
+fmi2Status fmi2EnterEventMode(fmi2Component c) { return co_simulation(c, "fmi2EnterEventMode"); }
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) { return co_simulation(c, "fmi2EnterContinuousTimeMode"); }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
     return c ? refuse2(c, "fmi2CancelStep", "steps are never pending") : fmi2Error;

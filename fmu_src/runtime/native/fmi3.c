@@ -6,7 +6,8 @@
 #include "fmi3Functions.h"
 
 #define SETTABLE (INSTANTIATED | INITIALIZING | STEPPING | EVENT)
-#define READABLE (INITIALIZING | STEPPING | EVENT | STOPPED | TERMINATED)
+#define CALCULATED (INITIALIZING | STEPPING | EVENT | STOPPED | TERMINATED)
+#define READABLE (INSTANTIATED | CALCULATED)  /* start values, before anything is calculated */
 
 static void report(Instance *instance, Status status, const char *text) {
     if (instance->logger) ((fmi3LogMessageCallback)(size_t)instance->logger)(instance->environment, (fmi3Status)status, "logStatusError", text);
@@ -47,8 +48,10 @@ void fmi3FreeInstance(fmi3Instance c) { instance_free(c); }
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_defined, fmi3Float64 tolerance, fmi3Float64 start, fmi3Boolean stop_defined,
                                        fmi3Float64 stop) {
-    (void)tolerance_defined, (void)tolerance, (void)stop_defined, (void)stop;
-    return c ? (fmi3Status)enter_initialization(c, "fmi3EnterInitializationMode", start) : fmi3Error;
+    (void)tolerance_defined, (void)tolerance;
+    static const char *const call = "fmi3EnterInitializationMode";
+    if (!c || set_experiment(c, call, start, stop_defined ? stop : INFINITY) != OK) return fmi3Error;
+    return (fmi3Status)enter_initialization(c, call);
 }
 
 static double impacts(const Instance *instance) { return instance->state.memory[EVENT_COUNT_SLOT]; }
@@ -91,13 +94,14 @@ fmi3Status fmi3Reset(fmi3Instance c) {
 /* Scalars, arrays and time are stretches of the memory: first slot and length of a Float64 reference, length 0 after a refusal. */
 static size_t stretch(Instance *instance, const char *call, fmi3ValueReference reference, size_t *first) {
     *first = reference;
-    if (reference == TIME_SLOT) return 1;
+    if (reference == TIME_SLOT) return in_phase(instance, call, CALCULATED);
     if (reference >= ARRAY_BASE && reference < ARRAY_BASE + ARRAY_COUNT) {
         *first = ARRAYS[reference - ARRAY_BASE].first;
-        return ARRAYS[reference - ARRAY_BASE].size;
+        return may_get(instance, call, &VARIABLES[*first]) == OK ? ARRAYS[reference - ARRAY_BASE].size : 0;
     }
-    if (!find(instance, call, reference, REAL)) return 0;
-    if (!VARIABLES[reference].element) return 1;
+    const Variable *variable = find(instance, call, reference, REAL);
+    if (!variable || may_get(instance, call, variable) != OK) return 0;
+    if (!variable->element) return 1;
     refuse(instance, call, "valueReference: expected that of the array, not of an element");
     return 0;
 }
@@ -139,7 +143,8 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
         if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference");                            \
         if (refresh(instance) != OK) return fmi3Error;                                                                                           \
         for (size_t i = 0; i < count; i++) {                                                                                                     \
-            if (!find(instance, call, refs[i], KIND)) return fmi3Error;                                                                          \
+            const Variable *variable = find(instance, call, refs[i], KIND);                                                                      \
+            if (!variable || may_get(instance, call, variable) != OK) return fmi3Error;                                                          \
             double value = instance->state.memory[refs[i]];                                                                                      \
             values[i] = FROM_MEMORY;                                                                                                             \
         }                                                                                                                                        \
@@ -165,7 +170,7 @@ GET_SET(Int32, fmi3Int32, INTEGER, (fmi3Int32)value, (double)values[i])
 fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference refs[], size_t count, fmi3Clock values[]) {
     static const char *const call = "fmi3GetClock";
     Instance *instance = c;
-    if (!instance || !in_phase(instance, call, EVENT) || missing(instance, call, count, refs, values)) return fmi3Error;
+    if (!instance || !in_phase(instance, call, INITIALIZING | EVENT) || missing(instance, call, count, refs, values)) return fmi3Error;
     for (size_t i = 0; i < count; i++) {
         if (!EVENT_CLOCK || refs[i] != CLOCK_REFERENCE) return refuse3(instance, call, "valueReference: expected that of the clock in modelDescription.xml");
         values[i] = instance->state.clock ? fmi3ClockActive : fmi3ClockInactive;
@@ -238,19 +243,28 @@ fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_
     return fmi3OK;
 }
 
+/* An order for each reference; the derivatives of an array's elements follow one another. */
 fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference refs[], size_t count, const fmi3Int32 orders[], fmi3Float64 values[],
                                     size_t value_count) {
     static const char *const call = "fmi3GetOutputDerivatives";
     Instance *instance = c;
-    if (!instance || !in_phase(instance, call, READABLE) || missing(instance, call, count, refs, values) || missing(instance, call, count, orders, values))
+    if (!instance || !in_phase(instance, call, CALCULATED) || missing(instance, call, count, refs, values) || missing(instance, call, count, orders, values))
         return fmi3Error;
-    if (value_count != count) return refuse3(instance, call, "nValues: expected one for each value reference");
     if (refresh(instance) != OK) return fmi3Error;
-    for (size_t i = 0; i < count; i++) {
-        const Variable *output = find(instance, call, refs[i], REAL);
-        if (!output) return fmi3Error;
-        if (output->derivative < 0 || orders[i] != 1) return refuse3(instance, call, "expected first derivatives of " OUTPUT_DERIVATIVES);
-        values[i] = instance->state.memory[output->derivative];
+    double memory[MEMORY_SIZE];
+    for (int write = 0; write < 2; write++) {
+        size_t place = 0;
+        for (size_t i = 0; i < count; i++) {
+            size_t first, size = stretch(instance, call, refs[i], &first);
+            if (!size) return fmi3Error;
+            for (size_t k = first; k < first + size; k++, place++) {
+                if (k == TIME_SLOT) return refuse3(instance, call, "time: expected order 1 of a continuous output");
+                if (write) values[place] = memory[VARIABLES[k].rate];
+                else if (!has_rate(instance, call, &VARIABLES[k], orders[i])) return fmi3Error;
+            }
+        }
+        if (place != value_count) return refuse3(instance, call, "nValues: expected as many as the value references have");
+        if (!write) differentiate(instance, memory);
     }
     return fmi3OK;
 }

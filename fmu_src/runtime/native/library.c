@@ -7,9 +7,11 @@
 
 int kernel_initialize(double *memory, double time);
 int kernel_advance(double *memory, double time);
+int kernel_differentiate(double *memory, double time);
 
 EXPORT int initialize(double *memory, double time) { return kernel_initialize(memory, time); }
 EXPORT int advance(double *memory, double time) { return kernel_advance(memory, time); }
+EXPORT int differentiate(double *memory, double time) { return kernel_differentiate(memory, time); }
 
 #ifdef REFRESH
 int kernel_refresh(double *memory, double time);

@@ -85,9 +85,9 @@ class Fmu2:
         names = self.output_names if names is None else names
         return dict(zip(names, self.get(*names), strict=True))
 
-    def enter(self, start_time=0.0):
+    def enter(self, start_time=0.0, **experiment):
         self.time = start_time
-        self.call("setupExperiment", startTime=start_time)
+        self.call("setupExperiment", startTime=start_time, **experiment)
         self.call("enterInitializationMode")
 
     def leave(self):
@@ -138,9 +138,9 @@ class Fmu3(Fmu2):
             loggingOn=logging, logMessage=lambda _e, _s, _c, text: messages.append(text.decode())
         )
 
-    def enter(self, start_time=0.0):
+    def enter(self, start_time=0.0, **experiment):
         self.time = start_time
-        self.call("enterInitializationMode", startTime=start_time)
+        self.call("enterInitializationMode", startTime=start_time, **experiment)
 
 
 def excepthook(*error):

@@ -11,7 +11,7 @@ from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import PYTHON_FORM, export
 
 
-def no_compiler(_):
+def no_compiler(*_):
     raise CannotExport("not wanted here")
 
 

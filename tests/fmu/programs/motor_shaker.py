@@ -65,6 +65,7 @@ def motion_is_that_of_the_equations(path, values):
 
 def acceleration_belongs_to_the_inputs_as_set_now(path):
     f = open_fmu(path)
+    f.set(voltage=0.0)
     f.enter()
     rows = []
     for force in (0.0, 11.0):
@@ -81,7 +82,7 @@ def acceleration_belongs_to_the_inputs_as_set_now(path):
         rows.append(f.get("box_acceleration")[0])
     f.step(0.2)
     looked = f.outputs()
-    g = open_fmu(path).start()
+    g = open_fmu(path).start(voltage=0.0)
     g.set(voltage=6.0)
     g.step(0.1).set(box_force=13.0)
     return [rows, looked == g.step(0.2).outputs()]

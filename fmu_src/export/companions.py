@@ -1,0 +1,74 @@
+"""What lies in an FMU by other standards than FMI's core: terminals and icon, licences, FMI-LS-REF.
+
+Terminals and icons are FMI 3.0's, section 2.4.9, which FMI 2.0.5 takes over. FMI-LS-REF (a draft,
+1.0.0-alpha.1) says which files are there to check a run against.
+"""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree as ET
+
+from ..runtime.table import Model
+from .description import text
+from .sources import ROOT, Files
+
+MANIFEST = "http://fmi-standard.org/fmi-ls-manifest"
+REFERENCES = "extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml"
+LS_REF = {
+    "fmi-ls-name": "org.fmi-standard.fmi-ls-ref",
+    "fmi-ls-version": "1.0.0-alpha.1",
+    "fmi-ls-description": "Layered Standard providing information on related files included in "
+    "an FMU.",
+}
+RELATED = (  # file, type, role, description
+    ("reference/{name}_in.csv", "text/csv", "testcase", "Inputs of the reference run"),
+    ("reference/{name}_ref.csv", "text/csv", "result", "Outputs of the reference run"),
+    ("reference/{name}_ref.opt", "text/plain", "testcase", "Times and steps of the reference run"),
+    ("index.html", "text/html", "document", "Equations, variables, and how to use the FMU"),
+)
+
+
+def companions(model: Model) -> Files:
+    """Files by name, but for the icon.
+
+    Parameters
+    ----------
+    model : Model
+    """
+    licence = (ROOT / "models" / "license.txt").read_bytes()
+    return {
+        "terminalsAndIcons/terminalsAndIcons.xml": terminals(model),
+        "documentation/licenses/license.txt": licence,
+        REFERENCES: references(model),
+    }
+
+
+def icon_place(version: str) -> str:
+    """Where tools look for the icon."""
+    return "terminalsAndIcons/icon.png" if version == "fmi3" else "model.png"
+
+
+def terminals(model: Model) -> bytes:
+    """Variables to be connected together: by their names within the terminal."""
+    root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    if model.terminals:
+        parent = ET.SubElement(root, "Terminals")
+    for terminal in model.terminals:
+        attributes = {"name": terminal.name, "matchingRule": "bus"}
+        attributes["description"] = terminal.description
+        element = ET.SubElement(parent, "Terminal", attributes)
+        for member, variable in terminal.members.items():
+            named = {"variableName": variable, "memberName": member, "variableKind": "signal"}
+            ET.SubElement(element, "TerminalMemberVariable", named)
+    return text(root)
+
+
+def references(model: Model) -> bytes:
+    """The manifest of FMI-LS-REF."""
+    ET.register_namespace("fmi-ls", MANIFEST)
+    root = ET.Element("fmiReferences", {f"{{{MANIFEST}}}{k}": v for k, v in LS_REF.items()})
+    for place, kind, role, description in RELATED:
+        source = f"../../documentation/{place.format(name=model.name)}"
+        attributes = {"type": kind, "source": source, "role": role, "description": description}
+        ET.SubElement(root, "Related", attributes)
+    return text(root)

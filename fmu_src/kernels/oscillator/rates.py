@@ -1,0 +1,65 @@
+"""Time derivatives of the outputs, from the equations (6) themselves.
+
+They belong to the motion reached, with the inputs as they were on the way there: at an impact, or
+where an input jumps, to what comes before the jump of an input and after the impact.
+"""
+
+from . import memory as at
+from .excitation import cubic_at
+from .stepper import local_time
+
+
+def differentiate(m, time):
+    """Rates of change of the outputs into RATES; ``time`` is not used.
+
+    Returns
+    -------
+    int
+        OK.
+    """
+    a1, a2 = accelerations(m)
+    omega = m[at.OMEGA]
+    v1, v2, v_rel = m[at.V1], m[at.V2], m[at.V_REL]
+    unit = m[at.FORCING]
+    force = m[at.BOX_FORCE]
+    contact = 0.0
+    if m[at.CONTACT_FORCE] > 0.0:
+        reduced_mass = m[at.M2] * m[at.SHARE]
+        contact = -reduced_mass * omega * (m[at.FORCE_V] * a1 + m[at.FORCE_X] * omega * v1)
+    largest = 0.0
+    if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] == m[at.X_REL_MAX] and v_rel > 0.0:
+        largest = v_rel
+    for i in range(at.CONTACT_COUNT - at.X1):
+        m[at.RATES + i] = 0.0
+    to = at.RATES - at.X1
+    m[to + at.X1], m[to + at.X2], m[to + at.X_REL] = v1, v2, v_rel
+    m[to + at.V1], m[to + at.V2], m[to + at.V_REL] = a1, a2, a2 - a1
+    m[to + at.XI1] = v1 / unit if unit != 0.0 else 0.0
+    m[to + at.XI2] = v2 / unit if unit != 0.0 else 0.0
+    m[to + at.XI_REL] = v_rel / unit if unit != 0.0 else 0.0
+    m[to + at.BOX_FORCE] = m[at.K1] * v1 + m[at.D1] * a1 + m[at.K2] * v2 + m[at.D2] * a2
+    m[to + at.BOX_IMPULSE] = force
+    m[to + at.BOX_IMPULSE_MOMENT] = m[at.STEP] * force
+    m[to + at.CONTACT_FORCE] = contact
+    m[to + at.PHASE] = m[at.ETA] * omega
+    m[to + at.X_REL_MAX] = largest
+    return at.OK
+
+
+def accelerations(m):
+    """Accelerations of both masses relative to the box, m/s2, by (6)."""
+    drive = m[at.FORCING] * m[at.PHASE_SINE]
+    if m[at.CUBIC_PRESENT] != 0.0:
+        drive += cubic_at(m, m[at.SEGMENT_AGE] + local_time(m, m[at.TIME]))[0]
+    if m[at.MODE] == at.FLIGHT:
+        a1 = acceleration(m, at.BRANCH_1, drive, m[at.X1], m[at.V1])
+        return a1, acceleration(m, at.BRANCH_2, drive, m[at.X2], m[at.V2])
+    both = acceleration(m, at.BRANCH_3, drive, m[at.X1], m[at.V1])
+    return both, both
+
+
+def acceleration(m, b, drive, x, v):
+    """Acceleration of one oscillator at displacement ``x`` (m) and velocity ``v`` (m/s)."""
+    omega = m[at.OMEGA]
+    pull = m[b + at.OMEGA_SQUARED] * x
+    return omega * (omega * (drive - pull) - 2.0 * m[b + at.DAMPING] * v)

@@ -1,0 +1,70 @@
+"""Time derivatives of the outputs, from the equations, with the inputs as set now."""
+
+from ..numerics.elementary import sincos_turns
+from . import memory as at
+from .equations import accelerations
+from .outputs import current_rate, jerks
+
+
+def differentiate(m, time):
+    """Rates of change of the outputs into OUTPUT_RATES; ``time`` is not used.
+
+    Returns
+    -------
+    int
+        OK.
+    """
+    sine, cosine = sincos_turns(m[at.TURN])
+    box, speed = m[at.BOX_ACCELERATION], m[at.SPEED]
+    rotor = rotor_acceleration(m, sine, cosine)
+    current = current_rate(m, rotor)
+    torque = m[at.MOTOR_CONSTANT] * current
+    damping = m[at.BOX_DAMPING] * m[at.BOX_VELOCITY] * m[at.BOX_VELOCITY]
+    work = m[at.BOX_FORCE] * m[at.BOX_VELOCITY]
+    to = at.OUTPUT_RATES - at.BOX_POSITION
+    m[to + at.BOX_POSITION] = m[at.BOX_VELOCITY]
+    m[to + at.BOX_VELOCITY] = box
+    m[to + at.BOX_ACCELERATION] = m[at.BOX_JERK]
+    m[to + at.BOX_JERK] = snap(m, sine, cosine, rotor)
+    m[to + at.ANGLE] = speed
+    m[to + at.SPEED] = rotor
+    m[to + at.MOTOR_CURRENT] = current
+    m[to + at.MOTOR_TORQUE] = torque
+    m[to + at.MOTOR_POWER] = torque * speed + m[at.MOTOR_TORQUE] * rotor
+    m[to + at.MOTOR_ENERGY] = m[at.MOTOR_POWER]
+    m[to + at.BOX_DAMPER_ENERGY] = damping
+    m[to + at.BOX_FORCE_WORK] = work
+    m[to + at.STORED_ENERGY] = m[at.MOTOR_POWER] + work - damping
+    return at.OK
+
+
+def right_hand_side(m, sine):
+    """Right-hand side of the box's equation at the communication point, N."""
+    speed = m[at.SPEED]
+    p = m[at.UNBALANCE] * speed * speed * sine - m[at.BOX_DAMPING] * m[at.BOX_VELOCITY]
+    return p - m[at.BOX_STIFFNESS] * m[at.BOX_POSITION] + m[at.BOX_FORCE]
+
+
+def rotor_acceleration(m, sine, cosine):
+    """Acceleration of the rotor, rad/s2."""
+    return accelerations(m, sine, cosine, right_hand_side(m, sine), m[at.MOTOR_TORQUE])[1]
+
+
+def snap(m, sine, cosine, b):
+    """Second time derivative of the box's acceleration, the equations differentiated twice.
+
+    ``b`` is the rotor's acceleration.
+    """
+    unbalance, w, a = m[at.UNBALANCE], m[at.SPEED], m[at.BOX_ACCELERATION]
+    a_dot, b_dot = jerks(m, sine, cosine, a, b)
+    resistance, constant = m[at.ARMATURE_RESISTANCE], m[at.MOTOR_CONSTANT]
+    if m[at.ARMATURE_INDUCTANCE] > 0.0:
+        current = -(resistance * current_rate(m, b) + constant * b) / m[at.ARMATURE_INDUCTANCE]
+    else:
+        current = -constant * b_dot / resistance
+    p = m[at.BOX_FORCE_2] - m[at.BOX_DAMPING] * a_dot - m[at.BOX_STIFFNESS] * a
+    p += unbalance * (
+        (3.0 * b * b - w * w * w * w) * sine + 6.0 * w * w * b * cosine + 4.0 * w * b_dot * sine
+    )
+    q = constant * current + unbalance * ((w * w * cosine + b * sine) * a + 2.0 * w * sine * a_dot)
+    return accelerations(m, sine, cosine, p, q)[0]

@@ -1,0 +1,38 @@
+"""``examples/ci``: the guarantees in a user's own pipeline, where there is nothing but FMPy."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from ..fresh import OURS, ROOT
+from .driver import FMUS
+
+
+def run_pipeline(fmu, folder):
+    """The test file alone in a folder, as a user has it."""
+    shutil.copy(ROOT / "examples" / "ci" / "test_fmu.py", folder)
+    environment = {key: value for key, value in os.environ.items() if key not in OURS}
+    environment |= {"FMU": str(fmu), "PYTHONDONTWRITEBYTECODE": "1"}
+    options = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:hypothesispytest"]
+    command = [sys.executable, "-m", "pytest", *options, "test_fmu.py"]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(
+    "form",
+    ["fmi3", *(pytest.param(form, marks=pytest.mark.slow) for form in ("fmi2", "fmi2-python"))],
+)
+def test_the_example_passes_on_the_exported_file(form, tmp_path):
+    done = run_pipeline(FMUS[form], tmp_path)
+    assert done.returncode == 0, done.stdout[-3000:]
+    assert int(re.search(r"(\d+) passed", done.stdout).group(1)) > 25
+
+
+def test_the_example_fails_on_another_model(tmp_path):
+    done = run_pipeline(FMUS["fmi2"].with_name("MotorShaker.fmu"), tmp_path)
+    assert done.returncode != 0
+    assert "passed" not in done.stdout or "failed" in done.stdout

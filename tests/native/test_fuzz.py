@@ -1,0 +1,177 @@
+"""Both models under calls drawn at random, in every build that watches memory; and how much of the
+shim all hostile tests together reach.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from fmu_src.export import compile_kernel, forms
+from fmu_src.export.platforms import usual
+
+from . import importers
+from .conftest import VERSIONS
+from .test_memory_checks import VALGRIND, needs_valgrind
+
+MODELS = tuple(forms.MODELS)
+SECONDS = int(os.environ.get("FUZZ_SECONDS", "600"))  # of the coverage-guided fuzzer, each
+SHIM = ("core.c", "fmi2.c", "fmi3.c", "fmi3_absent.c")
+
+
+@pytest.fixture(scope="module", params=[(v, m) for v in VERSIONS for m in MODELS], ids="-".join)
+def importer_of_model(request, exported, fmus, tmp_path_factory):
+    """The importer compiled for a model in an FMI version, and the FMU's own binary."""
+    version, model = request.param
+    if importers.own_compiler() is None:
+        pytest.skip("there is no C compiler")
+    path, folder = exported / version / f"{model}.fmu", tmp_path_factory.mktemp("model")
+    program = importers.compile_importer(version, path, folder / "importer")
+    return importers.Importer(program, importers.binary(path, version, folder), version)
+
+
+def is_shaker(importer):
+    return importer.library.stem == "MotorShaker"
+
+
+def test_calls_drawn_at_random_are_survived(importer_of_model):
+    """And each that is refused has a message."""
+    done = importer_of_model.run("random", 7, 300)
+    assert int(re.search(r"CHECKS (\d+) FAILURES 0", done.stdout).group(1)) > 2000
+
+
+def test_the_motor_in_many_instances_threads_and_steps(importer_of_model):
+    """What the oscillator is put through elsewhere; and forged states."""
+    if not is_shaker(importer_of_model):
+        pytest.skip("in test_importers")
+    importer_of_model.run("many", 50, 40, 200)
+    importer_of_model.run("million", 50_000)
+    done = importer_of_model.run("forge")
+    assert int(re.search(r"TAKEN (\d+)\n.* FAILURES 0", done.stdout).group(1)) > 500
+
+
+@needs_valgrind
+@pytest.mark.slow
+def test_no_leak_and_no_error_under_valgrind(importer_of_model):
+    for mode in (("random", 3, 200), ("many", 20, 40, 200), ("million", 2000, "under valgrind")):
+        done = importer_of_model.run(*mode, under=VALGRIND, timeout=1800)
+        assert "FAILURES 0" in done.stdout and done.stderr == ""
+
+
+def kernel(model):
+    """A model's object file for this machine."""
+    return compile_kernel.compile_objects(forms.MODELS[model], usual())
+
+
+def checked(version, model, exported, folder, sanitizer):
+    """Importer and shim with a sanitizer in both."""
+    path = exported / version / f"{model}.fmu"
+    options = ("-O1", "-g", *sanitizer)
+    program = importers.compile_importer(version, path, folder / "importer", options=options)
+    library = importers.rebuild_shim(
+        version, folder / "shim", kernel(model), sanitizer, forms.MODELS[model]
+    )
+    return importers.Importer(program, library, version)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("sanitizer", [importers.SANITIZE, ("-fsanitize=thread",)], ids=["a", "t"])
+def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, version, model, sanitizer):
+    """Address, undefined behaviour and leaks; or threads."""
+    importer = checked(version, model, exported, tmp_path, sanitizer)
+    for mode in (("random", 5, 2000), ("many", 50, 40, 400), ("million", 20_000), ("forge",)):
+        done = importer.run(*mode, timeout=1800)
+        assert "FAILURES 0" in done.stdout and done.stderr == ""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("gcov") is None, reason="gcov is not installed")
+@pytest.mark.parametrize("version", VERSIONS)
+def test_the_hostile_tests_reach_the_whole_shim(exported, fmus, tmp_path, version):
+    """More than 95 % of lines and of branches taken, both models together; the rest is printed."""
+    lines, branches, left = {}, {}, []
+    for model in MODELS:
+        folder = tmp_path / model
+        importer = checked(version, model, exported, folder, ("--coverage",))
+        importer.run("random", 11, 4000, timeout=1800)
+        importer.run("many", 50, 40, 400)
+        importer.run("forge")
+        if model == "TwoMassImpactOscillator":
+            importer.run("hostile")
+            importer.run("simulate", "x1", "e=0.5", times=[0.0, 1.0])
+            importer.run("corrupt", 64, "nan")
+        for unit in importers.units(version):
+            read_coverage(folder / "shim", unit, lines, branches)
+    for found, what in ((lines, "lines"), (branches, "branches")):
+        left += [key for key, taken in found.items() if not taken]
+        share = sum(found.values()) / len(found)
+        print(f"{version}: {what} {100 * share:.1f} % of {len(found)}")
+        assert share > 0.95, left
+    print("\n".join(map(str, left)))
+
+
+def read_coverage(folder, unit, lines, branches):
+    """Add what gcov says of a C file: lines run, and branches taken."""
+    notes = next(folder.glob(f"*{Path(unit).stem}.gcda"))
+    command = ["gcov", "-b", "-c", "-o", notes.name, unit]
+    subprocess.run(command, cwd=folder, capture_output=True, check=True)
+    number = text = None
+    for row in (folder / f"{unit}.gcov").read_text().splitlines():
+        if row.startswith("branch"):
+            key = (unit, number, row.split()[1], text)
+            taken = "taken" in row and "taken 0" not in row
+            branches[key] = branches.get(key, False) or taken
+            continue
+        parts = row.split(":", 2)
+        if len(parts) == 3 and parts[0].strip() not in ("-", ""):
+            number, text = parts[1].strip(), parts[2].strip()
+            key = (unit, number, text)
+            lines[key] = lines.get(key, False) or parts[0].strip()[0] not in "#="
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("clang") is None, reason="clang is not installed")
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_coverage_guided_fuzzer_finds_nothing(exported, fmus, tmp_path, version, model):
+    """libFuzzer with its sanitizers in the shim, for FUZZ_SECONDS (600 by default) each."""
+    path, guards = exported / version / f"{model}.fmu", "address,undefined"
+    folder, number = tmp_path / "fuzzer", version[-1]
+    importers.compile_importer(version, path, folder)  # leaves the headers there
+    library = importers.rebuild_shim(
+        version,
+        tmp_path / "shim",
+        kernel(model),
+        (f"-fsanitize=fuzzer-no-link,{guards}", "-fno-sanitize-recover=all"),
+        forms.MODELS[model],
+        ("clang",),
+    )
+    units = [importers.HERE / f"{unit}{number}.c" for unit in ("importer", "fuzz")]
+    options = ["-std=gnu11", "-O1", "-g", f"-fsanitize=fuzzer,{guards}", f"-I{folder}"]
+    command = [
+        "clang",
+        *options,
+        importers.HERE / "fuzzer.c",
+        *units,
+        "-ldl",
+        "-lm",
+        "-o",
+        "fuzzer",
+    ]
+    importers.run_compiler(command, folder)
+    (folder / "corpus").mkdir()
+    limits = [f"-max_total_time={SECONDS}", "-max_len=512", "-timeout=60", "-print_final_stats=1"]
+    done = subprocess.run(
+        ["./fuzzer", "corpus", *limits],
+        cwd=folder,
+        env={**os.environ, "FMU_BINARY": str(library)},
+        capture_output=True,
+        text=True,
+    )
+    print("\n".join(done.stderr.splitlines()[-12:]))
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]

@@ -1,0 +1,170 @@
+"""Binaries for other machines: each from the same LLVM IR, none with a fused multiply-add, and the
+one that can be run here, under an emulator, with the bits of this machine.
+"""
+
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from fmu_src.export import compile_kernel, forms
+from fmu_src.export.errors import CannotExport
+from fmu_src.export.platforms import ALL, PLATFORMS, chosen, this_machine, universal, usual
+
+from ..fresh import ROOT
+from . import importers
+from .slave import COMMON, harmonic
+
+MULTIPLY_ADD = """
+define i32 @kernel_advance(ptr %memory, double %time) {
+  %made = load double, ptr %memory
+  %product = fmul double %made, %time
+  %sum = fadd double %product, %time
+  store double %sum, ptr %memory
+  ret i32 0
+}
+"""
+FUSED = r"\s(v?fn?m(add|sub|la|ls)\S*)\s"  # fmadd, fmsub, fnmadd, fnmsub, fmla, fmls; vfmadd...
+ARM_LIBRARIES = Path("/usr/aarch64-linux-gnu")  # Debian's libc6-arm64-cross
+FOLDERS = {
+    "fmi2": {
+        *("linux64", "win64", "darwin64", "aarch64-linux", "aarch64-windows", "aarch64-darwin"),
+    },
+    "fmi3": set(ALL),
+}
+CODE_SIGNATURE, LOAD_COMMANDS = 0x1D, 32  # of a Mach-O file: a command, and where they begin
+
+
+def assembly(text, name):
+    machine, module = compile_kernel.optimised(text, PLATFORMS[name])
+    return machine.emit_assembly(module)
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_product_and_a_sum_are_rounded_one_by_one(name):
+    """What every processor of ARM would do in one instruction, with other bits."""
+    code = assembly(MULTIPLY_ADD, name)
+    assert "mul" in code and not re.search(FUSED, code)
+
+
+def test_platforms_by_name():
+    assert chosen(["all"]) == ALL
+    assert chosen(["this"]) == (this_machine(),)
+    assert chosen(["aarch64-linux", "x86_64-linux"]) == ("x86_64-linux", "aarch64-linux")
+    assert chosen([]) == ()
+    assert {"x86_64-linux", "x86_64-windows"} <= set(usual()) <= set(ALL)
+    with pytest.raises(CannotExport, match="platform sparc: expected all, this, or one of x86_64-"):
+        chosen(["sparc", "all"])
+
+
+def slices(data):
+    """Slices of a universal macOS library by their processor's type."""
+    magic, count = struct.unpack_from(">II", data)
+    assert magic == 0xCAFEBABE
+    rows = [struct.unpack_from(">5I", data, 8 + 20 * i) for i in range(count)]
+    assert all(start % (1 << align) == 0 for _, _, start, _, align in rows)
+    return {cpu: data[start : start + size] for cpu, _, start, size, _ in rows}
+
+
+def test_a_universal_library_holds_both():
+    one = struct.pack("<III", 0xFEEDFACF, 0x01000007, 3) + b"x" * 20_000
+    other = struct.pack("<III", 0xFEEDFACF, 0x0100000C, 0) + b"y" * 100
+    assert slices(universal([one, other])) == {0x01000007: one, 0x0100000C: other}
+
+
+def is_signed(library):
+    """Whether a Mach-O file has a code signature, which macOS on ARM asks for."""
+    (count,) = struct.unpack_from("<I", library, 16)
+    place = LOAD_COMMANDS
+    for _ in range(count):
+        command, size = struct.unpack_from("<II", library, place)
+        if command == CODE_SIGNATURE:
+            return True
+        place += size
+    return False
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("folder", forms.MODELS.values())
+def test_no_platform_fuses_a_multiply_add_in_the_kernel(folder):
+    """Neither ARM's nor Intel's: the assembly that the binaries are made of."""
+    program = (
+        "import sys; from fmu_src.export import compile_kernel as c, platforms as p\n"
+        f"text = c.kernel_ir({folder!r})\n"
+        "for name in p.ALL:\n"
+        "    machine, module = c.optimised(text, p.PLATFORMS[name])\n"
+        "    print('PLATFORM', name); print(machine.emit_assembly(module))\n"
+    )
+    settings = {**os.environ, **compile_kernel.SETTINGS}
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, cwd=ROOT, env=settings, capture_output=True, text=True)
+    parts = done.stdout.split("PLATFORM ")[1:]
+    assert [part.split()[0] for part in parts] == list(ALL), done.stderr[-2000:]
+    for part in parts:
+        assert part.count("mul") > 500
+        assert not re.findall(FUSED, part), part.split()[0]
+
+
+@pytest.fixture(scope="module")
+def everywhere(tmp_path_factory, fmus):
+    """The native FMUs with binaries for all platforms."""
+    build = tmp_path_factory.mktemp("everywhere")
+    for form in ("fmi2", "fmi3"):
+        for name in forms.MODELS:
+            forms.export(name, form, build, ALL)
+    return build
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", forms.MODELS)
+@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
+def test_every_platform_has_its_binary(everywhere, form, name):
+    """In the folders that tools look in; those of other platforms were only built, not run."""
+    with zipfile.ZipFile(everywhere / form / f"{name}.fmu") as archive:
+        found = {
+            entry.split("/")[1]: archive.read(entry)
+            for entry in archive.namelist()
+            if entry.startswith("binaries/")
+        }
+    assert set(found) == FOLDERS[form]
+    elf = {folder: data for folder, data in found.items() if data[:4] == b"\x7fELF"}
+    assert {struct.unpack_from("<H", data, 18)[0] for data in elf.values()} == {62, 183}
+    pe = [data for data in found.values() if data[:2] == b"MZ"]
+    places = [struct.unpack_from("<I", data, 0x3C)[0] for data in pe]
+    kinds = {struct.unpack_from("<H", d, at + 4)[0] for d, at in zip(pe, places, strict=True)}
+    assert kinds == {0x8664, 0xAA64}
+    assert is_signed(found["aarch64-darwin"])
+    if form == "fmi2":
+        both = slices(found["darwin64"])
+        assert set(both) == {0x01000007, 0x0100000C}
+        assert both[0x0100000C] == found["aarch64-darwin"]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    shutil.which("qemu-aarch64") is None or not ARM_LIBRARIES.is_dir(),
+    reason="qemu-user and libc6-arm64-cross are not installed",
+)
+@pytest.mark.parametrize("version", ["fmi2", "fmi3"])
+def test_the_arm_binary_has_the_same_bits(everywhere, fmus, importer_of, version, tmp_path):
+    """Through chaos, for as long as the Windows binary under wine; and every hostile call."""
+    path = everywhere / version / "TwoMassImpactOscillator.fmu"
+    command = importers.ziglang("aarch64-linux-gnu.2.28")
+    program = importers.compile_importer(version, path, tmp_path / "importer", command)
+    with zipfile.ZipFile(path) as archive:
+        binary = archive.extract("binaries/aarch64-linux/TwoMassImpactOscillator.so", tmp_path)
+    arm = importers.Importer(program, Path(binary), version)
+    under = ("qemu-aarch64", "-L", ARM_LIBRARIES)
+    times = [16.0 * k for k in range(257)]
+    found = arm.simulate(COMMON, times, under=under, **harmonic(1.13))
+    assert found == importer_of(version).simulate(COMMON, times, **harmonic(1.13))
+    assert found[-1][COMMON.index("impact_count")] > 500
+    assert "FAILURES 0" in arm.run("hostile", under=under, timeout=900).stdout
+    arm.run("many", 50, 40, 0, under=under)
+    arm.run("million", 20_000, under=under)
