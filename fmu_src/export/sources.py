@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import functools
+import threading
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -13,6 +14,7 @@ from .archive import fingerprint, read_folder
 
 ROOT = Path(__file__).resolve().parents[1]
 Files = dict[str, bytes]  # contents by name
+parsing = threading.Lock()  # Python 3.11 mixes up syntax trees of two threads
 
 
 def load(folder: str) -> Model:
@@ -55,7 +57,9 @@ def imported(name: str, source: bytes) -> tuple[str, ...]:
     """Files below ``fmu_src`` that run when a module is imported or its functions are."""
     package = name.split("/")[:-1]
     found = ["/".join([*package[:depth], "__init__.py"]) for depth in range(len(package) + 1)]
-    for node in statements(ast.parse(source, name)):
+    with parsing:
+        tree = ast.parse(source, name)
+    for node in statements(tree):
         if isinstance(node, ast.ImportFrom) and node.level:
             base = package[: len(package) + 1 - node.level]
             base += node.module.split(".") if node.module else []

@@ -264,7 +264,6 @@ def attractors(
     transient: int = 400,
     settle: float = 300.0,
     samples: int = 48,
-    tolerance: float = 1e-2,
     converged: float = 1e-6,
     longest: int = 20_000,
     alike: float = 0.02,
@@ -296,8 +295,8 @@ def attractors(
         Periods dropped at least, over eta: a slow decay takes time, not periods.
     samples : int
         Periods looked at.
-    tolerance, converged : float
-        Relative deviations within which a state nearly repeats, and within which it decides.
+    converged : float
+        Relative deviation within which a repeated state decides.
     longest : int
         Periods up to which a response is run on that does not repeat; beyond it is irregular.
     alike, alike_irregular : float
@@ -348,7 +347,6 @@ def attractors(
             transient=transient,
             settle=settle,
             samples=samples,
-            tolerance=tolerance,
             converged=converged,
             longest=longest,
             alike=alike,

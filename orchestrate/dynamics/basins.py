@@ -254,7 +254,6 @@ def basin(
     transient: int = 400,
     settle: float = 300.0,
     samples: int = 48,
-    tolerance: float = 1e-2,
     converged: float = 1e-6,
     longest: int = 20_000,
     alike: float = 0.02,
@@ -280,7 +279,7 @@ def basin(
         of ``at``.
     phase : float
         Phase of the box at the start, rad.
-    transient, settle, samples, tolerance, converged, longest, alike, alike_irregular
+    transient, settle, samples, converged, longest, alike, alike_irregular
         As in :func:`orchestrate.attractors`.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
@@ -327,7 +326,6 @@ def basin(
             transient=transient,
             settle=settle,
             samples=samples,
-            tolerance=tolerance,
             converged=converged,
             longest=longest,
             alike=alike,

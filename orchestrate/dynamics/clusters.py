@@ -32,12 +32,11 @@ class Telling:
         thousand.
     samples : int
         Periods looked at.
-    tolerance : float
-        Relative deviation within which a state nearly repeats.
     converged : float
         Relative deviation within which a repeated state decides.
     apart : float
-        Over ``converged``: states differ by more after fewer periods than those of the response.
+        Over ``converged``: within so much a state nearly repeats; states differ by more after fewer
+        periods than those of the response.
     longest : int
         Periods after which a response that does not repeat is irregular.
     irregular_samples : int
@@ -52,7 +51,6 @@ class Telling:
     transient: int = 400
     settle: float = 300.0
     samples: int = 48
-    tolerance: float = 1e-2
     converged: float = 1e-6
     apart: float = 1e3
     longest: int = 20_000
@@ -86,21 +84,21 @@ def response_from(instance: Instance, point: Point, start: ArrayLike, telling: T
     """The response from a state at phase 0, in m and m/s, run on until a repeated state decides.
 
     Each time it does not repeat, it is run on for as long as before. One that nearly repeats at the
-    end counts as periodic if what is left of its deviation shrinks, else it is a narrow torus.
+    end counts as periodic if it did so before and its deviation shrinks, else it is a narrow torus.
     """
     dropped = settling(telling.transient, telling.settle, point.excitation.eta(point.structure))
-    done, before = 0, np.inf
+    done, before = 0, (0, np.inf)
     while True:
         response = respond(instance, *point, start, dropped, telling.samples, telling.converged)
         done, start = done + dropped + telling.samples, response.end
         if response.multiplicity and decided(response, telling):
             return Settled(response, done)
-        nearly, left = deviation(response.samples, telling.tolerance)
+        nearly = deviation(response.samples, telling.apart * telling.converged)
         if done >= telling.longest:
             break
-        before, dropped = left, min(done, telling.longest - done)
-    if 2.0 * left < before < np.inf:
-        return Settled(replace(response, multiplicity=nearly), done)
+        before, dropped = nearly, min(done, telling.longest - done)
+    if nearly[0] and nearly[0] == before[0] and 2.0 * nearly[1] < before[1]:
+        return Settled(replace(response, multiplicity=nearly[0]), done)
     response = respond(instance, *point, start, 0, telling.irregular_samples, telling.converged)
     return Settled(response, done + telling.irregular_samples)
 
