@@ -256,11 +256,11 @@ export class App {
     if (kind === "png") shownPictures[name].savePng(file);
     if (kind === "svg") shownPictures[name].saveSvg(file);
     if (kind !== "csv") return;
-    if (name === "diagram") saveCsv(file, diagramCsv(this.regions.diagram));
-    if (name === "section" && section.length) saveCsv(file, sectionCsv(section));
-    if (name === "spectrum" && spectra) saveCsv(file, spectrumCsv(spectra));
-    if (name === "history" && found && choice) saveCsv(file, motionCsv(found.motion, choice.point));
-    if (name === "impacts" && found) saveCsv(file, impactsCsv(found.motion));
+    if (name === "diagram") void saveCsv(file, diagramCsv(this.regions.diagram));
+    if (name === "section" && section.length) void saveCsv(file, sectionCsv(section));
+    if (name === "spectrum" && spectra) void saveCsv(file, spectrumCsv(spectra));
+    if (name === "history" && found && choice) void saveCsv(file, motionCsv(found.motion, choice.point));
+    if (name === "impacts" && found) void saveCsv(file, impactsCsv(found.motion));
   }
 
   /** @param {string} text @param {string} what */

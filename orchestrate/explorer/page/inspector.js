@@ -4,7 +4,6 @@ import { Animation } from "./animation.js";
 import { historyChart, motionPictures, numbersOf, phaseChart, sectionChart, spectrumChart, columnsOf } from "./motion_view.js";
 import { shown } from "./scale.js";
 import { Sound } from "./sound.js";
-import { periodOf } from "./structure.js";
 
 /**
  * @typedef {import("./structure.js").Point} Point
@@ -155,12 +154,11 @@ export class Inspector {
   /** Play the impacts of many periods as they come from the kernel. @param {number} pitch periods a second */
   listen(pitch) {
     if (!this.choice || !this.found) return;
-    const { point, settings } = this.choice;
     const periods = Math.max(1, Math.round(pitch * (pitch < 8 ? 4 : 2)));
-    const asked = { point, start: this.found.response.end, settings: { ...settings, transient: 0, samples: 1 }, periods, points: 1 };
-    this.ask("motion", asked, ([{ motion }]) => {
-      const time = motion.impactTime.map((/** @type {number} */ t) => t / periodOf(point) - motion.first);
-      this.sound.play({ time, energy: motion.impactEnergy, turns: periods }, pitch);
+    const { rate } = this.sound;
+    const asked = { point: this.choice.point, start: this.found.response.end, periods, pitch, rate };
+    this.ask("sound", asked, ([wave]) => {
+      this.sound.play(wave);
       this.told();
     });
   }

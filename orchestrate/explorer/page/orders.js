@@ -1,6 +1,7 @@
 /** What is asked of the workers, and in which order. */
 
-import { lanesOf, startAt, startFrom } from "./diagram.js";
+import { startAt, startFrom } from "./diagram.js";
+import { columnsAt } from "./structure.js";
 
 /**
  * @typedef {import("./crew.js").Crew} Crew
@@ -31,10 +32,11 @@ export function shares(list, size) {
 export function replay(crew, diagram, take) {
   const orders = diagram.lanes.map((lane) => {
     const missing = coarseFirst(diagram.points.length).filter((i) => !lane.found[i]);
-    const asked = shares(missing, crew.workers.length).map((indices) => ({
+    const groups = shares(missing, crew.workers.length).filter((indices) => indices.length);
+    const asked = groups.map((indices) => ({
       indices,
-      points: indices.map((i) => diagram.points[i]),
-      starts: indices.map((i) => startAt(lane, i)),
+      columns: columnsAt(diagram.points, indices),
+      starts: Float64Array.from(indices.flatMap((i) => startAt(lane, i) ?? [])),
       settings: diagram.settings,
     }));
     return crew.askAll("replay", asked, (parts) => parts.forEach((part) => enter(lane, part, take)));
@@ -47,9 +49,9 @@ export function chain(crew, diagram, parent, take) {
   const orders = diagram.lanes.map((lane) => {
     const indices = diagram.points.map((_, i) => i);
     if (lane.direction === "down") indices.reverse();
-    const points = indices.map((i) => diagram.points[i]);
-    lane.from = startFrom(parent, points[0], lane.direction);
-    const asked = { indices, points, start: lane.from, settings: diagram.settings };
+    const columns = columnsAt(diagram.points, indices);
+    lane.from = startFrom(parent, diagram.points[indices[0]], lane.direction);
+    const asked = { indices, columns, start: lane.from, settings: diagram.settings };
     return crew.ask("chain", asked, (parts) => parts.forEach((part) => enter(lane, part, take)));
   });
   return together(orders);
@@ -67,9 +69,4 @@ function together(orders) {
     cancel: () => orders.forEach((order) => order.cancel()),
     done: Promise.all(orders.map((order) => order.done)).then(() => {}),
   };
-}
-
-/** Whether a diagram can show a direction. @param {Diagram} diagram @param {import("./diagram.js").Direction} direction */
-export function shows(diagram, direction) {
-  return lanesOf(direction).every((way) => diagram.lanes.some((lane) => lane.direction === way));
 }

@@ -36,6 +36,10 @@ export class CanvasPen {
     Object.assign(context, { fillStyle: fill, globalAlpha: alpha });
     context.beginPath();
     for (let i = 0; i < xs.length; i++) {
+      if (radius < 1) {
+        context.fillRect(xs[i] - radius, ys[i] - radius, 2 * radius, 2 * radius);
+        continue;
+      }
       context.moveTo(xs[i] + radius, ys[i]);
       context.arc(xs[i], ys[i], radius, 0, 7);
     }

@@ -1,34 +1,4 @@
-/** Impacts made audible: each a click by its energy; silent until asked for. */
-
-/** @typedef {{time: ArrayLike<number>, energy: ArrayLike<number>, turns: number}} Clicks time in periods */
-
-const DECAY = 0.0025; // s
-const RING = 1800; // Hz
-
-/**
- * Clicks as a waveform.
- * @param {Clicks} clicks
- * @param {number} pitch periods a second
- * @param {number} rate samples a second
- * @returns {Float32Array}
- */
-export function waveform({ time, energy, turns }, pitch, rate) {
-  const wave = new Float32Array(Math.ceil((turns / pitch) * rate));
-  let most = 0;
-  for (let i = 0; i < energy.length; i++) most = Math.max(most, energy[i]);
-  const length = Math.min(Math.ceil(6 * DECAY * rate), wave.length);
-  for (let i = 0; i < time.length; i++) {
-    const loud = Math.sqrt(energy[i] / most);
-    if (!(loud > 1e-3)) continue;
-    const first = Math.floor((time[i] / pitch) * rate);
-    for (let k = 0; k < length; k++) {
-      const t = k / rate;
-      wave[(first + k) % wave.length] += loud * Math.exp(-t / DECAY) * Math.sin(2 * Math.PI * RING * t);
-    }
-  }
-  const peak = wave.reduce((high, value) => Math.max(high, Math.abs(value)), 0);
-  return peak > 0 ? wave.map((value) => (0.5 * value) / peak) : wave;
-}
+/** Impacts made audible; silent until asked for. */
 
 /** A loop of clicks that can be started and stopped. */
 export class Sound {
@@ -43,12 +13,17 @@ export class Sound {
     return this.source !== null;
   }
 
-  /** @param {Clicks} clicks @param {number} pitch Hz */
-  play(clicks, pitch) {
-    this.stop();
+  /** Samples a second. */
+  get rate() {
     this.context ??= new AudioContext();
-    const wave = waveform(clicks, pitch, this.context.sampleRate);
+    return this.context.sampleRate;
+  }
+
+  /** @param {Float32Array} wave */
+  play(wave) {
+    this.stop();
     if (!wave.length) return;
+    this.context ??= new AudioContext();
     const buffer = this.context.createBuffer(1, wave.length, this.context.sampleRate);
     buffer.getChannelData(0).set(wave);
     this.source = new AudioBufferSourceNode(this.context, { buffer, loop: true });

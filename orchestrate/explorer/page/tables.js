@@ -1,6 +1,5 @@
-/** What is shown as tables: CSV of the diagram, of the motion, of a spectrum. */
+/** What is shown as tables: the diagram, of the motion, of a spectrum. */
 
-import { csv } from "./files.js";
 import { accelerations } from "./motion.js";
 
 /**
@@ -10,19 +9,18 @@ import { accelerations } from "./motion.js";
  */
 
 /** Samples of all responses that have come. @param {Diagram} diagram */
-export function diagramCsv({ points, lanes }) {
-  /** @type {(number | string)[][]} */
-  const rows = [];
-  let samples = 0;
-  for (const { direction, found } of lanes) {
-    found.forEach((one, i) => {
-      if (!one) return;
-      samples = Math.max(samples, one.gaps.length);
-      rows.push([direction, points[i].eta, one.impacts, one.multiplicity, one.peak, ...one.gaps]);
-    });
+export function diagramCsv({ points, lanes, settings }) {
+  function* rows() {
+    for (const { direction, found } of lanes) {
+      for (let i = 0; i < found.length; i++) {
+        const one = found[i];
+        if (!one) continue;
+        yield [direction, points[i].eta, one.impacts, one.multiplicity, one.peak, ...one.gaps];
+      }
+    }
   }
-  const names = Array.from({ length: samples }, (_, i) => `xi_rel_${i + 1}`);
-  return csv(["direction", "eta", "impacts_per_period", "multiplicity", "xi_rel_max", ...names], rows);
+  const names = Array.from({ length: settings.samples }, (_, i) => `xi_rel_${i + 1}`);
+  return { head: ["direction", "eta", "impacts_per_period", "multiplicity", "xi_rel_max", ...names], rows: rows() };
 }
 
 /** The motion in time. @param {Motion} motion @param {Point} point */
@@ -31,14 +29,14 @@ export function motionCsv({ time, states, contact }, point) {
     const state = states.subarray(4 * i, 4 * i + 4);
     return [t, ...state, ...accelerations(state, contact[i] !== 0, point), contact[i]];
   });
-  return csv(["time", "x1", "x2", "v1", "v2", "a1_abs", "a2_abs", "in_contact"], rows);
+  return { head: ["time", "x1", "x2", "v1", "v2", "a1_abs", "a2_abs", "in_contact"], rows };
 }
 
 /** Its impacts. @param {Motion} motion */
 export function impactsCsv(motion) {
   const { impactTime, impactSpeed, impactEnergy } = motion;
   const rows = Array.from(impactTime, (t, i) => [t, impactSpeed[i], impactEnergy[i]]);
-  return csv(["impact_time", "impact_velocity", "energy"], rows);
+  return { head: ["impact_time", "impact_velocity", "energy"], rows };
 }
 
 /** Stroboscopic samples. @param {ArrayLike<number>} states */
@@ -46,11 +44,11 @@ export function sectionCsv(states) {
   const rows = Array.from({ length: states.length / 4 }, (_, i) =>
     [0, 1, 2, 3].map((part) => states[4 * i + part]),
   );
-  return csv(["x1", "x2", "v1", "v2"], rows);
+  return { head: ["x1", "x2", "v1", "v2"], rows };
 }
 
 /** @param {{delaminated: import("./spectrum.js").Spectrum, bonded: import("./spectrum.js").Spectrum}} found */
 export function spectrumCsv({ delaminated, bonded }) {
   const rows = Array.from(delaminated.order, (order, i) => [order, delaminated.amplitude[i], bonded.amplitude[i]]);
-  return csv(["order", "delaminated", "bonded"], rows);
+  return { head: ["order", "delaminated", "bonded"], rows };
 }

@@ -5,10 +5,13 @@ import { exponentOf } from "./lyapunov.js";
 import { record } from "./motion.js";
 import { respond } from "./response.js";
 import { spectrumOf } from "./spectrum.js";
+import { periodOf, pointOf } from "./structure.js";
+import { waveform } from "./waveform.js";
 
 /**
  * @typedef {import("./kernel.js").Oscillator} Oscillator
  * @typedef {import("./structure.js").Point} Point
+ * @typedef {import("./structure.js").Columns} Columns
  * @typedef {import("./response.js").Settings} Settings
  * @typedef {import("./response.js").Response} Response
  */
@@ -19,22 +22,23 @@ const SPAN = { periods: 64, points: 1024, highest: 20 };
 /**
  * Responses at given starts.
  * @param {Oscillator} instance
- * @param {{points: Point[], starts: number[][], indices: number[], settings: Settings}} asked
+ * @param {{columns: Columns, starts: Float64Array, indices: number[], settings: Settings}} asked
  */
-function* replay(instance, { points, starts, indices, settings }) {
-  for (let i = 0; i < points.length; i++) {
-    yield answer(indices[i], respond(instance, points[i], starts[i], settings));
+function* replay(instance, { columns, starts, indices, settings }) {
+  for (let i = 0; i < indices.length; i++) {
+    const start = starts.subarray(4 * i, 4 * i + 4);
+    yield answer(indices[i], respond(instance, pointOf(columns, i), start, settings));
   }
 }
 
 /**
  * Responses, each from the end of the last.
  * @param {Oscillator} instance
- * @param {{points: Point[], indices: number[], start: number[], settings: Settings}} asked
+ * @param {{columns: Columns, indices: number[], start: number[], settings: Settings}} asked
  */
-function* chain(instance, { points, indices, start, settings }) {
-  for (let i = 0; i < points.length; i++) {
-    const found = respond(instance, points[i], start, settings);
+function* chain(instance, { columns, indices, start, settings }) {
+  for (let i = 0; i < indices.length; i++) {
+    const found = respond(instance, pointOf(columns, i), start, settings);
     start = found.end;
     yield answer(indices[i], found);
   }
@@ -85,6 +89,18 @@ function* spectra(instance, { point, start }) {
 }
 
 /**
+ * The impacts of many periods as a waveform.
+ * @param {Oscillator} instance
+ * @param {{point: Point, start: number[], periods: number, pitch: number, rate: number}} asked
+ */
+function* sound(instance, { point, start, periods, pitch, rate }) {
+  instance.begin(point, start);
+  const { impactTime, impactEnergy } = record(instance, point, 0, periods, 1);
+  const time = impactTime.map((t) => t / periodOf(point));
+  yield waveform({ time, energy: impactEnergy, turns: periods }, pitch, rate);
+}
+
+/**
  * Where the cells of a plane lead to.
  * @param {Oscillator} instance
  * @param {{point: Point, plane: import("./basin.js").Plane, cells: [number, number][]}} asked
@@ -96,4 +112,4 @@ function* basin(instance, { point, plane, cells }) {
 }
 
 /** @type {Record<string, (instance: Oscillator, asked: any) => Generator<unknown>>} */
-export const TASKS = { replay, chain, motion, section, spectra, basin };
+export const TASKS = { replay, chain, motion, section, spectra, sound, basin };
