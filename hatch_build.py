@@ -1,7 +1,8 @@
 """A wheel carries the FMUs that were built from its own sources, so that it runs without compilers.
 
 For a wheel, not for an editable installation, ``build/FORM/NAME.fmu`` of the source tree becomes
-``orchestrate/access/fmus/FORM/NAME.fmu``. What is not there, or was made of other sources, is left
+``orchestrate/access/fmus/FORM/NAME.fmu``, and ``build/wasm/NAME.wasm``, the kernel for web pages,
+``orchestrate/access/fmus/wasm/NAME.wasm``. What is not there, or was made of other sources, is left
 out, and said to be.
 """
 
@@ -38,7 +39,7 @@ class CustomBuildHook(BuildHookInterface):
             return
         root = Path(self.root)
         sys.path.insert(0, str(root))
-        from fmu_src.export import forms
+        from fmu_src.export import forms, webassembly
 
         for form in forms.FORMS:
             for name in forms.MODELS:
@@ -47,3 +48,10 @@ class CustomBuildHook(BuildHookInterface):
                     build_data["force_include"][str(path)] = f"{PLACE}/{form}/{name}.fmu"
                 else:
                     self.app.display_warning(f"{path}: none of these sources, left out")
+        for name, folder in forms.MODELS.items():
+            path = root / "build" / "wasm" / f"{name}.wasm"
+            module = path.read_bytes() if path.is_file() else b""
+            if webassembly.guid_inside(module) == webassembly.guid(folder):
+                build_data["force_include"][str(path)] = f"{PLACE}/wasm/{name}.wasm"
+            else:
+                self.app.display_warning(f"{path}: none of these sources, left out")

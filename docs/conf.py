@@ -6,6 +6,7 @@ from the docstrings. Formulas become MathML, which browsers show without any scr
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from docutils import nodes
@@ -96,7 +97,16 @@ def kind_of(what: Any) -> str:
     return "exception" if issubclass(what, BaseException) else "class"
 
 
+def add_explorer(app: Sphinx, failure: Exception | None) -> None:
+    """The explorer as a page of the site."""
+    if failure is None and app.builder.format == "html":
+        from orchestrate.explorer.page import explore
+
+        explore(output=Path(app.outdir) / "explore.html")
+
+
 def setup(app: Sphinx) -> None:
     """Tell Sphinx about the formulas and the public face."""
     app.add_directive("public", Public)
+    app.connect("build-finished", add_explorer)
     app.add_html_math_renderer("mathml", (as_mathml, None), (as_mathml_block, None))

@@ -53,6 +53,7 @@ def ask(python: Path, folder: Path, **more: str) -> None:
         [str(questions)],
         ["-m", "orchestrate", "sweep", "--eta", "1.0:1.1:0.01", "--transient", "20"],
         ["-m", "orchestrate", "simulate", "--eta", "1.05", "--periods", "5"],
+        ["-m", "orchestrate", "explore", "--no-open"],
         ["-m", "orchestrate", "couple", "--eta0", "1.2:1.25", "--rate", "1e-2"],
     )
     for command in commands:
@@ -95,6 +96,7 @@ def test_the_wheel_carries_nothing_else(wheel):
 
     names = zipfile.ZipFile(wheel).namelist()
     assert sum(name.endswith(".fmu") for name in names) == 6
+    assert sum(name.endswith(".wasm") for name in names) == 2
     roots = {name.split("/")[0] for name in names if ".dist-info" not in name}
     assert roots == {"fmu_src", "orchestrate"}
     assert "orchestrate/py.typed" in names

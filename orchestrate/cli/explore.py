@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError
 from .options import Commands, add_structure, structure_of
-
-if TYPE_CHECKING:
-    import xarray as xr
+from .question import stored
 
 EXAMPLES = """  {program} explore                              the paper's first case
   {program} explore results/orbit_e0.7_D0.005_up.nc   an own sweep: a click replays its responses
@@ -42,8 +40,8 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.result is not None:
         if arguments.set or arguments.structure != "paper":
             raise InputError(f"{arguments.result} with --structure or --set: expected one of them")
-        data = opened(arguments.result)
-    branches = None if arguments.branches is None else opened(arguments.branches)
+        data = stored("RESULT", arguments.result)
+    branches = arguments.branches and stored("--branches", arguments.branches)
     page = explore(
         data,
         output=arguments.output,
@@ -55,20 +53,3 @@ def run(arguments: argparse.Namespace) -> None:
         import webbrowser
 
         webbrowser.open(page.resolve().as_uri())
-
-
-def opened(path: Path) -> xr.Dataset:
-    """A result.
-
-    Raises
-    ------
-    InputError
-    """
-    import xarray as xr
-
-    try:
-        with xr.open_dataset(path) as data:
-            return data.load()
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "no NetCDF file"
-        raise InputError(f"{path}: {reason}; expected a result in a NetCDF file") from None

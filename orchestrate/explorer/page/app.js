@@ -34,7 +34,7 @@ export class App {
     const size = Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
     this.crew = new Crew(worker, compiled, size);
     this.crew.onerror = (text) => this.tell(text);
-    this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.crew, diagram, () => this.refreshDiagram());
+    this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.crew, diagram, table, () => this.refreshDiagram());
     this.inspector = new Inspector(at, this.crew, () => this.refreshMotion());
     this.basin = new BasinPart(at, this.crew, (start) => this.inspect(this.eta, start));
     this.structure = table.structure;

@@ -12,7 +12,7 @@ import { scaleOf, shown, tickText, ticksOf } from "./scale.js";
  * @typedef {[number, number, number, number]} Place x, y, width, height
  */
 
-const MARGIN = { left: 58, right: 18, top: 20, bottom: 38 };
+const MARGIN = { left: 66, right: 18, top: 20, bottom: 38 };
 
 /** The plotting area of a picture. @param {import("./picture.js").Size} size @returns {Place} */
 export function areaOf({ width, height }) {

@@ -14,6 +14,7 @@ import { sameStructure } from "./structure.js";
  */
 
 const QUICK = { transient: 100, samples: 40, tolerance: 1e-2 };
+const FINE = 7900; // steps over the paper's range, as `orchestrate sweep` has them
 const LEAST = 1e-6; // width of a region
 
 export class Regions {
@@ -21,10 +22,12 @@ export class Regions {
    * @param {HTMLCanvasElement} canvas
    * @param {import("./crew.js").Crew} crew
    * @param {Diagram | null} shipped
+   * @param {{low: number, high: number}} whole
    * @param {(complete: boolean) => void} told when something has come
    */
-  constructor(canvas, crew, shipped, told) {
+  constructor(canvas, crew, shipped, whole, told) {
     this.crew = crew;
+    this.whole = whole;
     this.shipped = shipped;
     this.told = told;
     this.view = new DiagramView(canvas);
@@ -35,6 +38,8 @@ export class Regions {
     /** @type {import("./crew.js").Order | null} */
     this.order = null;
     this.timer = 0;
+    /** @type {Diagram | null} */
+    this.coarse = null; // to be refined once it is complete
     this.quick = false; // whether the present diagram is one of low resolution
     /** @type {number | undefined} */
     this.first = undefined; // ms until a response came,
@@ -59,6 +64,16 @@ export class Regions {
     const settings = quick ? QUICK : USUAL;
     const diagram = empty(structure, widened(region), quick ? 160 : this.count, settings);
     this.enter(diagram, parent, quick);
+    const { low, high } = this.whole;
+    this.coarse = !quick && !shipped && region.low === low && region.high === high ? diagram : null;
+  }
+
+  /** The whole again, as fine as the paper's Figure 6. @param {Diagram} diagram */
+  refine(diagram) {
+    this.coarse = null;
+    const fine = empty(diagram.structure, diagram, FINE, USUAL);
+    this.seen[this.place] = fine;
+    this.compute(fine, diagram);
   }
 
   /** The diagram whose states a new one may begin from. @param {Region} region */
@@ -100,6 +115,7 @@ export class Regions {
       this.took = { first: this.first ?? 0, all: performance.now() - began };
       this.view.complete();
       this.told(true);
+      if (this.coarse === diagram) this.refine(diagram);
     });
     this.told(false);
   }
