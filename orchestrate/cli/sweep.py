@@ -81,9 +81,11 @@ def report(data: xr.Dataset) -> None:
         return
     top = data.isel(data.xi_rel_max.argmax(...))
     where = place(name, float(top[name]))
-    print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g} at {where}")
-    print(f"largest displacement: {float(data.x1_max.max()):.4g} m of mass 1, ", end="")
-    print(f"{float(data.x2_max.max()):.4g} m of mass 2")
+    metres = float(top.xi_rel_max * top.amplitude * top.eta**2)
+    print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g}, {metres:.4g} m, at {where}")
+    for mass in (1, 2):
+        far, felt = float(data[f"x{mass}_max"].max()), float(data[f"a{mass}_max"].max())
+        print(f"mass {mass}: largest displacement {far:.4g} m, acceleration {felt:.4g} m/s2")
     kinds = data.multiplicity
     irregular = (kinds == 0).any("direction") if "direction" in kinds.dims else kinds == 0
     print(f"periodic: {int((kinds > 0).sum())} of {kinds.size} responses")

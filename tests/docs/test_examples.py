@@ -23,7 +23,7 @@ SAID = {  # something of what each prints
     "lyapunov_sweep": "chaotic at",
     "own_motor": "delaminated: the speed jumps at 6.3",
     "parameter_map": "of the map repeats after one period",
-    "resonance_curve": "bonded           : 3.18 mm at 12.7 Hz",
+    "resonance_curve": "bonded, up       : 3.18 mm at 12.7 Hz",
     "time_history": "largest gap: 7.80 mm",
 }
 

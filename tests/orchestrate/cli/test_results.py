@@ -41,7 +41,7 @@ def test_a_sweep(ask, folder):
     done = ask(*SWEEP)
     assert done.code == 0
     assert sorted(fingerprint(folder)) == [f"{NAME}.nc", f"{NAME}.png"]
-    assert "largest xi_Rel: " in done.out and str(folder / f"{NAME}.png") in done.out
+    assert "largest gap: xi_Rel = " in done.out and str(folder / f"{NAME}.png") in done.out
     assert shows_something(folder / f"{NAME}.png")
     data, fmu = xr.load_dataset(folder / f"{NAME}.nc"), find(OSCILLATOR)
     assert data.xi_rel.dims == ("eta", "sample") and data.xi_rel.shape == (7, 12)
