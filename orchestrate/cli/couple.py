@@ -98,14 +98,12 @@ def add_schedule(parser: argparse.ArgumentParser) -> None:
     option(
         "--step",
         type=float,
-        default=0.1,
-        help="communication step, in 1/omega (default: %(default)s)",
+        help="communication step, in 1/omega (default: controlled by its defect, at most 0.4)",
     )
     option(
         "--tolerance",
         type=float,
-        default=0.0,
-        help="halve steps with a larger defect, over the work exchanged in them (default: never)",
+        help="of that control: largest defect over the work exchanged in a step (default: 1e-8)",
     )
     option("--algorithm", default="rollback", help="master, see the manual (default: %(default)s)")
 
@@ -153,7 +151,8 @@ def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -
         increment=arguments.increment * volts,
         back=not arguments.one_way,
     )
-    scheme = scheme_of(structure, arguments.step / omega, arguments.algorithm, arguments.tolerance)
+    step = arguments.step and arguments.step / omega
+    scheme = scheme_of(structure, step, arguments.algorithm, arguments.tolerance)
     states = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
     chosen = [arguments.only] if arguments.only else list(states)
     drive_name = Path(arguments.drive).stem
@@ -224,7 +223,7 @@ def extrapolated(arguments: argparse.Namespace, structure: Structure, drive: Dri
         rates=[rate * volts * omega for rate in rates_of(arguments)],
         back=not arguments.one_way,
         settle=arguments.settle / omega,
-        step=arguments.step / omega,
+        step=arguments.step and arguments.step / omega,
         **running,
     )
     print(f"{'jump':6}{'bonded':>24}{'delaminated':>24}{'change':>12}   in V, at rate 0")

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 MOST_STEPS = 1e9
+TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
+LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 Variable = tuple[str, Sequence[float] | Sequence[str], dict[str, str]]
 
 
@@ -66,7 +68,7 @@ class CoupleJob(Job):
     control: Controller | None = None
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
-    chunk: ClassVar[int] = 10_000
+    chunk: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
@@ -329,7 +331,12 @@ def schedule_of(
     return replace(ramp, spin_up=float(spin_up), low=low) if spin_up else ramp
 
 
-def scheme_of(structure: Structure, step: float | None, algorithm: str, tolerance: float) -> Scheme:
+def scheme_of(
+    structure: Structure,
+    step: float | None,
+    algorithm: str = "rollback",
+    tolerance: float | None = None,
+) -> Scheme:
     """A scheme from the arguments of :func:`couple`.
 
     Raises
@@ -337,7 +344,11 @@ def scheme_of(structure: Structure, step: float | None, algorithm: str, toleranc
     InputError
     """
     omega = structure.omega
-    step = 0.1 / omega if step is None else step
+    if tolerance is None:
+        controlled = step is None and Scheme(algorithm).goes_back
+        tolerance = TOLERANCE if controlled else 0.0
+    if step is None:
+        step = (LONGEST if tolerance else FIXED) / omega
     rounding = 1.0 + 1e-12
     if not 1e-4 / rounding <= step * omega <= rounding:
         raise InputError(f"step = {step} s: expected {1e-4 / omega:g} <= step <= {1.0 / omega:g}")
@@ -391,7 +402,7 @@ def couple(
     control: Controller | None = None,
     step: float | None = None,
     algorithm: str = "rollback",
-    tolerance: float = 0.0,
+    tolerance: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Couple a structure with a motor of limited power, and take the voltage up and down.
@@ -429,11 +440,14 @@ def couple(
         ``voltage``, once a communication step, by the speed. There are no jumps to be found then;
         ``passage_time`` says whether the motor has passed the resonance.
     step : float, optional
-        Communication step, s; 0.1/omega by default.
+        Communication step, s. By default its defect controls it, up to 0.4/omega; with an
+        ``algorithm`` that cannot go back it is 0.1/omega.
     algorithm : str
         Of :data:`orchestrate.weak_drive.master.ALGORITHMS`.
-    tolerance : float
-        Halve steps whose defect is a larger part of the work exchanged in them; 0: never.
+    tolerance : float, optional
+        Of the control: halve a step whose defect is a larger part of the work exchanged in it, and
+        take longer ones again where they will do. 1e-8 by default, where no ``step`` is given, else
+        0: no control.
     **running
         ``jobs``, ``cluster``, ``progress``, ``store`` and so on, see
         :class:`orchestrate.running.options.Running`.

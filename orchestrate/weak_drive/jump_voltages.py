@@ -177,7 +177,7 @@ def jump_voltages(
     settle : float, optional
         Time at the first voltage before, s; 300/omega by default.
     step : float, optional
-        Communication step, s; 0.1/omega by default.
+        Communication step, s; controlled by its defect by default.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`; the ramps
         run side by side.
@@ -211,7 +211,7 @@ def jump_voltages(
         ramp(schedule_of(structure, drive, voltage, None, rate, settle, 0.0, back))
         for rate in sorted(given)
     )
-    scheme = scheme_of(structure, step, "rollback", 0.0)
+    scheme = scheme_of(structure, step)
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme)
     return answer(job, running, finder(running))
 

@@ -67,14 +67,17 @@ class Scheme:
     algorithm : str
         Of ``ALGORITHMS``.
     h : float
-        Communication step, s.
+        Communication interval, s: the longest step, and all of them without ``tolerance``.
     matched : bool
         Exchange forces and accelerations that are exact on average; else through points only.
     tolerance : float
-        Halve steps whose defect is larger than this part of the work exchanged in them; 0: never.
-        Needs an algorithm that goes back.
-    shortest : float
-        Of ``h``: shorter steps are not halved.
+        Step control: a step is halved whose defect is larger than this part of the work exchanged
+        in it, and the next is twice as long where it may be, up to ``h``; 0: all are ``h``. Needs
+        an algorithm that goes back.
+    halvings : int
+        How often ``h`` is halved at most.
+    easy : float
+        Of the tolerance: after such a defect a step of twice the length is tried.
     converged : float
         Change of the force between two iterations, over its size, that counts as none.
     beginning : tuple of int
@@ -90,7 +93,8 @@ class Scheme:
     h: float = 0.1
     matched: bool = True
     tolerance: float = 0.0
-    shortest: float = 1e-3
+    halvings: int = 10
+    easy: float = 1.0 / 64.0
     converged: float = 1e-14
     beginning: tuple[int, ...] = (1, 1, 2, 4, 8)
 
@@ -151,8 +155,10 @@ class Master:
     balance : EnergyBalance
     h_before : float
         Length of the last step, s.
+    level : int
+        How often ``h`` is halved for the next step.
     halved : int
-        Steps that the tolerance has halved.
+        Steps that the tolerance has refused.
     watch : callable, optional
         Called at the end of every step, halves too, with what was done and its length, before the
         master goes on.
@@ -170,6 +176,7 @@ class Master:
         self.shaker = Channel(shaker, ShakerInputs._fields, ShakerOutputs._fields)
         self.scheme, self._algorithm = scheme, ALGORITHMS[scheme.algorithm]
         self.time, self.halved, self.voltage = start_time, 0, math.nan
+        self.level = 0
         self.motion, self.shaking = self._motion(), self._shaking()
         self.watch: Callable[[Step, float], None] | None = None
         self.slope = 0.0  # of the force, at the present communication point
@@ -179,17 +186,41 @@ class Master:
         self._do = self._one_after_the_other if scheme.passes else self._both_at_once
 
     def step(self, voltage: float, h: float | None = None) -> None:
-        """One communication step at a constant voltage, V; of length ``h``, s, where given."""
+        """One communication interval at a constant voltage, V; of length ``h``, s, where given."""
         h = h or self.scheme.h
         begin = self.time
-        known = self.h_before or self.scheme.goes_back
-        parts = (1,) if known else self.scheme.beginning
-        for part in parts:
-            self._step(voltage, h * part / sum(parts))
+        if self.scheme.tolerance:
+            self._parts_by_defect(voltage, h)
+        else:
+            known = self.h_before or self.scheme.goes_back
+            parts = (1,) if known else self.scheme.beginning
+            for part in parts:
+                self._step(voltage, h * part / sum(parts))
         self.time = begin + h
 
-    def _step(self, voltage: float, h: float) -> None:
-        """A step, or two halves of it."""
+    def _parts_by_defect(self, voltage: float, h: float) -> None:
+        """An interval in steps of h, h/2, h/4 ... as their defects ask for.
+
+        A step is halved where its defect is too large. After one with a defect that twice the
+        length would still do with, the next is twice as long, where that ends on its own grid: so
+        the interval's end is met without a rest, and all lengths are exact.
+        """
+        most = 1 << self.scheme.halvings
+        done = 0
+        while done < most:
+            size = most >> self.level
+            defect = self._step(voltage, h / (1 << self.level), self.level < self.scheme.halvings)
+            if defect > self.scheme.tolerance and self.level < self.scheme.halvings:
+                self.level += 1
+                self.halved += 1
+                continue
+            done += size
+            even = done % (2 * size) == 0
+            if defect < self.scheme.tolerance * self.scheme.easy and even and self.level:
+                self.level -= 1
+
+    def _step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
+        """A step, unless it is refused for its defect; the defect over the work exchanged in it."""
         if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
             self.voltage = voltage
             self.shaking = self._look(self.motion)
@@ -197,23 +228,21 @@ class Master:
         force = self.force_of(done.motion, h)
         taken = done.shaking.box_force_work - self.shaking.box_force_work
         defect = taken - work(force, self.shaking.box_velocity, done.acceleration, h)
-        given = done.shaking.motor_energy - self.shaking.motor_energy
-        if self._too_large(defect, abs(taken) + abs(given), h):
+        size = self._over_exchanged(done, taken, defect)
+        if may_refuse and size > self.scheme.tolerance:
             self.oscillator.restore()
             self.shaker.restore()
-            self.halved += 1
-            self._step(voltage, 0.5 * h)
-            self._step(voltage, 0.5 * h)
-            return
+            return size
         self.slope = end_slope(force, h)
         self.balance.add(self.motion, done.motion, done.acceleration, defect, h)
         self._go_on(done, h)
+        return size
 
-    def _too_large(self, defect: float, exchanged: float, h: float) -> bool:
-        """Whether a step with this defect is to be halved."""
-        tolerance = self.scheme.tolerance
-        long = h > self.scheme.shortest * self.scheme.h
-        return bool(tolerance) and long and abs(defect) > tolerance * exchanged
+    def _over_exchanged(self, done: Step, taken: float, defect: float) -> float:
+        """A defect over the work that motor, box and masses exchange in the step."""
+        given = done.shaking.motor_energy - self.shaking.motor_energy
+        exchanged = abs(taken) + abs(given)
+        return abs(defect) / exchanged if exchanged else 0.0
 
     def _go_on(self, done: Step, h: float) -> None:
         """To the step's end."""
@@ -338,16 +367,17 @@ class Master:
     def memory(self) -> list[float]:
         """What the master itself remembers: with both FMUs' states, all that a run goes on from."""
         own = [self.time, self.voltage, self.slope, self.force_before, self.h_before]
-        own += [self.acceleration_before, self.jerk_before]
+        own += [self.acceleration_before, self.jerk_before, float(self.level)]
         return [*own, *self.motion, *self.shaking, *self.balance.memory()]
 
     def remember(self, numbers: Sequence[float]) -> None:
         """The inverse of :meth:`memory`."""
         self.time, self.voltage, self.slope, self.force_before, self.h_before = numbers[:5]
         self.acceleration_before, self.jerk_before = numbers[5:7]
-        motion = 7 + len(OscillatorOutputs._fields)
+        self.level = int(numbers[7])
+        motion = 8 + len(OscillatorOutputs._fields)
         shaking = motion + len(ShakerOutputs._fields)
-        self.motion = OscillatorOutputs(*numbers[7:motion])
+        self.motion = OscillatorOutputs(*numbers[8:motion])
         self.shaking = ShakerOutputs(*numbers[motion:shaking])
         self.balance.remember(numbers[shaking:])
 

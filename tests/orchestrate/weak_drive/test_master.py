@@ -105,19 +105,52 @@ def test_a_small_defect_does_not_prove_accuracy(jumping):
     assert error > 5e-4
 
 
-def test_steps_are_halved_where_their_defect_is_large(quick):
-    """Around impacts and wherever the step is too long; the motion is the better for it."""
-    errors, halved = {}, {}
-    for tolerance in (0.0, 1e-7):
-        with master(QUICK, Scheme("rollback", 0.4, tolerance=tolerance), quick.state) as m:
-            rows = [quick.state]
-            for _ in range(round(quick.time / 0.4)):
-                m.step(quick.voltage)
-                rows.append(state_of(m))
-            halved[tolerance] = m.halved
-        errors[tolerance] = np.abs(np.array(rows) - quick.truth[::2])[:, 0].max()
-    assert halved[0.0] == 0 < halved[1e-7]
-    assert errors[1e-7] < 0.1 * errors[0.0]
+def controlled(case, tolerance):
+    """Error of the displacements over the amplitude with the step control, and the steps done."""
+    lengths = []
+    scheme = Scheme("rollback", 0.4, tolerance=tolerance)
+    with master(case.system, scheme, case.state) as m:
+        m.watch = lambda done, h: lengths.append(h)
+        rows = [case.state]
+        for _ in range(round(case.time / 0.4)):
+            m.step(case.voltage)
+            rows.append(state_of(m))
+    error = np.abs(np.array(rows) - case.truth[::2])[:, [0, 2]].max()
+    return error / case.amplitude, lengths
+
+
+@pytest.mark.parametrize("name", ["quick", "jumping"])
+def test_the_control_keeps_the_error_by_the_tolerance(name, request):
+    """As cheap as fixed steps of 0.1, and as good where the force jumps at impacts."""
+    case = request.getfixturevalue(name)
+    for tolerance in (1e-6, 1e-8):
+        error, lengths = controlled(case, tolerance)
+        assert error < 20.0 * tolerance, (tolerance, error)
+        assert sum(lengths) == pytest.approx(case.time)
+        assert {0.4 / 2**k for k in range(11)}.issuperset(lengths)
+    assert len(lengths) < 1.1 * case.time / 0.1
+    fixed = case.errors("rollback", 0.1, columns=(0, 2))[0]
+    assert error < (fixed if name == "quick" else 0.05 * fixed)
+
+
+def test_the_control_goes_on_with_the_same_bits():
+    """Its memory has the length of the next step."""
+    scheme = Scheme("rollback", 0.4, tolerance=1e-8)
+    with master(QUICK, scheme, rest(1.2)) as m:
+        for _ in range(41):
+            m.step(1.5)
+        kept = m.memory(), m.oscillator.instance.save_state(), m.shaker.instance.save_state()
+        assert m.level > 0
+        for _ in range(41):
+            m.step(1.5)
+        expected = state_of(m)
+    with master(QUICK, scheme, rest(1.2)) as m:
+        m.oscillator.instance.restore_state(kept[1])
+        m.shaker.instance.restore_state(kept[2])
+        m.remember(kept[0])
+        for _ in range(41):
+            m.step(1.5)
+        assert state_of(m) == expected
 
 
 @pytest.mark.parametrize("form", ["fmi2", "fmi3"])
