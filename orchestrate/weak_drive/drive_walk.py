@@ -36,12 +36,15 @@ class Motion(NamedTuple):
     multipliers : ndarray of complex
         Floquet multipliers, the largest first.
     period : Period
+    angle : float
+        Of the motor where the period begins, rad.
     """
 
     root: Root
     matrix: Floats
     multipliers: np.ndarray
     period: Period
+    angle: float
 
 
 class Bifurcation(NamedTuple):
@@ -123,7 +126,8 @@ def motion_at(shooter: Shooter, root: Root, ahead: Floats, central: bool = False
     matrix = shooter.renew(root.unknowns, central=central)
     tangent = null_vector(np.vstack([matrix, ahead]))
     values = shooter.multipliers()
-    return Motion(replace(root, tangent=tangent), matrix, values, shooter.look(root.unknowns))
+    period = shooter.look(root.unknowns)
+    return Motion(replace(root, tangent=tangent), matrix, values, period, shooter.angle)
 
 
 def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
@@ -152,7 +156,7 @@ def clear_start(shooter: Shooter, motion: Motion) -> Motion:
     if tangent[-2:] @ root.tangent[-2:] < 0.0:  # voltage and speed are those of before
         tangent = -tangent
     moved = replace(root, unknowns=unknowns, tangent=tangent)
-    return motion._replace(root=moved, matrix=matrix)
+    return motion._replace(root=moved, matrix=matrix, angle=shooter.angle)
 
 
 def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: Pace) -> Leg:

@@ -93,7 +93,7 @@ class Scheme:
     h: float = 0.1
     matched: bool = True
     tolerance: float = 0.0
-    halvings: int = 10
+    halvings: int = 6
     easy: float = 1.0 / 64.0
     converged: float = 1e-14
     beginning: tuple[int, ...] = (1, 1, 2, 4, 8)
@@ -208,7 +208,7 @@ class Master:
         most = 1 << self.scheme.halvings
         done = 0
         while done < most:
-            size = most >> self.level
+            size, last_impact = most >> self.level, self.motion.impact_time
             defect = self._step(voltage, h / (1 << self.level), self.level < self.scheme.halvings)
             if defect > self.scheme.tolerance and self.level < self.scheme.halvings:
                 self.level += 1
@@ -218,6 +218,13 @@ class Master:
             even = done % (2 * size) == 0
             if defect < self.scheme.tolerance * self.scheme.easy and even and self.level:
                 self.level -= 1
+            if self.motion.impact_time != last_impact:
+                self._begin_anew()
+
+    def _begin_anew(self) -> None:
+        """Nothing is extrapolated over an impact: the force has a corner there, or jumps."""
+        self.slope = self.h_before = 0.0
+        self.shaking = self._look(self.motion)
 
     def _step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
         """A step, unless it is refused for its defect; the defect over the work exchanged in it."""

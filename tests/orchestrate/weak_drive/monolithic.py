@@ -4,6 +4,8 @@ This is what the co-simulation has to agree with. A state is x1, v1, x2, v2, y, 
 the motor's current.
 """
 
+import math
+
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -17,11 +19,15 @@ class Monolith:
     ----------
     structure : Structure
     drive : Drive
-    voltage : float
+    voltage : float or callable
+        V, or V at a time in s.
+    tolerance : mapping, optional
+        Of ``solve_ivp``.
     """
 
-    def __init__(self, structure, drive, voltage):
-        self.o, self.s, self.voltage = structure, drive, voltage
+    def __init__(self, structure, drive, voltage, tolerance=None):
+        self.o, self.s, self.tolerance = structure, drive, tolerance or TOLERANCE
+        self.voltage = voltage if callable(voltage) else lambda time: voltage
         self.unbalance = drive.unbalance_mass * drive.unbalance_radius
 
     def pulls(self, state):
@@ -30,23 +36,30 @@ class Monolith:
         o = self.o
         return o.k1 * x1 + o.d1 * v1, o.k2 * x2 + o.d2 * v2
 
-    def electric(self, w, i):
+    def electric(self, w, i, time):
         """Torque of the motor, and the rate of its current."""
         s = self.s
-        drop = self.voltage - s.motor_constant * w
+        drop = self.voltage(time) - s.motor_constant * w
         if s.armature_inductance > 0.0:
             rate = (drop - s.armature_resistance * i) / s.armature_inductance
             return s.motor_constant * i, rate
         return s.motor_constant * drop / s.armature_resistance, 0.0
 
-    def rates(self, state, together):
+    def rates(self, state, together, time=0.0):
         """Right-hand side in flight, or in contact."""
+        state = np.asarray(state).tolist()  # plain floats take half the time
         _, v1, _, v2, y, v, phi, w, i = state
         s, o = self.s, self.o
         p1, p2 = self.pulls(state)
-        torque, current_rate = self.electric(w, i)
-        c = self.unbalance * np.cos(phi)
-        p = self.unbalance * w * w * np.sin(phi) - s.box_damping * v - s.box_stiffness * y + p1 + p2
+        torque, current_rate = self.electric(w, i, time)
+        c = self.unbalance * math.cos(phi)
+        p = (
+            self.unbalance * w * w * math.sin(phi)
+            - s.box_damping * v
+            - s.box_stiffness * y
+            + p1
+            + p2
+        )
         determinant = s.box_mass * s.rotor_inertia - c * c
         a = (s.rotor_inertia * p - c * torque) / determinant
         turn = (s.box_mass * torque - c * p) / determinant
@@ -54,7 +67,7 @@ class Monolith:
             a1 = a2 = -(p1 + p2) / (o.m1 + o.m2) - a
         else:
             a1, a2 = -p1 / o.m1 - a, -p2 / o.m2 - a
-        return np.array([v1, a1, v2, a2, v, a, w, turn, current_rate])
+        return [v1, a1, v2, a2, v, a, w, turn, current_rate]
 
     def parting(self, state):
         """Acceleration of the gap, were the masses free: negative where they are pressed."""
@@ -84,7 +97,7 @@ class Monolith:
         rows, state = [np.array(state)], np.array(state)
         while now < times[-1]:
             found = self.phase(now, state, times, together)
-            rows += list(found.y.T)
+            rows += list(np.reshape(found.y, (len(state), -1)).T)
             if not (found.t_events and found.t_events[0].size):
                 break
             now, state = found.t_events[0][0], found.y_events[0][0]
@@ -104,10 +117,10 @@ class Monolith:
 
         end.terminal, end.direction = True, 1.0 if together else -1.0
         return solve_ivp(
-            lambda t, z: self.rates(z, together),
+            lambda t, z: self.rates(z, together, t),
             (now, times[-1]),
             state,
             t_eval=times[times > now],
             events=None if self.o.bonded else end,
-            **TOLERANCE,
+            **self.tolerance,
         )

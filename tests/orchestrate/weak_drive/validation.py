@@ -1,0 +1,341 @@
+"""Random sets against one system of equations: trajectories, folds, Neimark-Sacker points, jumps.
+
+``python -m tests.orchestrate.weak_drive.validation`` prints the table of docs/coupling.md. The
+truth is :class:`.monolithic.Monolith`, with shooting of its own: nothing of it knows the FMUs but
+the state that it starts from.
+"""
+
+import argparse
+import time
+
+import numpy as np
+
+from orchestrate import Drive, Structure, jump_voltages
+from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.weak_drive import averaged
+from orchestrate.weak_drive.couple import scheme_of
+from orchestrate.weak_drive.drive_branch import DriveBranchJob
+from orchestrate.weak_drive.drive_walk import FLIP, FOLD, TORUS, Pace
+from orchestrate.weak_drive.jumps import Way, find_jump
+
+from .coupled import System, master, rest, state_of
+from .monolithic import Monolith
+
+SEED = 13
+RANGES = {  # of what a laboratory would build
+    **{"m1": (0.5, 5.0), "omega": (20.0, 200.0), "length": (1e-4, 1e-3), "constant": (0.02, 0.2)},
+    **{"mu": (0.5, 2.0), "kappa": (1.05, 2.0), "D1": (0.005, 0.02), "D2": (0.005, 0.02)},
+    **{"e": (0.3, 0.9), "beta": (0.1, 0.4), "epsilon": (3e-4, 2e-3), "b": (0.02, 0.1)},
+    **{"Omega_b": (0.05, 0.3), "D_b": (0.005, 0.05), "lag": (0.0, 1.0)},
+}
+RATES = (4e-5, 2e-5, 1e-5)
+
+
+def random_sets(count, seed=SEED):
+    """Structures with their drives, each number uniform in its range."""
+    rng = np.random.default_rng(seed)
+    return [made({name: rng.uniform(*ends) for name, ends in RANGES.items()}) for _ in range(count)]
+
+
+def made(v):
+    """A structure and its drive by the numbers of ``RANGES``."""
+    m1, omega = v["m1"], v["omega"]
+    k1, m2 = m1 * omega**2, v["mu"] * m1
+    dampers = {"d1": 2.0 * v["D1"] * omega * m1, "d2": 2.0 * v["D2"] * omega * m2}
+    structure = Structure(m1=m1, m2=m2, k1=k1, k2=v["kappa"] * k1, e=v["e"], **dampers)
+    drive = Drive.nondimensional(
+        **{name: v[name] for name in ("beta", "epsilon", "b", "Omega_b", "D_b")},
+        structure=structure,
+        length=v["length"],
+        motor_constant=v["constant"],
+    )
+    return System(structure, drive).with_lag(v["lag"] / omega)
+
+
+def below_resonance(system, share=0.985):
+    """A speed in rad/s and the voltage that holds it, by the averaged theory."""
+    bonded = system.as_bonded()
+    Omega = share * averaged.resonance(*bonded)
+    volts = system.drive.volts(system.structure)
+    return Omega * system.structure.omega, float(averaged.no_load_speed(*bonded, Omega)) * volts
+
+
+def settled_state(system, voltage, speed, time=300.0):
+    """A state after a time in 1/omega, in flight unless bonded, the angle in the first turn."""
+    with master(system, scheme_of(system.structure, None), rest(speed)) as m:
+        while m.time * system.structure.omega < time or (
+            m.motion.x1 == m.motion.x2 and not system.structure.bonded
+        ):
+            m.step(voltage)
+        state = state_of(m)
+    return [*state[:6], state[6] % (2.0 * np.pi), *state[7:]]
+
+
+# -- trajectories ----------------------------------------------------------------------------------
+
+
+def trajectory_error(system, time=40.0):
+    """Largest error of the displacements over the amplitude, and the impacts on the way."""
+    speed, voltage = below_resonance(system)
+    state = settled_state(system, voltage, speed)
+    scheme = scheme_of(system.structure, None)
+    rows = [state]
+    with master(system, scheme, state) as m:
+        for _ in range(round(time / system.structure.omega / scheme.h)):
+            m.step(voltage)
+            rows.append(state_of(m))
+    times = scheme.h * np.arange(len(rows))
+    truth, impacts = Monolith(*system, voltage).solve(state, times)
+    errors = np.abs(np.array(rows) - truth)[:, [0, 2]]
+    return errors.max() / np.abs(truth[:, 0]).max(), impacts
+
+
+# -- bifurcations ----------------------------------------------------------------------------------
+
+
+class Whole:
+    """Shooting on the monolithic solution, at a given length of the period."""
+
+    def __init__(self, system, turns, angle, length):
+        self.system, self.turns, self.angle = system, turns, angle
+        bonded, omega = system.structure.bonded, system.structure.omega
+        inductive = system.drive.armature_inductance > 0.0
+        self.places = [0, 1, *([] if bonded else [2, 3]), 4, 5, 7, *([8] if inductive else [])]
+        self.volts = system.drive.volts(system.structure)
+        current = self.volts / system.drive.armature_resistance
+        self.units = np.array([length, length * omega] * 3 + [1.0, omega, current])
+
+    def after(self, state, voltage, period):
+        """The whole state over its units a period later."""
+        whole = Monolith(*self.system, voltage * self.volts)
+        return whole.solve(state * self.units, np.array([0.0, period]))[0][-1] / self.units
+
+    def full(self, unknowns):
+        """The whole state from those that are free."""
+        state = np.zeros(9)
+        state[self.places] = unknowns[:-1]
+        state[6] = self.angle
+        if self.system.structure.bonded:
+            state[2:4] = state[:2]
+        return state
+
+    def residual(self, unknowns, period):
+        """What a period changes."""
+        state = self.full(unknowns)
+        change = self.after(state, unknowns[-1], period) - state
+        change[6] -= 2.0 * np.pi * self.turns
+        return change[[*self.places, 6]]
+
+    def jacobian(self, unknowns, period, change=1e-6):
+        """By the unknowns, and by the period's relative length."""
+        columns = []
+        for i in range(len(unknowns)):
+            moved = np.eye(len(unknowns))[i] * change
+            ends = [self.residual(unknowns + sign * moved, period) for sign in (1.0, -1.0)]
+            columns.append((ends[0] - ends[1]) / (2.0 * change))
+        ends = [self.residual(unknowns, period * (1.0 + sign * change)) for sign in (1.0, -1.0)]
+        return np.stack([*columns, (ends[0] - ends[1]) / (2.0 * change)], axis=1)
+
+    def orbit(self, unknowns, period):
+        """Unknowns of the motion with this period, and the Jacobian there."""
+        matrix = self.jacobian(unknowns, period)
+        for _ in range(20):
+            left = self.residual(unknowns, period)
+            if np.abs(left).max() < 1e-9:
+                return unknowns, self.jacobian(unknowns, period)
+            unknowns = unknowns - np.linalg.solve(matrix[:, :-1], left)
+        raise ArithmeticError(f"no orbit: {np.abs(left).max()}")
+
+    def multipliers(self, matrix):
+        """Of the map from the angle to itself."""
+        count = len(self.places)
+        flow = matrix[:, :count] + np.eye(count + 1, count)
+        section = flow[:count] - np.outer(matrix[:count, -1], flow[count]) / matrix[count, -1]
+        return np.linalg.eigvals(section)
+
+    def test(self, kind, unknowns, period):
+        """What is 0 at a bifurcation, and the motion there."""
+        found, matrix = self.orbit(unknowns, period)
+        if kind == FOLD:
+            slope = np.linalg.solve(matrix[:, :-1], -matrix[:, -1])
+            return float(slope[-1]), found
+        values = self.multipliers(matrix)
+        if kind == FLIP:
+            return float(values.real.min() + 1.0), found
+        pairs = np.abs(values[np.abs(values.imag) > 1e-6])
+        return float(pairs[np.argmin(np.abs(pairs - 1.0))] - 1.0), found
+
+    def locate(self, kind, unknowns, period):
+        """The voltage over K omega at a bifurcation near a motion, by secants."""
+        places, values = [period, period * (1.0 + 1e-5)], []
+        for place in places:
+            value, unknowns = self.test(kind, unknowns, place)
+            values.append(value)
+        for _ in range(6):
+            slope = (values[-1] - values[-2]) / (places[-1] - places[-2])
+            places.append(places[-1] - values[-1] / slope)
+            value, unknowns = self.test(kind, unknowns, places[-1])
+            values.append(value)
+            if abs(places[-1] - places[-2]) < 1e-7 * period:
+                break
+        return float(unknowns[-1])
+
+
+def branch_of(system, most=120, range_=(0.95, 1.15)):
+    """Legs of a branch, and the unit of length."""
+    omega = system.structure.omega
+    resonance = averaged.resonance(*system.as_bonded())
+    speeds = tuple(share * resonance * omega for share in range_)
+    pace = Pace(0.1, most)
+    job = DriveBranchJob("branch", *system, speeds, pace, period=2, steps=48, settle=600.0 / omega)
+    grid = np.linspace(*(speed / omega for speed in speeds), 2001)
+    length = float(averaged.amplitude(*system.as_bonded(), grid).max()) * system.drive.length
+    with (
+        Instance(find(OSCILLATOR).path) as one,
+        Instance(find(SHAKER).path) as other,
+    ):
+        return job.legs((one, other), system.structure), length
+
+
+def bifurcations(system):
+    """Kind, speed over omega, voltage over K omega by the branch and by the whole system."""
+    legs, length = branch_of(system)
+    found = []
+    for leg in legs:
+        for event in leg.bifurcations:
+            unknowns, turns = event.motion.root.unknowns, event.motion.period.revolutions
+            whole = Whole(system, turns, event.motion.angle, length)
+            period = turns * 2.0 * np.pi / (unknowns[-1] * system.structure.omega)
+            try:
+                truth = whole.locate(event.kind, unknowns[:-1], period)
+            except (ArithmeticError, np.linalg.LinAlgError):
+                truth = np.nan
+            found.append((event.kind, float(unknowns[-1]), float(unknowns[-2]), truth))
+    return found
+
+
+# -- jumps -----------------------------------------------------------------------------------------
+
+
+def monolithic_jump(system, state, voltages, rate):
+    """The voltage over K omega at which the monolithic solution jumps on a ramp."""
+    omega, volts = system.structure.omega, system.drive.volts(system.structure)
+    first, last = voltages
+    times = np.arange(0.0, (last - first) / rate, 0.2) / omega
+    whole = Monolith(
+        *system,
+        lambda time: volts * (first + rate * omega * time),
+        {"method": "DOP853", "rtol": 1e-9, "atol": 1e-12},
+    )
+    rows = whole.solve(state, times)[0]
+    return jump_of(system, times, rows[:, 6], lambda time: first + rate * omega * time)
+
+
+def jump_of(system, times, angles, eta0):
+    """The jump up of a motion by the angle over time."""
+    from scipy.interpolate import CubicSpline
+
+    turns = 2.0 * np.pi * np.arange(np.ceil(angles[0] / (2.0 * np.pi)), angles[-1] // (2.0 * np.pi))
+    ends = CubicSpline(angles, times)(turns)
+    speed = 2.0 * np.pi / np.diff(ends) / system.structure.omega
+    way = Way(ends[1:] * system.structure.omega, eta0(ends[1:]), speed)
+    jump = find_jump(way, system.drive.b(system.structure), up=True)
+    return float("nan") if jump is None else float(way.eta0[jump.row])
+
+
+def coupled_jump(system, state, voltages, rate):
+    """The same of the FMUs."""
+    omega, volts = system.structure.omega, system.drive.volts(system.structure)
+    first, last = voltages
+    scheme = scheme_of(system.structure, None)
+    times, angles = [0.0], [state[6]]
+    with master(system, scheme, state) as m:
+        while m.time * omega * rate < last - first:
+            m.step(volts * (first + rate * omega * (m.time + 0.5 * scheme.h)))
+            times.append(m.time)
+            angles.append(m.shaking.angle)
+    eta0 = lambda time: first + rate * omega * time  # noqa: E731
+    return jump_of(system, np.array(times), np.array(angles), eta0)
+
+
+def ramp_jumps(system, fold, rate=1e-4):
+    """Jumps up on a ramp past a fold: of the FMUs and of the monolithic solution."""
+    speed, volts = below_resonance(system)
+    unit = system.drive.volts(system.structure)
+    start = max(volts / unit, fold - 0.05)
+    state = settled_state(system, volts, speed)
+    ends = (volts / unit, fold + 0.06)
+    del start
+    return coupled_jump(system, state, ends, rate), monolithic_jump(system, state, ends, rate)
+
+
+def extrapolated_jumps(system, fold):
+    """Jumps up at rate 0 over K omega, bonded and delaminated."""
+    volts, omega = system.drive.volts(system.structure), system.structure.omega
+    _, first = below_resonance(system)
+    found = jump_voltages(
+        *system,
+        voltage=(first, (fold + 0.04) * volts),
+        rates=[rate * volts * omega for rate in RATES],
+        back=False,
+        progress=False,
+    )
+    return [float(value) / volts for value in found.jumps.sel(jump="up")]
+
+
+# -- the table -------------------------------------------------------------------------------------
+
+
+def first_fold(found):
+    """The fold that a run up meets first."""
+    folds = [row for row in found if row[0] == FOLD]
+    return folds[0] if folds else None
+
+
+def report(system, jumps=True):
+    """Lines of one set."""
+    lines = []
+    known = {}
+    for name, one in (("bonded", system.as_bonded()), ("delaminated", system)):
+        error, impacts = trajectory_error(one)
+        lines.append(f"{name}: trajectory {error:.1e}, {impacts} impacts")
+        found = bifurcations(one)
+        known[name] = first_fold(found)
+        exact = {}
+        if name == "bonded":
+            exact = {FOLD: averaged.folds(*one), TORUS: averaged.torus_points(*one)}
+        for kind, speed, eta0, truth in found:
+            near = [abs(place.eta0 - eta0) for place in exact.get(kind, [])]
+            theory = f", averaged {min(near):.1e}" if near else ""
+            text = f"{kind} at {speed:.5f}, eta0 {eta0:.5f}, monolithic {eta0 - truth:+.1e}"
+            lines.append(f"{name}: {text}{theory}")
+        if jumps and known[name]:
+            here, whole = ramp_jumps(one, known[name][2])
+            lines.append(f"{name}: jump up on a ramp {here:.5f}, monolithic {here - whole:+.1e}")
+    if jumps and all(known.values()):
+        folds = [row[2] for row in known.values()]
+        for name, fold, value in zip(
+            known, folds, extrapolated_jumps(system, max(folds)), strict=True
+        ):
+            lines.append(f"{name}: jump up at rate 0 {value:.5f}, fold {value - fold:+.1e}")
+    return lines
+
+
+def main():
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=5)
+    parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--only", type=int, help="number of a set, from 0")
+    parser.add_argument("--no-jumps", action="store_true")
+    arguments = parser.parse_args()
+    for number, system in enumerate(random_sets(arguments.count, arguments.seed)):
+        if arguments.only in (None, number):
+            begin = time.process_time()
+            for line in report(system, not arguments.no_jumps):
+                print(f"set {number}: {line}", flush=True)
+            print(f"set {number}: {time.process_time() - begin:.0f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main()
