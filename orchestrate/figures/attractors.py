@@ -29,7 +29,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     title : str
         By default the structure.
     """
-    figure, (top, bottom) = panels(2, 1, (12, 6.5), sharex=True, height_ratios=(3, 1))
+    figure, (top, bottom) = panels(2, 1, (9.6, 5.4), sharex=True, height_ratios=(3, 1))
     entitle(figure, title or about(data))
     parameter = parameter_of(data.number)
     x, name = along(data, parameter)

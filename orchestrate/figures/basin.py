@@ -30,7 +30,7 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     names : (str, str)
         Of both axes; by default those of the coordinates, with their units.
     """
-    figure, (plane,) = panels(1, 1, (8, 6.5))
+    figure, (plane,) = panels(1, 1, (6.4, 5.6))
     y, x = map(str, data.attractor_of.dims)
     labels = data.attractor_of.where(data.attractor_of >= 0).values.clip(max=len(COLOURS))
     shades = ListedColormap([*COLOURS, OTHER])

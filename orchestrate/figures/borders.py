@@ -27,7 +27,7 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
         Of :func:`orchestrate.border`, all over the same two parameters.
     title : str
     """
-    figure, (plane,) = panels(1, 1, (12, 5))
+    figure, (plane,) = panels(1, 1, (9.6, 4.4))
     first, second = (str(name) for name in curves[0].attrs["over"])
     shown: set[str] = set()
     for curve in curves:

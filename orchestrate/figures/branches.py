@@ -36,7 +36,7 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
         Of :func:`orchestrate.sweep` along it, in one direction.
     title : str
     """
-    figure, (plane,) = panels(1, 1, (12, 7))
+    figure, (plane,) = panels(1, 1, (9.6, 5.8))
     name = str(branches[0].attrs["over"])
     gaps = np.concatenate([found.xi_rel.values.ravel() for found in branches])
     scale(plane, gaps if responses is None else np.append(gaps, responses.xi_rel.values.ravel()))

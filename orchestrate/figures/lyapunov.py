@@ -33,7 +33,7 @@ def draw(
     lowest : float
         End of the axis; exponents below it are marked at its edge.
     """
-    size = (12, 0.6 + 2.8 * len(cases))
+    size = (9.6, 0.6 + 2.2 * len(cases))
     figure, axes = panels(len(cases), 1, size, sharex=True, sharey=True)
     highest = max(float(data.exponent.max()) for data in cases)
     least = min(float(data.exponent.min()) for data in cases)

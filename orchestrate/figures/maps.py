@@ -57,7 +57,7 @@ def draw(*maps: xr.Dataset, title: str = "") -> Figure:
         Of all; by default the structure of each row.
     """
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
-    size = (max(3.75 * len(columns), 5.0), 0.4 + 3.3 * len(maps))
+    size = (max(3.1 * len(columns), 4.5), 0.4 + 2.8 * len(maps))
     figure, axes = panels(len(maps), len(columns), size)
     entitle(figure, title)
     for row, data in enumerate(maps):

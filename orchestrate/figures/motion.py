@@ -37,7 +37,7 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     bonded : xarray.Dataset, optional
         The same of the bonded structure, drawn behind it.
     """
-    figure = Figure(figsize=(13, 8), layout="constrained")
+    figure = Figure(figsize=(10.4, 6.8), layout="constrained")
     axes = figure.subplot_mosaic(PLACES, width_ratios=(2.2, 1))
     entitle(figure, title or about(data))
     reach = max(float(np.abs(data[name]).max()) for name in ("x1", "x2"))

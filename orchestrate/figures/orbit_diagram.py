@@ -31,7 +31,7 @@ def draw(data: xr.Dataset, title: str = "", decades: int = 6) -> Figure:
     decades : int
         Of the gap's logarithmic axis, from the largest down; below them it is linear, down to 0.
     """
-    figure, (top, bottom) = panels(2, 1, (12, 8), sharex=True, height_ratios=(3, 1))
+    figure, (top, bottom) = panels(2, 1, (9.6, 6.4), sharex=True, height_ratios=(3, 1))
     parameter = parameter_of(data.impacts_per_period)
     shown, label = gaps(data, data.xi_rel)
     x, name = along(data, parameter)

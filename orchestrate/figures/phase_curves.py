@@ -36,7 +36,7 @@ def draw_states(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         Curves with one panel, see :mod:`.curve_data`.
     """
-    figure, (left, right) = panels(1, 2, (10, 4.6))
+    figure, (left, right) = panels(1, 2, (8.5, 4.2))
     state, kind = data.state.values, data.kind.values
     _, gap, rate = relative(data, 0)
     names = meanings(data.kind)
@@ -79,7 +79,7 @@ def draw_masses(data: xr.Dataset) -> Figure:
         Curves, see :mod:`.curve_data`.
     """
     count = data.sizes["panel"]
-    figure, axes = panels(1, count, (4.0 * count, 4.6))
+    figure, axes = panels(1, count, (3.3 * count, 3.7))
     reach = 1.08 * float(np.abs(data.state).max())
     for index, plane in enumerate(axes):
         state = panel_of(data, index).state.values

@@ -22,10 +22,10 @@ def draw(data: xr.Dataset, columns: int = 4) -> Figure:
     """
     count = data.sizes["panel"]
     rows = -(-count // columns)
-    figure, axes = panels(rows, columns, (3.25 * columns, 3.1 * rows))
+    figure, axes = panels(rows, columns, (2.7 * columns, 2.6 * rows))
     for index, plane in enumerate(axes[:count]):
         _, gap, rate = relative(data, index)
-        plane.plot(gap, rate, "-k", linewidth=0.25, rasterized=True)
+        plane.plot(gap, rate, "-k", linewidth=0.15, rasterized=True)
         kind = kind_of(int(data.multiplicity[index]))
         plane.set_title(rf"$\eta = {float(data.eta[index]):.3f}$, {kind}")
         plane.ticklabel_format(scilimits=(-2, 3))

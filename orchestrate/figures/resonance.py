@@ -43,7 +43,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     title : str
         What is shaken; by default the structure and the excitation.
     """
-    figure = Figure(figsize=(12, 9), layout="constrained")
+    figure = Figure(figsize=(9.6, 7.6), layout="constrained")
     rows = [row for row in PLACES if row[0] in data]
     axes = figure.subplot_mosaic(rows, sharex=True)
     entitle(figure, title or about(data))

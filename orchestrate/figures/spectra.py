@@ -44,7 +44,7 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
     shown = data.acceleration.sel(mass=mass)
     along = str(shown.dims[0])
     count = data.sizes[along]
-    figure, axes = panels(count, 2, (12, 0.8 + 2.6 * count), sharex=not in_si(data), sharey="row")
+    figure, axes = panels(count, 2, (9.6, 0.9 + 2.1 * count), sharex=not in_si(data), sharey="row")
     entitle(figure, title or about(data))
     for index in range(count):
         part = shown.isel({along: index})

@@ -31,12 +31,13 @@ LOOK: dict[str, Any] = {
     "legend.fontsize": 8,
     "legend.title_fontsize": 8,
     "figure.titlesize": 10,
-    "savefig.dpi": 130,
+    "savefig.dpi": 150,
     "svg.fonttype": "none",
     "svg.hashsalt": "vibroimpact",  # the same picture is the same bytes
 }
 XI_REL, XI_REL_RATE = r"$\xi_{\mathrm{Rel}}$", r"$\xi'_{\mathrm{Rel}}$"
 LETTERS_AN_INCH = 14  # of a title
+HARD = "\xa0"  # a space that no line breaks at
 
 Arguments = ParamSpec("Arguments")
 
@@ -79,7 +80,9 @@ def entitle(figure: Figure, title: str) -> None:
     """A title above all panels, on as many lines as it needs."""
     if title:
         letters = int(LETTERS_AN_INCH * figure.get_figwidth())
-        figure.suptitle(textwrap.fill(title, letters), x=0.01, ha="left")
+        parts = title.replace(" ", HARD).replace(f",{HARD}", ", ")  # breaks after commas alone
+        lines = textwrap.fill(parts, letters, break_long_words=False)
+        figure.suptitle(lines.replace(HARD, " "), x=0.01, ha="left")
 
 
 def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:

@@ -21,7 +21,7 @@ def draw(data: xr.Dataset) -> Figure:
         Curves over whole periods, see :mod:`.curve_data`; panel k has the multiplicity k + 1.
     """
     count, turns = data.sizes["panel"], np.zeros(1)
-    figure, axes = panels(count + 1, 1, (10, 1.8 * (count + 1)), sharex=True)
+    figure, axes = panels(count + 1, 1, (8.5, 1.6 * (count + 1)), sharex=True)
     for index, plane in enumerate(axes[:count]):
         eta = float(data.eta[index])
         tau, gap, _ = relative(data, index)
