@@ -21,12 +21,16 @@ from . import (
     border,
     branch,
     build,
+    capture,
     couple,
+    drive_branch,
     explore,
+    jump_voltages,
     lyapunov,
     map,
     orbit,
     paper,
+    passage,
     resonance,
     simulate,
     spectra,
@@ -37,7 +41,8 @@ from .options import Commands, sets_text
 COMMANDS = (
     *(build, simulate, resonance, spectra, sweep, map),
     *(lyapunov, attractors, basin, orbit, branch, border),
-    *(couple, explore, paper),
+    *(couple, capture, passage, jump_voltages, drive_branch),
+    *(explore, paper),
 )
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED = 0, 1, 2, 130
 EXAMPLES = """examples:

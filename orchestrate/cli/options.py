@@ -158,7 +158,7 @@ def add_drive(parser: argparse.ArgumentParser) -> None:
     """``--drive``, ``--structure`` and ``--set``."""
     group = parser.add_argument_group("structure, motor and box")
     text = (
-        "TOML file with [motor], [box] and [structure], or a set: quick, beam (default: "
+        "TOML file with [motor], [box] and [structure], or a set: quick, beam, rig (default: "
         "%(default)s)"
     )
     group.add_argument("--drive", default="quick", metavar="FILE", help=text)

@@ -22,6 +22,7 @@ SINKS = {
 WINDOW = 10  # revolutions that powers and impacts are averaged over
 AROUND = 500.0  # time shown before and after a jump, in 1/omega
 THEORY = "averaged theory, bonded"
+MARKS = {"fold": "o", "Neimark-Sacker": "s", "period doubling": "^"}  # of bifurcations
 HISTORIES = {"speed": "mean speed in rad/s", "amplitude": "amplitude of $x_1$ in m"}
 
 
@@ -83,6 +84,35 @@ def ways(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
         there, back = np.arange(len(voltage)), np.arange(0)
     found = [(there, "-", "there"), (back, "--", "back")]
     return [way for way in found if way[0].size]
+
+
+@in_our_look
+def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
+    """Draw stationary motions alone.
+
+    Parameters
+    ----------
+    branches : xarray.Dataset
+        Of :func:`orchestrate.drive_branch`.
+    title : str
+    """
+    figure, axes = panels(1, 2, (12, 5))
+    draw_branches(axes, branches)
+    for name in branches.structure.values:
+        of_one = branches.bifurcation_structure == name
+        for kind in np.unique(branches.bifurcation_kind.values[of_one]):
+            at = branches.isel(bifurcation=of_one & (branches.bifurcation_kind == kind))
+            mark: Any = {"color": COLOURS[name], "label": f"{name}, {kind}", "markersize": 5}
+            marker = MARKS.get(str(kind), "o")
+            axes[0].plot(at.bifurcation_voltage, at.bifurcation_speed, marker, **mark)
+            axes[1].plot(at.bifurcation_speed, at.bifurcation_amplitude, marker, **mark)
+    speed = "mean speed in rad/s"
+    axes[0].set(xlabel="voltage in V", ylabel=speed)
+    axes[1].set(xlabel=speed, ylabel="amplitude of $x_1$ in m")
+    axes[0].legend(loc="best", fontsize=7)
+    if title:
+        figure.suptitle(title)
+    return figure
 
 
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:

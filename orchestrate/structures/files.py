@@ -34,7 +34,7 @@ from .sections import Section, read_drive, read_excitation, read_structure
 from .structure import Structure
 
 FOLDER = Path(__file__).parent / "sets"
-SETS = {name: FOLDER / f"{name}.toml" for name in ("paper", "quick", "beam")}
+SETS = {name: FOLDER / f"{name}.toml" for name in ("paper", "quick", "beam", "rig")}
 SECTIONS = ("structure", "excitation", "motor", "box")
 
 Described = Structure | Excitation | Drive

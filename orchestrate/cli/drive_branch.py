@@ -1,0 +1,80 @@
+"""``drive-branch``: stationary motions of structure and motor, stable and unstable."""
+
+from __future__ import annotations
+
+import argparse
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .drives import ask_once
+from .options import Commands, add_drive, described, ends_of
+from .output import add_files, add_running
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+EXAMPLES = """\
+  {program} drive-branch                              quick, bonded and delaminated
+  {program} drive-branch --drive beam --speed 92:110
+Branches go round their folds. Interrupted, the same command goes on where it was."""
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "stationary motions of structure and motor, stable and unstable, and their bifurcations"
+    parser = commands.add("drive-branch", run, text, EXAMPLES)
+    add_drive(parser)
+    option = parser.add_argument_group("question").add_argument
+    usual = "0.95 and 1.25 times the resonance"
+    option("--speed", metavar="FIRST:LAST", help=f"range of mean speeds, rad/s (default: {usual})")
+    longest = "longest step along the branch, without a unit (default: %(default)s)"
+    option("--longest", type=float, default=0.05, help=longest)
+    most = "most points in one direction (default: %(default)s)"
+    option("--most", type=int, default=200, help=most)
+    period = "revolutions after which the delaminated motion repeats (default: %(default)s)"
+    option("--period", type=int, default=2, help=period)
+    steps = "communication steps in a revolution (default: %(default)s)"
+    option("--steps", type=int, default=48, help=steps)
+    option("--settle", type=float, metavar="S", help="time to the first motion (default 600/omega)")
+    add_files(parser)
+    add_running(parser, several=True)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    structure, drive = described(arguments)
+    question = {
+        "speed": ends_of("--speed", arguments.speed) if arguments.speed else None,
+        "longest": arguments.longest,
+        "most": arguments.most,
+        "period": arguments.period,
+        "steps": arguments.steps,
+        "settle": arguments.settle,
+    }
+    draw = partial(picture_of, name=Path(arguments.drive).stem)
+    ask_once(arguments, structure, drive, question, draw, report)
+
+
+def picture_of(data: xr.Dataset, name: str) -> Any:
+    """Speed over voltage and amplitude over speed."""
+    from ..figures.weak_drive import draw_stationary
+
+    return draw_stationary(data, f"{name}: stationary motions of structure and motor")
+
+
+def report(data: xr.Dataset) -> None:
+    """Bifurcations, and where the branches end."""
+    names = ("structure", "kind", "voltage", "speed")
+    for structure, kind, voltage, speed in zip(
+        *(data[f"bifurcation_{name}"].values for name in names), strict=True
+    ):
+        print(f"{structure}: {kind} at {voltage:.5f} V, {speed:.5g} rad/s")
+    if not data.sizes["bifurcation"]:
+        print("no bifurcations")
+    for structure in data.structure.values:
+        for leg in data.leg.values:
+            at = data.sel(structure=structure, leg=leg)
+            count = int(at.voltage.notnull().sum())
+            if count:
+                print(f"{structure}, {leg}: {count} motions, {at.end.item()}")

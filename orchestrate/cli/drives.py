@@ -1,0 +1,360 @@
+"""What the commands of the weak drive share: voltage, controller, both structures, their files."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from .options import ends_of
+from .output import FORMATS, PLOTS, Files, check_output, digest, drawn, endings_of, running_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import xarray as xr
+
+    from ..structures import Drive, Structure
+    from ..weak_drive.controllers import Controller
+    from ..weak_drive.schedule import Schedule
+
+USUAL = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 5e-6), "rig": ("0.95:1.24", 5e-5)}
+RATE = 1e-4  # of eta0, in a time 1/omega
+ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
+
+
+# -- options --------------------------------------------------------------------------------------
+
+
+def add_only(parser: argparse.ArgumentParser) -> None:
+    """``--only``."""
+    only = "one of both (default: both)"
+    parser.add_argument("--only", choices=("bonded", "delaminated"), help=only)
+
+
+def add_ends(group: Any, form: str = "FIRST:LAST", usual: str = "") -> None:
+    """``--eta0`` and ``--voltage``."""
+    usual = usual or "about the jumps of the averaged theory"
+    text = f"voltage as no-load speed over omega (default: {usual})"
+    group.add_argument("--eta0", metavar=form, help=text)
+    group.add_argument("--voltage", metavar=form, help="the same in V")
+
+
+def add_schedule(parser: argparse.ArgumentParser) -> None:
+    """The voltage over time: ramp, steps, constant, or from a file."""
+    group = parser.add_argument_group("voltage over time: a ramp, steps, one value, or a file")
+    option = group.add_argument
+    add_ends(group, "FIRST:LAST or VALUE")
+    option("--duration", type=float, metavar="S", help="time of a single VALUE, in s")
+    course = "CSV file with time in s and voltage in V, a row each: straight lines between, instead"
+    option("--course", type=Path, metavar="FILE", help=course)
+    add_rate(group, "RATE", "")
+    option("--volt-rate", metavar="RATE", help="the same in V/s")
+    steps = "change eta0 in steps of this height, at the same mean rate (default: a ramp)"
+    option("--increment", type=float, default=0.0, help=steps)
+    add_settle(group)
+    option("--one-way", action="store_true", help="do not come back")
+
+
+def add_rate(group: Any, form: str, more: str, default: str = "") -> None:
+    """``--rate``."""
+    usual = ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
+    default = default or f"{usual}, else {RATE:g}"
+    text = f"change of eta0 in a time 1/omega{more} (default: {default})"
+    group.add_argument("--rate", metavar=form, help=text)
+
+
+def add_settle(group: Any) -> None:
+    """``--settle``."""
+    text = "time at the first voltage, in 1/omega (default: %(default)s)"
+    group.add_argument("--settle", type=float, default=300.0, help=text)
+
+
+def add_step(group: Any) -> None:
+    """``--step``."""
+    text = "communication step, in 1/omega (default: %(default)s)"
+    group.add_argument("--step", type=float, default=0.1, help=text)
+
+
+def add_control(parser: argparse.ArgumentParser) -> None:
+    """A controller that takes a part of the voltage."""
+    title = "controller: starts from rest, takes a part of the voltage at every communication step"
+    option = parser.add_argument_group(title).add_argument
+    option("--speed-control", type=float, metavar="SPEED", help="hold a speed in rad/s, by PI")
+    option("--gain", type=float, help="of the PI control, V s/rad (default: 5 K)")
+    option("--reset-time", type=float, metavar="S", help="of it, s (default: J R_a/K^2)")
+    rise = "rate at which the wanted speed rises, rad/s2 (default: at once)"
+    option("--speed-rise", type=float, metavar="RATE", help=rise)
+    swing = "swing the rotor across the resonance by the speed-gradient method"
+    option("--speed-gradient", action="store_true", help=swing)
+    option("--filter-time", type=float, metavar="S", help="of it, s (default: 30/omega)")
+    low = "part of the voltage while slower than the mean (default: 0.6)"
+    option("--low", type=float, metavar="PART", help=low)
+
+
+# -- what they mean -------------------------------------------------------------------------------
+
+
+def states_of(arguments: argparse.Namespace, structure: Structure) -> dict[str, Structure]:
+    """Both structures by name, or the one that is wanted."""
+    both = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
+    return {arguments.only: both[arguments.only]} if arguments.only else both
+
+
+def number_or_ends(option: str, text: str) -> tuple[float, ...]:
+    """``VALUE`` or ``FIRST:LAST``."""
+    if ":" in text:
+        return ends_of(option, text)
+    try:
+        return (float(text),)
+    except ValueError:
+        expected = "expected a number, or FIRST:LAST such as 1.2:1.65"
+        raise InputError(f"{option} {text}: {expected}") from None
+
+
+def voltages_of(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive
+) -> tuple[float, ...]:
+    """One voltage or both ends, V; by default about the jumps."""
+    if arguments.eta0 and arguments.voltage:
+        raise InputError("--eta0 and --voltage: expected one of them")
+    if arguments.voltage:
+        return number_or_ends("--voltage", arguments.voltage)
+    volts = drive.volts(structure)
+    if arguments.eta0:
+        return tuple(volts * value for value in number_or_ends("--eta0", arguments.eta0))
+    if arguments.drive in USUAL and not arguments.set and not arguments.structure:
+        first, last = ends_of("--eta0", USUAL[arguments.drive][0])
+        return first * volts, last * volts
+    down, up = folds_of(arguments, structure, drive)
+    return 0.88 * down, 1.06 * up
+
+
+def two_voltages(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive
+) -> tuple[float, float]:
+    """Both ends, V."""
+    found = voltages_of(arguments, structure, drive)
+    if len(found) != 2:
+        name = "voltage" if arguments.voltage else "eta0"
+        text = getattr(arguments, name)
+        raise InputError(f"--{name} {text}: expected FIRST:LAST, two numbers such as 1.2:1.65")
+    return found
+
+
+def folds_of(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive
+) -> tuple[float, float]:
+    """Voltages of the averaged theory's jumps down and up, V."""
+    from ..weak_drive import averaged
+    from ..weak_drive.couple import checked_motor
+
+    checked_motor(drive)
+    folds = averaged.folds(structure, drive)
+    if not folds:
+        raise InputError(
+            f"--drive {arguments.drive}: by the averaged theory its speed does not jump; expected "
+            "--eta0 or --voltage with it"
+        )
+    volts = drive.volts(structure)
+    return folds[-1].eta0 * volts, folds[0].eta0 * volts
+
+
+def rates_of(option: str, text: str, one: bool = False) -> tuple[float, ...]:
+    """Rates, a list, or one of them.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        found = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        found = ()
+    several = "" if one else ", or several as A,B,..., such as 1e-4,5e-5,2.5e-5"
+    if not found or not all(math.isfinite(rate) and rate > 0.0 for rate in found):
+        raise InputError(f"{option} {text}: expected a number > 0{several}")
+    if one and len(found) > 1:
+        raise InputError(
+            f"{option} {text}: {len(found)} rates; expected one (jump-voltages takes several)"
+        )
+    return found
+
+
+def volt_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> float:
+    """The one rate of a ramp, V/s."""
+    if arguments.rate is not None and arguments.volt_rate is not None:
+        raise InputError("--rate and --volt-rate: expected one of them")
+    if arguments.volt_rate is not None:
+        return rates_of("--volt-rate", arguments.volt_rate, one=True)[0]
+    unit = drive.volts(structure) * structure.omega
+    if arguments.rate is None:
+        return unit * USUAL.get(arguments.drive, ("", RATE))[1]
+    return unit * rates_of("--rate", arguments.rate, one=True)[0]
+
+
+def schedule_from(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive, control: Controller | None
+) -> Schedule:
+    """The voltage over time."""
+    from ..weak_drive.couple import schedule_of
+    from ..weak_drive.schedule import Course
+
+    rate, omega = volt_rate(arguments, structure, drive), structure.omega
+    if arguments.course:
+        given = [name for name in ("eta0", "voltage", "duration") if getattr(arguments, name)]
+        if given:
+            raise InputError(f"--course and --{given[0]}: expected one of them")
+        return Course.from_csv(arguments.course)
+    ends = voltages_of(arguments, structure, drive)
+    if len(ends) == 1:
+        if arguments.duration is None:
+            raise InputError(f"one voltage, {ends[0]:g} V: expected --duration with it, in s")
+        return schedule_of(structure, drive, ends[0], duration=arguments.duration)
+    if arguments.duration is not None:
+        raise InputError("--duration: expected one voltage with it, not FIRST:LAST")
+    return schedule_of(
+        structure,
+        drive,
+        (ends[0], ends[1]),
+        rate=rate,
+        settle=arguments.settle / omega,
+        increment=arguments.increment * drive.volts(structure),
+        back=not arguments.one_way,
+        spin_up=0.0 if control else None,
+    )
+
+
+def control_of(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive
+) -> Controller | None:
+    """The controller that the options describe."""
+    from ..weak_drive import averaged
+    from ..weak_drive.controllers import SpeedControl, SpeedGradient
+    from ..weak_drive.couple import checked_motor
+
+    of_pi = {"gain": arguments.gain, "reset_time": arguments.reset_time}
+    of_pi["rise"] = arguments.speed_rise
+    of_swing = {"filter_time": arguments.filter_time, "low": arguments.low}
+    if arguments.speed_control is not None and arguments.speed_gradient:
+        raise InputError("--speed-control and --speed-gradient: expected one of them")
+    lone = {} if arguments.speed_control is not None else {**of_pi}
+    lone |= {} if arguments.speed_gradient else of_swing
+    for name, value in lone.items():
+        if value is not None:
+            option = {"rise": "speed-rise"}.get(name, name.replace("_", "-"))
+            needed = "--speed-control" if name in of_pi else "--speed-gradient"
+            raise InputError(f"--{option} {value:g}: expected {needed} with it")
+    checked_motor(drive)
+    constant = drive.motor_constant
+    if arguments.speed_control is not None:
+        slow = drive.rotor_inertia * drive.armature_resistance / constant**2
+        usual = {"gain": 5.0 * constant, "reset_time": slow, "rise": math.inf}
+        return SpeedControl(speed=arguments.speed_control, **{**usual, **given(of_pi)})
+    if arguments.speed_gradient:
+        passed = averaged.dividing_speed(structure, drive) * structure.omega
+        swing = {"filter_time": 30.0 / structure.omega, "low": 0.6, **given(of_swing)}
+        return SpeedGradient(passed=passed, **swing)
+    return None
+
+
+def given(values: Mapping[str, float | None]) -> dict[str, float]:
+    """What is not None."""
+    return {name: value for name, value in values.items() if value is not None}
+
+
+# -- answers --------------------------------------------------------------------------------------
+
+
+def file_name(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive, question: Any
+) -> str:
+    """A name that no other question has: command, drive, and a few letters."""
+    own = digest(structure.as_delaminated().parameters(), drive.parameters(), question)
+    return f"{arguments.command.replace('-', '_')}_{Path(arguments.drive).stem}_{own}"
+
+
+def ask_each(
+    arguments: argparse.Namespace,
+    structure: Structure,
+    drive: Drive,
+    question: Mapping[str, Any],
+    draw: Callable[[dict[str, xr.Dataset]], Any],
+    report: Callable[[str, xr.Dataset], None],
+) -> None:
+    """Ask for each structure; say what came out, write files, draw both in one picture.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+    structure : Structure
+    drive : Drive
+    question : mapping
+        Keywords of the public function that has the command's name.
+    draw : callable
+        From the results by structure to a picture.
+    report : callable
+        Says what came out for a structure of a name.
+    """
+    import orchestrate
+
+    ask = getattr(orchestrate, arguments.command.replace("-", "_"))
+    stem = file_name(arguments, structure, drive, question)
+    states = states_of(arguments, structure)
+    places = {state: Files.of(arguments, f"{stem}_{state}") for state in states}
+    found = {}
+    for state, chosen in states.items():
+        running = running_of(arguments, places[state].result)
+        found[state] = ask(chosen, drive, **question, **running)
+    for state, data in found.items():
+        report(state, data)
+    for state, data in found.items():
+        places[state].write(data, None)
+    fresh = any(place.fresh for place in places.values())
+    plots = endings_of("--plot", arguments.plot, PLOTS)
+    only = f"_{arguments.only}" if arguments.only else ""
+    for path in drawn(arguments.output / f"{stem}{only}.nc", plots, fresh, lambda: draw(found)):
+        print(path)
+
+
+def ask_once(
+    arguments: argparse.Namespace,
+    structure: Structure,
+    drive: Drive,
+    question: Mapping[str, Any],
+    draw: Callable[[xr.Dataset], Any] | None,
+    report: Callable[[xr.Dataset], None],
+) -> None:
+    """Ask a question that answers for both structures at once."""
+    import orchestrate
+
+    ask = getattr(orchestrate, arguments.command.replace("-", "_"))
+    files = Files.of(arguments, file_name(arguments, structure, drive, question))
+    data = ask(structure, drive, **question, **running_of(arguments, files.result))
+    report(data)
+    files.write(data, (lambda: draw(data)) if draw else None)
+
+
+def check_files(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Formats and pictures that are wanted, checked before any work; so is the folder."""
+    formats = endings_of("--format", arguments.format, FORMATS)
+    plots = endings_of("--plot", arguments.plot, PLOTS)
+    check_output(arguments.output)
+    return formats, plots
+
+
+def title_of_runs(runs: Mapping[str, xr.Dataset], name: str, control: str = "") -> str:
+    """Set, volts and rate of runs, for a picture."""
+    import numpy as np
+
+    data = next(iter(runs.values()))
+    volts, times = data.voltage.values, data.time.values
+    rates = np.abs(np.diff(volts) / np.diff(times))
+    rate = float(np.median(rates[rates > 0.0])) if (rates > 0.0).any() else 0.0
+    low, high = float(volts.min()), float(volts.max())
+    ends = f"{high:.4g} V" if low == high else f"{low:.4g} V to {high:.4g} V"
+    moving = f", {rate:.2g} V/s" if rate and not control else ""
+    return f"{name}: {ends}{moving}{', ' + control if control else ''}"

@@ -1,0 +1,71 @@
+"""``jump-voltages``: where the speed jumps at no rate, bonded against delaminated."""
+
+from __future__ import annotations
+
+import argparse
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .drives import ETA0, add_ends, add_rate, add_settle, add_step, ask_once, rates_of, two_voltages
+from .options import Commands, add_drive, described
+from .output import add_files, add_running
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+USUAL = "1e-4,5e-5,2.5e-5"
+EXAMPLES = """\
+  {program} jump-voltages                                 quick, up and down
+  {program} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
+  {program} jump-voltages --drive beam --eta0 1.33:1.57 --rate 4e-5,2e-5,1e-5 --one-way
+{eta0}
+Three rates or more give a standard error. Interrupted, the same command goes on where it was."""
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "voltages at which the speed jumps, at rate 0 from ramps of several rates"
+    parser = commands.add("jump-voltages", run, text, EXAMPLES.replace("{eta0}", ETA0))
+    add_drive(parser)
+    group = parser.add_argument_group("ramps")
+    add_ends(group)
+    add_rate(group, "A,B,...", ", a list", USUAL)
+    add_settle(group)
+    group.add_argument("--one-way", action="store_true", help="do not come back: jumps up only")
+    add_step(group)
+    add_files(parser)
+    add_running(parser, several=True)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    structure, drive = described(arguments)
+    unit = drive.volts(structure) * structure.omega
+    question = {
+        "voltage": two_voltages(arguments, structure, drive),
+        "rates": [rate * unit for rate in rates_of("--rate", arguments.rate or USUAL)],
+        "back": not arguments.one_way,
+        "settle": arguments.settle / structure.omega,
+        "step": arguments.step / structure.omega,
+    }
+    draw = partial(picture_of, name=Path(arguments.drive).stem)
+    ask_once(arguments, structure, drive, question, draw, report)
+
+
+def picture_of(data: xr.Dataset, name: str) -> Any:
+    """Voltages over the rate."""
+    from ..figures.jump_voltages import draw
+
+    return draw(data, f"{name}: jumps of the speed on ramps, and at rate 0")
+
+
+def report(data: xr.Dataset) -> None:
+    """A table of the jumps at rate 0."""
+    print(f"{'jump':6}{'bonded':>24}{'delaminated':>24}{'change':>12}   in V, at rate 0")
+    for jump in data.jump.values:
+        at = data.sel(jump=jump)
+        pairs = zip(at.jumps.values, at.standard_error.values, strict=True)
+        texts = [f"{value:.4f} +- {error:.4f}" for value, error in pairs]
+        change = float(at.jumps[1] - at.jumps[0])
+        print(f"{jump:6}{texts[0]:>24}{texts[1]:>24}{change:>12.4f}")

@@ -1,0 +1,51 @@
+"""Jump voltages: those of ramps over their rate, and the lines that lead to rate 0."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from .style import in_our_look, panels
+from .weak_drive import COLOURS
+
+EXPONENT = 2.0 / 3.0
+
+
+@in_our_look
+def draw(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw jump voltages, a panel for each direction.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.jump_voltages`.
+    title : str
+    """
+    figure, axes = panels(1, data.sizes["jump"], (5.5 * data.sizes["jump"], 4.5))
+    lag = data.rate.values**EXPONENT
+    for panel, jump in zip(axes, map(str, data.jump.values), strict=True):
+        for structure in map(str, data.structure.values):
+            at = data.sel(jump=jump, structure=structure)
+            colour, end = COLOURS[structure], float(at.jumps)
+            panel.plot(lag, at.voltage, "o", color=colour, markersize=4)
+            if np.isfinite(end):
+                error = float(at.standard_error)
+                text = f"{structure}: {end:.4f} V"
+                text += f" ± {error:.1g}" if np.isfinite(error) else ""
+                far = int(np.nanargmax(np.where(np.isfinite(at.voltage), lag, np.nan)))
+                line: Any = {"color": colour, "linewidth": 1.0, "label": text}
+                panel.plot([0.0, lag[far]], [end, float(at.voltage[far])], "-", **line)
+                panel.errorbar(0.0, end, np.nan_to_num(error), fmt="s", color=colour, capsize=3)
+        if panel.get_legend_handles_labels()[0]:
+            panel.legend(loc="best", title="at rate 0")
+        else:
+            place: Any = {"transform": panel.transAxes, "ha": "center", "va": "center"}
+            panel.text(0.5, 0.5, f"no jump {jump}", **place)
+        panel.set(xlabel="rate$^{2/3}$ in (V/s)$^{2/3}$", ylabel="voltage in V")
+        panel.set_title(f"jump {jump}")
+    if title:
+        figure.suptitle(title)
+    return figure
