@@ -162,20 +162,25 @@ def picture_of(
     drive: Drive,
     job: CoupleJob,
 ) -> Any:
-    """All runs, the averaged theory, and branches where they are wanted."""
+    """All runs; of ramps the averaged theory too, and branches where they are wanted."""
     import numpy as np
     import xarray as xr
 
+    from ..figures import run_history
     from ..figures.weak_drive import draw
     from ..weak_drive import averaged
+    from ..weak_drive.schedule import Ramp
 
+    control = type(job.control).__name__ if job.control else ""
+    title = title_of_runs(results, Path(arguments.drive).stem, control)
+    if job.control or not isinstance(job.schedule, Ramp):
+        resonance = averaged.dividing_speed(structure, drive) * structure.omega
+        return run_history.draw(results, resonance, title)
     Omega = np.linspace(0.3, 3.0, 20001)
     volts = averaged.no_load_speed(structure, drive, Omega) * drive.volts(structure)
     amplitude = averaged.amplitude(structure, drive, Omega) * drive.length
     along = {"voltage": ("speed", volts), "amplitude": ("speed", amplitude)}
     theory = xr.Dataset(along, {"speed": Omega * structure.omega})
-    control = type(job.control).__name__ if job.control else ""
-    title = title_of_runs(results, Path(arguments.drive).stem, control)
     return draw(results, theory, branches_of(arguments, structure, drive), title)
 
 

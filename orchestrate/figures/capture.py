@@ -45,7 +45,7 @@ def draw_map(axes: Axes, data: xr.Dataset, over: str) -> None:
     volts, values = np.meshgrid(data.voltage.values, data[over].values)
     passed = data.passes.transpose(over, "voltage").values > 0
     mark: Any = {"s": 22, "linewidths": 0.8}
-    captured = "captured at the resonance"
+    captured = "captured"
     axes.scatter(volts[~passed], values[~passed], marker="x", color=GREY, label=captured, **mark)
     axes.scatter(volts[passed], values[passed], color=PASSED, label="passes", **mark)
     axes.plot(data.border, data[over], "-", color=BLACK, linewidth=1.2, label="border")
@@ -59,7 +59,7 @@ def draw_line(axes: Axes, data: xr.Dataset) -> None:
     volts = data.voltage.values
     axes.plot(volts[passed], data.passage_time.values[passed], "o-", color=PASSED, label="passes")
     low: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False}
-    captured = "captured at the resonance"
+    captured = "captured"
     axes.plot(
         volts[~passed], np.full((~passed).sum(), 0.02), "x", color=GREY, label=captured, **low
     )
@@ -67,4 +67,4 @@ def draw_line(axes: Axes, data: xr.Dataset) -> None:
     if np.isfinite(border):
         axes.axvline(border, color=BLACK, linewidth=1.0, label=f"border, {border:.4f} V")
     axes.set_ylabel("time of the passage in s")
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, 1.2 * float(data.passage_time.max().fillna(1.0)))

@@ -24,9 +24,11 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
         Of :func:`orchestrate.jump_voltages`.
     title : str
     """
-    figure, axes = panels(1, data.sizes["jump"], (5.5 * data.sizes["jump"], 4.5))
+    known = np.isfinite(data.voltage).any(["rate", "structure"])
+    jumps = [str(jump) for jump in data.jump.values if known.sel(jump=jump)] or ["up"]
+    figure, axes = panels(1, len(jumps), (6.0 * len(jumps), 4.5))
     lag = data.rate.values**EXPONENT
-    for panel, jump in zip(axes, map(str, data.jump.values), strict=True):
+    for panel, jump in zip(axes, jumps, strict=True):
         for structure in map(str, data.structure.values):
             at = data.sel(jump=jump, structure=structure)
             colour, end = COLOURS[structure], float(at.jumps)

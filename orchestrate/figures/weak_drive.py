@@ -19,7 +19,8 @@ SINKS = {
     "box_damper": "damper of the box",
     "impact_loss": "impacts",
 }
-WINDOW = 10  # revolutions that powers and impacts are averaged over
+WINDOW = 10  # revolutions that impacts are averaged over
+FEW = 2  # revolutions that powers are averaged over: a motion may repeat after two
 AROUND = 500.0  # time shown before and after a jump, in 1/omega
 THEORY = "averaged theory, bonded"
 MARKS = {"fold": "o", "Neimark-Sacker": "s", "period doubling": "^"}  # of bifurcations
@@ -46,8 +47,10 @@ def draw(
     title : str
         What is shown: set, rate, volts.
     """
-    figure, axes = panels(4, 2, (13, 17))
-    for name, data in runs.items():
+    shown = {name: without_beginning(data) for name, data in runs.items()}
+    jumps = [str(way) for way in ("up", "down") if any(jumped(data, way) for data in runs.values())]
+    figure, axes = panels(2 + len(jumps), 2, (13, 8.5 + 4.25 * len(jumps)))
+    for name, data in shown.items():
         for part, style, way in ways(data):
             label = f"{name}, {way}"
             line: Any = {"color": COLOURS[name], "linewidth": 1.2, "label": label}
@@ -56,10 +59,9 @@ def draw(
             if name == "delaminated":
                 draw_impacts(axes[2], data.isel(revolution=part), way)
         mark_jumps(axes[0], data, name)
-    for panel, jump in zip(axes[4:6], ("up", "down"), strict=True):
-        draw_histories(panel, runs, jump, "speed")
-    for panel, jump in zip(axes[6:], ("up", "down"), strict=True):
-        draw_histories(panel, runs, jump, "amplitude")
+    for row, jump in enumerate(jumps):
+        draw_histories(axes[4 + 2 * row], runs, jump, "speed")
+        draw_histories(axes[5 + 2 * row], runs, jump, "amplitude")
     if theory is not None:
         dotted: Any = {"linewidth": 1.0, "label": THEORY}
         axes[0].plot(theory.voltage, theory.speed, "k:", **dotted)
@@ -69,10 +71,39 @@ def draw(
     if title:
         figure.suptitle(title)
     name = list(runs)[-1]
-    draw_powers(axes[3], runs[name], name)
+    draw_powers(axes[3], shown[name], name)
+    axes[0].set_title("\n".join(filter(None, (jumps_of(*item) for item in runs.items()))))
     label_axes(axes)
-    limit_axes(axes, list(runs.values()))
+    limit_axes(axes, list(shown.values()))
     return figure
+
+
+def without_beginning(data: xr.Dataset) -> xr.Dataset:
+    """A run without its spin-up and settling: up to the end of the first constant voltage."""
+    change = np.abs(np.diff(data.voltage.values))
+    holds = change <= 1e-3 * change.max(initial=0.0)
+    if not holds.any() or holds.all():
+        return data
+    first = int(np.argmax(holds))
+    moves = np.flatnonzero(~holds[first:])
+    end = first + int(moves[0]) if moves.size else 0
+    early = end < len(change) // 2  # steps of the voltage hold too, all the time
+    return data.isel(revolution=slice(end, None)) if early else data
+
+
+def jumped(data: xr.Dataset, way: str) -> bool:
+    """Whether there is a jump up or down."""
+    return bool(np.isfinite(float(data.jumps.sel(jump=way))))
+
+
+def jumps_of(name: str, data: xr.Dataset) -> str:
+    """The jumps of a run in words."""
+    found = [
+        f"{way} at {float(data.jumps.sel(jump=way)):.4f} V"
+        for way in ("up", "down")
+        if jumped(data, way)
+    ]
+    return f"{name}: jump {', '.join(found)}" if found else f"{name}: no jump"
 
 
 def ways(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
@@ -132,9 +163,9 @@ def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
                 axes[1].plot(speed, amplitude, style, **line)
 
 
-def mean_of(values: np.ndarray) -> np.ndarray:
+def mean_of(values: np.ndarray, count: int = WINDOW) -> np.ndarray:
     """The running mean."""
-    return np.convolve(values, np.full(WINDOW, 1.0 / WINDOW), "valid")
+    return np.convolve(values, np.full(count, 1.0 / count), "valid")
 
 
 def draw_impacts(axes: Axes, data: xr.Dataset, way: str) -> None:
@@ -151,55 +182,44 @@ def draw_impacts(axes: Axes, data: xr.Dataset, way: str) -> None:
 
 
 def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
-    """The voltages at which the speed jumps, with their values."""
-    colour = COLOURS[name]
-    for jump, place in (("up", 0.06), ("down", 0.94)):
-        value = float(data.jumps.sel(jump=jump))
+    """The voltages at which the speed jumps."""
+    for value in data.jumps.values:
         if np.isfinite(value):
-            axes.axvline(value, color=colour, linewidth=0.6, alpha=0.6)
-            where: Any = {"transform": axes.get_xaxis_transform(), "rotation": 90, "fontsize": 8}
-            side: Any = {"verticalalignment": "bottom" if jump == "up" else "top"}
-            side["horizontalalignment"] = "left" if name == "bonded" else "right"
-            axes.text(value, place, f" {value:.4f}", color=colour, **where, **side)
+            axes.axvline(value, color=COLOURS[name], linewidth=0.6, alpha=0.6)
 
 
 def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str, what: str) -> None:
-    """Speed or amplitude over time around a jump; words where there is none."""
-    found = False
+    """Speed or amplitude over time around a jump."""
     for name, data in runs.items():
-        voltage, speed = (float(data[of].sel(jump=jump)) for of in ("jumps", "jump_speed"))
-        if not np.isfinite(voltage):
+        at = data.sel(jump=jump)
+        if not jumped(data, jump):
             continue
-        found = True
-        away = np.abs(data.voltage.values - voltage) + np.abs(data.speed.values - speed)
-        row = int(np.argmin(away))
-        span = AROUND * float(data.Omega[row] / data.speed[row])
-        time = data.time.values - float(data.time[row])
+        span = AROUND * float(data.Omega[-1] / data.speed[-1])
+        time = data.time.values - float(at.jump_time)
         near = np.abs(time) < span
-        axes.plot(time[near], data[what].values[near], color=COLOURS[name], label=name)
-    if not found:
-        place: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
-        axes.text(0.5, 0.5, f"no jump {jump}", **place)
+        label = f"{name}, {float(at.jumps):.4f} V"
+        axes.plot(time[near], data[what].values[near], color=COLOURS[name], label=label)
     axes.set(xlabel=f"time from the jump {jump} in s", ylabel=HISTORIES[what])
 
 
 def draw_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
     """Mean power of the motor and where it goes, against the speed, one way."""
-    there = ways(data)[0][0][::WINDOW]
-    if len(there) < 3:
+    there = ways(data)[0][0]
+    if len(there) < 3 * FEW:
         return
-    span = np.diff(data.time.values[there])
-    ends = data.speed.values[there]
-    speed = 0.5 * (ends[1:] + ends[:-1])
+    time, ends = data.time.values[there], data.speed.values[there]
+    span = time[FEW:] - time[:-FEW]
+    speed = mean_of(ends[1:], FEW)
 
     def power(account: str) -> np.ndarray:
-        return np.diff(data[account].values[there]) / span
+        values = data[account].values[there]
+        return np.asarray((values[FEW:] - values[:-FEW]) / span)
 
     axes.plot(speed, power("motor"), "k", linewidth=1.5, label="motor")
     for account, label in SINKS.items():
         axes.plot(speed, power(account), linewidth=1.0, label=label)
     axes.plot(speed, power("stored"), color="0.7", linewidth=0.8, label="stored")
-    axes.set_title(f"power, {name}, there")
+    axes.set_title(f"power, {name}, on the way there, means of {FEW} revolutions")
 
 
 def label_axes(axes: Sequence[Axes]) -> None:
@@ -215,10 +235,10 @@ def label_axes(axes: Sequence[Axes]) -> None:
 
 
 def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:
-    """Ranges of the computed runs, their first revolutions left out: the theory goes on."""
+    """Ranges of the computed runs: the theory goes on."""
 
     def ends(name: str) -> tuple[float, float]:
-        values = np.concatenate([data[name].values[5:] for data in runs])
+        values = np.concatenate([data[name].values for data in runs])
         return (values.min(), values.max()) if values.size else (0.0, 1.0)
 
     for panel, name in zip(axes[:2], ("voltage", "speed"), strict=True):
