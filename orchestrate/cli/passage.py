@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..errors import InputError
 from .drives import (
     ETA0,
     add_control,
@@ -60,6 +61,8 @@ def run(arguments: argparse.Namespace) -> None:
     from ..weak_drive.schedule import Constant
 
     structure, drive = described(arguments)
+    if arguments.revolutions < 1:
+        raise InputError(f"--revolutions {arguments.revolutions}: expected a whole number >= 1")
     control = control_of(arguments, structure, drive)
     schedule = schedule_from(arguments, structure, drive, control)
     around = arguments.around

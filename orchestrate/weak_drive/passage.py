@@ -104,8 +104,9 @@ class PassageJob(Job):
         revolutions = self.run.dataset({name: table[name] for name in COLUMNS}, inputs)
         samples = {name: table[KEPT + name] for name in SAMPLES}
         centres, what = self.centres(revolutions)
-        away = np.abs(samples["time"][:, np.newaxis] - centres).min(axis=1, initial=np.inf)
-        kept = np.flatnonzero(away <= (math.inf if self.around is None else self.around))
+        away = np.abs(samples["time"][:, np.newaxis] - centres).min(axis=1, initial=math.inf)
+        span = math.inf if self.around is None else (1.0 + 1e-9) * self.around
+        kept = np.flatnonzero(away <= span)
         variables = {
             name: variable("time", samples[name][kept], *SAMPLES[name]) for name in SAMPLES
         }
@@ -120,7 +121,7 @@ class PassageJob(Job):
         jumps = revolutions.jump_time.values
         passed = float(revolutions.passage_time)
         if self.around is None:
-            return jumps, "the whole run"
+            return np.zeros(0), "the whole run"
         if np.isfinite(jumps).any():
             return jumps[np.isfinite(jumps)], "around jumps"
         if math.isfinite(passed):

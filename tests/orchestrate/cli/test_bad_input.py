@@ -197,23 +197,6 @@ BORDER = [
     (["--start", "lost.nc", *PAIRS, "--structure", "lost.toml"], ["lost.toml"]),
     (["--start", "lost.nc", "--limits", "a:b,c:d"], ["--limits a:b"]),
 ]
-COUPLE = [
-    (["--drive", "rig"], ["rig", "no such file", "quick"]),
-    (["--structure", "glued"], ["glued", "no such file"]),
-    (["--set", "x=1"], ["x", "no parameter"]),
-    (["--algorithm", "euler"], ["algorithm", "euler", "jacobi", "rollback"]),
-    (["--eta0", "1.2"], ["--eta0 1.2", "FIRST:LAST"]),
-    (["--eta0", "nan:2"], ["voltage = nan V", "finite"]),
-    (["--eta0", "1:1"], ["voltage", "two different ones"]),
-    (["--eta0", "1:2", "--voltage", "1:2"], ["--eta0 and --voltage", "one of them"]),
-    (["--rate", "0"], ["--rate 0"]),
-    (["--rate", "nan"], ["--rate nan", "expected"]),
-    (["--rate", "1e-9", "--step", "1e-3"], ["steps", "at most 1e+09"]),
-    (["--step", "-0.1"], ["step = -0.1 s", "0.0001 <= step <= 1"]),
-    (["--increment", "2"], ["increment = 2.0 V", "0 <= increment"]),
-    (["--settle", "-1"], ["settle = -1.0 s", "0 <= settle"]),
-    (["--fmu", "nowhere.fmu"], ["nowhere.fmu", "no such file"]),
-]
 PAPER = [
     (["--figures", ""], ["figures: nothing"]),
     (["--figures", "5,x"], ["figures: x", "expected some of"]),
@@ -240,7 +223,6 @@ MISTAKES = [
         ("branch", BRANCH),
         ("border", BORDER),
         ("spectra", SPECTRA),
-        ("couple", COUPLE),
         ("paper", PAPER),
     )
     for options, words in cases

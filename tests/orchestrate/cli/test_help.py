@@ -17,7 +17,8 @@ from .commands import ROOT
 
 COMMANDS = (
     *("build", "simulate", "resonance", "spectra", "sweep", "map", "lyapunov", "attractors"),
-    *("basin", "orbit", "branch", "border", "couple", "explore", "paper"),
+    *("basin", "orbit", "branch", "border", "couple", "capture", "passage", "jump-voltages"),
+    *("drive-branch", "explore", "paper"),
 )
 
 

@@ -176,26 +176,3 @@ def test_spectra(ask, folder):
     done = ask("spectra", "--eta", "1.047", *short)
     assert "delaminated at eta = 1.047: largest line" in done.out
     assert shows_something(next(folder.glob("*.png")))
-
-
-@pytest.fixture
-def coupled(ask):
-    return ask("couple", "--eta0", "1.4:1.41", "--rate", "2e-4", "--settle", "50")
-
-
-def test_the_weak_drive(ask, folder, coupled):
-    assert coupled.code == 0, coupled.err
-    names = ("couple_quick.png", "couple_quick_bonded.nc", "couple_quick_delaminated.nc")
-    assert sorted(fingerprint(folder)) == list(names)
-    assert "bonded: " in coupled.out and "delaminated: " in coupled.out
-    data = xr.load_dataset(folder / "couple_quick_delaminated.nc")
-    assert data.sizes["revolution"] > 15
-    assert abs(data.attrs["missing_over_motor_work"]) < 1e-6
-    assert shows_something(folder / "couple_quick.png")
-
-
-def test_the_weak_drive_as_a_package(ask, tmp_path):
-    path = tmp_path / "weak_drive.ssp"
-    assert ask("couple", "--ssp", path).code == 0
-    assert path.stat().st_size > 1000
-    ask("couple", "--ssp", "/nowhere/x.ssp").complaint("/nowhere/x.ssp", code=1)

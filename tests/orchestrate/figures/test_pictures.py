@@ -16,7 +16,6 @@ from orchestrate.errors import StoreError
 from orchestrate.figures import (
     attractors,
     basin,
-    drive_spectra,
     labels,
     lyapunov,
     maps,
@@ -24,10 +23,8 @@ from orchestrate.figures import (
     phase_curves,
     phase_grid,
     time_histories,
-    weak_drive,
 )
 from orchestrate.figures.files import save
-from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spectra
 
 from .drawing import sweep as small_sweep
 
@@ -134,41 +131,6 @@ def test_maps(exported):
     assert len(planes) == 8
     assert [plane.get_yscale() for plane in planes[::4]] == ["log", "linear"]
     assert planes[0].get_ylabel() == "$D$"
-
-
-def test_spectra_of_the_weak_drive(exported):
-    asked = {"voltage": 1.3, "begin": 1.29, "hold": 10.0, "revolutions": 4, "points": 64, **HERE}
-    upper, lower = drive_spectra.draw(ask_drive_spectra(*QUICK, **asked)).axes
-    assert upper.get_title(loc="left").startswith("bonded")
-    assert lower.get_title(loc="left").startswith("delaminated")
-
-
-def coupled(jumps: bool) -> xr.Dataset:
-    """A run of the weak drive, with or without jumps."""
-    asked = {"voltage": (1.4, 1.42), "rate": 2e-4, "settle": 20.0, **HERE}
-    data = orchestrate.couple(*QUICK, **asked)
-    if jumps:
-        data.jumps[:], data.jump_speed[:] = data.voltage[5:7].values, data.speed[5:7].values
-    return data
-
-
-@pytest.mark.parametrize("jumps", [False, True])
-def test_the_weak_drive(exported, jumps):
-    data = coupled(jumps)
-    theory = xr.Dataset({"voltage": ("speed", [1.4, 1.5]), "amplitude": ("speed", [1.0, 2.0])})
-    theory = theory.assign_coords(speed=[1.2, 1.3])
-    figure = weak_drive.draw({"bonded": data, "delaminated": data}, theory)
-    assert "averaged theory, bonded" in texts(figure.axes[0])
-    marks = [text.get_text().strip() for text in figure.axes[0].texts]
-    assert marks == [f"{value:.4f}" for value in data.jumps.values] * 2 if jumps else marks == []
-    histories = figure.axes[4]
-    assert bool(drawn(histories)) == jumps
-
-
-def test_a_constant_voltage_has_no_way_back(exported):
-    data = orchestrate.couple(*QUICK, voltage=1.4, duration=60.0, **HERE)
-    assert [name for _, _, name in weak_drive.ways(data)] == ["there"]
-    weak_drive.draw({"delaminated": data})
 
 
 def test_names():

@@ -1,0 +1,236 @@
+"""The weak drive at the command line: what its commands answer, and what they say of mistakes."""
+
+from __future__ import annotations
+
+import pytest
+import xarray as xr
+
+from .test_results import shows_something
+
+MOTOR = """
+[structure]
+m1 = 1.5
+m2 = 1.5
+k1 = 8437.5
+k2 = 10125.0
+d1 = 4.5
+d2 = 4.5
+e = 0.7
+
+[motor]
+unbalance_mass = 0.03
+unbalance_radius = 0.02
+rotor_inertia = 6e-5
+motor_constant = 0.06
+armature_resistance = 14.0
+armature_inductance = 0.002
+
+[box]
+box_mass = 5.0
+box_stiffness = 300.0
+box_damping = 4.0
+"""
+SHORT = ("--step", "0.2", "--settle", "30")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return tmp_path / "results"
+
+
+@pytest.fixture
+def motor(tmp_path):
+    """A file with a structure, a motor and a box of one's own."""
+    path = tmp_path / "motor.toml"
+    path.write_text(MOTOR)
+    return path
+
+
+def results(folder, ending="nc"):
+    """The datasets in a folder, by name."""
+    return {path.stem: xr.load_dataset(path) for path in sorted(folder.glob(f"*.{ending}"))}
+
+
+def test_couple(ask, folder):
+    done = ask("couple", "--eta0", "1.4:1.41", "--rate", "2e-4", *SHORT).success()
+    bonded, delaminated = results(folder)
+    assert bonded.startswith("couple_quick_") and delaminated.endswith("_delaminated")
+    data = results(folder)[delaminated]
+    assert data.sizes["revolution"] > 10
+    assert abs(data.attrs["missing_over_motor_work"]) < 2e-6
+    assert done.out.count("jump up none") == 2
+    (picture,) = folder.glob("*.png")
+    assert shows_something(picture)
+
+
+def test_another_question_has_another_file(ask, folder):
+    for rate in ("4e-4", "2e-4"):
+        options = ("--only", "bonded", "--plot", "none", "--rate", rate)
+        ask("couple", "--eta0", "1.4:1.41", *options, *SHORT).success()
+    assert len(results(folder)) == 2 and not list(folder.glob("*.png"))
+
+
+def test_a_jump_is_told_with_its_lag(ask, folder):
+    options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--one-way", "--plot", "none")
+    done = ask("couple", *options, *SHORT).success()
+    lines = [line for line in done.out.splitlines() if "jump up at" in line]
+    assert len(lines) == 2 and all("late at this rate, about 1.5" in line for line in lines)
+
+
+def test_a_motor_of_one_s_own(ask, folder, motor):
+    """Volts and seconds; voltages from a file; both kinds of controllers."""
+    own = ("couple", "--drive", motor, "--only", "delaminated")
+    volts = ("--voltage", "5:5.2", "--volt-rate", "0.2", "--one-way", "--settle", "20")
+    ask(*own, *volts).success()
+    course = motor.with_name("course.csv")
+    course.write_text("time,voltage\n0,4\n1,5\n1,6\n2,6\n")
+    ask(*own, "--course", course).success()
+    constant = ("--voltage", "6.5", "--duration", "1.5")
+    strong = ("--voltage", "12", "--duration", "1.5")
+    held = ask(*own, *strong, "--speed-control", "120").success()
+    assert "a controller sets the voltage" in held.out and "beyond the resonance from" in held.out
+    ask(*own, *constant, "--speed-gradient", "--low", "0.5").success()
+    found = results(folder)
+    assert len(found) == 4 and len(list(folder.glob("*.png"))) == 4
+    assert any(abs(float(data.voltage[-1]) - 6.0) < 1e-9 for data in found.values())
+
+
+def test_capture(ask, folder):
+    quick = ("--count", "2", "--tolerance", "0.05", "--time", "350", "--step", "0.2")
+    done = ask("capture", "--eta0", "1.5:1.6", *quick, "--only", "delaminated").success()
+    assert "delaminated: passes from 1.5" in done.out
+    over = ("--over", "rotor_inertia", "--values", "800,1400", "--only", "bonded")
+    done = ask("capture", "--voltage", "1.45:1.6", *quick, *over).success()
+    assert "bonded, rotor_inertia = 1400: passes from" in done.out
+    assert len(results(folder)) == 2
+    assert all(shows_something(picture) for picture in folder.glob("*.png"))
+
+
+def test_passage(ask, folder):
+    options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--around", "60", "--one-way", *SHORT)
+    done = ask("passage", *options, "--revolutions", "4", "--only", "delaminated").success()
+    assert done.out.count("jump up at 1.6") == 1 and "around jumps" in done.out
+    (picture,) = folder.glob("*.png")
+    assert shows_something(picture)
+
+
+@pytest.mark.slow
+def test_jump_voltages(ask, folder):
+    options = ("--eta0", "1.5:1.66", "--rate", "4e-4,3e-4", "--one-way", "--jobs", "1", *SHORT)
+    done = ask("jump-voltages", *options).success()
+    assert "in V, at rate 0" in done.out and done.out.count("+-") == 4
+    (data,) = results(folder).values()
+    assert data.jumps.attrs["units"] == "V"
+    assert shows_something(next(folder.glob("*.png")))
+
+
+@pytest.mark.slow
+def test_drive_branch(ask, folder):
+    options = ("--speed", "1.29:1.32", "--longest", "0.3", "--jobs", "1")
+    done = ask("drive-branch", *options).success()
+    assert "bonded: fold at 1.583" in done.out
+    assert shows_something(next(folder.glob("*.png")))
+
+
+def test_the_weak_drive_as_a_package(ask, tmp_path):
+    path = tmp_path / "weak_drive.ssp"
+    assert ask("couple", "--ssp", path).code == 0
+    assert path.stat().st_size > 1000
+    ask("couple", "--ssp", "/nowhere/x.ssp").complaint("/nowhere/x.ssp", code=1)
+
+
+OF_ALL = [
+    (["--drive", "rigg"], ["rigg", "no such file", "quick"]),
+    (["--structure", "glued"], ["glued", "no such file"]),
+    (["--set", "x=1"], ["x", "no parameter"]),
+    (["--set", "motor_constant=0"], ["motor_constant = 0.0", "> 0"]),
+    (["--fmu", "nowhere.fmu"], ["nowhere.fmu", "no such file"]),
+    (["--jobs", "0"], ["jobs = 0"]),
+    (["--format", "doc"], ["--format doc", "xlsx"]),
+    (["--plot", "gif"], ["--plot gif", "png"]),
+]
+VOLTAGES = [
+    (["--eta0", "x:2"], ["--eta0 x:2", "FIRST:LAST"]),
+    (["--eta0", "1:2", "--voltage", "1:2"], ["--eta0 and --voltage", "one of them"]),
+    (["--step", "-0.1"], ["step = -0.1 s", "0.0001 <= step <= 1"]),
+    (["--eta0", "1:1"], ["voltage"]),
+]
+SCHEDULES = [
+    *VOLTAGES,
+    (["--eta0", "nan:2"], ["voltage = nan V", "finite"]),
+    (["--eta0", "1.2"], ["one voltage, 1.2 V", "--duration"]),
+    (["--eta0", "1:2", "--duration", "3"], ["--duration", "one voltage"]),
+    (["--voltage", "high"], ["--voltage high", "a number, or FIRST:LAST"]),
+    (["--rate", "0"], ["--rate 0", "> 0"]),
+    (["--rate", "nan"], ["--rate nan", "expected a number > 0"]),
+    (["--rate", "1e-4,5e-5"], ["--rate 1e-4,5e-5", "expected one", "jump-voltages"]),
+    (["--rate", "1e-4", "--volt-rate", "1"], ["--rate and --volt-rate"]),
+    (["--volt-rate", "fast"], ["--volt-rate fast", "> 0"]),
+    (["--rate", "1e-9", "--step", "1e-3"], ["steps", "at most 1e+09"]),
+    (["--increment", "2"], ["increment = 2.0 V", "0 <= increment"]),
+    (["--settle", "-1"], ["settle = -1.0 s", "0 <= settle"]),
+    (["--course", "nowhere.csv"], ["nowhere.csv", "cannot be read"]),
+    (["--course", "a.csv", "--eta0", "1:2"], ["--course and --eta0"]),
+    (["--set", "armature_resistance=1e-3"], ["does not jump", "--eta0 or --voltage"]),
+]
+CONTROLS = [
+    (["--speed-control", "1.5", "--speed-gradient"], ["--speed-control and --speed-gradient"]),
+    (["--gain", "2"], ["--gain 2", "--speed-control with it"]),
+    (["--low", "0.5"], ["--low 0.5", "--speed-gradient with it"]),
+    (["--speed-control", "nan"], ["speed = nan", "finite"]),
+    (["--speed-control", "1.5", "--gain", "-1"], ["gain = -1.0", "0 < gain"]),
+    (["--speed-gradient", "--low", "2"], ["low = 2.0", "0 <= low <= 1"]),
+]
+CASES = {
+    "couple": [
+        *(*OF_ALL, *SCHEDULES, *CONTROLS),
+        (["--algorithm", "euler"], ["algorithm", "euler", "jacobi", "rollback"]),
+        (["--tolerance", "-1"], ["tolerance", ">= 0"]),
+    ],
+    "passage": [
+        *(*OF_ALL, *SCHEDULES, *CONTROLS),
+        (["--around", "0"], ["around = 0.0 s", "0 < around"]),
+        (["--revolutions", "0"], ["--revolutions 0", ">= 1"]),
+    ],
+    "capture": [
+        *(*OF_ALL, *VOLTAGES, *CONTROLS),
+        (["--over", "D"], ["--over and --values", "both"]),
+        (["--over", "colour", "--values", "1,2"], ["colour", "no parameter"]),
+        (["--over", "D", "--values", "a"], ["--values a", "not numbers"]),
+        (["--count", "1"], ["count = 1", ">= 2"]),
+        (["--tolerance", "0"], ["tolerance = 0.0 V", "0 < tolerance"]),
+        (["--time", "-1"], ["time = -1.0 s", "0 < time"]),
+        (["--eta0", "1.5"], ["--eta0 1.5", "FIRST:LAST"]),
+    ],
+    "jump-voltages": [
+        *(*OF_ALL, *VOLTAGES),
+        (["--rate", "1e-4"], ["rates", "two different ones"]),
+        (["--rate", "1:2:3"], ["--rate 1:2:3", "A,B,..., such as 1e-4,5e-5"]),
+        (["--rate", "1e-4,-1"], ["--rate 1e-4,-1", "> 0"]),
+        (["--eta0", "1.5"], ["--eta0 1.5", "FIRST:LAST"]),
+        (["--settle", "-1"], ["settle = -1.0 s", "0 <= settle"]),
+    ],
+    "drive-branch": [
+        *OF_ALL,
+        (["--speed", "1"], ["--speed 1", "FIRST:LAST"]),
+        (["--speed", "2:1"], ["speed = (2.0, 1.0)", "first < last"]),
+        (["--longest", "0"], ["longest = 0.0", "<= longest <="]),
+        (["--most", "1"], ["most = 1", ">= 2"]),
+        (["--steps", "3"], ["steps = 3", ">= 16"]),
+        (["--period", "0"], ["period = 0", ">= 1"]),
+    ],
+}
+MISTAKES = [(name, *case) for name, cases in CASES.items() for case in cases]
+
+
+@pytest.mark.parametrize(
+    ("command", "options", "words"),
+    MISTAKES,
+    ids=lambda value: value if isinstance(value, str) else " ".join(value),
+)
+def test_mistake(ask, tmp_path, command, options, words):
+    done = ask(command, *options)
+    assert done.out == ""
+    done.complaint(*words)
+    assert done.err.startswith("error: ")
+    assert list(tmp_path.iterdir()) == []

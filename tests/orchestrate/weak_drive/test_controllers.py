@@ -1,0 +1,144 @@
+"""Controllers: against a simulation and a law of their own; how a machine gets across."""
+
+import math
+
+import numpy as np
+import pytest
+
+from orchestrate import Course, InputError, SpeedControl, SpeedGradient, couple, passage
+from orchestrate.access import OSCILLATOR, SHAKER, find
+from orchestrate.weak_drive.controllers import Seen
+from orchestrate.weak_drive.couple import couple_job
+from orchestrate.weak_drive.master import Scheme
+from orchestrate.weak_drive.schedule import Constant
+
+from . import bonded
+from .coupled import BEAM, QUICK
+
+WEAK = BEAM._replace(drive=BEAM.drive.replace(armature_resistance=120.0))  # a weak motor
+SWING = SpeedGradient(filter_time=0.4, passed=101.0, low=0.6)
+
+
+class Pi:
+    """A PI law of the test's own: velocity form, the integral kept while it is limited."""
+
+    def __init__(self, target, gain, reset_time, limit, h):
+        self.target, self.gain, self.reset, self.limit, self.h = target, gain, reset_time, limit, h
+        self.sum = 0.0
+
+    def __call__(self, time, speed):
+        missing = self.target - speed
+        self.sum += missing * self.h
+        wanted = self.gain * missing + self.gain / self.reset * self.sum
+        if wanted > self.limit and missing > 0.0 or wanted < 0.0 and missing < 0.0:
+            self.sum -= missing * self.h
+        return min(max(wanted, 0.0), self.limit)
+
+
+class Swing:
+    """On while the speed is above its running mean, low otherwise."""
+
+    def __init__(self, control, limit, h):
+        self.control, self.limit, self.mean = control, limit, 0.0
+        self.share = 1.0 - math.exp(-h / control.filter_time)
+
+    def __call__(self, time, speed):
+        self.mean += self.share * (speed - self.mean)
+        on = self.mean > self.control.passed or speed >= self.mean
+        return self.limit if on else self.limit * self.control.low
+
+
+def agrees(system, control, law, voltage, time):
+    """A run of both FMUs has the voltages and speeds of the plain simulation."""
+    h = 0.1 / system.structure.omega
+    found = passage(
+        *system, voltage=voltage, duration=time, control=control, step=h, progress=False
+    )
+    speeds, voltages = bonded.run(system, law, h, found.sizes["time"], parts=2)
+    assert (np.abs(found.voltage - voltages) < 1e-3 * voltage).mean() > 0.999
+    assert found.speed.values == pytest.approx(np.array(speeds), abs=2e-4 * max(speeds))
+    return found
+
+
+def test_speed_control():
+    h = 0.1
+    control = SpeedControl(speed=1.5, gain=5.0, reset_time=50.0)
+    found = agrees(QUICK.as_bonded(), control, Pi(1.5, 5.0, 50.0, 1.8, h), 1.8, 300.0)
+    assert float(found.voltage.min()) >= 0.0 and float(found.voltage.max()) == 1.8
+    assert float(found.passage_time) < 150.0
+    assert found.speed[-200:].mean() == pytest.approx(1.5, abs=2e-3)
+
+
+def test_speed_gradient():
+    law = Swing(SWING, 8.73, 0.1 / 75.0)
+    found = agrees(WEAK.as_bonded(), SWING, law, 8.73, 6.0)
+    assert set(np.unique(found.voltage.values.round(9))) == {5.238, 8.73}
+
+
+@pytest.mark.parametrize("kind", ["bonded", "delaminated"])
+def test_a_machine_that_is_captured_gets_across(kind):
+    """Switched on at once or raised slowly the motor hangs at the resonance; swung, it passes."""
+    system = WEAK.as_bonded() if kind == "bonded" else WEAK
+    asked = {"duration": 9.0, "progress": False}
+    at_once = couple(*system, voltage=8.73, speed_start=0.0, **asked)
+    slowly = Course(times=(0.0, 8.0, 9.0), voltages=(5.0, 8.73, 8.73))
+    ramp = couple(*system, voltage=slowly, speed_start=60.0, progress=False)
+    swung = couple(*system, voltage=8.73, control=SWING, **asked)
+    assert np.isnan(at_once.passage_time) and np.isnan(ramp.passage_time)
+    assert at_once.speed[-1] < 101.0 and ramp.speed[-1] < 101.0
+    assert float(swung.passage_time) < 4.0 and swung.speed[-1] > 140.0
+    assert swung.no_jump.values.tolist() == ["a controller sets the voltage"] * 2
+
+
+def test_proportional_control_and_a_wanted_speed_that_rises():
+    control, memory = SpeedControl(speed=10.0, gain=2.0, rise=4.0), None
+    memory = control.begin(5.0)
+    for expected in (5.0, 7.0, 9.0, 10.0, 10.0):
+        assert memory[0] == expected
+        voltage, memory = control.act(Seen(0.0, expected - 1.0, 12.0, 0.5), memory)
+        assert voltage == 2.0
+    assert control.act(Seen(0.0, 0.0, -3.0, 0.5), memory)[0] == 0.0  # only what there is
+    backward = SpeedControl(speed=-10.0, gain=2.0)
+    assert backward.act(Seen(0.0, -9.0, -3.0, 0.5), backward.begin(0.0))[0] == -2.0
+
+
+def test_backward_too():
+    control = SpeedGradient(filter_time=1.0, passed=5.0)
+    assert control.act(Seen(0.0, -3.0, -8.0, 0.01), (-2.0,))[0] == -8.0
+    assert abs(control.act(Seen(0.0, -1.0, -8.0, 0.01), (-2.0,))[0]) == 0.0
+
+
+def test_it_goes_on_with_the_same_bits():
+    """What a controller remembers is handed over from chunk to chunk."""
+    control = SpeedControl(speed=1.4, gain=3.0, reset_time=20.0)
+    job = couple_job(*QUICK, Constant(1.7, 30.0), Scheme("rollback", 0.1), 0.0, control)
+    fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
+    steps = job.items({})
+    whole = job.work(fmus, steps, None)
+    carry = job.work(fmus, steps[:137], None)
+    rest = job.work(fmus, steps[137:], carry)
+    for name in ("master_memory", "control_memory", "oscillator_state"):
+        assert np.array_equal(rest[name], whole[name]), name
+
+
+@pytest.mark.parametrize(
+    ("make", "parts"),
+    [
+        (lambda: SpeedControl(speed=math.nan, gain=1.0), ["speed = nan", "finite"]),
+        (lambda: SpeedControl(speed=1.0, gain=0.0), ["gain = 0.0 V.s/rad", "0 < gain"]),
+        (lambda: SpeedControl(speed=1.0, gain="1"), ["gain = 1", "0 < gain"]),
+        (lambda: SpeedControl(speed=1.0, gain=1.0, reset_time=0.0), ["0 < reset_time"]),
+        (lambda: SpeedControl(speed=1.0, gain=1.0, rise=-1.0), ["0 < rise"]),
+        (lambda: SpeedGradient(filter_time=-1.0, passed=1.0), ["0 < filter_time"]),
+        (lambda: SpeedGradient(filter_time=1.0, passed=0.0), ["0 < passed"]),
+        (lambda: SpeedGradient(filter_time=1.0, passed=1.0, low=1.5), ["0 <= low <= 1"]),
+        (
+            lambda: couple(*QUICK, voltage=1.5, duration=1.0, control="pi"),
+            ["control = 'pi'", "SpeedControl(...)"],
+        ),
+    ],
+)
+def test_mistakes(make, parts):
+    with pytest.raises(InputError) as caught:
+        make()
+    assert all(part in str(caught.value) for part in parts), str(caught.value)
