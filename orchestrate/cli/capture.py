@@ -18,6 +18,7 @@ from .drives import (
     ask_each,
     control_of,
     folds_of,
+    step_of,
     two_voltages,
 )
 from .options import Commands, add_drive, described, values_of
@@ -82,7 +83,7 @@ def run(arguments: argparse.Namespace) -> None:
         "tolerance": arguments.tolerance,
         "time": arguments.time,
         "control": control_of(arguments, structure, drive),
-        "step": arguments.step / structure.omega,
+        "step": step_of(arguments, structure),
     }
     draw = partial(picture_of, name=Path(arguments.drive).stem, asked=question)
     ask_each(arguments, structure, drive, question, draw, report)

@@ -20,6 +20,7 @@ from .drives import (
     file_name,
     schedule_from,
     states_of,
+    step_of,
     title_of_runs,
 )
 from .options import Commands, add_drive, described
@@ -68,8 +69,8 @@ def add_master(parser: argparse.ArgumentParser) -> None:
     """How both FMUs are stepped."""
     group = parser.add_argument_group("master")
     add_step(group)
-    text = "halve steps with a larger defect, over the work exchanged in them (default: never)"
-    group.add_argument("--tolerance", type=float, default=0.0, help=text)
+    text = "of that control: largest defect over the work exchanged in a step (default: 1e-8)"
+    group.add_argument("--tolerance", type=float, help=text)
     text = "master, see the manual (default: %(default)s)"
     group.add_argument("--algorithm", default="rollback", help=text)
 
@@ -80,8 +81,9 @@ def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -
 
     control = control_of(arguments, structure, drive)
     schedule = schedule_from(arguments, structure, drive, control)
-    step = arguments.step / structure.omega
-    scheme = scheme_of(structure, step, arguments.algorithm, arguments.tolerance)
+    step = step_of(arguments, structure)
+    given = (arguments.algorithm, arguments.tolerance, control is not None)
+    scheme = scheme_of(structure, step, *given)
     stem = file_name(arguments, structure, drive, (schedule, scheme, control))
     return [
         replace(

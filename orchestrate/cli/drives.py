@@ -75,8 +75,11 @@ def add_settle(group: Any) -> None:
 
 def add_step(group: Any) -> None:
     """``--step``."""
-    text = "communication step, in 1/omega (default: %(default)s)"
-    group.add_argument("--step", type=float, default=0.1, help=text)
+    text = (
+        "communication step, in 1/omega (default: controlled by its defect, at most 0.4; 0.1 where "
+        "a controller or a picture takes samples)"
+    )
+    group.add_argument("--step", type=float, help=text)
 
 
 def add_control(parser: argparse.ArgumentParser) -> None:
@@ -194,6 +197,11 @@ def volt_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive)
     if arguments.rate is None:
         return unit * USUAL.get(arguments.drive, ("", RATE))[1]
     return unit * rates_of("--rate", arguments.rate, one=True)[0]
+
+
+def step_of(arguments: argparse.Namespace, structure: Structure) -> float | None:
+    """The communication step, s, where one is given."""
+    return None if arguments.step is None else float(arguments.step / structure.omega)
 
 
 def schedule_from(

@@ -7,7 +7,17 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .drives import ETA0, add_ends, add_rate, add_settle, add_step, ask_once, rates_of, two_voltages
+from .drives import (
+    ETA0,
+    add_ends,
+    add_rate,
+    add_settle,
+    add_step,
+    ask_once,
+    rates_of,
+    step_of,
+    two_voltages,
+)
 from .options import Commands, add_drive, described
 from .output import add_files, add_running
 
@@ -47,7 +57,7 @@ def run(arguments: argparse.Namespace) -> None:
         "rates": [rate * unit for rate in rates_of("--rate", arguments.rate or USUAL)],
         "back": not arguments.one_way,
         "settle": arguments.settle / structure.omega,
-        "step": arguments.step / structure.omega,
+        "step": step_of(arguments, structure),
     }
     draw = partial(picture_of, name=Path(arguments.drive).stem)
     ask_once(arguments, structure, drive, question, draw, report)

@@ -17,6 +17,7 @@ from .drives import (
     ask_each,
     control_of,
     schedule_from,
+    step_of,
     title_of_runs,
 )
 from .options import Commands, add_drive, described
@@ -72,7 +73,7 @@ def run(arguments: argparse.Namespace) -> None:
         "voltage": schedule,
         "around": around,
         "control": control,
-        "step": arguments.step / structure.omega,
+        "step": step_of(arguments, structure),
     }
     spectra = {"revolutions": arguments.revolutions, "mass": arguments.mass}
     draw = partial(picture_of, name=Path(arguments.drive).stem, spectra=spectra, control=control)

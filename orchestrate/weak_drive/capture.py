@@ -271,7 +271,8 @@ def capture(
     control : Controller, optional
         Takes a part of the voltage; see :mod:`orchestrate.weak_drive.controllers`.
     step : float, optional
-        Communication step, s; 0.1/omega by default.
+        Communication step, s; controlled by its defect by default, with a controller 0.1/omega at
+        most.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`; the values
         run side by side.
@@ -311,7 +312,7 @@ def capture(
     check("time", longest, "s", low=0.0, exclusive=True)
     if not isinstance(stay, int) or isinstance(stay, bool) or stay < 1:
         raise InputError(f"stay = {stay!r}: expected a whole number >= 1")
-    scheme = scheme_of(structure, step, "rollback", 0.0)
+    scheme = scheme_of(structure, step, sampled=control is not None)
     couple_job(structure, drive, Constant(voltages[-1], longest), scheme, 0.0, control)
     job = CaptureJob(
         "capture",

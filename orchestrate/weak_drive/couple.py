@@ -336,8 +336,9 @@ def scheme_of(
     step: float | None,
     algorithm: str = "rollback",
     tolerance: float | None = None,
+    sampled: bool = False,
 ) -> Scheme:
-    """A scheme from the arguments of :func:`couple`.
+    """A scheme from the arguments of :func:`couple`; ``sampled`` where each step is a sample.
 
     Raises
     ------
@@ -348,7 +349,7 @@ def scheme_of(
         controlled = step is None and Scheme(algorithm).goes_back
         tolerance = TOLERANCE if controlled else 0.0
     if step is None:
-        step = (LONGEST if tolerance else FIXED) / omega
+        step = (LONGEST if tolerance and not sampled else FIXED) / omega
     rounding = 1.0 + 1e-12
     if not 1e-4 / rounding <= step * omega <= rounding:
         raise InputError(f"step = {step} s: expected {1e-4 / omega:g} <= step <= {1.0 / omega:g}")
@@ -440,8 +441,8 @@ def couple(
         ``voltage``, once a communication step, by the speed. There are no jumps to be found then;
         ``passage_time`` says whether the motor has passed the resonance.
     step : float, optional
-        Communication step, s. By default its defect controls it, up to 0.4/omega; with an
-        ``algorithm`` that cannot go back it is 0.1/omega.
+        Communication step, s. By default its defect controls it, up to 0.4/omega; with a controller
+        up to 0.1/omega, with an ``algorithm`` that cannot go back it is that.
     algorithm : str
         Of :data:`orchestrate.weak_drive.master.ALGORITHMS`.
     tolerance : float, optional
@@ -492,6 +493,6 @@ def couple(
         spin_up = 0.0
     given = (duration, rate, settle, increment, back, spin_up)
     schedule = schedule_of(structure, drive, voltage, *given)
-    scheme = scheme_of(structure, step, algorithm, tolerance)
+    scheme = scheme_of(structure, step, algorithm, tolerance, control is not None)
     job = couple_job(structure, drive, schedule, scheme, speed_start, control)
     return answer(job, running, finder(running))

@@ -204,7 +204,7 @@ def passage(
         spin_up = 0.0
     given = (duration, rate, settle, 0.0, back, spin_up)
     schedule = schedule_of(structure, drive, voltage, *given)
-    scheme = scheme_of(structure, step, "rollback", 0.0)
+    scheme = scheme_of(structure, step, sampled=True)
     run = couple_job(structure, drive, schedule, scheme, speed_start, control)
     name = run.name.replace("couple", "passage")
     return answer(PassageJob(name, run, around), running, finder(running))
