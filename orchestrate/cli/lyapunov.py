@@ -6,6 +6,8 @@ import argparse
 import math
 from typing import TYPE_CHECKING, Any
 
+import orchestrate
+
 from .options import (
     Commands,
     add_excitation,
@@ -16,14 +18,14 @@ from .options import (
     numbers_of,
     structure_of,
 )
-from .output import add_files, add_running
+from .output import add_files, add_running, running_of
 from .question import along_of, carry_out, place, ranges, several
 
 if TYPE_CHECKING:
     import xarray as xr
 
 EXAMPLES = """\
-  {program} lyapunov --eta 2.5:3.8:0.02
+  {program} lyapunov --eta 2.5:3.8:0.02 --follow up        along a sweep
   {program} lyapunov --eta 1.2 --over e --values 0.1:0.9:0.02
   {program} lyapunov --structure beam --hz 12.5,16.7 --amplitude 1e-4
 Chaotic, periodic: the exponent is three standard errors from zero. Neutral: quasi-periodic, or not
@@ -33,11 +35,13 @@ WORDS = {1: "chaotic", 0: "neutral", -1: "periodic"}
 
 def add_parser(commands: Commands) -> None:
     """Declare the command."""
-    text = "largest Lyapunov exponents of responses from rest: periodic, neutral or chaotic"
+    text = "largest Lyapunov exponents of responses: periodic, neutral or chaotic"
     parser = commands.add("lyapunov", run, text, EXAMPLES)
     add_structure(parser)
     option = add_excitation(parser).add_argument
     add_over(option)
+    follow = "responses of a sweep in this direction (default: each from rest)"
+    option("--follow", choices=("up", "down"), help=follow)
     add_numbers(
         option,
         transient=(500, "periods dropped"),
@@ -53,6 +57,10 @@ def run(arguments: argparse.Namespace) -> None:
     structure = structure_of(arguments)
     asked, _ = along(arguments, structure)
     question = {**asked, **numbers_of(arguments, "transient", "periods", "sigmas")}
+    if arguments.follow:
+        swept: dict[str, Any] = {**asked, "direction": arguments.follow, "samples": 1}
+        swept["transient"] = arguments.transient
+        question["start"] = orchestrate.sweep(structure, **swept, **running_of(arguments))
     carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
 
 

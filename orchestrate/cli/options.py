@@ -196,7 +196,10 @@ def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual:
     """
     values = "VALUES" if several else "VALUE"
     form = ", FIRST:LAST:STEP with both ends or a list A,B,..." if several else ""
-    group = parser.add_argument_group("the box's motion, one frequency and one amplitude of these")
+    group = parser.add_argument_group(
+        "the box's motion",
+        "one frequency and one amplitude of these, or the [excitation] of the file of --structure",
+    )
     option = group.add_argument
     default = f" (default: {usual})" if usual else ""
     option("--hz", metavar=values, help=f"frequency in Hz{form}")
@@ -231,6 +234,9 @@ def excitation_of(
 
     name = frequency_option(arguments)
     amplitude = amplitude_of(arguments)
+    described_too = described_excitation(arguments) if name is None and amplitude is None else None
+    if described_too:
+        return described_too
     if name is None:
         raise InputError(f"frequency: nothing given; expected one of {options(FREQUENCIES)}")
     text = getattr(arguments, name)
@@ -250,6 +256,18 @@ def excitation_of(
         return {"frequency": turns, "amplitude": amplitude}
     held = each(lambda value: amplitude * GRAVITY / value**2, turns)
     return {"frequency": turns, "amplitude": held}
+
+
+def described_excitation(arguments: argparse.Namespace) -> dict[str, Any] | None:
+    """The box's motion of the file of ``--structure``, if it has one; its phase is an option's."""
+    from ..structures.files import read
+
+    found: Any = read(arguments.structure).get("excitation")
+    if found is None:
+        return None
+    if getattr(arguments, "phase", None) == 0.0:
+        arguments.phase = found.phase
+    return {"frequency": found.frequency, "amplitude": found.amplitude}
 
 
 def frequency_option(arguments: argparse.Namespace) -> str | None:

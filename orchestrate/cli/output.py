@@ -165,8 +165,9 @@ def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> 
 def digest(*told: Any) -> str:
     """A few letters that differ where what is told differs."""
 
-    def other(value: Any) -> str:  # a stored result is what it answers
-        return str(getattr(value, "attrs", {}).get("identity") or repr(value))
+    def other(value: Any) -> str:  # a stored result is the question that it answers
+        identity = getattr(value, "attrs", {}).get("identity")
+        return json.dumps(json.loads(identity)["question"]) if identity else repr(value)
 
     text = json.dumps(told, sort_keys=True, default=other)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]

@@ -252,6 +252,12 @@ SYNTAX = [
     (["spectra", "--eta0=1", "--volt", "1"], ["--volt"]),  # no abbreviations
     (["sweep", "--samples", "1.5"], ["--samples", "'1.5'", "int"]),
     (["sweep", "--direction", "sideways"], ["--direction", "'sideways'", "up"]),
+    (["build", "now"], ["now"]),
+    (["build", "--folder"], ["--folder", "expected one argument"]),
+    (["build", "--format", "fmi4"], ["--format"]),
+    (["lyapunov", "--follow", "me"], ["--follow", "'me'", "up"]),
+    (["resonance", "--direction", "given"], ["--direction", "'given'", "both"]),
+    (["basin", "--samples", "many"], ["--samples", "'many'", "int"]),
     (["couple", "--only", "glued"], ["--only", "'glued'", "bonded"]),
 ]
 

@@ -10,6 +10,9 @@ import pytest
 import xarray as xr
 from matplotlib import image
 
+import orchestrate
+from orchestrate import Structure
+
 SHORT = ("--transient", "60", "--samples", "16")
 QUESTIONS = {  # command line, words that must be said, pictures
     "resonance": (
@@ -105,6 +108,32 @@ def test_a_branch_goes_on_from_a_stored_one(ask, folder):
     done = ask("border", "--start", place, *limits)
     assert done.code == 0 and "Neimark-Sacker: " in done.out, done.err
     assert len(list(folder.glob("*.nc"))) == 3
+
+
+def test_the_excitation_of_the_file(ask, folder, tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text(
+        "[structure]\nm1 = 1.5\nomega_hz = 11.9\nD = 0.005\n\n"
+        "[excitation]\nfrequency_hz = 12.6\nacceleration_g = 0.02\nphase = 0.5\n"
+    )
+    short = ("simulate", "--structure", path, "--periods", "1", "--plot", "none")
+    told = ("--hz", "12.6", "--g", "0.02", "--phase", "0.5")
+    done, same = ask(*short), ask(*short, *told)
+    assert done.code == same.code == 0, done.err
+    assert done.out.splitlines()[:-1] == same.out.splitlines()[:-1]
+
+
+def test_exponents_along_a_sweep(ask, folder):
+    eta = [1.36, 1.3]
+    options = ("--eta", "1.36,1.3", "--periods", "100", "--transient", "50", "--plot", "none")
+    assert ask("lyapunov", *options, "--follow", "down").code == 0
+    (path,) = folder.glob("*.nc")
+    swept = orchestrate.sweep(
+        Structure(), eta=eta, direction="down", transient=50, samples=1, progress=False
+    )
+    along = {"start": swept, "transient": 50, "periods": 100, "progress": False}
+    expected = orchestrate.lyapunov(Structure(), eta=eta, **along)
+    np.testing.assert_array_equal(xr.load_dataset(path).exponent, expected.exponent)
 
 
 TRIVIAL = [
