@@ -358,9 +358,10 @@ def title_of_runs(runs: Mapping[str, xr.Dataset], name: str, control: str = "") 
     """Set, volts and rate of runs, for a picture."""
     import numpy as np
 
-    data = next(iter(runs.values()))
-    volts, times = data.voltage.values, data.time.values
-    rates = np.abs(np.diff(volts) / np.diff(times))
+    changes = [
+        np.abs(np.diff(data.voltage.values) / np.diff(data.time.values)) for data in runs.values()
+    ]
+    rates, volts = np.concatenate(changes), np.concatenate([data.voltage for data in runs.values()])
     rate = float(np.median(rates[rates > 0.0])) if (rates > 0.0).any() else 0.0
     low, high = float(volts.min()), float(volts.max())
     ends = f"{high:.4g} V" if low == high else f"{low:.4g} V to {high:.4g} V"

@@ -17,6 +17,7 @@ from orchestrate.figures import (
     run_history,
     weak_drive,
 )
+from orchestrate.files import write_whole
 from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spectra
 
 from .test_pictures import HERE, QUICK, drawn, texts
@@ -130,3 +131,21 @@ def test_a_constant_voltage_has_no_way_back(exported):
     data = orchestrate.couple(*QUICK, voltage=1.4, duration=60.0, **HERE)
     assert [name for _, _, name in weak_drive.ways(data)] == ["there"]
     weak_drive.draw({"delaminated": data})
+
+
+def test_two_commands_draw_the_same_picture_at_once(tmp_path, monkeypatch):
+    """One process writes it while another does: both end well, and the picture is whole."""
+    path, inner = tmp_path / "couple.png", []
+
+    def write(temporary):
+        temporary.write_bytes(b"half")
+        if not inner:
+            inner.append(temporary)
+            monkeypatch.setattr("os.getpid", lambda: 1)  # the other process
+            write_whole(path, write)
+            assert path.read_bytes() == b"half, whole" and temporary.exists()
+        temporary.write_bytes(b"half, whole")
+
+    write_whole(path, write)
+    assert path.read_bytes() == b"half, whole"
+    assert [found.name for found in tmp_path.iterdir()] == ["couple.png"]
