@@ -14,6 +14,7 @@ What is asked
     :func:`simulate`, :func:`resonance`, :func:`sweep`, :func:`spectra`; :func:`map`,
     :func:`lyapunov`, :func:`attractors`, :func:`basin`, :func:`impact_statistics`;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
+    :func:`couple_all`,
     :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
     :func:`drive_branch` and :func:`drive_spectra` for the weak drive, its voltage a
     :class:`Course`, a :class:`SpeedControl` or a :class:`SpeedGradient` too; :func:`write_ssp`
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from .weak_drive.capture import capture
     from .weak_drive.controllers import SpeedControl, SpeedGradient
     from .weak_drive.couple import couple
+    from .weak_drive.couple_all import couple_all
     from .weak_drive.drive_branch import drive_branch
     from .weak_drive.drive_spectra import drive_spectra
     from .weak_drive.jump_voltages import jump_voltages
@@ -77,6 +79,7 @@ __all__ = [
     "branch",
     "capture",
     "couple",
+    "couple_all",
     "drive_branch",
     "drive_spectra",
     "impact_statistics",
@@ -113,6 +116,7 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "weak_drive.capture": ("capture",),
     "weak_drive.controllers": ("SpeedControl", "SpeedGradient"),
     "weak_drive.couple": ("couple",),
+    "weak_drive.couple_all": ("couple_all",),
     "weak_drive.drive_branch": ("drive_branch",),
     "weak_drive.drive_spectra": ("drive_spectra",),
     "weak_drive.jump_voltages": ("jump_voltages",),

@@ -134,6 +134,31 @@ def test_a_damaged_chunk_is_computed_anew(find, tmp_path, monkeypatch):
     journal.close()
 
 
+@pytest.mark.parametrize("place", [20, 100, 4100, 8192, 8200, -4000, -1])
+def test_a_flipped_bit_of_the_journal(find, tmp_path, monkeypatch, place):
+    """The answer is right, or the message names the file and says what to do."""
+    path, work = tmp_path / "squares.nc", Squares.work
+
+    def interrupted(self, fmus, items, carry):
+        if 7 in items:
+            raise KeyboardInterrupt
+        return work(self, fmus, items, carry)
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(Squares, "work", interrupted)
+        answer(Squares("squares"), {"store": path}, find)
+    journal = journal_path(path)
+    data = bytearray(journal.read_bytes())
+    data[place] ^= 0x10
+    journal.write_bytes(data)
+    try:
+        found = answer(Squares("squares"), {"store": path}, find)
+    except StoreError as error:
+        assert str(journal) in str(error) and "remove it" in str(error), error
+    else:
+        assert found.square.values.tolist() == [float(i * i) for i in range(10)]
+
+
 def test_a_journal_that_is_none(find, tmp_path):
     path = tmp_path / "squares.nc"
     journal_path(path).write_bytes(b"not a database" * 1000)

@@ -18,7 +18,7 @@ from orchestrate.weak_drive.drive_branch import DriveBranchJob
 from orchestrate.weak_drive.drive_walk import FLIP, FOLD, TORUS, Pace
 from orchestrate.weak_drive.jumps import Way, find_jump
 
-from .coupled import System, master, rest, state_of
+from .coupled import BEAM, QUICK, System, master, rest, state_of
 from .monolithic import Monolith
 
 SEED = 13
@@ -262,10 +262,8 @@ def ramp_jumps(system, fold, rate=1e-4):
     """Jumps up on a ramp past a fold: of the FMUs and of the monolithic solution."""
     speed, volts = below_resonance(system)
     unit = system.drive.volts(system.structure)
-    start = max(volts / unit, fold - 0.05)
     state = settled_state(system, volts, speed)
     ends = (volts / unit, fold + 0.06)
-    del start
     return coupled_jump(system, state, ends, rate), monolithic_jump(system, state, ends, rate)
 
 
@@ -326,15 +324,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=5)
     parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--only", type=int, help="number of a set, from 0")
+    parser.add_argument("--only", help="numbers of sets from 0, or quick, beam", default="")
     parser.add_argument("--no-jumps", action="store_true")
     arguments = parser.parse_args()
-    for number, system in enumerate(random_sets(arguments.count, arguments.seed)):
-        if arguments.only in (None, number):
-            begin = time.process_time()
-            for line in report(system, not arguments.no_jumps):
-                print(f"set {number}: {line}", flush=True)
-            print(f"set {number}: {time.process_time() - begin:.0f} s", flush=True)
+    random = random_sets(arguments.count, arguments.seed)
+    systems = {**{str(i): one for i, one in enumerate(random)}, "quick": QUICK, "beam": BEAM}
+    for name in arguments.only.split(",") if arguments.only else systems:
+        begin = time.process_time()
+        for line in report(systems[name], not arguments.no_jumps):
+            print(f"{name}: {line}", flush=True)
+        print(f"{name}: {time.process_time() - begin:.0f} s", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,150 @@
+"""Many coupled runs at once: sets, rates, bonded and delaminated, shared out by the one runner.
+
+Each run is a job of its own: with a folder as store it is a file of its own there, goes on where it
+was interrupted, and is not computed again by a later call with more sets or rates.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..access.exported import finder
+from ..errors import InputError
+from ..running.runner import gather
+from ..structures.drive import Drive
+from ..structures.structure import Structure
+from . import averaged
+from .couple import CoupleJob, checked_motor, couple_job, schedule_of, scheme_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+KINDS = ("bonded", "delaminated")
+BELOW, BEYOND, PAST = 0.97, 1.05, 0.05  # speeds over the resonance; voltage past the fold, over K w
+System = tuple[Structure, Drive]
+
+
+def ends_of(structure: Structure, drive: Drive) -> tuple[float, float]:
+    """Voltages over K omega below the resonance and past the jump up, by the averaged theory."""
+    resonance = averaged.resonance(structure, drive)
+    first, last = (
+        float(averaged.no_load_speed(structure, drive, share * resonance))
+        for share in (BELOW, BEYOND)
+    )
+    folds = averaged.folds(structure, drive)
+    return first, max([last, *(fold.eta0 + PAST for fold in folds)])
+
+
+def job_of(
+    name: str,
+    system: System,
+    kind: str,
+    rate: float,
+    eta0: tuple[float, float] | None,
+    back: bool,
+    step: float | None,
+) -> CoupleJob:
+    """One of the runs, by non-dimensional numbers."""
+    structure, drive = system
+    structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
+    checked_motor(drive)
+    volts, omega = drive.volts(structure), structure.omega
+    first, last = ends_of(structure.as_bonded(), drive) if eta0 is None else eta0
+    schedule = schedule_of(
+        structure, drive, (first * volts, last * volts), rate=rate * volts * omega, back=back
+    )
+    scheme = scheme_of(structure, None if step is None else step / omega)
+    job = couple_job(structure, drive, schedule, scheme)
+    return replace(job, name=f"couple_{name}_{kind}_{rate:g}")
+
+
+def couple_all(
+    systems: Mapping[str, System],
+    *,
+    eta0: tuple[float, float] | None = None,
+    rates: Sequence[float] = (1e-4,),
+    kinds: Sequence[str] = KINDS,
+    back: bool = True,
+    step: float | None = None,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Couple many structures with their motors, at many rates, side by side.
+
+    Parameters
+    ----------
+    systems : mapping of str to (Structure, Drive)
+        By names of your own, which are part of the files' names.
+    eta0 : (float, float), optional
+        Ends of the ramps, the voltage over K omega of each set. By default each set's own: from
+        below the resonance to past the jump up, by the averaged theory.
+    rates : sequence of float
+        Of eta0 in a time 1/omega.
+    kinds : sequence of str
+        ``"bonded"``, ``"delaminated"``, or both.
+    back : bool
+        Whether the ramps come back.
+    step : float, optional
+        Communication step in 1/omega; controlled by its defect by default.
+    **running
+        ``jobs``, ``cluster``, ``store`` and others, see
+        :class:`orchestrate.running.options.Running`; ``store`` is a folder, a file for each run.
+
+    Returns
+    -------
+    xarray.Dataset
+        What :func:`orchestrate.couple` gives, over ``run`` too, with the coordinates ``system``,
+        ``structure`` and ``rate``; NaN where a run has fewer revolutions than another.
+
+    Raises
+    ------
+    InputError
+        Where an argument is not what is expected.
+
+    Examples
+    --------
+    >>> from orchestrate import Drive, Structure, couple_all
+    >>> sets = {name: (Structure.from_file(name), Drive.from_file(name)) for name in ("quick",)}
+    >>> few = dict(eta0=(1.5, 1.7), rates=[4e-4, 8e-4], kinds=["bonded"], back=False, step=0.2)
+    >>> found = couple_all(sets, **few, progress=False)
+    >>> found.rate.values.tolist(), bool((found.jumps.sel(jump="up") > 7.0).any())
+    ([0.0004, 0.0008], False)
+    """
+    import xarray as xr
+
+    if not systems:
+        raise InputError("systems: expected one structure with its drive, or more")
+    for kind in kinds:
+        if kind not in KINDS:
+            raise InputError(f"kinds = {kind!r}: expected {' or '.join(KINDS)}")
+    for rate in rates:
+        if not (math.isfinite(rate) and rate > 0.0):
+            raise InputError(f"rate = {rate}: expected a number > 0, of eta0 in a time 1/omega")
+    runs = list(product(systems, kinds, dict.fromkeys(rates)))
+    jobs = [job_of(name, systems[name], kind, rate, eta0, back, step) for name, kind, rate in runs]
+    if not jobs:
+        raise InputError("kinds, rates: expected one of each, or more")
+    found = [
+        run.assign_coords(eta0=run.eta0.reset_coords(drop=True), Omega=run.Omega)
+        for run in gather(jobs, running, finder(running))
+    ]
+    whole = xr.concat(found, "run", join="outer", combine_attrs="drop_conflicts", data_vars="all")
+    texts = ("name of the set", "structure", "change of the no-load speed over omega per 1/omega")
+    units = (None, None, "1")
+    for place, name in enumerate(("system", "structure", "rate")):
+        values = np.array([run[place] for run in runs])
+        attributes = {"long_name": texts[place]}
+        unit = units[place]
+        if unit:
+            attributes["units"] = unit
+        whole = whole.assign_coords({name: ("run", values, attributes)})
+    whole.attrs["title"] = "Weak drive: many runs"
+    return whole
