@@ -197,9 +197,9 @@ def branch_of(system, most=120, range_=(0.95, 1.15)):
         return job.legs((one, other), system.structure), length
 
 
-def bifurcations(system):
+def bifurcations(system, range_=(0.95, 1.15)):
     """Kind, speed over omega, voltage over K omega by the branch and by the whole system."""
-    legs, length = branch_of(system)
+    legs, length = branch_of(system, range_=range_)
     found = []
     for leg in legs:
         for event in leg.bifurcations:

@@ -1,0 +1,44 @@
+"""Random sets against the monolithic solution; all of them, and jumps, are marked slow."""
+
+import numpy as np
+import pytest
+
+from orchestrate.weak_drive.drive_walk import FOLD
+
+from .validation import (
+    bifurcations,
+    extrapolated_jumps,
+    first_fold,
+    ramp_jumps,
+    random_sets,
+    trajectory_error,
+)
+
+SETS = random_sets(5)
+
+
+@pytest.mark.parametrize("number", [0, 3])
+def test_trajectories(number):
+    error, impacts = trajectory_error(SETS[number], 20.0)
+    assert impacts > 2 and error < 1e-6
+
+
+def test_a_fold():
+    """Located on the branch, and by shooting on the monolithic solution."""
+    ((kind, _, voltage, truth),) = bifurcations(SETS[1].as_bonded(), (1.003, 1.012))
+    assert kind == FOLD and voltage == pytest.approx(truth, abs=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("system", SETS, ids=range(5))
+def test_a_set(system):
+    folds = []
+    for one in (system.as_bonded(), system):
+        assert trajectory_error(one)[0] < 1e-6
+        found = bifurcations(one)
+        errors = np.array([voltage - truth for _, _, voltage, truth in found])
+        assert (np.abs(errors[np.isfinite(errors)]) < 1e-4).all(), found
+        folds.append(first_fold(found)[2])
+        here, whole = ramp_jumps(one, folds[-1])
+        assert here == pytest.approx(whole, abs=1e-3)
+    assert extrapolated_jumps(system, max(folds)) == pytest.approx(folds, abs=1e-3)
