@@ -11,11 +11,11 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..access import OSCILLATOR
+from ..access import OSCILLATOR, SHAKER
 from ..access.webassembly import WebKernel, web_kernel
 from ..errors import InputError
 from ..files import open_folder, write_whole
-from ..structures import Structure
+from ..structures import Drive, Structure
 from ..structures.ranges import STRUCTURE
 from ..version import __version__
 from .branches import overlay
@@ -82,23 +82,27 @@ def explore(
     if path.is_dir():
         raise InputError(f"output = {str(output)!r}: is a folder; expected a file to write")
     open_folder(path.parent)
-    text = page(chosen, overlay(branches), web_kernel(OSCILLATOR, build_folder))
+    kernels = {
+        "oscillator": web_kernel(OSCILLATOR, build_folder),
+        "shaker": web_kernel(SHAKER, build_folder),
+    }
+    text = page(chosen, overlay(branches), kernels)
     return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
-def page(chosen: Shipped, drawn: dict[str, Any], kernel: WebKernel) -> str:
+def page(chosen: Shipped, drawn: dict[str, Any], kernels: dict[str, WebKernel]) -> str:
     """The HTML of the page."""
     scripts = modules()
-    made_by = f"vibroimpact {__version__}, kernel {kernel.guid}"
+    made_by = f"vibroimpact {__version__}, kernel {kernels['oscillator'].guid}"
+    tables = {name: {"slots": one.slots, "starts": one.starts} for name, one in kernels.items()}
     parts = {
         "style": source("style.css"),
         "title": title(chosen.structure),
         "branches": "" if drawn["branches"] else "hidden",
         "source": f"{made_by}; sweep by {chosen.source}" if chosen.source else made_by,
-        "table": as_json(
-            {**table(chosen), **drawn, "slots": kernel.slots, "starts": kernel.starts}
-        ),
-        "kernel": packed(kernel.module),
+        "table": as_json({**table(chosen), **drawn, **tables, "drive": weak_drive()}),
+        **{name: packed(kernel.module) for name, kernel in kernels.items()},
+        **voltages(),
         "data": packed(chosen.numbers.astype("<f8").tobytes()),
         "worker": bundle(scripts, "worker"),
         "script": bundle(scripts, "main"),
@@ -119,6 +123,20 @@ def table(chosen: Shipped) -> dict[str, Any]:
         "high": chosen.high,
         "command": chosen.command,
     }
+
+
+def weak_drive(step: float = 0.1) -> dict[str, Any]:
+    """The weak drive of the page, the set ``quick``: its numbers, and the communication step."""
+    structure = Structure.from_file("quick")
+    drive = {name: float(value) for name, value in Drive.from_file("quick").parameters().items()}
+    return {"structure": numbers(structure), "drive": drive, "h": step / structure.omega}
+
+
+def voltages(low: float = 0.8, high: float = 2.0, first: float = 0.9) -> dict[str, str]:
+    """Ends and beginning of the voltage's slider, as no-load speeds over omega."""
+    unit = Drive.from_file("quick").motor_constant * Structure.from_file("quick").omega
+    ends = {"voltage_low": low, "voltage_high": high, "voltage": first}
+    return {name: f"{value * unit:.6g}" for name, value in ends.items()}
 
 
 def numbers(structure: Structure) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 import { BasinPart } from "./basin_part.js";
 import { diagramCommand, motionCommand } from "./command.js";
+import { DrivePart } from "./drive_part.js";
 import { Controls, hertz } from "./controls.js";
 import { Crew } from "./crew.js";
 import { nearest, startAt } from "./diagram.js";
@@ -15,7 +16,7 @@ import { Regions } from "./regions.js";
 import { USUAL } from "./response.js";
 import { shown } from "./scale.js";
 import { pointAt, sameStructure } from "./structure.js";
-import { diagramCsv, impactsCsv, motionCsv, sectionCsv, spectrumCsv } from "./tables.js";
+import { diagramCsv, driveCsv, impactsCsv, motionCsv, sectionCsv, spectrumCsv } from "./tables.js";
 
 /**
  * @typedef {import("./structure.js").Structure} Structure
@@ -37,6 +38,7 @@ export class App {
     this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.crew, diagram, table, () => this.refreshDiagram());
     this.inspector = new Inspector(at, this.crew, () => this.refreshMotion());
     this.basin = new BasinPart(at, this.crew, (start) => this.inspect(this.eta, start));
+    this.drive = new DrivePart(at, this.crew, table.drive);
     this.structure = table.structure;
     this.controls = new Controls(at("sliders"), at("si"), table.ranges, (structure) => this.change(structure));
     /** @type {number} */
@@ -251,7 +253,7 @@ export class App {
     const [name, kind] = words.split(".");
     const { found, choice, section, spectra, pictures, animation } = this.inspector;
     /** @type {Record<string, import("./picture.js").Picture>} */
-    const shownPictures = { ...pictures.pictures, diagram: this.regions.view.picture, basin: this.basin.view.picture, animation: animation.picture };
+    const shownPictures = { ...pictures.pictures, diagram: this.regions.view.picture, basin: this.basin.view.picture, drive: this.drive.picture, animation: animation.picture };
     const file = `${name}_eta${Number.isFinite(this.eta) ? this.eta : ""}`;
     if (kind === "png") shownPictures[name].savePng(file);
     if (kind === "svg") shownPictures[name].saveSvg(file);
@@ -260,6 +262,7 @@ export class App {
     if (name === "section" && section.length) void saveCsv(file, sectionCsv(section));
     if (name === "spectrum" && spectra) void saveCsv(file, spectrumCsv(spectra));
     if (name === "history" && found && choice) void saveCsv(file, motionCsv(found.motion, choice.point));
+    if (name === "drive") void saveCsv(file, driveCsv(this.drive.rows));
     if (name === "impacts" && found) void saveCsv(file, impactsCsv(found.motion));
   }
 

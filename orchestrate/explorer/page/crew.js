@@ -8,7 +8,7 @@
 export class Crew {
   /**
    * @param {string} source of the worker
-   * @param {Compiled} compiled
+   * @param {{oscillator: Compiled, shaker: Compiled}} compiled
    * @param {number} size
    */
   constructor(source, compiled, size) {

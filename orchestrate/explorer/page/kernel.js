@@ -1,4 +1,4 @@
-/** The oscillator's kernel in WebAssembly: one instance, driven as the FMU drives it. */
+/** Kernels in WebAssembly: an instance each, driven as the FMU drives it. */
 
 /**
  * @typedef {{SIZE: number, TIME: number, STOP: number, [name: string]: number}} Slots
@@ -59,10 +59,15 @@ export class Instance {
    * @returns {number} the time reached
    */
   step(time, target, stop = false) {
+    return this.stepBy(time, target - time, stop);
+  }
+
+  /** @param {number} time @param {number} h length of the step @param {boolean} stop */
+  stepBy(time, h, stop = false) {
     const { TIME, STOP } = this.slots;
     const reached = this.memory[TIME];
     this.memory[STOP] = stop ? 1 : 0;
-    this.call("kernel_advance", Math.max(time + (target - time), reached));
+    this.call("kernel_advance", Math.max(time + h, reached));
     if (this.memory[TIME] < reached) this.memory[TIME] = reached;
     return this.memory[TIME];
   }

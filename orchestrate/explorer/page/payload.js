@@ -2,7 +2,8 @@
 
 /**
  * @typedef {import("./structure.js").Structure} Structure
- * @typedef {{slots: import("./kernel.js").Slots, starts: Record<string, number>,
+ * @typedef {{slots: import("./kernel.js").Slots, starts: Record<string, number>}} Kernel
+ * @typedef {{oscillator: Kernel, shaker: Kernel, drive: import("./coupled.js").Start,
  *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>,
  *   settings: import("./response.js").Settings, directions: ("up" | "down")[], count: number,
  *   low: number, high: number, title: string, command: string,
@@ -26,9 +27,10 @@ async function bytes(id) {
 export async function load() {
   /** @type {Table} */
   const table = JSON.parse(text("table"));
-  const [kernel, data] = await Promise.all([bytes("kernel"), bytes("data")]);
-  const module = await WebAssembly.compile(kernel);
-  const compiled = { module, slots: table.slots, starts: table.starts };
+  const packed = ["oscillator", "shaker", "data"].map(bytes);
+  const [first, second, data] = await Promise.all(packed);
+  const [one, other] = await Promise.all([first, second].map((code) => WebAssembly.compile(code)));
+  const compiled = { oscillator: { module: one, ...table.oscillator }, shaker: { module: other, ...table.shaker } };
   return { table, compiled, worker: text("worker"), diagram: shipped(table, new Float64Array(data)) };
 }
 

@@ -52,3 +52,9 @@ export function spectrumCsv({ delaminated, bonded }) {
   const rows = Array.from(delaminated.order, (order, i) => [order, delaminated.amplitude[i], bonded.amplitude[i]]);
   return { head: ["order", "delaminated", "bonded"], rows };
 }
+
+/** Revolutions of the motor. @param {import("./drive_part.js").Row[]} revolutions */
+export function driveCsv(revolutions) {
+  const rows = revolutions.map((row) => [row.time, row.voltage, row.speed, row.amplitude, row.impacts]);
+  return { head: ["time", "voltage", "speed", "amplitude", "impacts"], rows };
+}

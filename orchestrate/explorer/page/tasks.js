@@ -1,6 +1,7 @@
 /** What a worker computes, each task a generator that yields its answer part by part. */
 
 import { destination, startAt } from "./basin.js";
+import { Coupled } from "./coupled.js";
 import { exponentOf } from "./lyapunov.js";
 import { record } from "./motion.js";
 import { respond } from "./response.js";
@@ -10,6 +11,7 @@ import { waveform } from "./waveform.js";
 
 /**
  * @typedef {import("./kernel.js").Oscillator} Oscillator
+ * @typedef {import("./kernel.js").Instance} Instance
  * @typedef {import("./structure.js").Point} Point
  * @typedef {import("./structure.js").Columns} Columns
  * @typedef {import("./response.js").Settings} Settings
@@ -101,6 +103,24 @@ function* sound(instance, { point, start, periods, pitch, rate }) {
 }
 
 /**
+ * Some revolutions of the motor and the structure in its box, from where they were left.
+ * @param {Oscillator} instance
+ * @param {{run: import("./coupled.js").Run | null, start: import("./coupled.js").Start,
+ *   voltages: number[]}} asked a voltage for each step
+ * @param {import("./kernel.js").Instance} shaker
+ */
+function* drive(instance, { run, start, voltages }, shaker) {
+  const coupled = run ? Coupled.resumed(instance, shaker, run) : Coupled.begun(instance, shaker, start);
+  const rows = [];
+  for (const voltage of voltages) {
+    coupled.step(voltage);
+    const row = coupled.revolution();
+    if (row) rows.push(row);
+  }
+  yield { rows, run: coupled.memory() };
+}
+
+/**
  * Where the cells of a plane lead to.
  * @param {Oscillator} instance
  * @param {{point: Point, plane: import("./basin.js").Plane, cells: [number, number][]}} asked
@@ -111,5 +131,5 @@ function* basin(instance, { point, plane, cells }) {
   }
 }
 
-/** @type {Record<string, (instance: Oscillator, asked: any) => Generator<unknown>>} */
-export const TASKS = { replay, chain, motion, section, spectra, sound, basin };
+/** @type {Record<string, (instance: Oscillator, asked: any, shaker: Instance) => Generator<unknown>>} */
+export const TASKS = { replay, chain, motion, section, spectra, sound, drive, basin };

@@ -1,12 +1,14 @@
 /** A worker: computes tasks in short slices, the newest first, so that it can be told to stop. */
 
-import { Oscillator } from "./kernel.js";
+import { Instance, Oscillator } from "./kernel.js";
 import { TASKS } from "./tasks.js";
 
 const SLICE = 15; // ms
 
 /** @type {Oscillator} */
 let instance;
+/** @type {Instance} */
+let shaker;
 /** @type {{id: number, run: Generator<unknown>}[]} */
 const tasks = [];
 const wake = new MessageChannel();
@@ -16,8 +18,11 @@ const scope = /** @type {{onmessage: unknown, postMessage: (message: unknown) =>
 );
 
 scope.onmessage = (/** @type {MessageEvent} */ { data }) => {
-  if (data.compiled) instance = new Oscillator(data.compiled);
-  if (data.task) tasks.push({ id: data.id, run: TASKS[data.task](instance, data.asked) });
+  if (data.compiled) {
+    instance = new Oscillator(data.compiled.oscillator);
+    shaker = new Instance(data.compiled.shaker);
+  }
+  if (data.task) tasks.push({ id: data.id, run: TASKS[data.task](instance, data.asked, shaker) });
   if (data.cancel !== undefined) drop(data.cancel);
   rouse();
 };

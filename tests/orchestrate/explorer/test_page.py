@@ -198,3 +198,37 @@ def test_without_a_sweep_the_page_computes_its_own(chromium, tmp_path, exported)
     found = orchestrate.sweep(structure, eta=etas(chromium)[:40], progress=False)
     assert gaps(chromium)[:40].tobytes() == found.xi_rel.values.tobytes()
     assert chromium.console() == []
+
+
+def test_the_weak_drive_is_the_masters(browser):
+    structure, drive = (
+        kind.from_file("quick") for kind in (orchestrate.Structure, orchestrate.Drive)
+    )
+    found = orchestrate.couple(structure, drive, voltage=1.3, duration=300.0, progress=False)
+    browser.run(
+        """
+        const { drive, ...rest } = explorer.table.drive;
+        const motor = { ...drive, voltage: 1.3, speed_start: 1.3 / drive.motor_constant };
+        const voltages = new Array(1500).fill(1.3);
+        const asked = { run: null, start: { ...rest, drive: motor }, voltages };
+        explorer.told = null;
+        explorer.crew.ask("drive", asked, ([first]) =>
+          explorer.crew.ask("drive", { ...asked, run: first.run }, ([last]) => {
+            explorer.told = [...first.rows, ...last.rows];
+          }));
+        """
+    )
+    browser.until("return explorer.told")
+    count = found.sizes["revolution"]
+    assert count > 40 and int(found.impacts.sum()) > 10
+    for name in ("time", "speed", "impacts"):
+        mine = browser.numbers(f"explorer.told.map((row) => row.{name})")
+        assert np.array_equal(mine, found[name].values), name
+
+
+def test_the_motor_runs_and_is_stopped(browser):
+    browser.click("ramp-up")
+    browser.until("return explorer.drive.rows.length > 100")
+    browser.click("drive-go")
+    assert "impacts a revolution" in browser.text("drive-status")
+    assert browser.run("return explorer.drive.rows.at(-1).voltage > explorer.drive.rows[0].voltage")

@@ -1,0 +1,118 @@
+/** The weak drive: a motor with an unbalance shakes the box; its speed may hang at the resonance. */
+
+import { drawChart } from "./chart.js";
+import { Picture } from "./picture.js";
+import { shown } from "./scale.js";
+
+const KEPT = 6000; // revolutions of the trace
+const PACE = 60; // ms between two requests
+const STEPS = 1200; // communication steps in each
+const SWEEP = 2e-4; // V/s of a ramp, times the largest voltage
+
+/** @typedef {{time: number, voltage: number, speed: number, amplitude: number, impacts: number}} Row */
+
+export class DrivePart {
+  /** @param {(id: string) => HTMLElement} at @param {import("./crew.js").Crew} crew @param {import("./coupled.js").Start} start */
+  constructor(at, crew, start) {
+    this.at = at;
+    this.crew = crew;
+    this.start = start;
+    this.voltage = /** @type {HTMLInputElement} */ (at("voltage"));
+    this.picture = new Picture(/** @type {HTMLCanvasElement} */ (at("drive")), (pen, size, theme) => this.draw(pen, size, theme));
+    this.running = false;
+    this.ramp = 0; // sign of the voltage's change
+    this.clear();
+    at("drive-go").addEventListener("click", () => this.run(!this.running));
+    at("ramp-up").addEventListener("click", () => this.drift(1));
+    at("ramp-down").addEventListener("click", () => this.drift(-1));
+    at("drive-bonded").addEventListener("change", () => this.clear());
+    this.voltage.addEventListener("input", () => (this.ramp = 0));
+  }
+
+  /** Forget the run. */
+  clear() {
+    /** @type {import("./coupled.js").Run | null} */
+    this.state = null;
+    /** @type {Row[]} */
+    this.rows = [];
+    this.order?.cancel();
+    this.order = null;
+    this.picture.redraw();
+  }
+
+  /** @param {boolean} running */
+  run(running) {
+    this.running = running;
+    this.at("drive-go").textContent = running ? "Stop motor" : "Start motor";
+    if (running && !this.order) this.ask();
+  }
+
+  /** Let the voltage rise or fall slowly. @param {number} sign */
+  drift(sign) {
+    this.ramp = sign;
+    this.run(true);
+  }
+
+  /** A voltage for each of the next steps: what the slider says, or a ramp from it. */
+  voltages() {
+    const { h } = this.start;
+    const [low, high] = [Number(this.voltage.min), Number(this.voltage.max)];
+    const first = this.voltage.valueAsNumber;
+    const change = this.ramp * SWEEP * high * h;
+    const list = Array.from({ length: STEPS }, (_, i) => Math.min(Math.max(first + change * i, low), high));
+    if (this.ramp) {
+      this.voltage.value = String(list[STEPS - 1] + change);
+      const reached = list[STEPS - 1];
+      if (reached === (this.ramp > 0 ? high : low)) this.run(false);
+    }
+    return list;
+  }
+
+  ask() {
+    const bonded = /** @type {HTMLInputElement} */ (this.at("drive-bonded")).checked ? 1 : 0;
+    const voltages = this.voltages();
+    const { structure, drive } = this.start;
+    const start = {
+      ...this.start,
+      structure: { ...structure, bonded },
+      drive: { ...drive, voltage: voltages[0], speed_start: voltages[0] / drive.motor_constant },
+    };
+    const order = this.crew.ask("drive", { run: this.state, start, voltages }, ([part]) => this.take(part));
+    this.order = order;
+    void order.done.then(() => {
+      if (this.order === order) this.order = null;
+      if (this.running && !this.order) setTimeout(() => this.running && !this.order && this.ask(), PACE);
+    });
+  }
+
+  /** @param {{rows: Row[], run: import("./coupled.js").Run}} part */
+  take({ rows, run }) {
+    this.state = run;
+    this.rows = [...this.rows, ...rows].slice(-KEPT);
+    const last = this.rows[this.rows.length - 1];
+    if (last) {
+      const words = `${shown(last.voltage)} V: speed ${shown(last.speed)} rad/s, ${shown(last.impacts, 2)} impacts a revolution, amplitude ${shown(last.amplitude, 3)} m`;
+      this.at("drive-status").textContent = words;
+      this.picture.describe(`Speed of the motor over its voltage. ${words}`);
+    }
+    this.picture.redraw();
+  }
+
+  /** @param {import("./pen.js").Pen} pen @param {import("./picture.js").Size} size @param {import("./theme.js").Theme} theme */
+  draw(pen, size, theme) {
+    const [low, high] = [Number(this.voltage.min), Number(this.voltage.max)];
+    const unit = this.start.drive.motor_constant;
+    const x = this.rows.map((row) => row.voltage);
+    const y = this.rows.map((row) => row.speed);
+    drawChart(pen, size, theme, {
+      x: { low, high, label: "voltage, V" },
+      y: { low: low / unit, high: high / unit, label: "speed, rad/s" },
+      series: [
+        { x: [low, high], y: [low / unit, high / unit], colour: "soft", label: "no load", alpha: 0.5 },
+        { x, y, colour: "one", label: "speed" },
+        { x: x.slice(-1), y: y.slice(-1), colour: "hit", dots: 4 },
+      ],
+      empty: this.rows.length ? "" : "start the motor",
+    });
+  }
+}
