@@ -1,9 +1,4 @@
-/**
- * Structure and motor coupled: the scheme `rollback` of the project's master, step by step the same.
- * The structure goes first with an extrapolated acceleration of the box, the shaker with the force
- * that came of it; then both go back and once more with the acceleration found. What is exchanged is
- * a cubic with the ends, the mean and the first moment that both sides know exactly.
- */
+/** Structure and motor coupled: the scheme `rollback` of the project's master, step by step. */
 
 /**
  * @typedef {import("./kernel.js").Instance} Instance
@@ -41,6 +36,11 @@ function read(instance, names) {
   return Object.fromEntries(names.map((name) => [name, instance.get(name)]));
 }
 
+/**
+ * The structure goes first with an extrapolated acceleration of the box, the shaker with the force
+ * that came of it; then both go back and once more with the acceleration found. What is exchanged is
+ * a cubic with the ends, the mean and the first moment that both sides know exactly.
+ */
 export class Coupled {
   /** @param {Instance} oscillator @param {Instance} shaker @param {number} h communication step, s */
   constructor(oscillator, shaker, h) {
