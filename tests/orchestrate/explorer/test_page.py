@@ -204,7 +204,8 @@ def test_the_weak_drive_is_the_masters(browser):
     structure, drive = (
         kind.from_file("quick") for kind in (orchestrate.Structure, orchestrate.Drive)
     )
-    found = orchestrate.couple(structure, drive, voltage=1.3, duration=300.0, progress=False)
+    fixed = {"step": 0.1 / structure.omega, "tolerance": 0.0}
+    found = orchestrate.couple(structure, drive, voltage=1.3, duration=300.0, **fixed)
     browser.run(
         """
         const { drive, ...rest } = explorer.table.drive;
