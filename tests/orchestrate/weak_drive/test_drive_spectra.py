@@ -3,11 +3,17 @@
 import numpy as np
 import pytest
 
+from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.errors import InputError
+from orchestrate.response.spectra import amplitude_spectrum
 from orchestrate.weak_drive import averaged
+from orchestrate.weak_drive.couple import Run, couple_job
 from orchestrate.weak_drive.drive_spectra import drive_spectra, voltage_at_resonance
+from orchestrate.weak_drive.master import Scheme
+from orchestrate.weak_drive.schedule import Ramp
 
-from .coupled import BEAM, QUICK
+from .coupled import BEAM, QUICK, state_of
+from .monolithic import Monolith
 
 SHORT = {"jobs": 1, "rate": 4e-4, "hold": 400.0, "revolutions": 32, "progress": False}
 
@@ -44,6 +50,28 @@ def test_twice_as_many_samples_show_the_same(quick):
     for order in (0.5, 3.0, 7.5, 12.0):
         expected = line(finer, "delaminated", order)
         assert line(quick, "delaminated", order) == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.slow
+def test_lines_are_those_of_the_whole_system(quick):
+    """The monolithic solution from the end of the same approach, sampled eight times as densely."""
+    voltage, revolutions, points = voltage_at_resonance(*QUICK), 8, 2048
+    ramp = Ramp(0.85 * voltage, voltage, SHORT["rate"], settle=300.0, back=False)
+    job = couple_job(*QUICK, ramp, Scheme("rollback", 0.1))
+    with Instance(find(OSCILLATOR).path) as oscillator, Instance(find(SHAKER).path) as shaker:
+        run = Run(job, oscillator, shaker)
+        run.revolve(range(round((ramp.duration + SHORT["hold"]) / 0.1)))
+        state = state_of(run.master)
+        run.master.close()
+    interval = 2.0 * np.pi / float(quick.speed.sel(kind="delaminated")) / points
+    times = interval * np.arange(revolutions * points)
+    states, impacts = Monolith(*QUICK, voltage).solve(state, times)
+    frequency, amplitude = amplitude_spectrum(states[:, 0] + states[:, 4], interval)
+    assert impacts == 12  # three in two revolutions
+    for order in (0.5, 1.0, 1.5, 2.0, 4.5, 8.0, 12.0):
+        at = round(order * revolutions)
+        expected = frequency[at] ** 2 * amplitude[at]
+        assert line(quick, "delaminated", order) == pytest.approx(expected, rel=0.01), order
 
 
 @pytest.mark.parametrize("system", [QUICK, BEAM], ids=["quick", "beam"])
