@@ -12,7 +12,7 @@ import re
 from docutils.utils.math.latex2mathml import tex2mathml
 from markupsafe import Markup, escape
 
-LETTERS = ("eta", "kappa", "lambda", "omega", "gamma", "tau", "mu")
+LETTERS = ("eta", "kappa", "lambda", "omega", "gamma", "tau", "mu", "nu", "xi", "pi")
 WORDS = {  # regular expressions and what they become, the longest first
     r"\$(?P<latex>[^$]+)\$": r"\g<latex>",
     r"e\^\(-D tau\)": r"e^{-D\\tau}",
@@ -21,7 +21,8 @@ WORDS = {  # regular expressions and what they become, the longest first
     r"\(1\+e\) mu/\(1\+mu\)": r"(1+e)\\mu/(1+\\mu)",
     r"\bmax xi_Rel\b": r"\\max \\xi_\\mathrm{Rel}",
     r"\bxi_Rel\b": r"\\xi_\\mathrm{Rel}",
-    r"\b(?P<mass>[mkdx])_(?P<index>[12])\b": r"\g<mass>_\g<index>",
+    rf"\b(?P<greek>{'|'.join(LETTERS)})_(?P<of>[12i])\b": r"\\\g<greek>_\g<of>",
+    r"\b(?P<mass>[mkdxD])_(?P<index>[12i])\b": r"\g<mass>_\g<index>",
     rf"\b(?P<power>{'|'.join(LETTERS)})\^2": r"\\\g<power>^2",
     rf"\b(?P<letter>{'|'.join(LETTERS)})\b": r"\\\g<letter>",
     r"(?P<digits>\d+(?:\.\d+)?)e(?P<minus>-?)\+?0*(?P<ten>\d+)\b": (

@@ -14,6 +14,8 @@ FORMULAS = {
     "max xi_Rel": r"\max \xi_\mathrm{Rel}",
     "m_1 omega a eta^2": r"m_1 \omega a \eta^2",
     "k_2": "k_2",
+    "xi_2": r"\xi_2",
+    "nu_i": r"\nu_i",
     "4.1e-04": r"4.1\cdot 10^{-4}",
     "2e+05": r"2\cdot 10^{5}",
     "10^0.5": "10^{0.5}",
