@@ -281,11 +281,8 @@ def branch(
         )
     else:
         value = start_value(start, over, switch, structure)
+    check_inside(over, value, low_high)
     nodes, kind = begin_of(start, switch)
-    if not low_high[0] <= value <= low_high[1]:
-        raise InputError(
-            f"limits = {low_high!r}: {over} = {value!r} at the start; expected it inside"
-        )
     fixed = tuple((name, number) for name, number in given if name != over)
     setting = Setting(
         structure, fixed, (over,), (low_high,), finite(ACCELERATION, box_acceleration)
@@ -356,7 +353,9 @@ def first_orbit(
     """The orbit that a branch begins with where the user names none, and the parameter there."""
     excitation: dict[str, Any] = dict(given)
     quiet: dict[str, Any] = {
-        name: value for name, value in running.items() if name in ("fmu", "build_folder")
+        name: value
+        for name, value in running.items()
+        if name in ("fmu", "build_folder", "progress")
     }
     value = excitation[over] if over in excitation else limits[0]
     if over == ACCELERATION:
@@ -365,10 +364,24 @@ def first_orbit(
         own = structure.get(over)
         value = own if limits[0] <= own <= limits[1] else limits[0]
         structure = structure.replace(**{over: value})
+    check_inside(over, value, limits)
     found = orbit(
         structure, period=period, box_acceleration=box_acceleration, **excitation, **quiet
     )
     return found, value
+
+
+def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
+    """See that a branch starts between its limits.
+
+    Raises
+    ------
+    InputError
+    """
+    if not limits[0] <= value <= limits[1]:
+        raise InputError(
+            f"limits = {limits!r}: {over} = {value!r} at the start; expected it inside"
+        )
 
 
 def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Structure) -> float:

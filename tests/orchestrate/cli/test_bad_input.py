@@ -171,7 +171,7 @@ ORBIT = [
 ]
 LIMITS = ["--limits", "2.4:2.6"]
 BRANCH = [
-    *[(options + LIMITS, words) for options, words in SHAKEN],
+    *[([*options, "--limits", "0.9:1.1"], words) for options, words in SHAKEN],
     ([], ["--limits", "FIRST:LAST"]),
     (["--limits", "2"], ["--limits 2", "FIRST:LAST"]),
     (["--eta", "2.5", "--limits", "2.6:2.4"], ["limits", "the lower one first"]),
@@ -343,7 +343,8 @@ def test_debug_shows_where_an_error_came_from(tmp_path):
             main([*arguments, "--set", "e=2", "--output", str(tmp_path)])
 
 
-def test_no_scheduler(ask, tmp_path):
+def test_no_scheduler(ask, tmp_path, monkeypatch):
+    monkeypatch.setattr("orchestrate.running.executors.CONNECT", "1s")
     address = "tcp://127.0.0.1:1"
     ask("sweep", "--eta", "1", "--cluster", address).complaint(f"cluster {address}", "no scheduler")
     assert list((tmp_path / "results").glob("*.nc")) == []
