@@ -63,7 +63,8 @@ export class Reach {
 export class Plate {
   constructor() {
     this.canvas = document.createElement("canvas");
-    this.dot = 1; // pixels wide
+    this.dot = 1; // pixels high,
+    this.broad = 1; // and wide: no gaps between frequencies that lie apart
     this.alpha = 1; // of a dot
   }
 
@@ -84,6 +85,7 @@ export class Plate {
     this.counts = scaleOf(axes.impacts, below + deep, below);
     this.countsEnds = [below, below + deep];
     this.dot = Math.max(1, Math.round(density));
+    this.broad = Math.max(this.dot, Math.min(6, Math.ceil((0.9 * wide) / Math.max(count, 1))));
     this.alpha = Math.min(0.6, Math.max(0.1, 0.6 * Math.sqrt(wide / Math.max(count, 1) / this.dot)));
   }
 
@@ -91,7 +93,7 @@ export class Plate {
   add(point, found, colour) {
     const { px, py, counts, bottom = 0, strip = 0, top = 0 } = this;
     if (!px || !py || !counts || !this.ends || !this.countsEnds) return;
-    const x = Math.floor(px(point.eta));
+    const x = Math.floor(px(point.eta) - (this.broad - 1) / 2);
     if (x < this.ends[0] || x > this.ends[1]) return;
     const rgb = channels(colour);
     for (const gap of found.gaps) {
@@ -105,7 +107,7 @@ export class Plate {
   /** @param {number} x @param {number} y @param {[number, number, number]} rgb */
   mark(x, y, [r, g, b]) {
     const { data } = /** @type {ImageData} */ (this.data);
-    for (let dx = 0; dx < this.dot; dx++) {
+    for (let dx = 0; dx < this.broad; dx++) {
       for (let dy = 0; dy < this.dot; dy++) {
         const place = 4 * ((y + dy) * this.canvas.width + x + dx);
         const old = data[place + 3] / 255;

@@ -19,9 +19,15 @@ export function overlayOf({ branches, bifurcations }, view) {
         const look = { stroke: theme.two, width: 1.8, dash: stable ? [] : [5, 4] };
         pen.line(x.map(px), y.map(py), look);
       }
+      /** @type {[number, number][]} */
+      const taken = [];
       for (const { eta, gap, kind } of bifurcations) {
-        pen.dots([px(eta)], [py(gap)], 4, { fill: theme.two });
-        pen.text(px(eta) + 7, py(gap) - 9, kind, { anchor: "start", fill: theme.two, size: 11 });
+        const [x, y] = [px(eta), py(gap)];
+        pen.dots([x], [y], 4, { fill: theme.two });
+        let level = y - 10;
+        while (taken.some(([a, b]) => Math.abs(a - x) < 110 && Math.abs(b - level) < 12)) level -= 13;
+        taken.push([x, level]);
+        pen.text(x + 6, level, kind, { anchor: "start", fill: theme.two, size: 11 });
       }
     });
   };
