@@ -41,10 +41,34 @@ export class BasinView {
     this.labels = new Int16Array(0);
     this.cells = document.createElement("canvas");
     this.picture = new Picture(canvas, (pen, size, theme) => this.draw(pen, size, theme));
-    canvas.addEventListener("click", (event) => {
-      const cell = this.cellAt(event.offsetX, event.offsetY);
+    /** @type {[number, number] | null} */
+    this.cursor = null;
+    /** @param {[number, number] | null} cell */
+    const start = (cell) => {
       if (cell && this.plane && this.point) choose(startAt(this.point, this.plane, ...cell));
+    };
+    canvas.addEventListener("click", (event) => {
+      this.cursor = this.cellAt(event.offsetX, event.offsetY);
+      start(this.cursor);
     });
+    canvas.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") start(this.cursor);
+      else if (!this.move(event.key)) return;
+      event.preventDefault();
+    });
+  }
+
+  /** Move the cursor by a key; whether it was one that does. @param {string} key */
+  move(key) {
+    /** @type {Record<string, [number, number]>} */
+    const ways = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    if (!ways[key] || !this.plane) return false;
+    const { side } = this.plane;
+    const from = this.cursor ?? [side / 2, side / 2];
+    const [column, row] = ways[key].map((way, i) => Math.min(Math.max(from[i] + way, 0), side - 1));
+    this.cursor = [column, row];
+    this.picture.redraw();
+    return true;
   }
 
   /** @param {Point} point @param {Plane} plane */
@@ -89,6 +113,13 @@ export class BasinView {
     if (!plane) return pen.text(size.width / 2, size.height / 2, "not computed yet", { fill: theme.soft });
     this.paintCells(plane.side);
     pen.image(this.cells, ...place);
+    if (this.cursor) {
+      const [left, top, width, height] = place;
+      const [cell, tall] = [width / plane.side, height / plane.side];
+      const [column, row] = this.cursor;
+      const corner = [left + column * cell, top + height - (row + 1) * tall];
+      pen.box(corner[0] - 2, corner[1] - 2, cell + 4, tall + 4, { stroke: theme.ink, width: 2 });
+    }
     const x = { low: 0, high: plane.gap, label: "gap ξ₂ − ξ₁ at the start" };
     drawFrame(pen, place, { ...theme, grid: "transparent" }, x, { low: -plane.speed, high: plane.speed, label: "gap velocity" });
   }

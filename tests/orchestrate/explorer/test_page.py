@@ -4,6 +4,7 @@ import shlex
 import xml.etree.ElementTree as ET
 
 import numpy as np
+import pytest
 import xarray as xr
 
 import orchestrate
@@ -127,7 +128,9 @@ def test_a_link_restores_the_view(browser):
     assert browser.run("return location.hash") == link
 
 
-def test_the_basin_fills_and_a_click_on_it_starts_there(browser):
+def test_the_basin_fills_and_a_click_or_a_key_on_it_starts_there(browser):
+    from selenium.webdriver.common.keys import Keys
+
     browser.run("explorer.choose(1.3)")
     browser.chosen()
     browser.click("basin-go")
@@ -139,6 +142,11 @@ def test_the_basin_fills_and_a_click_on_it_starts_there(browser):
     browser.mouse("basin", (0.5, 0.3))
     after = browser.run("return explorer.inspector.choice.start")
     assert before != after and after[1] > after[0]
+    browser.run("document.getElementById('basin').focus()")
+    browser.keys(Keys.ARROW_UP, Keys.ARROW_UP, Keys.ENTER)
+    moved = browser.run("return explorer.inspector.choice.start")
+    assert moved[1] - moved[0] == pytest.approx(after[1] - after[0])
+    assert moved[3] - moved[2] > after[3] - after[2]
 
 
 def test_what_is_shown_can_be_taken_home(browser):
