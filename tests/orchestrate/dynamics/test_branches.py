@@ -152,6 +152,13 @@ def test_permanent_contact_is_followed_until_it_is_lost():
         assert contacts(instance, lost + 1e-5, found) == 0
 
 
+@pytest.mark.slow
+def test_the_loss_of_contact_is_found_in_steps_of_other_lengths():
+    found = branch(PAPER, eta=0.4, limits=(0.4, 0.45))
+    assert found.attrs["last_end"] == "loss of permanent contact"
+    assert found.eta.values[-1] == pytest.approx(0.417391, abs=1e-6)
+
+
 def contacts(instance, eta, found):
     """Permanent contacts of the FMU over 20 periods, from a branch's last orbit on."""
     excitation = Excitation.nondimensional(eta, PAPER)
