@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
+from orchestrate import couple
+from orchestrate.weak_drive import averaged
+from orchestrate.weak_drive.couple_all import ends_of
 from orchestrate.weak_drive.drive_walk import FOLD
 
 from .validation import (
+    below_resonance,
     bifurcations,
     extrapolated_jumps,
     first_fold,
@@ -15,6 +19,7 @@ from .validation import (
 )
 
 SETS = random_sets(5)
+STRONGER = {"b": (0.02, 0.5), "epsilon": (1e-4, 2e-3)}
 
 
 @pytest.mark.parametrize("number", [0, 3])
@@ -42,3 +47,17 @@ def test_a_set(system):
         here, whole = ramp_jumps(one, folds[-1])
         assert here == pytest.approx(whole, abs=1e-3)
     assert extrapolated_jumps(system, max(folds)) == pytest.approx(folds, abs=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("system", random_sets(15, 17, STRONGER), ids=range(15))
+def test_a_jump_is_where_a_fold_is(system):
+    """Nowhere else; where it cannot be told from a steep branch, that is said."""
+    bonded = system.as_bonded()
+    omega, volts = system.structure.omega, system.drive.volts(system.structure)
+    speed, first = below_resonance(system)
+    last = volts * ends_of(*bonded)[1]
+    start = {"speed_start": speed, "settle": 200.0 / omega, "back": False, "progress": False}
+    found = couple(*bonded, voltage=(first, last), rate=1e-4 * volts * omega, **start)
+    jumps, why = bool(np.isfinite(found.jumps[0])), str(found.no_jump.values[0])
+    assert jumps == bool(averaged.folds(*bonded)) or "no jump that differs" in why

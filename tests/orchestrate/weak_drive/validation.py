@@ -31,10 +31,10 @@ RANGES = {  # of what a laboratory would build
 RATES = (4e-5, 2e-5, 1e-5)
 
 
-def random_sets(count, seed=SEED):
+def random_sets(count, seed=SEED, others=None):
     """Structures with their drives, each number uniform in its range."""
-    rng = np.random.default_rng(seed)
-    return [made({name: rng.uniform(*ends) for name, ends in RANGES.items()}) for _ in range(count)]
+    rng, ranges = np.random.default_rng(seed), {**RANGES, **(others or {})}
+    return [made({name: rng.uniform(*ends) for name, ends in ranges.items()}) for _ in range(count)]
 
 
 def made(v):
