@@ -163,5 +163,5 @@ def why_none(way: Way, up: bool, resonance: float, has_folds: bool) -> str:
     if (last > resonance) != up:
         return f"ends {'below' if up else 'beyond'} the resonance"
     if has_folds:
-        return "a fold (averaged theory), but no jump that differs from a steep branch"
+        return "not told from a steep branch at this rate: the averaged theory has a fold"
     return "no fold: the speed follows the voltage through the resonance"
