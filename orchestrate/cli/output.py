@@ -156,7 +156,7 @@ def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> 
     --------
     >>> from orchestrate.structures import Structure
     >>> name_of("simulate", Structure(), {"eta": 0.4, "periods": 2})
-    'simulate_e0.7_D0.005_eta0.4_b6fd49'
+    'simulate_e0.7_D0.005_eta0.4_7ed5cb'
     """
     parts = [command, structure.label(), *(brief(*item) for item in question.items())]
     return "_".join(filter(None, [*parts, digest(structure.parameters(), question)]))

@@ -243,7 +243,7 @@ def resonance(
     >>> from orchestrate.structures import Structure
     >>> from orchestrate.response.resonance import resonance
     >>> found = resonance(Structure(), eta=np.arange(0.9, 1.3, 0.005), transient=300)
-    >>> found.peak_structure.values[0], found.peak_eta.values[0].round(3)
+    >>> found.peak_structure.values[0].item(), float(found.peak_eta[0].round(3))
     ('bonded', 1.05)
     """
     job = ResonanceJob(

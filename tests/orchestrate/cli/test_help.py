@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
-import time
 
 import pytest
 from hypothesis import given
@@ -66,10 +66,12 @@ def test_every_quantity_is_defined(capsys, command):
 def test_it_starts_at_once():
     command = [sys.executable, "-m", "orchestrate", "--help"]
     times = []
-    for _ in range(3):
-        begin = time.perf_counter()
+    for _ in range(3):  # of the processor: a busy machine does not count
+        begin = os.times()
         subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
-        times.append(time.perf_counter() - begin)
+        end = os.times()
+        times.append(end.children_user + end.children_system)
+        times[-1] -= begin.children_user + begin.children_system
         if times[-1] < 0.5:
             return
     pytest.fail(f"it took {min(times):.2f} s")
