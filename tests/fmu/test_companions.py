@@ -1,0 +1,85 @@
+"""What lies beside FMI's core in the files: terminals, licences, the manifest of references."""
+
+import posixpath
+import re
+import zipfile
+from xml.etree import ElementTree as ET
+
+import fmpy
+import pytest
+
+from ..fresh import ROOT
+from .driver import FMUS
+
+MANIFEST = "extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml"
+SAID = {  # of each form's page, and nowhere else
+    "fmi2-python": "needsExecutionTool",
+    "fmi2": "fmi2GetRealOutputDerivatives",
+    "fmi3": "fmi3EnterEventMode",
+}
+
+
+@pytest.fixture(params=FMUS)
+def archive(request):
+    with zipfile.ZipFile(FMUS[request.param]) as opened:
+        yield opened
+
+
+def test_terminals_of_both_models_fit_together(exported):
+    """Members of the same name: an output here, an input of the same unit there."""
+    sides = []
+    for name in ("TwoMassImpactOscillator", "MotorShaker"):
+        path = exported / "fmi3" / f"{name}.fmu"
+        found = {v.name: v for v in fmpy.read_model_description(str(path)).modelVariables}
+        with zipfile.ZipFile(path) as opened:
+            root = ET.fromstring(opened.read("terminalsAndIcons/terminalsAndIcons.xml"))
+            assert opened.read("terminalsAndIcons/icon.png").startswith(b"\x89PNG")
+        (terminal,) = root.findall("Terminals/Terminal")
+        members = terminal.findall("TerminalMemberVariable")
+        sides.append({m.get("memberName"): found[m.get("variableName")] for m in members})
+    one, other = sides
+    assert set(one) == set(other) == {"force", "acceleration", "jerk"}
+    for member, variable in one.items():
+        assert {variable.causality, other[member].causality} == {"input", "output"}
+        assert variable.unit == other[member].unit
+
+
+def test_the_manifest_names_files_that_are_there(archive):
+    root = ET.fromstring(archive.read(MANIFEST))
+    roles = {}
+    for related in root.findall("Related"):
+        place = posixpath.normpath(
+            posixpath.join(posixpath.dirname(MANIFEST), related.get("source"))
+        )
+        assert archive.read(place)
+        roles.setdefault(related.get("role"), []).append(place)
+    assert [place for place in roles["result"] if place.endswith("_ref.csv")]
+    assert roles["document"] == ["documentation/index.html"]
+
+
+def test_the_licence_is_the_projects(archive):
+    told = archive.read("documentation/licenses/license.txt").decode()
+    assert told.startswith((ROOT / "LICENSE").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("form", SAID)
+def test_each_page_tells_its_own_forms_truth(form):
+    pages = {}
+    for other, path in FMUS.items():
+        with zipfile.ZipFile(path) as opened:
+            pages[other] = opened.read("documentation/index.html").decode()
+            names = set(opened.namelist())
+        sources = re.search(r"<code>(\S*kernels/oscillator)</code>", pages[other]).group(1)
+        pattern = re.escape(sources).replace(r"\*", "[0-9a-f]+")
+        place = "" if sources.startswith("resources") else "documentation/"
+        assert [name for name in names if re.match(f"{place}{pattern}/motion.py", name)], other
+    assert [other for other, page in pages.items() if SAID[form] in page] == [form]
+
+
+def test_display_units_are_defined(fmu):
+    found = fmpy.read_model_description(str(fmu))
+    units = {unit.name: {d.name for d in unit.displayUnits} for unit in found.unitDefinitions}
+    assert {"Hz", "rpm"} <= units["rad/s"] and "mm" in units["m"]
+    for variable in found.modelVariables:
+        shown = getattr(variable, "displayUnit", None)
+        assert shown is None or shown in units[variable.unit]
