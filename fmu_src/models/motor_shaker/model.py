@@ -3,6 +3,7 @@
 from ...kernels.shaker import memory as at
 from ...kernels.shaker import rates, stepper
 from ...runtime.table import Model, Terminal
+from ...version import VERSION
 from .messages import MESSAGES
 from .variables import VARIABLES
 
@@ -10,7 +11,7 @@ MODEL = Model(
     name="MotorShaker",
     description="A motor of limited power with an unbalance shakes a box on a spring and a damper: "
     "the weak drive of the Sommerfeld effect",
-    version="0.1.0",
+    version=VERSION,
     author="The vibroimpact developers",
     license="MIT",
     variables=VARIABLES,

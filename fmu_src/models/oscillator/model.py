@@ -6,6 +6,7 @@ Standard library only: it travels inside the FMU.
 from ...kernels.oscillator import memory as at
 from ...kernels.oscillator import rates, stepper
 from ...runtime.table import Array, Clock, Model, Terminal
+from ...version import VERSION
 from .messages import MESSAGES
 from .variables import VARIABLES
 
@@ -13,7 +14,7 @@ MODEL = Model(
     name="TwoMassImpactOscillator",
     description="Two oscillators in a shaken box that impact, stick and part: a delaminated beam, "
     "exact between and through impacts",
-    version="0.1.0",
+    version=VERSION,
     author="The vibroimpact developers",
     license="MIT",
     variables=VARIABLES,

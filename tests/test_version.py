@@ -1,0 +1,22 @@
+"""The version stands in one place; what cannot read it there says the same."""
+
+import re
+
+from fmu_src.export.sources import load
+from fmu_src.version import VERSION
+
+from .fresh import ROOT
+
+
+def test_the_citation_says_the_version():
+    text = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.search(r"^version: (.*)$", text, re.M)[1] == VERSION
+
+
+def test_the_changelog_begins_with_the_version():
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert re.search(r"^## (\S+)", text, re.M)[1] == VERSION
+
+
+def test_the_models_bear_the_version():
+    assert {load(folder).version for folder in ("oscillator", "motor_shaker")} == {VERSION}
