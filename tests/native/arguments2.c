@@ -26,6 +26,18 @@ void no_instance(void) {
     CHECK(strcmp(fmi.GetVersion(), "2.0") == 0 && strcmp(fmi.GetTypesPlatform(), "default") == 0);
 }
 
+/* Functions of model exchange, which some importers look for. */
+void absent(fmi2Component c) {
+    double x = 0.0;
+    fmi2Boolean b;
+    fmi2EventInfo info;
+#define ABSENT(NAME, ...) REFUSED(c, fmi.NAME(c, __VA_ARGS__)); SAYS("co-simulation"); CHECK(fmi.NAME(NULL, __VA_ARGS__) == fmi2Error)
+    ABSENT(NewDiscreteStates, &info); ABSENT(CompletedIntegratorStep, fmi2True, &b, &b); ABSENT(SetTime, 1.0); ABSENT(SetContinuousStates, &x, 1);
+    ABSENT(GetDerivatives, &x, 1); ABSENT(GetEventIndicators, &x, 1); ABSENT(GetContinuousStates, &x, 1); ABSENT(GetNominalsOfContinuousStates, &x, 1);
+    REFUSED(c, fmi.EnterEventMode(c)); CHECK(fmi.EnterEventMode(NULL) == fmi2Error);
+    REFUSED(c, fmi.EnterContinuousTimeMode(c)); CHECK(fmi.EnterContinuousTimeMode(NULL) == fmi2Error);
+}
+
 void instantiation(void) {
     const char *wrong[] = {NULL, "", "{95159a6c}", "%s%n"};
     for (size_t i = 0; i < 4; i++) {

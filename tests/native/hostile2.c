@@ -117,6 +117,11 @@ static void values(void) {
     messages = 0;
     CHECK(fmi.ExitInitializationMode(c) == fmi2Error && messages == 1);
     SAYS("x2_start");
+    int order = 1, whole; /* outputs cannot be had either */
+    REFUSED(c, fmi.GetReal(c, &named("x1")->reference, 1, &one)); SAYS("x2_start");
+    REFUSED(c, fmi.GetInteger(c, &named("impact_count")->reference, 1, &whole));
+    REFUSED(c, fmi.GetBoolean(c, &named("in_contact")->reference, 1, &whole));
+    REFUSED(c, fmi.GetRealOutputDerivatives(c, &named("x1")->reference, 1, &order, &one));
     IS_OK(fmi.SetReal(c, &x1, 1, &minus));
     IS_OK(fmi.ExitInitializationMode(c));
     fmu_step(c, 0.0, 1.0);
@@ -194,6 +199,24 @@ static void failing_steps(void) {
     fmi.FreeInstance(c);
 }
 
+/* What an FMI 3.0 FMU may have saved: its clock ticks, outputs are stale, it is in event mode, which is step mode here. */
+static void other_heads(void) {
+    static const double heads[][2] = {{4.0, 1.0}, {4.0, 2.0}, {4.0, 3.0}, {8.0, 0.0}, {8.0, 2.0}};
+    for (int i = 0; i < 5; i++) {
+        fmi2Component c = in_phase(STEPPING);
+        char *bytes;
+        size_t size = fmu_save(c, &bytes);
+        memcpy(bytes + 64, &heads[i][0], sizeof(double));
+        memcpy(bytes + 80, &heads[i][1], sizeof(double));
+        seal(bytes, size);
+        CHECK(fmu_restore(c, bytes, size));
+        fmu_step(c, 20.0 - 1e-12, 0.0); /* the importer's clock a rounding behind */
+        fmu_step(c, 20.0, 1.0);
+        free(bytes);
+        fmi.FreeInstance(c);
+    }
+}
+
 static void saved_states(fmi2Component c) {
     char *bytes, *bad;
     size_t size = fmu_save(c, &bytes), told;
@@ -243,8 +266,10 @@ void hostile(void) {
     order();
     values();
     stop_time();
+    other_heads();
     failing_steps();
     fmi2Component c = in_phase(STEPPING), twin = in_phase(STEPPING);
+    absent(c);
     null_pointers(c);
     references(c);
     steps(c);

@@ -14,6 +14,7 @@ enum { NEW, INITIALIZING, STEPPING, TERMINATED, PHASES };
 
 fmi2Component in_phase(int phase);
 
+void absent(fmi2Component c);
 void no_instance(void);
 void instantiation(void);
 void null_pointers(fmi2Component c);

@@ -151,6 +151,44 @@ static void stop_time(void) {
     fmi.FreeInstance(c);
 }
 
+/* Starts that overlap: no output can be had in initialization mode. */
+static void overlap(void) {
+    fmi3Instance c = in_phase(INITIALIZING);
+    double one = 1.0, minus = -1.0;
+    fmi3Int32 whole, order = 1;
+    fmi3Boolean truth;
+    IS_OK(fmi.SetFloat64(c, VR("x1_start"), 1, &one, 1));
+    messages = 0;
+    CHECK(fmi.ExitInitializationMode(c) == fmi3Error && messages == 1);
+    REFUSED(c, fmi.GetFloat64(c, VR("x1"), 1, &one, 1)); SAYS("x2_start");
+    REFUSED(c, fmi.GetInt32(c, VR("impact_count"), 1, &whole, 1));
+    REFUSED(c, fmi.GetBoolean(c, VR("in_contact"), 1, &truth, 1));
+    REFUSED(c, fmi.GetOutputDerivatives(c, VR("x1"), 1, &order, &one, 1));
+    IS_OK(fmi.SetFloat64(c, VR("x1_start"), 1, &minus, 1));
+    IS_OK(fmi.ExitInitializationMode(c));
+    unsigned time = TIME_REFERENCE, element = 50; /* an element of an array that has a reference of its own */
+    REFUSED(c, fmi.GetOutputDerivatives(c, &time, 1, &order, &one, 1)); SAYS("time");
+    REFUSED(c, fmi.GetFloat64(c, &element, 1, &one, 1)); SAYS("array");
+    fmi.FreeInstance(c);
+}
+
+/* Flags of a saved state: outputs are stale, the clock ticks. */
+static void other_heads(void) {
+    for (int flag = 0; flag < 4; flag++) {
+        fmi3Instance c = in_phase(PLAIN);
+        double head = flag;
+        char *bytes;
+        size_t size = fmu_save(c, &bytes);
+        memcpy(bytes + 80, &head, sizeof head);
+        seal(bytes, size);
+        CHECK(fmu_restore(c, bytes, size));
+        IS_OK(step_to(c, 20.0 - 1e-12, 0.0)); /* the importer's clock a rounding behind */
+        IS_OK(step_to(c, 20.0, 1.0));
+        free(bytes);
+        fmi.FreeInstance(c);
+    }
+}
+
 /* Before initialization mode: start values, and nothing that is calculated. */
 static void start_values(void) {
     fmi3Instance c = in_phase(NEW);
@@ -249,6 +287,8 @@ void hostile(void) {
     values();
     stop_time();
     start_values();
+    overlap();
+    other_heads();
     event_mode();
     fmi3Instance c = in_phase(PLAIN), twin = in_phase(PLAIN);
     absent(c);
