@@ -84,7 +84,12 @@ def checked(version, model, exported, folder, sanitizer):
 def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, version, model, sanitizer):
     """Address, undefined behaviour and leaks; or threads."""
     importer = checked(version, model, exported, tmp_path, sanitizer)
-    for mode in (("random", 5, 2000), ("many", 50, 40, 400), ("million", 20_000), ("forge",)):
+    for mode in (
+        ("random", 5, 2000),
+        ("many", 50, 40, 400),
+        ("million", 20_000, "checked"),
+        ("forge",),
+    ):
         done = importer.run(*mode, timeout=1800)
         assert "FAILURES 0" in done.stdout and done.stderr == ""
 
