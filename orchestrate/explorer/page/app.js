@@ -5,7 +5,7 @@ import { diagramCommand, motionCommand } from "./command.js";
 import { DrivePart } from "./drive_part.js";
 import { Controls, hertz } from "./controls.js";
 import { Crew } from "./crew.js";
-import { nearest, startAt } from "./diagram.js";
+import { nearest, scaled, startAt } from "./diagram.js";
 import { listen } from "./diagram_input.js";
 import { saveCsv } from "./files.js";
 import { Inspector } from "./inspector.js";
@@ -147,7 +147,8 @@ export class App {
     const index = nearest(diagram, eta);
     const near = diagram.points[index];
     const point = exactly && Math.abs(near.eta - eta) > 1e-12 * eta ? pointAt(this.structure, eta) : near;
-    const known = start ?? startAt(diagram.lanes[0], index);
+    const there = startAt(diagram.lanes[0], index);
+    const known = start ?? (there && scaled(there, near, point));
     this.mark(point.eta);
     this.waiting = !known;
     if (known) this.inspect(point.eta, known);

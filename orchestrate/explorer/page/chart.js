@@ -64,7 +64,7 @@ export function drawFrame(pen, [left, top, width, height], theme, x, y) {
   const px = scaleOf(x, left, left + width);
   const py = scaleOf(y, top + height, top);
   const [right, bottom] = [left + width, top + height];
-  for (const tick of ticksOf(x, width / 80)) {
+  for (const tick of ticksOf(x, width / 64)) {
     pen.line([px(tick), px(tick)], [top, bottom], { stroke: theme.grid });
     if (x.label !== undefined) pen.text(px(tick), bottom + 12, shown(tick, 6), { fill: theme.soft });
   }

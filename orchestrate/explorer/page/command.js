@@ -22,14 +22,19 @@ function differences(structure, usual) {
 
 /** The diagram. @param {Diagram} diagram @param {Structure} usual */
 export function diagramCommand(diagram, usual) {
-  if (diagram.origin) return diagram.origin;
   const { structure, direction, points, settings } = diagram;
   const etas = points.map((point) => point.eta);
   const [first, last] = [etas[0], etas[etas.length - 1]];
   const step = Number((etas.length > 1 ? (last - first) / (etas.length - 1) : 1).toPrecision(9));
+  const even = etas.every((eta, i) => Number((first + i * step).toFixed(9)) === eta);
+  if (diagram.origin && !(even && points.every(isPlain))) return diagram.origin;
   const { transient, samples } = settings;
   const kept = `--transient ${transient} --samples ${samples}`;
-  const starts = diagram.lanes.map((lane) => lane.from ?? [0, 0, 0, 0]);
+  const starts = diagram.lanes.map(({ from, starts: known, direction: way }) => {
+    if (from || !known) return from ?? [0, 0, 0, 0];
+    const place = way === "up" ? 0 : known.length - 4;
+    return Array.from(known.subarray(place, place + 4));
+  });
   if (starts.every((start) => start.every((value) => value === 0))) {
     const range = `--eta ${first}:${last}:${step} --direction ${direction}`;
     return `${PROGRAM} sweep ${range} ${kept}${sets(structure, usual)}`;
@@ -44,6 +49,11 @@ export function diagramCommand(diagram, usual) {
     .join("\n");
 }
 
+/** Whether an excitation is told by the frequency ratio alone. @param {Point} point */
+function isPlain({ eta, amplitude }) {
+  return amplitude === 1 / (eta * eta);
+}
+
 /** In units of 1e-9, as a whole number. @param {number} value */
 function nine(value) {
   return Math.round(value * 1e9);
@@ -52,8 +62,7 @@ function nine(value) {
 /** The motion that goes on from a response. @param {Point} point @param {number[]} start @param {{transient: number, periods: number, points: number}} asked @param {Structure} usual */
 export function motionCommand(point, start, { transient, periods, points }, usual) {
   const { eta, frequency, amplitude } = point;
-  const plain = amplitude === 1 / (eta * eta);
-  const where = plain ? `--eta ${eta}` : `--frequency ${frequency} --amplitude ${amplitude}`;
+  const where = isPlain(point) ? `--eta ${eta}` : `--frequency ${frequency} --amplitude ${amplitude}`;
   const how = `--transient ${transient} --periods ${periods} --points ${points}`;
   return `${PROGRAM} simulate ${where} ${how} --start=${start.join(",")}${sets(point.structure, usual)}`;
 }

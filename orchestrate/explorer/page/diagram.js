@@ -1,7 +1,7 @@
 /** An orbit diagram: responses along the frequency, some of them still to come. */
 
 import { niceStep } from "./scale.js";
-import { pointAt } from "./structure.js";
+import { lengthOf, pointAt } from "./structure.js";
 
 /**
  * @typedef {import("./structure.js").Structure} Structure
@@ -90,5 +90,11 @@ export function startFrom(other, point, direction) {
     if (sign * (point.eta - eta) < -1e-12 || !startAt(lane, i)) return;
     if (best < 0 || sign * (eta - other.points[best].eta) > 0) best = i;
   });
-  return best < 0 ? rest : startAt(lane, best) ?? rest;
+  return best < 0 ? rest : scaled(startAt(lane, best) ?? rest, other.points[best], point);
+}
+
+/** A state at one excitation as the like one at another: displacements go with a eta^2. @param {number[]} start @param {Point} from @param {Point} to */
+export function scaled(start, from, to) {
+  const factor = lengthOf(to) / lengthOf(from);
+  return factor === 1 ? start : start.map((value) => value * factor);
 }

@@ -241,3 +241,27 @@ def test_the_motor_runs_and_is_stopped(browser):
     browser.click("drive-go")
     assert "impacts a revolution" in browser.text("drive-status")
     assert browser.run("return explorer.drive.rows.at(-1).voltage > explorer.drive.rows[0].voltage")
+
+
+def test_a_sweep_in_hertz_and_metres_is_looked_into(chromium, tmp_path, capsys):
+    beam = orchestrate.Structure.from_file("beam")
+    turns = 2.0 * np.pi * np.linspace(11.0, 16.0, 41)
+    data = orchestrate.sweep(beam, frequency=turns, amplitude=1e-3, direction="up")
+    chromium.open(explore(data, output=tmp_path / "page.html"))
+    assert gaps(chromium)[:10] == pytest.approx(data.xi_rel.values[:10], rel=1e-6, abs=1e-9)
+    chromium.run("explorer.choose(1.05)")
+    chromium.chosen()
+    command = shlex.split(chromium.text("motion-command"))
+    assert cli.main([*command[3:], "--output", str(tmp_path)]) == 0, capsys.readouterr().err
+    (path,) = tmp_path.glob("*.nc")
+    with xr.open_dataset(path) as motion:
+        states = chromium.numbers(f"{MOTION}.states").reshape(-1, 4)
+        assert states[:, 0].tobytes() == motion.x1.values.tobytes()
+    near = chromium.run("return explorer.inspector.choice.point")
+    chromium.run("explorer.open(1.0, 1.1)")
+    chromium.until("return explorer.regions.complete")
+    index = int(np.abs(etas(chromium) - near["eta"]).argmin())
+    peak = chromium.run(f"return {DIAGRAM}.lanes[0].found[{index}].peak")
+    row = data.isel(frequency=int(np.abs(data.eta.values - near["eta"]).argmin()))
+    assert peak == pytest.approx(float(row.xi_rel_max), rel=0.05)
+    assert chromium.console() == []
