@@ -38,7 +38,8 @@ def multiplicity(samples: ArrayLike, tolerance: float) -> int:
     scale = np.abs(states).max(axis=0)
     scale[scale == 0.0] = 1.0
     scaled = states / scale
-    for n in range(1, min(limit, len(states) - 1) + 1):
+    first = scaled[1 : limit + 1] - scaled[0]
+    for n in np.flatnonzero(np.abs(first).max(axis=1) <= tolerance) + 1:
         if np.abs(scaled[n:] - scaled[:-n]).max() <= tolerance:
-            return n
+            return int(n)
     return 0

@@ -250,18 +250,27 @@ def ahead(motion: Motion, time: Floats) -> Floats:
     return np.concatenate([moved, v + time * (a + time * j / 2.0)])
 
 
-def first_touch(cut: Cut) -> Floats:
-    """Time from the left end to where the gap vanishes; NaN where it does not in the interval."""
-    from scipy.optimize.elementwise import find_root
+def first_touch(cut: Cut, rounds: int = 20) -> Floats:
+    """Time from the left end to where the gap vanishes; NaN where it does not in the interval.
 
+    Newton's method, and halving where it would leave what is known to hold the root.
+    """
     taylor = (cut.left.value[:2], cut.left.slope[:2], cut.left.bend[:2], cut.left.bend[2:])
-    gaps = tuple(part[1] - part[0] for part in taylor)
+    g = [part[1] - part[0] for part in taylor]
 
-    def gap(s: Floats, *g: Floats) -> Floats:
-        return g[0] + s * (g[1] + s * (g[2] / 2.0 + s * g[3] / 6.0))
+    def gap(s: Floats) -> Floats:
+        found: Floats = g[0] + s * (g[1] + s * (g[2] / 2.0 + s * g[3] / 6.0))
+        return found
 
-    found = find_root(gap, (np.zeros_like(cut.width), cut.width), args=gaps)
-    return np.where(found.success & (gaps[0] > 0.0), found.x, np.nan)
+    low, high, time = np.zeros_like(cut.width), cut.width, 0.5 * cut.width
+    for _ in range(rounds):
+        apart = gap(time) > 0.0
+        low, high = np.where(apart, time, low), np.where(apart, high, time)
+        slope = g[1] + time * (g[2] + time * g[3] / 2.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = time - gap(time) / slope
+        time = np.where((step > low) & (step < high), step, 0.5 * (low + high))
+    return np.where((g[0] > 0.0) & (gap(cut.width) <= 0.0), time, np.nan)
 
 
 def bounced(before: Floats, points: Sequence[Point]) -> Floats:

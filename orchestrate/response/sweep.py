@@ -102,7 +102,7 @@ class SweepJob(SeriesQuestion):
         return [points[index] for order in self.orders() for index in order]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
-        """Some responses, from the end of the last."""
+        """Some responses, from the state that the last one passes on."""
         start = self.start if carry is None else carry["end"][-1]
         settings = self.transient, self.samples, self.tolerance
         responses, orbits, spans = [], [], []
@@ -117,7 +117,7 @@ class SweepJob(SeriesQuestion):
         samples = np.array([response.samples for response in responses])
         return {
             "gap": samples[:, :, 1] - samples[:, :, 0],
-            "end": samples[:, -1],
+            "end": np.array([response.passed_on() for response in responses]),
             **{
                 name: np.array([getattr(response, name) for response in responses])
                 for name in (
@@ -163,7 +163,7 @@ class SweepJob(SeriesQuestion):
         }
         gaps, ends = table["gap"] / length[:, None], table["end"] / scales
         contact = "whether permanent contact occurs in the sampled periods"
-        text = "state at the last sample, where the next value starts from"
+        text = "state of the response that the next value starts from"
         return {
             "xi_rel": variable(
                 (*along, "sample"), gaps, "1", "stroboscopic samples of the gap xi_2 - xi_1 (21)"
@@ -208,7 +208,7 @@ def sweep(
     peak_periods: int = 8,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Responses along a parameter, each started from the end of the last.
+    """Responses along a parameter, each started from a state of the last.
 
     Parameters
     ----------
@@ -244,10 +244,10 @@ def sweep(
         Over the parameter, and ``sample`` and ``direction``: ``xi_rel``, stroboscopic samples of
         the gap over a eta^2 (21); ``xi_rel_max``; ``impacts_per_period``; ``multiplicity`` in
         excitation periods, 0 where the response does not repeat; ``permanent_contact``;
-        ``end_state``, the non-dimensional state at the last sample; largest distances of both
-        masses from the box's middle, ``x1_max`` and ``x2_max`` in m, ``xi1_max`` and ``xi2_max``
-        over a eta^2; and ``a1_max``, ``a2_max``, the largest accelerations in space in m/s2,
-        which an accelerometer on a mass reads between impacts.
+        ``end_state``, the non-dimensional state that the next value starts from, at phase 0;
+        largest distances of both masses from the box's middle, ``x1_max`` and ``x2_max`` in m,
+        ``xi1_max`` and ``xi2_max`` over a eta^2; and ``a1_max``, ``a2_max``, the largest
+        accelerations in space in m/s2, which an accelerometer on a mass reads between impacts.
 
     Raises
     ------
@@ -259,6 +259,11 @@ def sweep(
     The paper's section 3.1 and Figures 6, 10 and 11. Samples, impacts and the largest gap come
     from the FMU and are exact to rounding; for amplitudes and accelerations see
     :func:`orchestrate.response.peaks.peaks`.
+
+    The state passed on from value to value is the one with the largest gap in the last quarter of
+    the samples, to nine digits: it belongs to the response, whatever phase and rounding it was
+    reached with. So parts of a sweep that are computed elsewhere, begun a few values early from
+    rest, come to the very same numbers, and all cores work on one sweep.
 
     Examples
     --------

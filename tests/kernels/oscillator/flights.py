@@ -1,7 +1,7 @@
-"""Adversarial flights by the seed, the kernel's ends of them, and a dense search of its own.
+"""Adversarial states by the seed, the kernel's ends of them, and a dense search of its own.
 
 Run as a program (``python -m tests.kernels.oscillator.flights SEED COUNT``) the kernel and the
-search are compiled, and a million flights take minutes. Nothing in the search comes from the
+search are compiled, and a million states take minutes. Nothing in the search comes from the
 kernel: each mass is a sum of complex exponentials by Newton's law, in SI units, omega = 1.
 """
 
@@ -16,18 +16,23 @@ import numpy as np
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import roots, stepper
 
-CLASSES = ("near grazing", "nearly equal", "chattering", "long at high eta", "cubic inputs")
+CLASSES = (
+    *("near grazing", "nearly equal", "chattering", "long at high eta", "cubic inputs"),
+    *("steep damping", "long contact"),
+)
+GRAZING, EQUAL, CHATTERING, FAST, CUBIC, STEEP, CONTACT = range(len(CLASSES))
 NAMES = (
     *("m2", "k2", "d1", "d2", "box_amplitude", "box_frequency", "phase_start"),
     *("box_acceleration", "box_jerk", "box_snap", "box_crackle"),
     *("x1_start", "v1_start", "x2_start", "v2_start"),
 )
 HORIZON = 12.0
-OK, MISSED, NOT_A_ROOT, UNFINISHED, NO_FLIGHT = 0, 1, 2, 3, 4
+HORIZONS = (HORIZON, HORIZON, HORIZON, 6.0, HORIZON, 3.0, 60.0)  # of each class
+OK, MISSED, NOT_A_ROOT, UNFINISHED, NOT_BEGUN = 0, 1, 2, 3, 4
 
 
 def draw(seed: int, count: int) -> np.ndarray:
-    """Parameters of flights, the classes in turn: shape (count, number of NAMES)."""
+    """Parameters of states, the classes in turn: shape (count, number of NAMES)."""
     rng = np.random.default_rng(seed)
     kind = np.arange(count) % len(CLASSES)
     values = dict.fromkeys(NAMES, np.zeros(count))
@@ -42,20 +47,37 @@ def draw(seed: int, count: int) -> np.ndarray:
     values["phase_start"] = rng.uniform(0.0, 2.0 * math.pi, count)
     values["x1_start"], values["v1_start"] = rng.uniform(-1, 0, count), rng.uniform(-1, 1, count)
     values["x2_start"], values["v2_start"] = rng.uniform(0.01, 1, count), rng.uniform(-1, 1, count)
-    equal = kind == 1
+    equal = kind == EQUAL
     near = 1.0 + log_uniform(rng, 1e-9, 1e-2, count) * rng.choice((-1.0, 1.0), count)
     values["k2"] = np.where(equal, values["m2"] * near, values["k2"])
     values["d2"] = np.where(equal, values["m2"] * values["d1"], values["d2"])
-    touching = (kind == 2) | (equal & (rng.random(count) < 0.5))
+    touching = (kind == CHATTERING) | (equal & (rng.random(count) < 0.5))
     values["x2_start"] = np.where(touching, values["x1_start"], values["x2_start"])
     leave = values["v1_start"] + log_uniform(rng, 1e-9, 1.0, count)
     values["v2_start"] = np.where(touching, leave, values["v2_start"])
     fast = log_uniform(rng, 4.0, 40.0, count)
-    values["box_frequency"] = np.where(kind == 3, fast, values["box_frequency"])
-    values["box_amplitude"] = np.where(kind == 3, 0.3 / fast, values["box_amplitude"])
+    values["box_frequency"] = np.where(kind == FAST, fast, values["box_frequency"])
+    values["box_amplitude"] = np.where(kind == FAST, 0.3 / fast, values["box_amplitude"])
     for name in ("acceleration", "jerk", "snap", "crackle"):
-        values[f"box_{name}"] = np.where(kind == 4, rng.uniform(-0.2, 0.2, count), 0.0)
+        values[f"box_{name}"] = np.where(kind == CUBIC, rng.uniform(-0.2, 0.2, count), 0.0)
+    for name in ("d1", "d2"):
+        steep = np.where(rng.random(count) < 0.7, log_uniform(rng, 3.0, 40.0, count), values[name])
+        values[name] = np.where(kind == STEEP, steep * values["m2"] ** (name == "d2"), values[name])
+    press_together(rng, kind == CONTACT, values)
     return np.stack([values[name] for name in NAMES], axis=1)
+
+
+def press_together(rng: np.random.Generator, chosen: np.ndarray, values: dict) -> None:
+    """Let states begin as one, under a slow drive and a constant push of the box."""
+    count = len(chosen)
+    for one, other in (("x2_start", "x1_start"), ("v2_start", "v1_start")):
+        values[one] = np.where(chosen, values[other], values[one])
+    slow = log_uniform(rng, 0.02, 1.0, count)
+    values["box_frequency"] = np.where(chosen, slow, values["box_frequency"])
+    push = rng.uniform(-2.0, 2.0, count)
+    values["box_acceleration"] = np.where(chosen, push, values["box_acceleration"])
+    creep = rng.uniform(-0.02, 0.02, count) * (rng.random(count) < 0.3)
+    values["box_jerk"] = np.where(chosen, creep, values["box_jerk"])
 
 
 def log_uniform(rng: np.random.Generator, low: float, high: float, count: int) -> np.ndarray:
@@ -92,6 +114,20 @@ def set_gap(row, c, s, p):
     box = row[7:11]
     mass(1.0, row[2], 1.0, row[11], row[12], row[4], row[5], row[6], box, c, s, p, -1.0, 1)
     mass(row[0], row[3], row[1], row[13], row[14], row[4], row[5], row[6], box, c, s, p, 1.0, 3)
+
+
+def set_force(row, c, s, p):
+    """The same of the force between both masses as one: ``(d2/m2 - d1) v + (k2/m2 - k1) x``."""
+    c[:] = 0.0
+    p[:] = 0.0
+    m, d, k = 1.0 + row[0], row[2] + row[3], 1.0 + row[1]
+    mass(m, d, k, row[11], row[12], row[4], row[5], row[6], row[7:11], c, s, p, 1.0, 1)
+    s[3:] = 0.0
+    by_speed, by_place = row[3] / row[0] - row[2], row[1] / row[0] - 1.0
+    for i in range(3):
+        c[i] *= by_speed * s[i] + by_place
+    for i in range(4):
+        p[i] = by_place * p[i] + (by_speed * p[i + 1] if i < 3 else 0.0)
 
 
 def gap(c, s, p, t):
@@ -188,40 +224,45 @@ def fill(m, row):
     m[at.X2_START], m[at.V2_START] = row[13], row[14]
 
 
-def flight_end(m, row, horizon):
-    """The kernel's end of a flight, or the horizon; and whether it is a root; -1 where there is no
-    flight, or it does not get there.
+def state_end(m, row, horizon, mode):
+    """The kernel's end of a state, or the horizon; and whether it is a root; minus a verdict where
+    no state of that kind begins, or it does not get there.
     """
     fill(m, row)
-    if stepper.initialize(m, 0.0) != at.OK or m[at.MODE] != at.FLIGHT:
-        return -float(NO_FLIGHT), False
+    if stepper.initialize(m, 0.0) != at.OK or m[at.MODE] != mode:
+        return -float(NOT_BEGUN), False
     m[at.WORK], m[at.WORK_LIMIT] = 0.0, 1e4
     roots.walk(m, horizon)
     if m[at.WORK] >= m[at.WORK_LIMIT]:
         return -float(UNFINISHED), False
+    if m[at.END_KIND] == at.END_RENEWAL:  # many nodes on: another state of the same motion
+        horizon = min(horizon, m[at.END])
     found = m[at.END_KIND] == at.END_EVENT and m[at.END] <= horizon
     return (m[at.END] if found else horizon), found
 
 
 def judge(m, rows, depths, verdicts, ends):
-    """Verdict and end of each flight."""
+    """Verdict and end of each state."""
     c, s, p = np.zeros(5, np.complex128), np.zeros(5, np.complex128), np.zeros(4)
     for i in range(len(rows)):
-        row = rows[i]
-        horizon = HORIZON if i % 5 != 3 else 3.0
-        if i % 5 == 0:
+        row, kind = rows[i], i % len(CLASSES)
+        if kind == GRAZING:
             graze(row, c, s, p, depths[i])
-        end, found = flight_end(m, row, horizon)
+        mode = at.CONTACT if kind == CONTACT else at.FLIGHT
+        end, found = state_end(m, row, HORIZONS[kind], mode)
         ends[i] = end
         if end < 0.0:
             verdicts[i] = int(-end)
             continue
-        set_gap(row, c, s, p)
+        if kind == CONTACT:
+            set_force(row, c, s, p)
+        else:
+            set_gap(row, c, s, p)
         verdicts[i] = search(c, s, p, end, found)
 
 
 def campaign(seed: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Parameters, verdicts and ends of many flights."""
+    """Parameters, verdicts and ends of many states."""
     rows = draw(seed, count)
     rng = np.random.default_rng(seed + 1)
     depths = log_uniform(rng, 1e-11, 1e-3, count) * rng.choice((-1.0, 1.0), count)
@@ -238,12 +279,13 @@ def compile_all() -> None:
 
     jit_kernel(kernel_modules())
     here = globals()
-    calls = ("mass", "set_gap", "gap", "sample", "bottom", "graze", "search", "fill")
-    for name in (*calls, "flight_end", "judge"):
+    calls = ("mass", "set_gap", "set_force", "gap", "sample", "bottom", "graze", "search", "fill")
+    for name in (*calls, "state_end", "judge"):
         here[name] = numba.njit(error_model="numpy")(here[name])
 
 
 if __name__ == "__main__":
     compile_all()
     _, found_verdicts, _ = campaign(int(sys.argv[1]), int(sys.argv[2]))
-    print(*np.bincount(found_verdicts, minlength=5))
+    for index, label in enumerate(CLASSES):
+        print(*np.bincount(found_verdicts[index :: len(CLASSES)], minlength=5), label)

@@ -1,4 +1,4 @@
-"""No root is missed: adversarial flights against a dense search, and in high precision."""
+"""No root is missed: adversarial states against a dense search, and in high precision."""
 
 import subprocess
 import sys
@@ -18,26 +18,31 @@ def counts(verdicts):
     return [int(n) for n in np.bincount(verdicts, minlength=5)]
 
 
-def test_thousands_of_flights_end_on_their_first_root():
-    _, verdicts, ends = flights.campaign(1, 2000)
+def test_thousands_of_states_end_on_their_first_root():
+    _, verdicts, ends = flights.campaign(1, 2100)
     ok, missed, wrong, unfinished, skipped = counts(verdicts)
     assert missed == wrong == unfinished == 0
-    assert skipped < 200
+    assert skipped < 300
     assert np.count_nonzero((ends > 0.0) & (ends < 3.0)) > 500
 
 
 def test_a_sample_in_high_precision():
-    rows, verdicts, ends = flights.campaign(2, 60)
+    rows, verdicts, ends = flights.campaign(2, 70)
     for i, (row, verdict, end) in enumerate(zip(rows, verdicts, ends, strict=True)):
         if verdict != flights.OK:
             continue
         values = {"m1": 1.0, "k1": 1.0, **dict(zip(flights.NAMES, map(float, row), strict=True))}
         state = [values[f"{name}_start"] for name in ("x1", "v1", "x2", "v2")]
-        first, second = truth.apart(values, state, mp.mpf(values["phase_start"]))
-        gap = second - first
-        blind = 0.5 * float(end) if values["x1_start"] == values["x2_start"] else 0.0
+        phase, kind = mp.mpf(values["phase_start"]), i % len(flights.CLASSES)
+        if kind == flights.CONTACT:
+            gap = truth.together(values, *state[:2], phase)[1]
+        else:
+            first, second = truth.apart(values, state, phase)
+            gap = second - first
+        touching = kind != flights.CONTACT and values["x1_start"] == values["x2_start"]
+        blind = 0.5 * float(end) if touching else 0.0
         root = truth.first_root(gap, float(end) + 0.1, blind)
-        if end in (flights.HORIZON, 3.0):
+        if end == flights.HORIZONS[kind]:
             assert root is None or root > end * (1.0 - 1e-12), i
         else:
             assert root is not None, i
@@ -48,9 +53,10 @@ def test_a_sample_in_high_precision():
 
 
 @pytest.mark.slow
-def test_a_million_flights():
+def test_a_million_states():
     command = [sys.executable, "-m", flights.__name__, "3", "1000000"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    ok, missed, wrong, unfinished, skipped = map(int, done.stdout.split())
-    assert missed == wrong == unfinished == 0
-    assert ok > 900_000
+    for line in done.stdout.splitlines():
+        ok, missed, wrong, unfinished, _ = map(int, line.split()[:5])
+        assert missed == wrong == unfinished == 0, line
+        assert ok > 50_000, line  # half of those pressed together part at once

@@ -46,7 +46,7 @@ def test_both_directions_side_by_side():
         same(both.sel(direction=direction), one)
 
 
-def test_each_value_starts_from_the_end_of_the_last():
+def test_each_value_starts_from_a_state_of_the_last():
     found = sweep(PAPER, eta=[0.9, 1.13], **SHORT)
     first = found.isel(eta=0).end_state.values
     alone = sweep(PAPER, eta=1.13, start=first, **SHORT)
@@ -64,7 +64,8 @@ def test_a_response_is_what_the_fmu_says_step_by_step():
         impacts = instance.get("impact_count")[0]
     found = sweep(PAPER, eta=1.13, transient=20, samples=30).isel(eta=0)
     np.testing.assert_allclose(found.xi_rel, states[20:, 1] - states[20:, 0], atol=1e-12)
-    np.testing.assert_array_equal(found.end_state, states[-1])
+    passed_on = states[-7 + np.argmax((states[:, 1] - states[:, 0])[-7:])]  # of the last quarter
+    np.testing.assert_allclose(found.end_state, passed_on, rtol=1e-8)
     assert float(found.impacts_per_period) == (impacts - before) / 30
     whole = sweep(PAPER, eta=1.13, transient=0, samples=50).isel(eta=0)
     assert float(whole.impacts_per_period) == impacts / 50

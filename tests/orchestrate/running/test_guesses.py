@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import random
-
 import numpy as np
 import pytest
 
@@ -16,6 +14,7 @@ from orchestrate.running.runner import answer
 from orchestrate.running.store import Memory
 
 from .sums import Forgetful, Squares
+from .workers import play
 
 RANGES = [(0, 0), (100, 140), (55, 200), (0, 240), (119, 121)]
 
@@ -29,19 +28,6 @@ def sequential(job):
 def models(find):
     """The FMUs of a job."""
     return {model: find(model) for model in Squares.models}
-
-
-def play(progress, workers, seed):
-    """Compute a job as so many workers would, whose chunks end in a random order."""
-    draw, busy = random.Random(seed), []
-    progress.start({})
-    while not progress.complete:
-        while len(busy) < workers and (task := progress.next_task()) is not None:
-            progress.under_way.add(task.chunk.index)
-            busy.append(task)
-        task = busy.pop(draw.randrange(len(busy)))
-        answered = compute(progress.job, {}, task.items, task.carry, task.lead)
-        progress.enter(task, *answered)
 
 
 @pytest.mark.parametrize("stubborn", RANGES)
