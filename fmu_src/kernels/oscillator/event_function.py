@@ -7,7 +7,7 @@ form for all later times.
 """
 
 from . import memory as at
-from .nodes import branch_a, phasors_at, start_nodes
+from .nodes import branch_a, phasors_at, put, start_nodes
 from .series import gap_at
 
 
@@ -164,6 +164,7 @@ def evaluate(m, tau):
         h0, h1, h2, h3, h4 = gap_at(m, tau)
         return h0, h1, h2, h3, h4, m[at.SERIES_BOUND]
     x, v, x_b, v_b, cosine, sine = phasors_at(m, tau)
+    put(m, at.POINT, x, v, x_b, v_b, cosine, sine)
     if m[at.MODE] == at.FLIGHT:
         a0, a1, a2, a3, a4, bound_a = free_part(m, at.BRANCH_1, x, v)
         h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_2, x_b, v_b)

@@ -36,6 +36,14 @@ def state_at(m, tau):
     return moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine)
 
 
+def state_at_end(m):
+    """:func:`state_at` at the state's end."""
+    if m[at.END_KNOWN] == 0.0:
+        return state_at(m, m[at.END])
+    p = at.POINT
+    return moved(m, m[at.END], m[p], m[p + 1], m[p + 2], m[p + 3], m[p + 4], m[p + 5])
+
+
 def moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine):
     """Displacements and velocities from all phasors."""
     if m[at.MODE] == at.FLIGHT:
@@ -175,6 +183,7 @@ def begin_common(m, mode, x, v):
 def open_end(m, x1, v1, x2, v2):
     """The state begins here; its end is not known yet."""
     m[at.SERIES] = 0.0
+    m[at.END_KNOWN] = 0.0
     m[at.BEGIN] = x1
     m[at.BEGIN + 1] = v1
     m[at.BEGIN + 2] = x2
@@ -270,7 +279,7 @@ def end_state(m):
     """Carry out the end of the present state and begin the next one."""
     m[at.WORK] += 1.0
     tau = m[at.END]
-    x1, v1, x2, v2 = state_at(m, tau)
+    x1, v1, x2, v2 = state_at_end(m)
     move_origin(m, tau)
     event = m[at.END_KIND] == at.END_EVENT
     if event and m[at.MODE] == at.FLIGHT:
