@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,28 +46,35 @@ class Response:
         """The state at the last sample."""
         return tuple(self.samples[-1].tolist())
 
-    def passed_on(self, bits: int = 30) -> tuple[float, ...]:
-        """A state of the response that does not tell how it was reached.
+    @cached_property
+    def passed_on(self) -> tuple[float, ...]:
+        """The state that a next response starts from."""
+        return without_history(self.samples)
 
-        What repeats after n periods passes through n states at phase 0, and which of them comes
-        last depends on where it began; the last digits do so for good, since rounding never
-        settles. Here it is the state with the largest gap in the last quarter of the samples, and
-        so many bits of it.
 
-        Parameters
-        ----------
-        bits : int
-            Kept of the largest displacement, and of the largest velocity.
+def without_history(samples: NDArray[np.float64], bits: int = 30) -> tuple[float, ...]:
+    """A state of a response that does not tell how the response was reached.
 
-        Examples
-        --------
-        >>> swinging = np.tile([[0.1, 0.2, 1.0, 1.0], [0.1, 0.9, 0.0, 1.0]], (20, 1))
-        >>> Response(swinging, 1.0, 1.0, False, 2).passed_on()[:2]
-        (0.09999999962747097, 0.900000000372529)
-        """
-        late = self.samples[-max(1, len(self.samples) // 4) :][::-1]
-        chosen = late[np.argmax(late[:, 1] - late[:, 0])]
-        return (*to_bits(chosen[:2], bits), *to_bits(chosen[2:], bits))
+    What repeats after n periods passes through n states at phase 0, and which of them comes last
+    depends on where it began; so do the last digits for good, since rounding never settles. Here it
+    is the state with the largest gap in the last quarter of the samples, and so many bits of it.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n, 4)
+        x1, x2, v1, v2 at phase 0 of successive periods.
+    bits : int
+        Kept of the largest displacement, and of the largest velocity.
+
+    Examples
+    --------
+    >>> swinging = np.tile([[0.1, 0.2, 1.0, 1.0], [0.1, 0.9, 0.0, 1.0]], (20, 1))
+    >>> without_history(swinging)[:2]
+    (0.09999999962747097, 0.900000000372529)
+    """
+    late = samples[-max(1, len(samples) // 4) :][::-1]
+    chosen = late[np.argmax(late[:, 1] - late[:, 0])]
+    return (*to_bits(chosen[:2], bits), *to_bits(chosen[2:], bits))
 
 
 def to_bits(values: NDArray[np.float64], bits: int) -> list[float]:
@@ -166,4 +174,4 @@ def follow(
     for structure, excitation in points:
         response = respond(instance, structure, excitation, start, transient, samples, tolerance)
         yield response
-        start = response.passed_on()
+        start = response.passed_on

@@ -117,7 +117,7 @@ class SweepJob(SeriesQuestion):
         samples = np.array([response.samples for response in responses])
         return {
             "gap": samples[:, :, 1] - samples[:, :, 0],
-            "end": np.array([response.passed_on() for response in responses]),
+            "end": np.array([response.passed_on for response in responses]),
             **{
                 name: np.array([getattr(response, name) for response in responses])
                 for name in (

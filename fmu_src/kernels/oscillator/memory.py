@@ -146,6 +146,7 @@ RIGHT = slot(6)
 LEFT_VALUES = slot(3)  # the event function and two derivatives there
 RIGHT_VALUES = slot(3)
 POINT = slot(6)  # phasors where the event function was evaluated last,
+ROTATIONS = slot()  # that the phase at the state's start went through since it was made anew
 END_KNOWN = slot()  # and whether they are those at the state's end
 REMAINDER = slot()  # what a quintic between nodes may miss: bound of the sixth derivative, scaled
 SERIES = slot()  # order of the Taylor series that describe a short flight; 0: the closed form does

@@ -12,7 +12,7 @@ from .contact import contact_force, first_derivative
 from .event_function import begin_nodes, bounds, evaluate, set_contact_force, set_gap
 from .excitation import cubic_at, set_cubic_response
 from .impact import common_velocity, count_impact, restitution, sticks
-from .nodes import phasors_at
+from .nodes import BLOCK, phasors_at
 from .response import displacement, set_free
 from .roots import INFINITE, accuracy, clear_from_node, step_from
 from .series import series_order, set_series, short_flight, taylor
@@ -78,14 +78,35 @@ def move_origin(m, tau):
     """Let a new state begin ``tau`` after the start of the present one, (5), without losing digits
     over millions of states.
     """
+    advance_origin(m, tau)
+    set_turn(m, m[at.TURN] + m[at.ETA_TURNS] * tau)
+
+
+def advance_origin(m, tau):
+    """The new state's start, without its phase."""
     total = m[at.ORIGIN] + tau
     part = total - m[at.ORIGIN]
     error = (m[at.ORIGIN] - (total - part)) + (tau - part)
     low = m[at.ORIGIN_LOW] + error
     m[at.ORIGIN] = total + low
     m[at.ORIGIN_LOW] = low - (m[at.ORIGIN] - total)
-    set_turn(m, m[at.TURN] + m[at.ETA_TURNS] * tau)
     m[at.SEGMENT_AGE] += tau
+
+
+def move_to_end(m):
+    """Let a new state begin at the end of the present one; its phase is the one there, rotated on
+    from node to node, or made anew after as many rotations as free parts are.
+    """
+    turns = m[at.ROTATIONS] + m[at.NODE] + 2.0
+    if m[at.END_KNOWN] == 0.0 or m[at.NODE_ETA] == 0.0 or turns > BLOCK:
+        m[at.ROTATIONS] = 0.0
+        move_origin(m, m[at.END])
+        return
+    m[at.ROTATIONS] = turns
+    advance_origin(m, m[at.END])
+    m[at.TURN] = fraction(m[at.TURN] + m[at.ETA_TURNS] * m[at.END])
+    m[at.COSINE] = m[at.POINT + 4]
+    m[at.SINE] = m[at.POINT + 5]
 
 
 def set_turn(m, turns):
@@ -278,9 +299,8 @@ def derivative_bound(m, order):
 def end_state(m):
     """Carry out the end of the present state and begin the next one."""
     m[at.WORK] += 1.0
-    tau = m[at.END]
     x1, v1, x2, v2 = state_at_end(m)
-    move_origin(m, tau)
+    move_to_end(m)
     event = m[at.END_KIND] == at.END_EVENT
     if event and m[at.MODE] == at.FLIGHT:
         x = common_position(m, x1, x2)
