@@ -38,9 +38,9 @@ def state_at(m, tau):
 
 def state_at_end(m):
     """:func:`state_at` at the state's end."""
-    if m[at.END_KNOWN] == 0.0:
+    if m[at.AT_END_NODE] == 0.0:
         return state_at(m, m[at.END])
-    p = at.POINT
+    p = at.AT_END
     return moved(m, m[at.END], m[p], m[p + 1], m[p + 2], m[p + 3], m[p + 4], m[p + 5])
 
 
@@ -97,16 +97,16 @@ def move_to_end(m):
     """Let a new state begin at the end of the present one; its phase is the one there, rotated on
     from node to node, or made anew after as many rotations as free parts are.
     """
-    turns = m[at.ROTATIONS] + m[at.NODE] + 2.0
-    if m[at.END_KNOWN] == 0.0 or m[at.NODE_ETA] == 0.0 or turns > BLOCK:
+    turns = m[at.ROTATIONS] + m[at.AT_END_NODE] + 1.0
+    if m[at.AT_END_NODE] == 0.0 or m[at.NODE_ETA] == 0.0 or turns > BLOCK:
         m[at.ROTATIONS] = 0.0
         move_origin(m, m[at.END])
         return
     m[at.ROTATIONS] = turns
     advance_origin(m, m[at.END])
     m[at.TURN] = fraction(m[at.TURN] + m[at.ETA_TURNS] * m[at.END])
-    m[at.COSINE] = m[at.POINT + 4]
-    m[at.SINE] = m[at.POINT + 5]
+    m[at.COSINE] = m[at.AT_END + 4]
+    m[at.SINE] = m[at.AT_END + 5]
 
 
 def set_turn(m, turns):
@@ -204,7 +204,7 @@ def begin_common(m, mode, x, v):
 def open_end(m, x1, v1, x2, v2):
     """The state begins here; its end is not known yet."""
     m[at.SERIES] = 0.0
-    m[at.END_KNOWN] = 0.0
+    m[at.AT_END_NODE] = 0.0
     m[at.BEGIN] = x1
     m[at.BEGIN + 1] = v1
     m[at.BEGIN + 2] = x2

@@ -210,9 +210,9 @@ def phasors_at(m, tau):
     return x_a, v_a, x_b, v_b, cosine, sine
 
 
-def move_point(m, t):
-    """Phasors a short time ``t`` after the point evaluated last, where it is one, by their Taylor
-    series: what six terms leave is below 1e-17 of them.
+def set_at_end(m, t):
+    """Phasors at the state's end, where that is a short time ``t`` after the point evaluated last:
+    by their Taylor series, of which six terms leave less than 1e-17.
     """
     if t * m[at.RATE] > NEAR:
         return
@@ -226,8 +226,8 @@ def move_point(m, t):
     c = 1.0 - square * (0.5 - square * (1.0 / 24.0))
     s = angle * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0)))
     cosine, sine = m[p + 4], m[p + 5]
-    put(m, p, x, v, x_b, v_b, cosine * c - sine * s, sine * c + cosine * s)
-    m[at.END_KNOWN] = 1.0
+    put(m, at.AT_END, x, v, x_b, v_b, cosine * c - sine * s, sine * c + cosine * s)
+    m[at.AT_END_NODE] = m[at.NODE] + 1.0
 
 
 def advanced(m, b, x, v, t):

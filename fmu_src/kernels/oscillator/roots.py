@@ -13,7 +13,7 @@ import math
 from . import memory as at
 from .event_function import evaluate, rounding, set_remainder, values
 from .hermite import clear_part, interval_is_clear, is_below, is_clear
-from .nodes import move_point, put, renewed, starts_block, turned
+from .nodes import put, renewed, set_at_end, starts_block, turned
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
@@ -175,7 +175,7 @@ def creep(m):
         m[at.END] = tau + step
         m[at.END_KIND] = at.END_EVENT
         if m[at.SERIES] == 0.0:
-            move_point(m, m[at.END] - tau)
+            set_at_end(m, m[at.END] - tau)
     m[at.CLEAR] = m[at.RIGHT_AGE] if step >= reach else tau + step
 
 
