@@ -8,6 +8,7 @@ never changes a bit: a chunk's result depends on its items and on what it starts
 from __future__ import annotations
 
 import logging
+import threading
 import time
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -15,6 +16,8 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from ..files import open_folder
 from .executors import Cluster, Here, Processes, Workers, at_work, compute
@@ -129,6 +132,7 @@ class Runner:
                 with at_work(Here()) as workers:
                     self.work(workers, bar, self.little_left)
             if not self.finished():
+                threading.Thread(target=import_xarray, daemon=True).start()
                 with at_work(self.others()) as workers:
                     self.work(workers, bar, lambda: True)
 
@@ -216,6 +220,13 @@ class Runner:
                 return False
             state.start({need.job.name: need.result for need in needs if need.result is not None})
         return not state.complete
+
+
+def import_xarray() -> None:
+    """What a result needs and takes most of a second to import, Dask's arrays with it."""
+    import xarray as xr
+
+    xr.Dataset({"number": ("place", np.zeros(1))})
 
 
 def progress_bar(wanted: bool) -> Any:

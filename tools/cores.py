@@ -1,0 +1,103 @@
+"""How a sweep of Figure 6 scales with cores: ``python -m tools.cores``.
+
+The plan of chunks is played with so many workers. Each chunk is computed once for each state it is
+begun from, for real and timed, in this process: which guesses stand and what each costs is
+measured, only the clock is simulated.
+"""
+
+from __future__ import annotations
+
+import argparse
+import heapq
+import time
+from dataclasses import dataclass, field
+from unittest.mock import patch
+
+import numpy as np
+
+from orchestrate.access import OSCILLATOR, find
+from orchestrate.response.questions import asked_along
+from orchestrate.response.sweep import SweepJob
+from orchestrate.running.executors import compute
+from orchestrate.running.job import Table
+from orchestrate.running.progress import Progress, Task
+from orchestrate.running.store import Memory
+from orchestrate.structures import Structure
+
+WORKERS = (1, 2, 4, 8, 16, 32, 64, 128, 256, 1000)
+Done = tuple[bytes, Table]
+
+
+def figure_6(step: float) -> SweepJob:
+    """The paper's sweep, at every so manyth frequency."""
+    etas = np.round(np.arange(0.1, 8.0 + 0.5 * step, step), 3)
+    return SweepJob(**asked_along(Structure.nondimensional(), etas, None, None), name="figure 6")
+
+
+@dataclass
+class Clockwork:
+    """Chunks computed once each, with the seconds they took."""
+
+    known: dict[tuple[int, bytes], tuple[Done, float]] = field(default_factory=dict)
+
+    def run(self, job: SweepJob, task: Task) -> tuple[Done, float]:
+        """A chunk's result, and its seconds."""
+        begun = job.seam(task.carry) if task.carry is not None else repr(task.lead).encode()
+        key = task.chunk.first, begun
+        if key not in self.known:
+            fmus = {OSCILLATOR: find(OSCILLATOR).path}
+            clock = time.process_time()
+            done = compute(job, fmus, task.items, task.carry, task.lead)
+            self.known[key] = done, time.process_time() - clock
+        return self.known[key]
+
+
+def elapsed(job: SweepJob, workers: int, clockwork: Clockwork, each: float) -> tuple[float, int]:
+    """Seconds that so many workers take, and values that were guessed in vain.
+
+    Parameters
+    ----------
+    job : SweepJob
+    workers : int
+    clockwork : Clockwork
+    each : float
+        Seconds that handing out a chunk and taking its result cost beside.
+    """
+    progress = Progress(job, Memory(), {}, {OSCILLATOR: find(OSCILLATOR)})
+    progress.start({})
+    busy: list[tuple[float, int, Task, Done]] = []
+    now = 0.0
+    while not progress.complete:
+        while len(busy) < workers and (task := progress.next_task()) is not None:
+            progress.under_way.add(task.chunk.index)
+            done, seconds = clockwork.run(job, task)
+            heapq.heappush(busy, (now + seconds + each, task.chunk.index, task, done))
+        now, _, task, done = heapq.heappop(busy)
+        progress.enter(task, *done)
+    return now, progress.wasted
+
+
+def main() -> None:
+    """Print a table."""
+    parser = argparse.ArgumentParser(prog="python -m tools.cores", description=__doc__)
+    parser.add_argument("--step", type=float, default=0.001, help="of the frequency ratio")
+    parser.add_argument("--chunk", type=int, default=SweepJob.chunk, help="values a chunk")
+    parser.add_argument("--each", type=float, default=2e-3, help="seconds beside, a chunk")
+    arguments = parser.parse_args()
+    job, clockwork = figure_6(arguments.step), Clockwork()
+    find(OSCILLATOR)
+    with patch.object(SweepJob, "chunk", arguments.chunk):
+        print(f"{job.count()} values in {len(job.chunks())} chunks")
+        print("workers   seconds   efficiency   guessed in vain")
+        elapsed(job, 1, clockwork, arguments.each)
+        clockwork.known.clear()  # the first time all is loaded
+        alone = 0.0
+        for workers in WORKERS:
+            seconds, wasted = elapsed(job, workers, clockwork, arguments.each)
+            alone = alone or seconds
+            part = alone / (workers * seconds)
+            print(f"{workers:7d}{seconds:10.2f}{part:13.3f}{wasted:18d}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
