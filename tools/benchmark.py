@@ -1,22 +1,28 @@
 """How fast, as ratios: ``python -m tools.benchmark``.
 
 Kernel, FMU calls and a sampled solver, measured one after the other in one run on one core; times
-are of this machine, the ratios travel.
+are of this machine, the ratios travel. With ``--before FMU``, another version's native FMI 3.0 FMU,
+both are measured in turn.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+import operator
 import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Sequence
 from os import PathLike
+from pathlib import Path
+
+import numpy as np
 
 from orchestrate.access import OSCILLATOR, Channel, Instance, find
 
-from . import sampled_solver
+from . import c_host, sampled_solver
 
 ETAS = (0.3, 0.5, 0.8, 1.047, 1.13, 2.0, 2.9, 4.2, 6.3)
 SETTLE = 50  # periods
@@ -55,6 +61,57 @@ def pure_python(fmu: str | PathLike[str], eta: float, count: int) -> float:
     return float(done.stdout)
 
 
+def figure_6(
+    fmu: str | PathLike[str], watched: bool = False, step: float = 0.02
+) -> tuple[float, int]:
+    """Seconds and impacts of 700 periods at some frequencies of Figure 6, the last 200 of them with
+    the largest gap, or all.
+    """
+    seconds, impacts = 0.0, 0
+    state = dict.fromkeys(("x1_start", "x2_start", "v1_start", "v2_start"), 0.0)
+    with Instance(fmu) as instance:
+        for eta in np.arange(0.1, 8.0, step):
+            period = 2.0 * math.pi / eta
+            instance.reset()
+            drive = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
+            instance.initialize(**state, **drive, x_rel_max_on=watched)
+            begin = time.process_time()
+            instance.step(0.0, 500 * period)
+            seconds += time.process_time() - begin
+            instance.set(x_rel_max_on=True)
+            begin = time.process_time()
+            instance.step(500 * period, 700 * period)
+            seconds += time.process_time() - begin
+            impacts += instance.get("impact_count")[0]
+            state = dict(zip(state, instance.get("x1", "x2", "v1", "v2"), strict=True))
+    return seconds, impacts
+
+
+def best_of_both(
+    measure: Callable[[Path], float], fmus: Sequence[Path], rounds: int
+) -> list[float]:
+    """The least of some measurements of each FMU, in turn."""
+    return [
+        min(row) for row in zip(*([measure(f) for f in fmus] for _ in range(rounds)), strict=True)
+    ]
+
+
+def compare_versions(before: Path, rounds: int = 5) -> None:
+    """Print ns of this version and of another, and their ratio."""
+    fmus = (find(OSCILLATOR).path, before)
+    measures: dict[str, Callable[[Path], float]] = {
+        "Figure 6, an impact": lambda fmu: operator.truediv(*figure_6(fmu)),
+        "Figure 6, largest gap watched all along": lambda fmu: operator.truediv(
+            *figure_6(fmu, True)
+        ),
+        "a step without impact, from C": c_host.quiet_step,
+        "the same, largest gap watched": lambda fmu: c_host.quiet_step(fmu, watched=True),
+    }
+    for name, measure in measures.items():
+        now, then = (seconds * 1e9 for seconds in best_of_both(measure, fmus, rounds))
+        print(f"{name:40}{now:8.1f} ns{then:8.1f} ns before{now / then:8.3f}", flush=True)
+
+
 def compare(count: int) -> None:
     """Print the table."""
     native, python = find(OSCILLATOR).path, find(OSCILLATOR, "fmi2-python").path
@@ -79,8 +136,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tools.benchmark", description=__doc__)
     parser.add_argument("--periods", type=int, default=2000, help="periods a frequency")
     parser.add_argument("--once", nargs=3, metavar=("FMU", "ETA", "PERIODS"), help="seconds of one")
+    parser.add_argument("--before", type=Path, metavar="FMU", help="another version's FMI 3.0 FMU")
     arguments = parser.parse_args()
-    if arguments.once:
+    if arguments.before:
+        compare_versions(arguments.before)
+    elif arguments.once:
         fmu, eta, count = arguments.once
         print(periods(fmu, float(eta), int(count))[0])
     else:

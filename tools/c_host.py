@@ -15,16 +15,19 @@ SOURCE = Path(__file__).with_suffix(".c")
 APART = {"x1_start": -1.0, "x2_start": 1e4, "box_amplitude": 1.0, "box_frequency": 0.4}
 
 
-def quiet_step(fmu: Path, step: float = 1e-3) -> float:
+def quiet_step(fmu: Path, watched: bool = False, step: float = 1e-3) -> float:
     """Seconds a step of an FMI 3.0 FMU without an impact, called from C.
 
     Parameters
     ----------
     fmu : Path
+    watched : bool
+        Whether the largest gap of each step is asked for.
     step : float
         Communication step, s.
     """
     described = describe(fmu)
+    watch = str(described.variable("x_rel_max_on").valueReference), str(int(watched))
     start = [
         text
         for name, value in APART.items()
@@ -42,6 +45,6 @@ def quiet_step(fmu: Path, step: float = 1e-3) -> float:
         own = shutil.which("cc") or shutil.which("gcc")
         compiler = [own] if own else [sys.executable, "-m", "ziglang", "cc"]
         subprocess.run([*compiler, "-std=gnu11", "-O2", SOURCE, "-o", program, "-ldl"], check=True)
-        command = [program, library, described.guid, repr(step), *start]
+        command = [program, library, described.guid, *watch, repr(step), *start]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
     return float(done.stdout) * 1e-9

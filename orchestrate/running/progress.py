@@ -130,14 +130,21 @@ class Progress:
         return self.untouched(chunk.index) and (chunk.after is None or chunk.after in self.there)
 
     def continued(self) -> Iterator[Task]:
-        """Chunks that go on from a guessed one."""
+        """Chunks that go on from a guessed one, in place of guesses that began elsewhere: a run of
+        chunks is rather right as a whole.
+        """
         for index in sorted(self.guesses):
             following = index + 1
-            if following < len(self.chunks) and self.untouched(following):
-                chunk = self.chunks[following]
-                if chunk.after == index:
-                    carry = self.guesses[index].table
+            if following < len(self.chunks) and self.chunks[following].after == index:
+                carry = self.guesses[index].table
+                if self.untouched(following) or self.begun_elsewhere(following, carry):
+                    chunk = self.chunks[following]
                     yield Task(chunk, self.items_of(chunk), carry, (), True)
+
+    def begun_elsewhere(self, index: int, before: Table) -> bool:
+        """Whether a chunk was guessed from another state than the chunk before ends in."""
+        guess = None if index in self.under_way else self.guesses.get(index)
+        return guess is not None and guess.start != self.job.seam(before)
 
     def begun_in_a_gap(self) -> Iterator[Task]:
         """A chunk in the middle of the longest run of chunks that nobody has begun."""
@@ -184,6 +191,7 @@ class Progress:
         index = task.chunk.index
         self.under_way.discard(index)
         if task.guess:
+            self.wasted += self.size(index) if index in self.guesses else 0
             self.guesses[index] = Guess(start, table)
         else:
             self.keep(index, table)
