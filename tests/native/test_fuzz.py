@@ -22,7 +22,14 @@ SECONDS = int(os.environ.get("FUZZ_SECONDS", "600"))  # of the coverage-guided f
 SHIM = ("core.c", "fmi2.c", "fmi3.c", "fmi3_absent.c")
 
 
-@pytest.fixture(scope="module", params=[(v, m) for v in VERSIONS for m in MODELS], ids="-".join)
+PAIRS = [
+    pytest.param((version, model), marks=[pytest.mark.slow] * (model != "MotorShaker"))
+    for version in VERSIONS
+    for model in MODELS
+]
+
+
+@pytest.fixture(scope="module", params=PAIRS, ids="-".join)
 def importer_of_model(request, exported, fmus, tmp_path_factory):
     """The importer compiled for a model in an FMI version, and the FMU's own binary."""
     version, model = request.param
