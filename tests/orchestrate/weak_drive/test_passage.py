@@ -8,7 +8,8 @@ from orchestrate import InputError, couple, passage, waterfall
 
 from .coupled import QUICK
 
-FAST = {"voltage": (1.5, 1.7), "rate": 4e-4, "back": False, "settle": 50.0, "progress": False}
+FAST = {"voltage": (1.5, 1.7), "rate": 4e-4, "back": False, "settle": 50.0, "step": 0.1}
+FAST |= {"progress": False}
 
 
 @pytest.fixture(scope="module")
