@@ -8,7 +8,7 @@ from orchestrate import cli
 
 from .written import PAGES, commands, python_blocks, toml_files
 
-LONG = ("build", "couple", "explore", "paper")  # commands whose options are read, and no more
+LONG = ("build", "capture", "couple", "explore", "paper", "passage")  # options are read, no more
 EVERY = [
     pytest.param(page, words, id=f"{page.stem}-{' '.join(words)[:60]}")
     for page in PAGES
