@@ -437,7 +437,7 @@ def couple(
         Speed of the motor at the start, rad/s; by default its no-load speed at the first voltage,
         with a controller 0.
     control : Controller, optional
-        :class:`~.controllers.SpeedControl` or :class:`~.controllers.SpeedGradient`: takes a part of
+        :class:`orchestrate.SpeedControl` or :class:`orchestrate.SpeedGradient`: takes a part of
         ``voltage``, once a communication step, by the speed. There are no jumps to be found then;
         ``passage_time`` says whether the motor has passed the resonance.
     step : float, optional
