@@ -21,7 +21,12 @@ export class DrivePart {
     this.picture = new Picture(/** @type {HTMLCanvasElement} */ (at("drive")), (pen, size, theme) => this.draw(pen, size, theme));
     this.running = false;
     this.ramp = 0; // sign of the voltage's change
-    this.clear();
+    /** @type {import("./coupled.js").Run | null} */
+    this.state = null;
+    /** @type {Row[]} */
+    this.rows = [];
+    /** @type {import("./crew.js").Order | null} */
+    this.order = null;
     at("drive-go").addEventListener("click", () => this.run(!this.running));
     at("ramp-up").addEventListener("click", () => this.drift(1));
     at("ramp-down").addEventListener("click", () => this.drift(-1));
@@ -31,9 +36,7 @@ export class DrivePart {
 
   /** Forget the run. */
   clear() {
-    /** @type {import("./coupled.js").Run | null} */
     this.state = null;
-    /** @type {Row[]} */
     this.rows = [];
     this.order?.cancel();
     this.order = null;
