@@ -41,40 +41,32 @@ class Response:
     permanent_contact: bool
     multiplicity: int
 
-    @property
-    def end(self) -> tuple[float, ...]:
-        """The state at the last sample."""
-        return tuple(self.samples[-1].tolist())
-
     @cached_property
-    def passed_on(self) -> tuple[float, ...]:
-        """The state that a next response starts from."""
-        return without_history(self.samples)
+    def end(self) -> tuple[float, ...]:
+        """The state at the last sample, which a next response starts from."""
+        return without_last_digits(self.samples[-1])
 
 
-def without_history(samples: NDArray[np.float64], bits: int = 30) -> tuple[float, ...]:
-    """A state of a response that does not tell how the response was reached.
+def without_last_digits(state: NDArray[np.float64], bits: int = 44) -> tuple[float, ...]:
+    """A state to 13 digits, so that it does not tell how its response was reached.
 
-    What repeats after n periods passes through n states at phase 0, and which of them comes last
-    depends on where it began; so do the last digits for good, since rounding never settles. Here it
-    is the state with the largest gap in the last quarter of the samples, and so many bits of it.
+    Rounding never settles: what has converged to one response from two sides goes on to differ in
+    its last digits for good. Without them it is the same to the last bit, and parts of a sweep that
+    are begun elsewhere join it.
 
     Parameters
     ----------
-    samples : ndarray, shape (n, 4)
-        x1, x2, v1, v2 at phase 0 of successive periods.
+    state : ndarray, shape (4,)
+        x1, x2, v1, v2.
     bits : int
-        Kept of the largest displacement, and of the largest velocity.
+        Kept of the larger displacement, and of the larger velocity: the gap stays >= 0.
 
     Examples
     --------
-    >>> swinging = np.tile([[0.1, 0.2, 1.0, 1.0], [0.1, 0.9, 0.0, 1.0]], (20, 1))
-    >>> without_history(swinging)[:2]
-    (0.09999999962747097, 0.900000000372529)
+    >>> without_last_digits(np.array([0.25, 0.3, 1.0, -1.0]))
+    (0.25, 0.30000000000001137, 1.0, -1.0)
     """
-    late = samples[-max(1, len(samples) // 4) :][::-1]
-    chosen = late[np.argmax(late[:, 1] - late[:, 0])]
-    return (*to_bits(chosen[:2], bits), *to_bits(chosen[2:], bits))
+    return (*to_bits(state[:2], bits), *to_bits(state[2:], bits))
 
 
 def to_bits(values: NDArray[np.float64], bits: int) -> list[float]:
@@ -174,4 +166,4 @@ def follow(
     for structure, excitation in points:
         response = respond(instance, structure, excitation, start, transient, samples, tolerance)
         yield response
-        start = response.passed_on
+        start = response.end

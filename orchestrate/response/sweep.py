@@ -38,10 +38,7 @@ NUMBERS = {  # one a response: units, long name
     "a1_max": ("m/s2", "largest acceleration of mass 1 in space between impacts"),
     "a2_max": ("m/s2", "largest acceleration of mass 2 in space between impacts"),
 }
-STATES = {
-    "end_state": "state at the last sample",
-    "passed_on": "state of the response that the next value starts from",
-}
+END = "state at the last sample, from which the next value starts"
 MULTIPLICITY = "least n such that the state repeats after n periods within the tolerance; 0: none"
 
 
@@ -107,7 +104,7 @@ class SweepJob(SeriesQuestion):
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
         """Some responses, from the state that the last one passes on."""
-        start = self.start if carry is None else carry["passed_on"][-1]
+        start = self.start if carry is None else carry["end"][-1]
         settings = self.transient, self.samples, self.tolerance
         responses, orbits, spans = [], [], []
         with Instance(fmus[OSCILLATOR]) as instance:
@@ -121,8 +118,7 @@ class SweepJob(SeriesQuestion):
         samples = np.array([response.samples for response in responses])
         return {
             "gap": samples[:, :, 1] - samples[:, :, 0],
-            "end": samples[:, -1],
-            "passed_on": np.array([response.passed_on for response in responses]),
+            "end": np.array([response.end for response in responses]),
             **{
                 name: np.array([getattr(response, name) for response in responses])
                 for name in (
@@ -135,7 +131,7 @@ class SweepJob(SeriesQuestion):
 
     def seam(self, table: Table) -> bytes:
         """The state that the next response starts from."""
-        return bytes(table["passed_on"][-1].tobytes())
+        return bytes(table["end"][-1].tobytes())
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Everything over the parameter, in the order of its values."""
@@ -167,7 +163,6 @@ class SweepJob(SeriesQuestion):
             **{f"xi{i}_max": table[f"x{i}_max"] / length for i in (1, 2)},
         }
         gaps = table["gap"] / length[:, None]
-        states = {"end_state": table["end"] / scales, "passed_on": table["passed_on"] / scales}
         contact = "whether permanent contact occurs in the sampled periods"
         return {
             "xi_rel": variable(
@@ -176,10 +171,7 @@ class SweepJob(SeriesQuestion):
             **{name: variable(along, numbers[name], *NUMBERS[name]) for name in NUMBERS},
             "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
             "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
-            **{
-                name: variable((*along, "coordinate"), values, "1", STATES[name])
-                for name, values in states.items()
-            },
+            "end_state": variable((*along, "coordinate"), table["end"] / scales, "1", END),
         }
 
     def coordinates(self) -> dict[str, Variable]:
@@ -252,8 +244,8 @@ def sweep(
         Over the parameter, and ``sample`` and ``direction``: ``xi_rel``, stroboscopic samples of
         the gap over a eta^2 (21); ``xi_rel_max``; ``impacts_per_period``; ``multiplicity`` in
         excitation periods, 0 where the response does not repeat; ``permanent_contact``;
-        ``end_state``, the non-dimensional state at the last sample, and ``passed_on``, that which
-        the next value starts from, both at phase 0; largest distances of both masses from the
+        ``end_state``, the non-dimensional state at the last sample, at phase 0, from which the next
+        value starts; largest distances of both masses from the
         box's middle, ``x1_max`` and ``x2_max`` in m, ``xi1_max`` and ``xi2_max`` over a eta^2; and
         ``a1_max``, ``a2_max``, the largest accelerations in space in m/s2, which an accelerometer
         on a mass reads between impacts.
@@ -269,10 +261,10 @@ def sweep(
     from the FMU and are exact to rounding; for amplitudes and accelerations see
     :func:`orchestrate.response.peaks.peaks`.
 
-    The state passed on from value to value is the one with the largest gap in the last quarter of
-    the samples, to nine digits: it belongs to the response, whatever phase and rounding it was
+    What is passed on from value to value is the state at the last sample to 44 bits, 13 digits:
+    what has converged to one response then comes to the very same numbers, whatever rounding it was
     reached with. So parts of a sweep that are computed elsewhere, begun a few values early from
-    rest, come to the very same numbers, and all cores work on one sweep.
+    rest, join it, and all cores work on one sweep.
 
     Examples
     --------
