@@ -43,7 +43,7 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
     "kernels.oscillator": {"kernels.numerics"},
     "kernels.shaker": {"kernels.numerics"},
     "runtime": set(),
-    "models": {"kernels.oscillator", "kernels.shaker", "runtime"},
+    "models": {"kernels.oscillator", "kernels.shaker", "runtime", "version"},
     "export": {"runtime"},
 }
 DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/sources.py"}

@@ -13,6 +13,8 @@ import { lengthOf, periodOf } from "./structure.js";
 
 export const USUAL = { transient: 500, samples: 200, tolerance: 1e-2 };
 
+const TO_WHOLE = 1.5 * 2 ** 52; // added and taken away it leaves a whole number, ties to even
+
 /**
  * The response after a transient, from a state at phase 0; the instance stands at its end.
  * @param {Oscillator} instance
@@ -39,8 +41,24 @@ export function respond(instance, point, start, { transient, samples, tolerance 
     contact: touching || instance.get("contact_count") > contacts,
     multiplicity: multiplicity(states, tolerance),
     start: Array.from(start),
-    end: Array.from(states.subarray(states.length - 4)),
+    end: withoutLastDigits(states.subarray(states.length - 4)),
   };
+}
+
+/**
+ * A state to 44 bits of the larger displacement and of the larger velocity, as `sweep` passes it on.
+ * @param {Float64Array} state
+ */
+function withoutLastDigits(state) {
+  return [...toBits(state.subarray(0, 2)), ...toBits(state.subarray(2))];
+}
+
+/** @param {Float64Array} values @param {number} [bits] */
+function toBits(values, bits = 44) {
+  const largest = Math.max(...values.map(Math.abs));
+  const words = new Uint32Array(new Float64Array([largest]).buffer);
+  const digit = largest === 0 ? 1 : 2 ** ((words[1] >>> 20) - 1022 - bits);
+  return Array.from(values, (value) => (value / digit + TO_WHOLE - TO_WHOLE) * digit);
 }
 
 /** @param {Float64Array} states @param {number} length */

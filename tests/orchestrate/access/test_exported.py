@@ -41,7 +41,7 @@ def maker(monkeypatch, real):
     """Stand in for the exporters: copies of the true FMUs, and a record of what was asked."""
     asked, without = [], set()
 
-    def export(name, form, folder):
+    def export(name, form, folder, platforms=None):
         asked.append((name, form, Path(folder)))
         if form in without:
             raise exported.CannotExport(REASON)

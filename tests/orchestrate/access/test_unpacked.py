@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from fmu_src.version import VERSION
 from orchestrate.access import Instance, describe
 from orchestrate.access.unpacked import PREFIX, process_folder, unpacked
 from orchestrate.errors import InputError, StoreError
@@ -87,11 +88,11 @@ def test_an_fmu_that_changes_is_unpacked_anew(any_fmu, tmp_path):
     path = tmp_path / "mine.fmu"
     path.write_bytes(any_fmu.read_bytes())
     described = describe(path)
-    altered_fmu(any_fmu, path, version=("0.1.0", "0.1.1"))
+    altered_fmu(any_fmu, path, version=(VERSION, "0.1.1"))
     assert unpacked(describe(path)) != unpacked(describe(any_fmu))
     described = describe(any_fmu)
     other = tmp_path / "other.fmu"
-    altered_fmu(any_fmu, other, version=("0.1.0", "0.1.2"))
+    altered_fmu(any_fmu, other, version=(VERSION, "0.1.2"))
     old = describe(other)
     other.write_bytes(b"something else")
     with pytest.raises(InputError, match="it has changed since it was read"):
@@ -107,7 +108,7 @@ def test_what_cannot_be_unpacked_leaves_nothing(any_fmu, tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(fmpy, "extract", full)
-    fmu = altered_fmu(any_fmu, tmp_path / "mine.fmu", version=("0.1.0", "0.1.3"))
+    fmu = altered_fmu(any_fmu, tmp_path / "mine.fmu", version=(VERSION, "0.1.3"))
     before = set(process_folder().iterdir())
     with pytest.raises(
         StoreError, match=r"cannot be unpacked \(No space left on device\); expected"
