@@ -7,8 +7,10 @@ from os import PathLike
 from pathlib import Path
 
 from fmu_src.export import webassembly as sources
+from fmu_src.export.archive import fingerprint
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import MODELS
+from fmu_src.export.sources import model_sources
 
 from ..errors import InputError
 from ..files import open_folder, write_whole
@@ -74,6 +76,18 @@ def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKern
         if sources.guid_inside(module) == wanted:
             return WebKernel(module, *tables, wanted)
     return WebKernel(compiled(model, places[0]), *tables, wanted)
+
+
+def kernel_digest(model: str) -> str:
+    """Fingerprint of what decides a model's numbers, 32 digits: its kernel's sources, no texts.
+
+    Examples
+    --------
+    >>> len(kernel_digest("TwoMassImpactOscillator"))
+    32
+    """
+    files = model_sources(MODELS[model])
+    return fingerprint({name: files[name] for name in files if name.startswith("kernels/")})
 
 
 def compiled(model: str, folder: Path) -> bytes:

@@ -10,7 +10,7 @@ from ..errors import InputError
 from .options import Commands, add_structure, structure_of
 from .question import stored
 
-EXAMPLES = """  {program} explore                              the paper's first case
+EXAMPLES = """  {program} explore                              the paper's Figure 6
   {program} explore results/orbit_e0.7_D0.005_up.nc   an own sweep: a click replays its responses
   {program} explore --set e=0.3 --no-open --output page.html"""
 
@@ -19,7 +19,7 @@ def add_parser(commands: Commands) -> None:
     """Declare the command."""
     text = "open a page that shows orbit diagrams and motions, computed in the browser"
     parser = commands.add("explore", run, text, EXAMPLES)
-    sweep = "NetCDF file of a sweep along the frequency (default: the page computes its own)"
+    sweep = "NetCDF file of a sweep along the frequency (default: the paper's Figure 6)"
     parser.add_argument("result", type=Path, nargs="?", metavar="RESULT", help=sweep)
     add_structure(parser)
     option = parser.add_argument_group("page").add_argument

@@ -20,7 +20,8 @@ from ..structures.ranges import STRUCTURE
 from ..version import __version__
 from .branches import overlay
 from .bundle import bundle
-from .shipped import Shipped, nothing, shipped
+from .figure6 import first_diagram
+from .shipped import Shipped, shipped
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,8 +41,9 @@ def explore(
     Parameters
     ----------
     data : xarray.Dataset or Structure, optional
-        A sweep along the frequency, whose responses the page replays; or a structure, the paper's
-        by default, whose responses the page computes itself.
+        A sweep along the frequency, whose responses the page replays; or a structure, whose
+        responses the page computes itself. By default the paper's Figure 6, whose sweep comes with
+        the package.
     output : path-like
         The file.
     branches : xarray.Dataset, optional
@@ -75,7 +77,7 @@ def explore(
     True
     """
     if data is None or isinstance(data, Structure):
-        chosen = nothing(data or Structure())
+        chosen = first_diagram(data or Structure())
     else:
         chosen = shipped(data)
     path = Path(output)

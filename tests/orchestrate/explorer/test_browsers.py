@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 
-from orchestrate.explorer.page import SOURCES
+from orchestrate.explorer.page import SOURCES, explore
 
 from .firefox import Firefox
 
@@ -29,6 +29,19 @@ def test_a_dragged_region_comes_at_once_and_is_soon_complete(browser):
         assert browser.run("return explorer.regions.diagram.points.length") >= 300
         took = browser.run("return explorer.regions.took")
         assert took["first"] < 300 and took["all"] < 2000, (low, high, took)
+
+
+@pytest.mark.slow
+def test_all_of_figure_6_is_one_branch_to_the_last_bit(chromium, tmp_path, exported):
+    page = explore(output=tmp_path / "figure6.html")
+    assert page.stat().st_size < 1_500_000
+    chromium.open(page)
+    lane = "explorer.regions.diagram.lanes[0]"
+    starts = chromium.numbers(f"{lane}.starts").reshape(-1, 4)
+    ends = chromium.numbers(f"{lane}.found.flatMap((one) => one.end)").reshape(-1, 4)
+    assert ends.shape == starts.shape == (7901, 4)
+    assert ends[:-1].tobytes() == starts[1:].tobytes()
+    assert chromium.console() == []
 
 
 @pytest.mark.slow

@@ -9,10 +9,12 @@ import xarray as xr
 import orchestrate
 from orchestrate import cli
 from orchestrate.errors import InputError
+from orchestrate.explorer import figure6
 from orchestrate.explorer.branches import runs
 from orchestrate.explorer.bundle import IMPORT, bundle
 from orchestrate.explorer.page import explore, modules
 from orchestrate.explorer.shipped import shipped
+from orchestrate.running.store import load
 
 
 def test_the_page_is_one_small_file_without_network(page):
@@ -91,3 +93,38 @@ def test_a_branch_is_cut_where_its_stability_changes():
     stable = np.array([True, True, False, False, False])
     parts = [(list(x), list(y), flag) for x, y, flag in runs(along, gaps, stable)]
     assert parts == [([0, 1, 2], [1, 2, 3], True), ([2, 4], [3, 5], False)]
+
+
+ANEW = "the kernel has changed: make Figure 6 of the explorer anew, python -m tools.figure6_states"
+
+
+def test_figure_6_comes_from_the_present_kernel():
+    assert figure6.is_present(load(figure6.FILE)), ANEW
+
+
+@pytest.mark.parametrize("first", [0, 1100, 2850, 7896])  # chaos at 1100 and 2850
+def test_figure_6_is_replayed_from_where_its_responses_begin(exported, first):
+    given = load(figure6.FILE)
+    few = given.isel(eta=slice(first, first + 5))
+    found = figure6.first_diagram(orchestrate.Structure())
+    start = found.numbers[3 * found.count :].reshape(-1, 4)[first]
+    swept = orchestrate.sweep(
+        orchestrate.Structure(), eta=few.eta.values, start=start, direction="up", progress=False
+    )
+    for name in ("end_state", "impacts_per_period", "frequency", "amplitude"):
+        assert swept[name].values.tobytes() == few[name].values.tobytes(), ANEW
+
+
+def test_figure_6_is_all_of_the_papers_frequencies():
+    found = figure6.first_diagram(orchestrate.Structure())
+    assert (found.count, found.low, found.high) == (7901, 0.1, 8.0)
+    assert figure6.first_diagram(orchestrate.Structure(e=0.3)).count == 0
+
+
+def test_a_page_of_another_kernel_computes_its_own_and_says_so(monkeypatch, tmp_path, caplog):
+    monkeypatch.setattr(figure6, "kernel_digest", lambda model: "another")
+    page = tmp_path / "page.html"
+    assert cli.main(["explore", "--no-open", "--output", str(page)]) == 0
+    assert '"count": 0' in page.read_text(encoding="utf-8")
+    (line,) = [record.message for record in caplog.records if "Figure 6" in record.message]
+    assert line == "Figure 6 was computed by another kernel: the page computes its own"

@@ -1,0 +1,41 @@
+"""The paper's Figure 6 as it comes with the package: where each of its responses begins."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..access import OSCILLATOR
+from ..access.webassembly import kernel_digest
+from ..running.store import load
+from ..structures import Structure
+from .shipped import Shipped, nothing, shipped
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FILE = Path(__file__).with_name("figure6.nc")  # written by tools/figure6_states.py
+STAMP = "kernel"  # attribute: digest of the kernel that computed it
+
+log = logging.getLogger(__name__)
+
+
+def first_diagram(structure: Structure) -> Shipped:
+    """What a page of a structure opens with: Figure 6 for the paper's, else nothing.
+
+    Nothing as well where the kernel is no longer the one that computed Figure 6: its states would
+    then belong to no response of the page.
+    """
+    if structure != Structure():
+        return nothing(structure)
+    data = load(FILE)
+    if not is_present(data):
+        log.warning("Figure 6 was computed by another kernel: the page computes its own")
+        return nothing(structure)
+    return shipped(data)
+
+
+def is_present(data: xr.Dataset) -> bool:
+    """Whether the present kernel computed it."""
+    return bool(data.attrs.get(STAMP) == kernel_digest(OSCILLATOR))

@@ -1,0 +1,41 @@
+"""Where the responses of Figure 6 begin, for the explorer: ``python -m tools.figure6_states``.
+
+Kept in the repository, so that a page is written at once and its clicks replay one branch, the same
+everywhere. To be made anew when the kernel changes: a test says so.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+import orchestrate
+from orchestrate.access import OSCILLATOR
+from orchestrate.access.webassembly import kernel_digest
+from orchestrate.explorer.figure6 import FILE, STAMP
+from orchestrate.files import write_whole
+
+KEPT = ["frequency", "amplitude", "impacts_per_period", "end_state"]
+LEFT_OUT = ("identity", "history")  # of every source: the stamp tells what decides the bits
+
+
+def figure6() -> xr.Dataset:
+    """The sweep, of it what the page needs."""
+    etas = np.arange(100, 8001) / 1000
+    found = orchestrate.sweep(orchestrate.Structure(), eta=etas, direction="up")
+    found = found[KEPT].drop_vars("period")
+    found.attrs = {name: value for name, value in found.attrs.items() if name not in LEFT_OUT}
+    return found.assign_attrs({STAMP: kernel_digest(OSCILLATOR)})
+
+
+def main() -> None:
+    """Write it."""
+    data = figure6()
+    small = {"zlib": True, "complevel": 9, "shuffle": True}
+    encoding = dict.fromkeys((*KEPT, "eta"), small)
+    write_whole(FILE, lambda place: data.to_netcdf(place, engine="netcdf4", encoding=encoding))
+    print(f"{FILE}  {FILE.stat().st_size / 1024:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()
