@@ -12,6 +12,8 @@ import re
 from docutils.utils.math.latex2mathml import tex2mathml
 from markupsafe import Markup, escape
 
+from .plain import plain
+
 LETTERS = ("eta", "kappa", "lambda", "omega", "gamma", "tau", "mu", "nu", "xi", "pi")
 WORDS = {  # regular expressions and what they become, the longest first
     r"\$(?P<latex>[^$]+)\$": r"\g<latex>",
@@ -35,8 +37,6 @@ WORDS = {  # regular expressions and what they become, the longest first
 }
 FORMULA = re.compile("|".join(f"(?P<word{i}>{word})" for i, word in enumerate(WORDS)))
 LATEX = tuple(WORDS.values())
-SIGNS = {"+-": "±", "<=": "≤", ">=": "≥"}
-MEANT = {"nan": "not found", "True": "yes", "False": "no", "inf": "without bound"}
 
 
 @functools.cache
@@ -48,14 +48,6 @@ def mathml(latex: str) -> Markup:
 def latex_of(found: re.Match[str]) -> str:
     """The LaTeX of a formula found in a sentence."""
     return found.expand(LATEX[int(str(found.lastgroup).removeprefix("word"))])
-
-
-def plain(text: str) -> str:
-    """A sentence without what only a program says."""
-    text = re.sub(rf"\b({'|'.join(MEANT)})\b", lambda match: MEANT[match[0]], text)
-    for sign, better in SIGNS.items():
-        text = text.replace(sign, better)
-    return text
 
 
 def typeset(text: str) -> Markup:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from ..plain import plain
 from .results import Edges, Limit, Results
 
 YES, PARTLY, NO, UNDECIDED = "yes", "partly", "no", "undecided"
@@ -87,9 +88,9 @@ class Claim:
         names = ("section", "text", "printed", "how", "tolerance")
         return {
             **{name: getattr(self, name) for name in names},
-            "found": finding.value,
+            "found": plain(finding.value),
             "verdict": finding.verdict,
-            "why": finding.why,
+            "why": plain(finding.why),
             "agrees": finding.agrees,
         }
 

@@ -1,0 +1,22 @@
+"""Sentences with numbers in them, without what only a program says."""
+
+from __future__ import annotations
+
+import re
+
+SIGNS = {"+-": "±", "<=": "≤", ">=": "≥"}
+MEANT = {"nan": "not found", "True": "yes", "False": "no", "inf": "without bound"}
+
+
+def plain(text: str) -> str:
+    """A sentence for people.
+
+    Examples
+    --------
+    >>> plain("none: True; width nan +- 0.1")
+    'none: yes; width not found ± 0.1'
+    """
+    text = re.sub(rf"\b({'|'.join(MEANT)})\b", lambda match: MEANT[match[0]], text)
+    for sign, better in SIGNS.items():
+        text = text.replace(sign, better)
+    return text
