@@ -6,8 +6,7 @@ Exit code 3: the tool is not installed.
 import ctypes
 import json
 import sys
-import sysconfig
-from pathlib import Path
+from importlib import metadata
 
 PLACES = (("oscillator", "x1"), ("oscillator", "x2"), ("shaker", "speed"))
 
@@ -29,9 +28,10 @@ def with_fmpy(path, step, count):
 
 
 def with_ecospy(path, step, count):
-    """Parameter sets are applied by their name."""
-    for library in Path(sysconfig.get_path("data")).glob("lib/libtbb.so.*"):
-        ctypes.CDLL(str(library), ctypes.RTLD_GLOBAL)
+    """Parameter sets are applied by their name. It loads tbb, which lies where pip has put it."""
+    for file in metadata.files("tbb") or ():
+        if file.name.startswith("libtbb.so."):
+            ctypes.CDLL(str(file.locate()), ctypes.RTLD_GLOBAL)
     from ecospy import EcosLib, EcosSimulation
 
     with EcosSimulation(step_size=step, ssp_path=path) as simulation:
