@@ -1,8 +1,5 @@
-"""The package's version, as installed."""
+"""The package's version: that of the code that runs, also where an old one is installed."""
 
-from importlib.metadata import PackageNotFoundError, version
+from fmu_src.version import VERSION
 
-try:
-    __version__ = version("vibroimpact")
-except PackageNotFoundError:  # a checkout that is not installed
-    __version__ = "0.0.0"
+__version__ = VERSION

@@ -20,7 +20,7 @@ from ..structures import Structure
 from .bifurcations import KINDS, TORUS, Look
 from .border_curve import Border
 from .branch_walk import LIMIT, LONG, STUCK
-from .branches import begin_of, check_start, excitation_of
+from .branches import begin_of, check_inside, check_start, excitation_of
 from .continuation import NoConvergenceError, Root, Walk, corrected, held
 from .families import ACCELERATION, Family, Setting, check_names, knocking
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
@@ -243,7 +243,7 @@ def border(
     ('Neimark-Sacker', array([0.69, 0.71]))
     """
     knocking(checked_structure(structure))
-    check_start(start)
+    check_start(start, several=True)
     names = tuple(over)
     check_names(names)
     if len(names) != 2 or names[0] != start.attrs.get("over"):
@@ -252,10 +252,12 @@ def border(
             f"{start.attrs.get('over')!r}"
         )
     pairs = checked_limits(names, limits)
-    nodes, kind = begin_of(start, bifurcation)
+    nodes, kind = begin_of(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
     given = excitation_of(start.isel(point=0), names[0], told(eta, frequency, amplitude), pairs[0])
     second = second_value(structure, names[1], given, box_acceleration)
+    for name, number, pair in zip(names, (value, second), pairs, strict=True):
+        check_inside(name, number, pair)
     fixed = tuple((name, number) for name, number in given if name not in names)
     setting = Setting(structure, fixed, names, pairs, finite(ACCELERATION, box_acceleration))
     for i in range(2):  # what is out of range is said before any work

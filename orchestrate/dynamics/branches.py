@@ -272,7 +272,7 @@ def branch(
     check_names((over,))
     knocking(checked_structure(structure))
     if start is not None:
-        check_start(start)
+        check_start(start, several=switch is not None)
     low_high = checked_limits(over, limits)
     given = excitation_of(start, over, told(eta, frequency, amplitude), low_high)
     if start is None:
@@ -282,7 +282,7 @@ def branch(
     else:
         value = start_value(start, over, switch, structure)
     check_inside(over, value, low_high)
-    nodes, kind = begin_of(start, switch)
+    nodes, kind = begin_of(start, "switch", switch)
     fixed = tuple((name, number) for name, number in given if name != over)
     setting = Setting(
         structure, fixed, (over,), (low_high,), finite(ACCELERATION, box_acceleration)
@@ -303,8 +303,9 @@ def branch(
     return answer(job, running, finder(running))
 
 
-def check_start(start: Any) -> None:
-    """Whether a branch can begin with it.
+def check_start(start: Any, several: bool) -> None:
+    """Whether a branch can begin with it; several orbits will do where one of its bifurcations is
+    named.
 
     Raises
     ------
@@ -314,6 +315,12 @@ def check_start(start: Any) -> None:
         raise InputError(
             f"start = {start!r}: expected a dataset of orbit or branch; a number of the parameter "
             "is told by its name, as eta = 1.5"
+        )
+    if "node_kind" not in start:
+        raise InputError("start: without node_kind; expected a dataset of orbit or branch")
+    if start["node_kind"].ndim != 1 and not several:
+        raise InputError(
+            "start: several orbits; expected one, such as branch.isel(point=0), or switch="
         )
 
 
@@ -387,7 +394,7 @@ def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
 def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Structure) -> float:
     """The parameter's value at the start."""
     if switch is not None:
-        return float(start["bifurcation_value"].values[number_of(start, switch)])
+        return float(start["bifurcation_value"].values[number_of(start, "switch", switch)])
     if over in start.coords:
         return float(start[over])
     if over == ACCELERATION:
@@ -395,18 +402,18 @@ def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Str
     return structure.get(over)
 
 
-def number_of(start: xr.Dataset, switch: int) -> int:
+def number_of(start: xr.Dataset, name: str, number: int) -> int:
     """A bifurcation's number, if there is one."""
     count = start.sizes.get(BIFURCATION, 0)
     if not count:
-        raise InputError(f"switch = {switch!r}: start has no bifurcations; expected a branch")
-    return whole("switch", switch, 0, count - 1)
+        raise InputError(f"{name} = {number!r}: start has no bifurcations; expected a branch")
+    return whole(name, number, 0, count - 1)
 
 
-def begin_of(start: xr.Dataset, switch: int | None) -> tuple[FirstGuess, int]:
-    """Nodes of the orbit that a branch begins with, and the kind of bifurcation to leave by."""
-    if switch is None:
+def begin_of(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
+    """Nodes of the orbit to begin with, and the kind of the bifurcation that ``name`` gives."""
+    if number is None:
         return from_result(start), -1
-    found = start.isel({BIFURCATION: number_of(start, switch)})
+    found = start.isel({BIFURCATION: number_of(start, name, number)})
     nodes = {name: found[f"{BIFURCATION}_{name}"].values for name in NODES}
     return from_result(nodes), int(found["bifurcation_kind"])

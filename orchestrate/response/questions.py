@@ -297,7 +297,8 @@ def states(name: str, given: ArrayLike | None, structure: Structure) -> NDArray[
     try:
         found = np.atleast_2d(np.asarray(REST if given is None else given, dtype=float))
     except (TypeError, ValueError):
-        raise InputError(f"{name} = {given!r}: {expected}") from None
+        told = "a dataset" if hasattr(given, "data_vars") else repr(given)
+        raise InputError(f"{name} = {told}: {expected}") from None
     if found.ndim != 2 or found.shape[1] != 4 or not len(found):
         raise InputError(f"{name}: shape {found.shape}; {expected}")
     wrong = ~np.isfinite(found).all(axis=1) | (found[:, 1] < found[:, 0])

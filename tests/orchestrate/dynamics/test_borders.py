@@ -89,7 +89,9 @@ def test_impacts_begin_along_the_resonance_curve():
         ({"over": ("e", "eta")}, "over"),
         ({"over": ("eta", "ee")}, "over = 'ee'"),
         ({"limits": [(3.0, 4.0)]}, "limits"),
-        ({"bifurcation": 99}, "switch = 99"),
+        ({"limits": [(1.0, 1.1), (0.5, 0.9)]}, "limits = .*: eta = .* at the start"),
+        ({"limits": [(3.0, 4.0), (0.8, 0.9)]}, "limits = .*: e = 0.7 at the start"),
+        ({"bifurcation": 99}, "bifurcation = 99"),
         ({"start": 1.5}, "start = 1.5"),
     ],
 )

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from orchestrate.access import OSCILLATOR, EventInstance, begin, find
 from orchestrate.dynamics.branches import branch
@@ -271,6 +272,7 @@ def test_a_result_kept_on_disk_is_the_same(tmp_path):
         ({"over": "e", "limits": (0.1, 1.9), "eta": 1.5}, "e = 1.9"),
         ({"eta": 4.0, "limits": (1.0, 2.0)}, "eta = 4.0"),
         ({"start": 1.5, "limits": (1.0, 2.0)}, "start = 1.5"),
+        ({"start": xr.Dataset(), "limits": (1.0, 2.0)}, "start: without node_kind"),
     ],
 )
 def test_what_cannot_be_asked(question, words):
@@ -282,5 +284,7 @@ def test_what_cannot_be_asked(question, words):
 def test_what_cannot_be_switched_to():
     with pytest.raises(InputError, match="switch: Neimark-Sacker"):
         branch(PAPER, start=windows(1), switch=0, limits=(1.37, 9.5))
+    with pytest.raises(InputError, match="start: several orbits"):
+        branch(PAPER, start=windows(1), limits=(1.37, 9.5))
     with pytest.raises(InputError, match="switch = 99"):
         branch(PAPER, start=windows(1), switch=99, limits=(1.37, 9.5))
