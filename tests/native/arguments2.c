@@ -62,7 +62,7 @@ void instantiation(void) {
 }
 
 void null_pointers(fmi2Component c) {
-    unsigned r = named("x1")->reference, in = named("box_acceleration")->reference, b = named("x_rel_max_on")->reference, n = named("sample_count")->reference;
+    unsigned r = *reference(OUTPUT), in = *reference(SMOOTH_INPUT), b = *reference(TUNABLE), n = *reference(COUNT);
     double x = 0.0;
     int one = 1;
     fmi2String text = "";

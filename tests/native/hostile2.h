@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "importer2.h"
+#include "roles.h"
 
 void picture(fmi2Component c);
 bool unchanged(fmi2Component c);

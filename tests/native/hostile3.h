@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "importer3.h"
+#include "roles.h"
 
 void picture(fmi3Instance c);
 bool unchanged(fmi3Instance c);
@@ -9,7 +10,6 @@ void refused(fmi3Instance c, fmi3Status status, const char *file, int line, cons
 #define REFUSED(c, call) (picture(c), refused(c, call, __FILE__, __LINE__, #call))
 #define SAYS(text) CHECK(strstr(message, text) != NULL)
 #define IS_OK(call) CHECK((call) == fmi3OK)
-#define VR(name) (&named(name)->reference)
 
 static const fmi3ValueReference POSITIONS = 1000, ARRAYS_END = 1006, CLOCK = 2000;
 

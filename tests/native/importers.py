@@ -15,6 +15,7 @@ import fmpy
 
 from fmu_src.export import native_form, sources
 from fmu_src.export.model_header import model_header
+from fmu_src.kernels.shaker import memory as shaker
 
 HERE = Path(__file__).parent
 TYPES = {"Real": "R", "Float64": "R", "Integer": "I", "Int32": "I", "Boolean": "B"}
@@ -80,7 +81,10 @@ def names_header(fmu):
         )
     token = description.guid or description.instantiationToken
     defines = ["#include <math.h>", f'#define TOKEN "{token}"', f"#define TIME_REFERENCE {time}u"]
-    defines += ["#define MOTOR_SHAKER"] * (description.modelName == "MotorShaker")
+    is_shaker = description.modelName == "MotorShaker"
+    defines += ["#define MOTOR_SHAKER"] * is_shaker
+    first, end = (shaker.RATES, shaker.STATE) if is_shaker else (0, 0)
+    defines += [f"#define SCRATCH_FIRST {first}", f"#define SCRATCH_COUNT {end - first}"]
     return "\n".join([*defines, "static const Name NAMES[] = {", *rows, "};", ""])
 
 
@@ -97,9 +101,8 @@ def compile_importer(version, fmu, folder, command=None, options=("-O1", "-g")):
     for name, content in native_form.fmi_headers(version).items():
         (folder / name).write_bytes(content)
     number = version[-1]
-    hostile = (f"hostile{number}.c", f"arguments{number}.c")  # with the oscillator's variables
-    names = ("modes.c", f"importer{number}.c", f"fuzz{number}.c")
-    sources = [HERE / name for name in (*names, *(() if "Shaker" in fmu.name else hostile))]
+    parts = ("importer", "fuzz", "hostile", "arguments")
+    sources = [HERE / "modes.c", *(HERE / f"{part}{number}.c" for part in parts)]
     target = folder / f"importer{number}.exe"
     windows = any("windows" in word for word in command or ())
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]

@@ -281,9 +281,7 @@ int main(int count, char **arguments) {
     fmu_load(arguments[1]);
     if (strcmp(mode, "simulate") == 0 && count > 3) simulate(arguments[3], count - 4, arguments + 4);
     else if (strcmp(mode, "maps") == 0) maps();
-#ifndef MOTOR_SHAKER
     else if (strcmp(mode, "hostile") == 0) hostile();
-#endif
     else if (strcmp(mode, "random") == 0 && count > 4) random_calls((unsigned)NUMBER(3), NUMBER(4));
     else if (strcmp(mode, "many") == 0 && count > 5) many(NUMBER(3), NUMBER(4), NUMBER(5));
     else if (strcmp(mode, "million") == 0 && count > 3) million(NUMBER(3), count < 5);

@@ -51,9 +51,11 @@ def test_calls_drawn_at_random_are_survived(importer_of_model):
 
 
 def test_the_motor_in_many_instances_threads_and_steps(importer_of_model):
-    """What the oscillator is put through elsewhere; and forged states."""
+    """What the oscillator is put through elsewhere; hostile calls and forged states."""
     if not is_shaker(importer_of_model):
         pytest.skip("in test_importers")
+    done = importer_of_model.run("hostile")
+    assert int(re.search(r"CHECKS (\d+) FAILURES 0", done.stdout).group(1)) > 30_000
     importer_of_model.run("many", 50, 40, 200)
     importer_of_model.run("million", 50_000)
     done = importer_of_model.run("forge")
@@ -63,7 +65,12 @@ def test_the_motor_in_many_instances_threads_and_steps(importer_of_model):
 @needs_valgrind
 @pytest.mark.slow
 def test_no_leak_and_no_error_under_valgrind(importer_of_model):
-    for mode in (("random", 3, 200), ("many", 20, 40, 200), ("million", 2000, "under valgrind")):
+    for mode in (
+        ("hostile",),
+        ("random", 3, 200),
+        ("many", 20, 40, 200),
+        ("million", 2000, "under valgrind"),
+    ):
         done = importer_of_model.run(*mode, under=VALGRIND, timeout=1800)
         assert "FAILURES 0" in done.stdout and done.stderr == ""
 
@@ -92,6 +99,7 @@ def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, version,
     """Address, undefined behaviour and leaks; or threads."""
     importer = checked(version, model, exported, tmp_path, sanitizer)
     for mode in (
+        ("hostile",),
         ("random", 5, 2000),
         ("many", 50, 40, 400),
         ("million", 20_000, "checked"),
@@ -113,8 +121,8 @@ def test_the_hostile_tests_reach_the_whole_shim(exported, fmus, tmp_path, versio
         importer.run("random", 11, 4000, timeout=1800)
         importer.run("many", 50, 40, 400)
         importer.run("forge")
+        importer.run("hostile")
         if model == "TwoMassImpactOscillator":
-            importer.run("hostile")
             importer.run("simulate", "x1", "e=0.5", times=[0.0, 1.0])
             importer.run("corrupt", 64, "nan")
         for unit in importers.units(version):
