@@ -21,7 +21,7 @@ from .options import (
     structure_of,
 )
 from .output import add_files, add_running
-from .question import carry_out, place, stored
+from .question import TURN, carry_out, place, stored
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -96,7 +96,10 @@ def shaken(
     """The box's motion where the first orbit is looked for; what varies may be left out."""
     name, amplitude = frequency_option(arguments), amplitude_of(arguments)
     if over == "frequency" and arguments.g is not None:
-        raise InputError("--g: over the frequency; expected --amplitude, which stays the same")
+        raise InputError(
+            "--g: a branch over the frequency has one amplitude; expected --amplitude in m "
+            "(impacts and bifurcations do not depend on the level)"
+        )
     if name is None and over in ("eta", "frequency") or begun and name is None:
         return {} if amplitude is None else {"amplitude": amplitude}
     found = excitation_of(arguments, structure, one=True)
@@ -129,8 +132,10 @@ def report(data: xr.Dataset) -> None:
         print("no bifurcation in this range")
     else:
         words = meanings(data.bifurcation_kind)
-        print(f"number  {'bifurcation':28}{name} ({data.bifurcation_value.attrs['units']})")
+        turns = name == "frequency"
+        unit, factor = ("Hz", TURN) if turns else (data.bifurcation_value.attrs["units"], 1.0)
+        print(f"number  {'bifurcation':28}{name} ({unit})")
         for i in range(count):
             kind = words[int(data.bifurcation_kind[i])]
-            print(f"{i:6}  {kind:28}{float(data.bifurcation_value[i]):.8f}")
+            print(f"{i:6}  {kind:28}{float(data.bifurcation_value[i]) / factor:.8f}")
     print(f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}")

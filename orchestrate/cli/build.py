@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from .options import Commands
+from .output import check_output
 
 EXAMPLES = """  {program} build
   {program} build --folder /tmp/fmus
@@ -41,6 +42,8 @@ def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
     from ..access import FORMS, PLAIN_FORMS, build
 
+    if arguments.folder is not None:
+        check_output(arguments.folder, "--folder")
     forms = PLAIN_FORMS if arguments.plain else FORMS
     platforms = [name for name in arguments.platforms.split(",") if name]
     for path in build(arguments.folder, forms, platforms=platforms):

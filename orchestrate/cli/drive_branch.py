@@ -12,8 +12,11 @@ from .options import Commands, add_drive, described, ends_of
 from .output import add_files, add_running
 
 if TYPE_CHECKING:
+    import numpy as np
     import xarray as xr
 
+FOLD = "fold"
+ENDS = {"limit": "it reaches the end of the range of speeds"}
 EXAMPLES = """\
   {program} drive-branch                              quick, bonded and delaminated
   {program} drive-branch --drive beam --speed 92:110
@@ -64,12 +67,13 @@ def picture_of(data: xr.Dataset, name: str) -> Any:
 
 
 def report(data: xr.Dataset) -> None:
-    """Bifurcations, and where the branches end."""
+    """Bifurcations, and how far the branches go."""
     names = ("structure", "kind", "voltage", "speed")
     for structure, kind, voltage, speed in zip(
         *(data[f"bifurcation_{name}"].values for name in names), strict=True
     ):
-        print(f"{structure}: {kind} at {voltage:.5f} V, {speed:.5g} rad/s")
+        what = jump_at(data.sel(structure=structure), voltage, speed) if kind == FOLD else ""
+        print(f"{structure}: {kind} at {voltage:.5f} V, {speed:.5g} rad/s{what}")
     if not data.sizes["bifurcation"]:
         print("no bifurcations")
     for structure in data.structure.values:
@@ -77,4 +81,34 @@ def report(data: xr.Dataset) -> None:
             at = data.sel(structure=structure, leg=leg)
             count = int(at.voltage.notnull().sum())
             if count:
-                print(f"{structure}, {leg}: {count} motions, {at.end.item()}")
+                stable = int(at.stable.sum())
+                end = ENDS.get(at.end.item(), f"ends early: {at.end.item()}")
+                print(f"{structure}, {leg}: {count} motions, {stable} of them stable; {end}")
+                tell_unlocated(at, data.bifurcation_speed.values)
+
+
+def jump_at(branch: xr.Dataset, voltage: float, speed: float) -> str:
+    """What a fold means on a slow ramp: a largest voltage is where the speed jumps up."""
+    for leg in branch.leg.values:
+        at = branch.sel(leg=leg).dropna("point", subset=["voltage"])
+        if at.sizes["point"] < 3:
+            continue
+        distances = abs(at.speed.values - speed)
+        near = int(distances.argmin())
+        around = at.isel(point=slice(max(near - 1, 0), near + 2))
+        if set(around.stable.values.astype(int)) == {0, 1}:
+            way = "up" if float(around.voltage.mean()) < voltage else "down"
+            return f": the jump {way}, at rate 0"
+    return ""
+
+
+def tell_unlocated(leg: xr.Dataset, speeds: np.ndarray) -> None:
+    """Changes of stability between two motions without a bifurcation that was located there."""
+    at = leg.dropna("point", subset=["voltage"])
+    stable = at.stable.values.astype(int)
+    for i in (stable[1:] != stable[:-1]).nonzero()[0]:
+        low, high = sorted(at.speed.values[i : i + 2])
+        if not ((speeds > low - (high - low)) & (speeds < high + (high - low))).any():
+            print(
+                f"  stability changes near {low:.5g} rad/s too; what happens there is not located"
+            )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -60,7 +61,8 @@ def run(arguments: argparse.Namespace) -> None:
         "step": step_of(arguments, structure),
     }
     draw = partial(picture_of, name=Path(arguments.drive).stem)
-    ask_once(arguments, structure, drive, question, draw, report)
+    tell = partial(report, ways=("up",) if arguments.one_way else ("up", "down"))
+    ask_once(arguments, structure, drive, question, draw, tell)
 
 
 def picture_of(data: xr.Dataset, name: str) -> Any:
@@ -70,12 +72,23 @@ def picture_of(data: xr.Dataset, name: str) -> Any:
     return draw(data, f"{name}: jumps of the speed on ramps, and at rate 0")
 
 
-def report(data: xr.Dataset) -> None:
-    """A table of the jumps at rate 0."""
+def report(data: xr.Dataset, ways: tuple[str, ...]) -> None:
+    """A table of the jumps at rate 0, and what to do where there is none."""
     print(f"{'jump':6}{'bonded':>24}{'delaminated':>24}{'change':>12}   in V, at rate 0")
-    for jump in data.jump.values:
+    for jump in ways:
         at = data.sel(jump=jump)
         pairs = zip(at.jumps.values, at.standard_error.values, strict=True)
-        texts = [f"{value:.4f} +- {error:.4f}" for value, error in pairs]
+        texts = [told(value, error) for value, error in pairs]
         change = float(at.jumps[1] - at.jumps[0])
-        print(f"{jump:6}{texts[0]:>24}{texts[1]:>24}{change:>12.4f}")
+        last = "" if math.isnan(change) else f"{change:.4f}"
+        print(f"{jump:6}{texts[0]:>24}{texts[1]:>24}{last:>12}".rstrip())
+    if bool(data.jumps.sel(jump=list(ways)).isnull().any()):
+        print("none: fewer than two of these ramps jump. Slower ones may (--rate, smaller), or ask")
+        print("      drive-branch: its folds are the jumps at rate 0")
+
+
+def told(value: float, error: float) -> str:
+    """A voltage with its standard error; two rates have a line, but no error."""
+    if math.isnan(value):
+        return "none"
+    return f"{value:.4f}" if math.isnan(error) else f"{value:.4f} +- {error:.4f}"

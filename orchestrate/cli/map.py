@@ -74,8 +74,8 @@ def axes(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
     found = excitation_of(arguments, structure, one=len(arguments.over) == 2)
     if isinstance(found.get("amplitude"), tuple):
         raise InputError(
-            "--g: of a map over frequency; expected --amplitude, on which nothing over a eta^2 "
-            "depends"
+            "--g: a map over the frequency has one amplitude; expected --amplitude in m (what it "
+            "shows does not depend on the level)"
         )
     for name, text in zip(arguments.over, arguments.values, strict=True):
         check_over(name, arguments)

@@ -285,7 +285,7 @@ def amplitude_of(arguments: argparse.Namespace) -> float | None:
     for name in ("amplitude", "g"):
         text = getattr(arguments, name)
         if text is not None:
-            return one_value(f"--{name}", text)
+            return number_of(f"--{name}", text)
     return None
 
 
@@ -462,6 +462,22 @@ def one_value(option: str, text: str) -> float:
             f"{option} {text}: {len(found)} values; expected one, such as {option} 1.2"
         )
     return found[0]
+
+
+def number_of(option: str, text: str) -> float:
+    """A number > 0 where a range would make no sense.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        found = float(text)
+    except ValueError:
+        found = math.nan
+    if not (math.isfinite(found) and found > 0.0):
+        raise InputError(f"{option} {text}: expected a number > 0, such as {option} 0.5")
+    return found
 
 
 def ends_of(option: str, text: str) -> tuple[float, float]:

@@ -126,7 +126,7 @@ def endings_of(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...
     return names
 
 
-def check_output(folder: Path) -> None:
+def check_output(folder: Path, option: str = "--output") -> None:
     """See that a folder can be written, or made, without making it yet.
 
     Raises
@@ -136,7 +136,7 @@ def check_output(folder: Path) -> None:
     place = next((place for place in (folder, *folder.parents) if place.exists()), Path())
     if not (place.is_dir() and os.access(place, os.W_OK)):
         reason = "not writable" if place.is_dir() else f"{place} is no folder"
-        raise InputError(f"--output {folder}: {reason}; expected a folder that can be written")
+        raise InputError(f"{option} {folder}: {reason}; expected a folder that can be written")
 
 
 # -- names ----------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from .labels import EXCITATION, about, meanings, symbol
 from .marks import Marks, draw_samples
 from .orbit_diagram import scale
+from .scales import HERTZ, in_si
 from .style import BLUE, GREY, RED, XI_REL, in_our_look, legend_below, panels
 
 MARKERS = {  # by the bifurcation's kind
@@ -40,24 +41,33 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
     name = str(branches[0].attrs["over"])
     gaps = np.concatenate([found.xi_rel.values.ravel() for found in branches])
     scale(plane, gaps if responses is None else np.append(gaps, responses.xi_rel.values.ravel()))
-    low = min(float(found[name].min()) for found in branches)
-    high = max(float(found[name].max()) for found in branches)
-    plane.set(xlabel=symbol(name), ylabel=rf"{XI_REL}$(nT)$", xlim=(low, high))
+    unit, label = unit_of(branches[0], name)
+    low = min(float(found[name].min()) for found in branches) / unit
+    high = max(float(found[name].max()) for found in branches) / unit
+    edge = 0.01 * (high - low)  # room for markers at the ends
+    plane.set(xlabel=label, ylabel=rf"{XI_REL}$(nT)$", xlim=(low - edge, high + edge))
     plane.set_title(title or about(branches[0], EXCITATION))
     if responses is not None:
         samples = responses.xi_rel.transpose(name, "sample").values
-        draw_samples(plane, responses[name].values, samples, Marks(GREY))
+        draw_samples(plane, responses[name].values / unit, samples, Marks(GREY))
     shown: set[str] = set()
     for found in branches:
-        draw_branch(plane, found, name)
-        draw_bifurcations(plane, found, shown)
+        draw_branch(plane, found, name, unit)
+        draw_bifurcations(plane, found, shown, unit)
     legend_below(figure, [plane], columns=8)
     return figure
 
 
-def draw_branch(plane: Axes, found: xr.Dataset, name: str) -> None:
+def unit_of(data: xr.Dataset, name: str) -> tuple[float, str]:
+    """What values of the parameter are divided by, and its label: hertz for a structure in SI."""
+    if name == "frequency" and in_si(data):
+        return 2.0 * np.pi, HERTZ
+    return 1.0, symbol(name)
+
+
+def draw_branch(plane: Axes, found: xr.Dataset, name: str, unit: float) -> None:
     """One line for each phase 0 of the orbit."""
-    along, stable = found[name].values, found.stable.values == 1
+    along, stable = found[name].values / unit, found.stable.values == 1
     # a step of which one end is unstable is drawn as unstable
     both = stable & np.append(stable[1:], True) & np.append(True, stable[:-1])
     for gaps in found.xi_rel.transpose("sample", "point").values:
@@ -65,7 +75,7 @@ def draw_branch(plane: Axes, found: xr.Dataset, name: str) -> None:
         plane.plot(along, np.where(both, np.nan, gaps), "--", color=RED, linewidth=0.9)
 
 
-def draw_bifurcations(plane: Axes, found: xr.Dataset, shown: set[str]) -> None:
+def draw_bifurcations(plane: Axes, found: xr.Dataset, shown: set[str], unit: float) -> None:
     """A marker for each kind; each kind once in the legend."""
     if not found.sizes.get("bifurcation"):
         return
@@ -74,7 +84,7 @@ def draw_bifurcations(plane: Axes, found: xr.Dataset, shown: set[str]) -> None:
         word = names[int(kind)].replace("Neimark Sacker", "Neimark-Sacker")
         gaps = found.bifurcation_xi_rel.values[i]
         plane.plot(
-            np.full(len(gaps), found.bifurcation_value.values[i]),
+            np.full(len(gaps), found.bifurcation_value.values[i] / unit),
             gaps,
             MARKERS[word],
             color="black",

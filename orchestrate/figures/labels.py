@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import xarray as xr
+from scipy.constants import g
 
 SYMBOLS = {
     "eta": r"$\eta$",
@@ -93,7 +94,9 @@ def excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
     elif "frequency" in data.dims and "amplitude" in data.coords:
         level = (data.amplitude * data.frequency**2).values
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
-            found["amplitude"] = rf"$a\,\Omega^2$ = {level.max():.4g} m/s$^2$"
+            found["amplitude"] = (
+                rf"$a\,\Omega^2$ = {level.max():.4g} m/s$^2$ ({level.max() / g:.3g} g)"
+            )
     return found
 
 

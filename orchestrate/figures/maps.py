@@ -59,14 +59,14 @@ def draw(*maps: xr.Dataset, title: str = "") -> Figure:
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
     size = (max(3.1 * len(columns), 4.5), 0.4 + 2.8 * len(maps))
     figure, axes = panels(len(maps), len(columns), size)
-    entitle(figure, title)
+    entitle(figure, title or (about(maps[0]) if len(maps) == 1 else ""))
     for row, data in enumerate(maps):
         first, second = map(str, data[columns[0]].dims)
         up, right = (second, first) if first in FREQUENCIES else (first, second)
         for column, name in enumerate(columns):
             plane = axes[row * len(columns) + column]
             draw_map(plane, data[name].transpose(up, right), along(data, right).values)
-            words = "" if column or title else about(data)
+            words = "" if column or title or len(maps) == 1 else about(data)
             plane.set_title("\n".join(filter(None, [words, COLUMNS[name]])))
             label = along(data, right).label
             plane.set(ylabel="" if column else symbol(up), xlabel=label)

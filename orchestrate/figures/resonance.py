@@ -54,7 +54,8 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
         draw_peaks(plane, data, name, parameter, x)
     if "x_rel_max" in axes:
         draw_jumps(axes["x_rel_max"], data, parameter, x)
-    for name in rows[-1]:
+    for name in (name for row in rows[-2:] for name in row):  # panels of two widths
+        axes[name].tick_params(labelbottom=True)
         axes[name].set_xlabel(x.label)
     legend_below(figure, axes.values(), columns=6)
     return figure

@@ -243,7 +243,8 @@ class Course(Schedule):
         try:
             lines = Path(path).read_text(encoding="utf-8").splitlines()
         except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"{path}: cannot be read ({error}); expected a CSV file") from None
+            reason = getattr(error, "strerror", None) or error
+            raise InputError(f"{path}: cannot be read ({reason}); expected a CSV file") from None
         rows: list[list[float]] = []
         for number, line in enumerate(lines, start=1):
             if not line.strip() or line.lstrip().startswith("#"):
@@ -251,8 +252,8 @@ class Course(Schedule):
             try:
                 time, voltage = (float(part) for part in line.split(","))
             except ValueError:
-                if rows:
-                    expected = "expected time in s and voltage in V"
+                if rows or line.lstrip()[0].isdigit():
+                    expected = "expected time in s and voltage in V, separated by a comma"
                     raise InputError(f"{path}, line {number}: {line!r}; {expected}") from None
                 continue  # names of the columns
             rows.append([time, voltage])

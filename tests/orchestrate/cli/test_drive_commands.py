@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import xarray as xr
+
+from orchestrate.cli import drive_branch, jump_voltages
 
 from .test_results import shows_something
 
@@ -118,7 +121,7 @@ def test_passage(ask, folder):
 def test_jump_voltages(ask, folder):
     options = ("--eta0", "1.5:1.66", "--rate", "4e-4,3e-4", "--one-way", "--jobs", "1", *SHORT)
     done = ask("jump-voltages", *options).success()
-    assert "in V, at rate 0" in done.out and done.out.count("+-") == 4
+    assert "in V, at rate 0" in done.out and "nan" not in done.out
     (data,) = results(folder).values()
     assert data.jumps.attrs["units"] == "V"
     assert shows_something(next(folder.glob("*.png")))
@@ -128,8 +131,40 @@ def test_jump_voltages(ask, folder):
 def test_drive_branch(ask, folder):
     options = ("--speed", "1.29:1.32", "--longest", "0.3", "--jobs", "1")
     done = ask("drive-branch", *options).success()
-    assert "bonded: fold at 1.583" in done.out
+    assert "bonded: fold at 1.583" in done.out and "the jump up, at rate 0" in done.out
     assert shows_something(next(folder.glob("*.png")))
+
+
+def test_a_jump_that_no_ramp_has_is_said_to_be_none(capsys):
+    """Made-up: two structures, a jump up of one of them from two ramps, none down."""
+    each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
+    jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[np.nan] * 2] * 2
+    made = {"jumps": (tuple(each), jumps), "standard_error": (tuple(each), errors)}
+    jump_voltages.report(xr.Dataset(made, each), ways=("up", "down"))
+    _, up, down, hint, more = capsys.readouterr().out.splitlines()
+    assert up.split() == ["up", "1.5000", "none"] and down.split() == ["down", "none", "none"]
+    assert "--rate" in hint and "drive-branch" in more
+    jump_voltages.report(xr.Dataset(made, each).isel(structure=[0, 0]), ways=("up",))
+    assert "none" not in capsys.readouterr().out
+
+
+def test_stationary_motions_are_told_with_what_they_mean(capsys):
+    """Made-up: a branch with two folds, and one change of stability that was not located."""
+    speed = np.array([0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4])
+    voltage = np.array([1.0, 1.2, 1.4, 1.3, 1.2, 1.35, 1.5])
+    along = {"structure": ["bonded"], "leg": ["from below"]}
+    values = {"speed": speed, "voltage": voltage, "stable": np.array([0, 1, 1, 0, 0, 1, 1])}
+    made = {name: ((*along, "point"), column[None, None]) for name, column in values.items()}
+    made["end"] = (tuple(along), [["limit"]])
+    folds = {"structure": ["bonded"] * 2, "kind": ["fold"] * 2}
+    folds |= {"voltage": [1.41, 1.19], "speed": [1.03, 1.22]}
+    made |= {f"bifurcation_{name}": ("bifurcation", column) for name, column in folds.items()}
+    drive_branch.report(xr.Dataset(made, along))
+    up, down, count, change = capsys.readouterr().out.splitlines()
+    assert up == "bonded: fold at 1.41000 V, 1.03 rad/s: the jump up, at rate 0"
+    assert down.endswith("the jump down, at rate 0")
+    assert "7 motions, 4 of them stable; it reaches the end of the range" in count
+    assert "stability changes near 0.8 rad/s too" in change
 
 
 def test_the_weak_drive_as_a_package(ask, tmp_path):

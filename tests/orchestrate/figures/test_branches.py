@@ -7,7 +7,7 @@ import pytest
 
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
-from orchestrate.figures import borders, branches
+from orchestrate.figures import borders, branches, scales
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Structure
 
@@ -29,6 +29,14 @@ def test_stable_is_solid_and_unstable_dashed():
     assert (solid.get_xdata()[shown] < border_at).all()
     assert np.isfinite(dashed.get_ydata()).sum() > 3
     assert dashed.get_xdata()[np.isfinite(dashed.get_ydata())].max() == pytest.approx(2.8)
+
+
+def test_a_branch_of_a_structure_in_si_is_drawn_in_hertz():
+    told = {**window().attrs, "over": "frequency", "m1": 2.0, "m2": 2.0}
+    figure = branches.draw(window().assign_attrs(told))
+    solid = figure.axes[0].get_lines()[0]
+    assert solid.get_xdata() == pytest.approx(window().frequency.values / (2.0 * np.pi))
+    assert figure.axes[0].get_xlabel() == scales.HERTZ
 
 
 def test_bifurcations_are_marked_each_kind_once_in_the_legend():

@@ -317,6 +317,9 @@ def test_resonance_has_all_curves_and_their_peaks():
     jumps = [text.get_text() for text in gap.texts if text.get_rotation() == 90]
     assert jumps == [" 11.937, jump up", " 12.732, jump down"]  # 75 and 80 rad/s
     assert [line.get_color() for line in gap.lines].count(style.BLUE) == 1  # glued: no gap
+    labelled = [bool(plane.get_xlabel()) for plane in figure.axes]
+    assert labelled == [False, False, True, True, True]  # two widths, each with its numbers
+    assert all(plane.xaxis.get_tick_params()["labelbottom"] for plane in figure.axes[2:])
     alone = curves(True).sel(structure="delaminated", direction="up", drop=True)
     assert len(resonance.draw(alone).axes[0].texts) == 1
 
@@ -356,6 +359,10 @@ def test_a_map_says_where_there_is_none():
     figure = maps.draw(mapped(False))
     bars = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
     assert bars[0].get_xlabel() == "grey: none" and bars[2].get_xlabel() == ""
+    figure.canvas.draw()
+    first, second = (axes for axes in figure.axes[:2])
+    assert first.get_position().width == pytest.approx(second.get_position().width)
+    assert bars[0].get_position().x1 < second.get_position().x0  # a long title pushes none away
 
 
 def test_a_basin_names_all_that_is_in_it():
@@ -376,7 +383,7 @@ def test_titles_tell_what_is_not_usual():
     shaken = data.assign_attrs(frequency=20.0 * np.pi, amplitude=2.5e-5)
     assert labels.about(shaken).endswith(r"$\Omega/2\pi$ = 10 Hz, $a$ = 25 µm")
     held = sweep(si=True).assign_coords(amplitude=lambda data: 3.0 / data.frequency**2)
-    assert labels.about(held).endswith(r"$a\,\Omega^2$ = 3 m/s$^2$")
+    assert labels.about(held).endswith(r"$a\,\Omega^2$ = 3 m/s$^2$ (0.306 g)")
 
 
 DEUTERAN = np.array([[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]])

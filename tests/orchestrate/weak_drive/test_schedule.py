@@ -67,6 +67,7 @@ def test_a_course_from_a_file(tmp_path):
         ("0,1\n", ["1 times", "two or more"]),
         ("", ["0 times"]),
         ("0,1\n1;2\n", ["line 2", "1;2"]),
+        ("0;1\n1;2\n", ["line 1", "0;1", "a comma"]),
         ("1,1\n2,2\n", ["rising ones from 0"]),
         ("0,1\n2,2\n1,3\n", ["rising ones from 0"]),
         ("0,1\n2,nan\n", ["voltage = nan"]),
@@ -81,5 +82,7 @@ def test_mistakes_in_a_course(tmp_path, text, parts):
 
 
 def test_a_course_that_is_not_there(tmp_path):
-    with pytest.raises(InputError, match="nowhere.csv: cannot be read"):
+    with pytest.raises(
+        InputError, match="nowhere.csv: cannot be read .No such file or directory.;"
+    ):
         Course.from_csv(tmp_path / "nowhere.csv")
