@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 EXAMPLES = """\
   {program} attractors --eta 1.32 --starts 200 --seed 1
   {program} attractors --eta 1.2:1.4:0.01
-  {program} attractors --structure beam --hz 15.5,16 --g 0.02 --scale 1e-3"""
+  {program} attractors --structure beam --hz 15.5,16 --g 0.02 --scale 1e-3
+Random starts may miss a motion whose basin is small: where resonance, or sweep with
+--direction both, differs on the way up and down, there are two."""
 FEW = 5  # values whose attractors are all told
 
 

@@ -109,6 +109,4 @@ def tell_unlocated(leg: xr.Dataset, speeds: np.ndarray) -> None:
     for i in (stable[1:] != stable[:-1]).nonzero()[0]:
         low, high = sorted(at.speed.values[i : i + 2])
         if not ((speeds > low - (high - low)) & (speeds < high + (high - low))).any():
-            print(
-                f"  stability changes near {low:.5g} rad/s too; what happens there is not located"
-            )
+            print(f"  stability changes near {low:.5g} rad/s too, not located: see --period")

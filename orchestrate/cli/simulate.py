@@ -65,6 +65,7 @@ def run(arguments: argparse.Namespace) -> None:
         raise InputError(f"--beside: of two structures; expected it without {given}")
     bonded = carry_out(arguments, structure.as_bonded(), question, report, None)
     draw = partial(picture_of, bonded=bonded)
+    print("delaminated:")
     carry_out(arguments, structure.as_delaminated(), question, report, draw, "with_bonded")
 
 

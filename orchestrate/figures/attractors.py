@@ -45,6 +45,8 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     for colour, marker, word in KINDS:
         top.plot([], [], marker, color=colour, markersize=5, label=word)
     top.set(yscale="log", ylabel=f"largest {label}")
+    if float(shown.max()) < 10.0 * float(shown.min()):  # no whole decade: plain numbers
+        top.yaxis.set_minor_formatter("{x:g}")
     style = "-k" if len(x) > FEW // 4 else "-k."
     bottom.step(x, data.number, style, where="mid", markersize=3, linewidth=1.0)
     bottom.set(ylabel="attractors", xlabel=name, ylim=(0, None))
