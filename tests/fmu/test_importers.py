@@ -1,11 +1,12 @@
 """Importers with readers and loops of their own run the FMU and agree: FMPy's function and command
-line, and libcosim.
+line, libcosim, fmuloader and ecos.
 """
 
 import csv
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -136,6 +137,19 @@ def test_fmuloader(form, tmp_path, reference):
     count = int(STOP / EXACT_STEP)
     rows = run("loader.simulate", FMUS[form], VALUES, NAMES, EXACT_STEP, count, cwd=tmp_path)
     assert np.array_equal(np.array(rows), reference)
+
+
+def test_ecos(tmp_path, reference):
+    """A master that adds up its steps: bits again, where their sum is exact. FMI 3.0 it can, but it
+    then frees its own memory twice.
+    """
+    if not find_spec("ecospy"):
+        pytest.skip("ecospy is not installed")
+    count = int(STOP / EXACT_STEP)
+    arguments = (FMUS["fmi2"], VALUES, NAMES, EXACT_STEP, count)
+    *rows, impacts = np.array(run("ecos.simulate", *arguments, cwd=tmp_path)).T
+    assert np.array_equal(np.array(rows).T, reference[1:])
+    assert impacts[-1] > 20
 
 
 def test_two_importers_at_once(tmp_path):
