@@ -27,6 +27,8 @@ CHAOS = {"box_amplitude": 1.0 / 1.13**2, "box_frequency": 1.13}
 STATE = ("x1", "x2", "v1", "v2", "x_rel", "phase", "impact_count", "impact_time", "impact_energy")
 messages: list[str] = []
 model = fmpy.read_model_description(FMU)
+if model.modelName != "TwoMassImpactOscillator":
+    raise ValueError(f"{FMU}: a {model.modelName}; expected a TwoMassImpactOscillator")
 folder = tempfile.TemporaryDirectory()
 fmpy.extract(FMU, folder.name)
 

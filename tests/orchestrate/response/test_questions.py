@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -127,6 +128,12 @@ def test_a_single_excitation_is_no_list():
 def test_states_that_cannot_be(state, structure):
     with pytest.raises(InputError, match="start.*expected x"):
         states("start", state, structure)
+
+
+def test_a_dataset_is_no_state():
+    """It is not printed whole: a message is one line."""
+    with pytest.raises(InputError, match="^start = a dataset: expected x1, x2[^\n]*$"):
+        states("start", xr.Dataset({"x1": 0.0}), Structure())
 
 
 @pytest.mark.parametrize("given", [0, 1.0, True, None, "7", 10**7])
