@@ -1,5 +1,5 @@
 """Importers with readers and loops of their own run the FMU and agree: FMPy's function and command
-line, libcosim, fmuloader and ecos.
+line, libcosim, fmuloader and ecos; and another checker reads it.
 """
 
 import csv
@@ -150,6 +150,18 @@ def test_ecos(tmp_path, reference):
     *rows, impacts = np.array(run("ecos.simulate", *arguments, cwd=tmp_path)).T
     assert np.array_equal(np.array(rows).T, reference[1:])
     assert impacts[-1] > 20
+
+
+def test_fmutool_finds_nothing_to_say(fmu):
+    """The checks of the FMU manipulation toolbox: the XSD, and what the standard says besides."""
+    pytest.importorskip("fmu_manipulation_toolbox")
+    program = "from fmu_manipulation_toolbox.cli.fmutool import fmutool; fmutool()"
+    command = [sys.executable, "-c", program, "-input", str(fmu), "-check"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    told = done.stdout + done.stderr
+    version = 3 if fmu.parent.name == "fmi3" else 2
+    assert f"compliant with FMI-{version}.0" in told, told
+    assert f"No semantic error against the FMI-{version} standard" in told, told
 
 
 def test_two_importers_at_once(tmp_path):

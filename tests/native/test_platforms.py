@@ -38,6 +38,10 @@ FOLDERS = {
     },
     "fmi3": set(ALL),
 }
+RUNS = {  # outputs, inputs, and one output that shows that something went on
+    "TwoMassImpactOscillator": (COMMON, harmonic(1.13), "impact_count", 500),
+    "MotorShaker": (["box_position", "speed", "angle"], {"voltage": 5.0}, "angle", 1e5),
+}
 CODE_SIGNATURE, LOAD_COMMANDS = 0x1D, 32  # of a Mach-O file: a command, and where they begin
 
 
@@ -151,20 +155,27 @@ def test_every_platform_has_its_binary(everywhere, form, name):
     shutil.which("qemu-aarch64") is None or not ARM_LIBRARIES.is_dir(),
     reason="qemu-user and libc6-arm64-cross are not installed",
 )
+@pytest.mark.parametrize("name", forms.MODELS)
 @pytest.mark.parametrize("version", ["fmi2", "fmi3"])
-def test_the_arm_binary_has_the_same_bits(everywhere, fmus, importer_of, version, tmp_path):
+def test_the_arm_binary_has_the_same_bits(everywhere, version, name, tmp_path):
     """Through chaos, for as long as the Windows binary under wine; and every hostile call."""
-    path = everywhere / version / "TwoMassImpactOscillator.fmu"
+    path = everywhere / version / f"{name}.fmu"
+    own = importers.Importer(
+        importers.compile_importer(version, path, tmp_path / "own"),
+        importers.binary(path, version, tmp_path),
+        version,
+    )
     command = importers.ziglang("aarch64-linux-gnu.2.28")
     program = importers.compile_importer(version, path, tmp_path / "importer", command)
     with zipfile.ZipFile(path) as archive:
-        binary = archive.extract("binaries/aarch64-linux/TwoMassImpactOscillator.so", tmp_path)
+        binary = archive.extract(f"binaries/aarch64-linux/{name}.so", tmp_path)
     arm = importers.Importer(program, Path(binary), version)
     under = ("qemu-aarch64", "-L", ARM_LIBRARIES)
     times = [16.0 * k for k in range(257)]
-    found = arm.simulate(COMMON, times, under=under, **harmonic(1.13))
-    assert found == importer_of(version).simulate(COMMON, times, **harmonic(1.13))
-    assert found[-1][COMMON.index("impact_count")] > 500
+    names, values, going_on, enough = RUNS[name]
+    found = arm.simulate(names, times, under=under, **values)
+    assert found == own.simulate(names, times, **values)
+    assert found[-1][names.index(going_on)] > enough
     assert "FAILURES 0" in arm.run("hostile", under=under, timeout=900).stdout
     arm.run("many", 50, 40, 0, under=under)
     arm.run("million", 20_000, under=under)
