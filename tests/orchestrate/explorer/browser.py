@@ -1,8 +1,8 @@
-"""Headless Chromium with the explorer in it."""
+"""A browser with the explorer in it: what the tests ask of one, Chromium or Firefox."""
 
 import base64
-import json
 import time
+from abc import ABC, abstractmethod
 
 import numpy as np
 
@@ -13,35 +13,50 @@ let text = "";
 for (const byte of bytes) text += String.fromCharCode(byte);
 return btoa(text);
 """
+PLACES = """
+const element = document.getElementById(arguments[0]);
+element.scrollIntoView({ block: "center", behavior: "instant" });
+const { left, top, width, height } = element.getBoundingClientRect();
+return arguments[1].map(([x, y]) => [Math.round(left + x * width), Math.round(top + y * height)]);
+"""
+UNFINISHED = (".crdownload", ".part")
 
 
-class Browser:
+class Browser(ABC):
     """What the tests ask of it."""
 
-    def __init__(self, program, driver, downloads):
-        from selenium import webdriver
-
-        options = webdriver.ChromeOptions()
-        options.binary_location = program
-        for word in ("headless=new", "no-sandbox", "disable-dev-shm-usage", "disable-gpu"):
-            options.add_argument(f"--{word}")
-        options.add_argument("--autoplay-policy=no-user-gesture-required")
-        options.add_argument("--window-size=1300,1400")
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-        service = webdriver.ChromeService(driver)
-        self.driver = webdriver.Chrome(options=options, service=service)
+    def __init__(self, downloads):
         self.downloads = downloads
-        way = {"behavior": "allow", "downloadPath": str(downloads)}
-        self.driver.execute_cdp_cmd("Page.setDownloadBehavior", way)
+
+    @abstractmethod
+    def navigate(self, url):
+        """Load a page."""
+
+    @abstractmethod
+    def run(self, script, *arguments):
+        """What a script returns."""
+
+    @abstractmethod
+    def drag(self, places):
+        """Press the mouse at the first place of the window, in pixels, release it at the last."""
+
+    @abstractmethod
+    def keys(self, *keys, held=None):
+        """Type, while another key is held."""
+
+    @abstractmethod
+    def console(self):
+        """What went wrong since this was asked last."""
+
+    @abstractmethod
+    def quit(self):
+        """The end."""
 
     def open(self, page, fragment=""):
-        self.driver.get("about:blank")
-        self.driver.get(page.as_uri() + fragment)
+        self.navigate("about:blank")
+        self.navigate(page.as_uri() + fragment)
         self.until("return Boolean(window.explorer)")
         self.until(COMPLETE)
-
-    def run(self, script, *arguments):
-        return self.driver.execute_script(script, *arguments)
 
     def until(self, script, seconds=60):
         end = time.monotonic() + seconds
@@ -54,52 +69,33 @@ class Browser:
         """An array of the page to the last bit."""
         return np.frombuffer(base64.b64decode(self.run(PACK % expression)))
 
-    def at(self, name):
-        return self.driver.find_element("id", name)
+    def get(self, name, attribute):
+        """An attribute or property of an element."""
+        script = "const at = document.getElementById(arguments[0]); const name = arguments[1];"
+        return self.run(f"{script} return at.getAttribute(name) ?? at[name]", name, attribute)
 
     def text(self, name):
-        return self.run("return document.getElementById(arguments[0]).textContent", name)
+        return self.get(name, "textContent")
 
     def click(self, name):
-        self.at(name).click()
+        self.mouse(name, (0.5, 0.5))
 
     def mouse(self, name, *places):
         """Press at the first place of an element, as a part of its size, release at the last."""
-        from selenium.webdriver import ActionChains
-
-        element = self.at(name)
-        self.run("arguments[0].scrollIntoView({block: 'center'})", element)
-        size = element.size
-        ways = [
-            (round((x - 0.5) * size["width"]), round((y - 0.5) * size["height"])) for x, y in places
-        ]
-        chain = ActionChains(self.driver, duration=20).move_to_element_with_offset(
-            element, *ways[0]
-        )
-        chain = chain.click_and_hold()
-        for way in ways[1:]:
-            chain = chain.move_to_element_with_offset(element, *way)
-        chain.release().perform()
-
-    def keys(self, *keys):
-        from selenium.webdriver import ActionChains
-
-        ActionChains(self.driver).send_keys(*keys).perform()
+        self.drag(self.run(PLACES, name, [list(place) for place in places]))
 
     def chosen(self, seconds=60):
         """The motion that was asked for has come."""
         self.until("return Boolean(explorer.inspector.found)", seconds)
         return self.run("return explorer.inspector.choice.point.eta")
 
-    def console(self):
-        return [json.dumps(line) for line in self.driver.get_log("browser")]
-
     def download(self, name, seconds=20):
         """A file that the page saves."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
+            known = list(self.downloads.iterdir())
             found = [path for path in self.downloads.glob(name) if path.stat().st_size]
-            if found and not list(self.downloads.glob("*.crdownload")):
+            if found and not any(path.suffix in UNFINISHED for path in known):
                 return found[0]
             time.sleep(0.05)
         raise AssertionError(f"no {name} among {list(self.downloads.iterdir())}")

@@ -1,4 +1,4 @@
-"""A page made of a sweep, and one browser for all tests of it."""
+"""A page made of a sweep, and one browser of each kind for all tests of it."""
 
 import shutil
 
@@ -8,8 +8,10 @@ import pytest
 import orchestrate
 from orchestrate.explorer.page import explore
 
-from .browser import Browser
+from .chromium import Chromium
+from .firefox import Firefox
 
+SLOW = pytest.mark.slow
 ETAS = np.round(np.linspace(0.1, 8.0, 211), 4)  # periodic, irregular, with permanent contact
 
 
@@ -29,14 +31,40 @@ def chromium(tmp_path_factory):
     programs = shutil.which("chromium"), shutil.which("chromedriver")
     if None in programs:
         pytest.skip("no chromium with chromedriver here: the page is not tried in a browser")
-    browser = Browser(*programs, tmp_path_factory.mktemp("downloads"))
+    browser = Chromium(*programs, tmp_path_factory.mktemp("downloads"))
     yield browser
-    browser.driver.quit()
+    browser.quit()
+
+
+@pytest.fixture(scope="session")
+def firefox(tmp_path_factory):
+    pytest.importorskip("websocket", reason="websocket-client talks to Firefox")
+    program = shutil.which("firefox-esr") or shutil.which("firefox")
+    if not program:
+        pytest.skip("no firefox here: the page is not tried in it")
+    folders = (tmp_path_factory.mktemp(name) for name in ("profile", "downloads"))
+    browser = Firefox(program, *folders)
+    yield browser
+    browser.quit()
+
+
+@pytest.fixture(scope="session", params=["chromium", pytest.param("firefox", marks=SLOW)])
+def window(request):
+    """Each browser, the second in the slow tests."""
+    return request.getfixturevalue(request.param)
 
 
 @pytest.fixture
-def browser(chromium, page):
-    """The browser with the page opened anew; afterwards its console must be empty."""
+def browser(window, page):
+    """A browser with the page opened anew; afterwards its console must be empty."""
+    window.open(page)
+    yield window
+    assert window.console() == []
+
+
+@pytest.fixture
+def opened(chromium, page):
+    """The same, in Chromium only."""
     chromium.open(page)
     yield chromium
     assert chromium.console() == []

@@ -1,17 +1,13 @@
-"""The page under closer inspection: speed, accessibility, types of its sources, another browser."""
+"""The page under closer inspection: speed, accessibility, types of its sources, another opened."""
 
 import json
 import shutil
 import subprocess
 import tarfile
-import time
 
-import numpy as np
 import pytest
 
 from orchestrate.explorer.page import SOURCES, explore
-
-from .firefox import Firefox
 
 ONE_WORKER = """
 explorer.regions.crew.workers.splice(1);
@@ -21,13 +17,13 @@ REGIONS = ((0.3, 0.6), (1.1, 1.4), (2.8, 3.1))
 
 
 @pytest.mark.slow
-def test_a_dragged_region_comes_at_once_and_is_soon_complete(browser):
-    browser.run(ONE_WORKER)
+def test_a_dragged_region_comes_at_once_and_is_soon_complete(opened):
+    opened.run(ONE_WORKER)
     for low, high in REGIONS:
-        browser.run("explorer.open(arguments[0], arguments[1])", low, high)
-        browser.until("return explorer.regions.complete")
-        assert browser.run("return explorer.regions.diagram.points.length") >= 300
-        took = browser.run("return explorer.regions.took")
+        opened.run("explorer.open(arguments[0], arguments[1])", low, high)
+        opened.until("return explorer.regions.complete")
+        assert opened.run("return explorer.regions.diagram.points.length") >= 300
+        took = opened.run("return explorer.regions.took")
         assert took["first"] < 300 and took["all"] < 2000, (low, high, took)
 
 
@@ -45,12 +41,12 @@ def test_all_of_figure_6_is_one_branch_to_the_last_bit(chromium, tmp_path, expor
 
 
 @pytest.mark.slow
-def test_the_page_is_there_within_a_second(browser, page):
+def test_the_page_is_there_within_a_second(opened, page):
     times = []
     for _ in range(3):
-        browser.open(page)
-        load = browser.run("return performance.getEntriesByType('navigation')[0].loadEventEnd")
-        times.append(load + browser.run("return explorer.regions.first"))
+        opened.open(page)
+        load = opened.run("return performance.getEntriesByType('navigation')[0].loadEventEnd")
+        times.append(load + opened.run("return explorer.regions.first"))
     assert min(times) < 1000
 
 
@@ -70,17 +66,17 @@ def packed(name, folder):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_nothing_serious(browser, tmp_path, scheme):
+def test_axe_finds_nothing_serious(opened, tmp_path, scheme):
     axe = (packed("axe-core", tmp_path) / "axe.min.js").read_text(encoding="utf-8")
     feature = {"name": "prefers-color-scheme", "value": scheme}
-    browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [feature]})
-    browser.run(
+    opened.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [feature]})
+    opened.run(
         "explorer.choose(1.3); document.querySelectorAll('details').forEach((d) => d.open = true)"
     )
-    browser.chosen()
-    browser.run(axe)
-    found = browser.driver.execute_async_script("axe.run().then(arguments[arguments.length - 1])")
-    browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    opened.chosen()
+    opened.run(axe)
+    found = opened.driver.execute_async_script("axe.run().then(arguments[arguments.length - 1])")
+    opened.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
     told = [
         (one["id"], one["impact"], [node["html"][:90] for node in one["nodes"]])
         for one in found["violations"]
@@ -109,34 +105,3 @@ def test_typescript_finds_no_wrong_type(tmp_path):
         text=True,
     )
     assert done.returncode == 0, done.stdout
-
-
-@pytest.mark.slow
-def test_firefox_shows_the_same_bits(page, swept, tmp_path):
-    program = shutil.which("firefox-esr") or shutil.which("firefox")
-    if not program:
-        pytest.skip("no firefox here: the page is not tried in it")
-    firefox = Firefox(program, tmp_path)
-    try:
-        firefox.open(page)
-        until(firefox, "document.getElementById('diagram').dataset.complete === 'true'")
-        lane = "explorer.regions.diagram.lanes[0].found"
-        gaps = firefox.run(f"{lane}.map((one) => Array.from(one.gaps))")
-        assert np.array(gaps).tobytes() == swept.xi_rel.values.tobytes()
-        firefox.run("(explorer.choose(2.95), 1)")
-        until(firefox, "Boolean(explorer.inspector.spectra)")
-        firefox.run("(document.getElementById('basin-go').click(), 1)")
-        until(firefox, "document.getElementById('basins').dataset.complete === 'true'")
-        firefox.run("(explorer.open(1.1, 1.4), 1)")
-        until(firefox, "explorer.regions.complete && explorer.regions.diagram.high === 1.4")
-        assert firefox.errors == []
-    finally:
-        firefox.quit()
-
-
-def until(firefox, expression, seconds=60):
-    """Wait until an expression holds."""
-    end = time.monotonic() + seconds
-    while not firefox.run(expression):
-        assert time.monotonic() < end, f"never: {expression}"
-        time.sleep(0.1)
