@@ -18,7 +18,9 @@ function text(id) {
 
 /** Bytes of an element of the page. @param {string} id @returns {Promise<ArrayBuffer>} */
 async function bytes(id) {
-  const packed = Uint8Array.from(atob(text(id).trim()), (letter) => letter.charCodeAt(0));
+  const letters = atob(text(id).trim());
+  const packed = new Uint8Array(letters.length);
+  for (let i = 0; i < packed.length; i++) packed[i] = letters.charCodeAt(i);
   const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Response(unpacked).arrayBuffer();
 }
