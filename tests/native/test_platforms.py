@@ -177,5 +177,5 @@ def test_the_arm_binary_has_the_same_bits(everywhere, version, name, tmp_path):
     assert found == own.simulate(names, times, **values)
     assert found[-1][names.index(going_on)] > enough
     assert "FAILURES 0" in arm.run("hostile", under=under, timeout=900).stdout
-    arm.run("many", 50, 40, 40, under=under)
+    arm.run("many", 50, 40, 400, under=under)
     arm.run("million", 20_000, under=under)
