@@ -65,8 +65,10 @@ def killed_at_a_random_moment(commands, name: str, chance: random.Random) -> boo
     return True
 
 
-@pytest.mark.parametrize("kills", [1, pytest.param(3, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("name", RUNS)
+@pytest.mark.parametrize(
+    ("name", "kills"),
+    [("sweep", 1), *(pytest.param(name, 3, marks=pytest.mark.slow) for name in RUNS)],
+)
 def test_kill_9_at_random_moments(commands, uninterrupted, name, kills):
     chance = random.Random(name)
     killed = [killed_at_a_random_moment(commands, name, chance) for _ in range(kills)]
