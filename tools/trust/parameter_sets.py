@@ -1,0 +1,241 @@
+"""Adversarial parameter sets of the oscillator, each drawn from a seed and its number alone.
+
+What is drawn is legal by the variable table, and hostile to arithmetic: oscillators that differ in
+the last digits, damping and drives next to nothing, starts of 1e-150 m and 1e60 m, a clock at 1e12
+s, dampers far beyond critical, drives on a natural frequency. The same motion is then asked for
+over several communication grids, to the last bit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+Values = dict[str, float]
+Draw = Callable[[np.random.Generator, Values], None]
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """A structure, its start, its box and a length of time.
+
+    Attributes
+    ----------
+    kind : str
+        Name of the class it was drawn from.
+    values : dict of str to float
+        Variables of the FMU, by name; those left out have their start values.
+    start_time, duration : float
+        s.
+    """
+
+    kind: str
+    values: Values
+    start_time: float
+    duration: float
+
+    def grids(self) -> Iterator[list[float]]:
+        """Communication points of grids that all end at the same time: one step, two, uneven
+        ones, 24 equal ones.
+        """
+        start, end = self.start_time, self.start_time + self.duration
+        for parts in ((), (0.5,), (0.001, 0.7, 0.7000001, 0.95), [i / 24 for i in range(1, 24)]):
+            inside = (start + part * self.duration for part in parts)
+            yield [time for time in inside if start < time < end] + [end]
+
+
+def decades(rng: np.random.Generator, low: float, high: float) -> float:
+    """A number between two powers of ten, uniform in its logarithm."""
+    return float(10.0 ** rng.uniform(low, high))
+
+
+def either(rng: np.random.Generator, *choices: float) -> float:
+    """One of several numbers."""
+    return choices[int(rng.integers(len(choices)))]
+
+
+def sign(rng: np.random.Generator) -> float:
+    """-1 or 1."""
+    return either(rng, -1.0, 1.0)
+
+
+def omegas(values: Values) -> tuple[float, float]:
+    """Natural frequencies of the two masses, rad/s."""
+    return math.sqrt(values["k1"] / values["m1"]), math.sqrt(values["k2"] / values["m2"])
+
+
+def ordinary(rng: np.random.Generator) -> Values:
+    """What every class begins with: a structure in chattering, impacts and contact."""
+    return {
+        "m1": 1.0,
+        "m2": decades(rng, -1.5, 1.5),
+        "k1": 1.0,
+        "k2": decades(rng, -1.5, 1.5),
+        "d1": either(rng, 0.0, 1.0) * decades(rng, -4.0, 0.0),
+        "d2": either(rng, 0.0, 1.0) * decades(rng, -4.0, 0.0),
+        "e": float(rng.uniform()),
+        "gamma": decades(rng, -6.0, 0.0),
+        "x1_start": float(rng.uniform(-1.0, 0.0)),
+        "x2_start": float(rng.uniform(0.0, 1.0)),
+        "v1_start": float(rng.uniform(-1.0, 1.0)),
+        "v2_start": float(rng.uniform(-1.0, 1.0)),
+        "phase_start": float(rng.uniform(0.0, 6.28)),
+        "box_amplitude": decades(rng, -1.0, 1.0),
+        "box_frequency": decades(rng, -1.0, 0.7),
+    }
+
+
+def nearly_equal(rng: np.random.Generator, values: Values) -> None:
+    """Oscillators that differ in the last digits, impacts that lose next to nothing."""
+    differs = [either(rng, 0.0, 1.0) * sign(rng) * decades(rng, -17.0, -2.0) for _ in range(2)]
+    values["k2"] = values["k1"] * values["m2"] / values["m1"] * (1.0 + differs[0])
+    values["d2"] = values["d1"] * values["m2"] / values["m1"] * (1.0 + differs[1])
+    values["e"] = 1.0 - either(rng, 0.0, 1.0) * decades(rng, -17.0, -1.0)
+    values["gamma"] = decades(rng, -6.0, 0.0)
+    if rng.random() < 0.5:
+        values["x2_start"] = values["x1_start"]
+
+
+def next_to_nothing(rng: np.random.Generator, values: Values) -> None:
+    """A damping, a drive or a frequency that is subnormal or nearly so."""
+    for name in ("d1", "d2", "box_amplitude", "box_frequency", "x2_start", "v2_start"):
+        if rng.random() < 0.4:
+            values[name] = either(rng, 5e-324, 1e-310, decades(rng, -323.0, -20.0))
+    values["x1_start"] = either(rng, 0.0, values["x1_start"], -5e-324)
+
+
+def of_all_sizes(rng: np.random.Generator, values: Values) -> None:
+    """Starts far below and far above the box's motion."""
+    for name in ("x1_start", "x2_start", "v1_start", "v2_start"):
+        values[name] *= either(rng, 0.0, 1.0, 1.0) * decades(rng, *((-150.0, 60.0)))
+    values["x1_start"], values["x2_start"] = sorted((values["x1_start"], values["x2_start"]))
+
+
+def one_small_start(rng: np.random.Generator, values: Values) -> None:
+    """Nearly at rest on the boundary, under a drive of ordinary size."""
+    values["x1_start"] = values["x2_start"] = either(rng, 0.0, 1.0) * decades(rng, -20.0, 0.0)
+    values["v1_start"] = either(rng, 0.0, 1.0) * decades(rng, -20.0, 0.0)
+    values["v2_start"] = values["v1_start"] + either(rng, 0.0, 1.0) * decades(rng, -20.0, 0.0)
+    values["phase_start"] = either(rng, 0.0, math.pi, decades(rng, -15.0, 0.0))
+
+
+def heavy(rng: np.random.Generator, values: Values) -> None:
+    """A gamma of one and unequal masses: impacts that nearly stick."""
+    values["gamma"] = either(rng, 1.0, 0.99, 0.5)
+    values["m2"] = either(rng, 25.0, 0.04, 1000.0, 0.001)
+    values["k2"] = values["m2"] * decades(rng, -1.0, 1.0)
+    values["e"] = either(rng, 0.5, 0.0, 1.0, float(rng.uniform()))
+
+
+def steep(rng: np.random.Generator, values: Values) -> None:
+    """Dampers about and far beyond critical."""
+    for name, mass, stiffness in (("d1", "m1", "k1"), ("d2", "m2", "k2")):
+        critical = 2.0 * math.sqrt(values[mass] * values[stiffness])
+        factor = 1.0 + sign(rng) * decades(rng, -16.0, -3.0)
+        values[name] = critical * either(rng, factor, 1.0, decades(rng, 0.0, 2.0), values[name])
+        if rng.random() < 0.1:
+            values[name] = critical * decades(rng, 2.0, 4.0)
+
+
+def resonant(rng: np.random.Generator, values: Values) -> None:
+    """A drive on a natural frequency, or next to it, with no damping or next to none."""
+    together = math.sqrt((values["k1"] + values["k2"]) / (values["m1"] + values["m2"]))
+    natural = either(rng, *omegas(values), together)
+    beside = either(rng, 0.0, 1.0) * sign(rng) * decades(rng, -17.0, -3.0)
+    values["box_frequency"] = natural * (1.0 + beside)
+    for name in ("d1", "d2"):
+        values[name] = either(rng, 0.0, 0.0, decades(rng, -20.0, -2.0))
+    values["bonded"] = either(rng, 0.0, 0.0, 0.0, 1.0)
+    if values["bonded"]:
+        values["x2_start"], values["v2_start"] = values["x1_start"], values["v1_start"]
+
+
+def late(rng: np.random.Generator, values: Values) -> None:
+    """Nothing but the clock is unusual."""
+
+
+def cubic(rng: np.random.Generator, values: Values) -> None:
+    """A box pushed by other models, over scales."""
+    for name in ("box_acceleration", "box_jerk", "box_snap", "box_crackle"):
+        values[name] = either(rng, 0.0, 1.0) * sign(rng) * decades(rng, -12.0, 2.0)
+    values["box_amplitude"] *= either(rng, 0.0, 1.0)
+
+
+def pressed(rng: np.random.Generator, values: Values) -> None:
+    """Long chattering: a constant push, impacts that lose little, a small gamma."""
+    values["k2"] = values["m2"] * decades(rng, -0.5, 0.5)
+    values["box_acceleration"] = sign(rng) * decades(rng, -2.0, 2.0)
+    values["e"] = 1.0 - decades(rng, -3.0, 0.0)
+    values["gamma"] = decades(rng, -9.0, -1.0)
+
+
+def fast_or_slow(rng: np.random.Generator, values: Values) -> None:
+    """A drive far from the natural frequencies."""
+    values["box_frequency"] = either(rng, decades(rng, 0.5, 3.0), decades(rng, -12.0, -1.0))
+    values["box_amplitude"] = decades(rng, -3.0, 1.0) / (values["box_frequency"] + 0.01) ** 2
+
+
+def of_all_scales(rng: np.random.Generator, values: Values) -> None:
+    """Masses and stiffnesses over decades, the SI units of watches and of ships."""
+    mass, stiffness = decades(rng, -9.0, 9.0), decades(rng, -9.0, 9.0)
+    rate = math.sqrt(stiffness / mass)
+    for name in ("m1", "m2"):
+        values[name] *= mass
+    for name in ("k1", "k2"):
+        values[name] *= stiffness
+    for name in ("d1", "d2"):
+        values[name] *= math.sqrt(stiffness * mass)
+    for name in ("v1_start", "v2_start", "box_frequency"):
+        values[name] *= rate
+
+
+KINDS: dict[str, Draw] = {
+    "nearly equal": nearly_equal,
+    "next to nothing": next_to_nothing,
+    "of all sizes": of_all_sizes,
+    "one small start": one_small_start,
+    "heavy": heavy,
+    "steep": steep,
+    "resonant": resonant,
+    "late": late,
+    "cubic": cubic,
+    "pressed": pressed,
+    "fast or slow": fast_or_slow,
+    "of all scales": of_all_scales,
+}
+
+
+def draw(seed: int, number: int) -> ParameterSet:
+    """The parameter set of a number under a seed: the same on every machine.
+
+    One in four belongs to a second class besides its own; one in four begins at a clock of up to
+    1e12 s, all in the class ``late``.
+
+    Parameters
+    ----------
+    seed, number : int
+        Not negative.
+
+    Examples
+    --------
+    >>> draw(1, 4) == draw(1, 4), draw(1, 4).kind
+    (True, 'heavy')
+    """
+    rng = np.random.default_rng((seed, number))
+    names = list(KINDS)
+    kind = names[number % len(names)]
+    values = ordinary(rng)
+    if rng.random() < 0.25:
+        KINDS[names[int(rng.integers(len(names)))]](rng, values)
+    KINDS[kind](rng, values)
+    values["x2_start"] = max(values["x1_start"], values["x2_start"])
+    if values.get("bonded"):
+        values["x2_start"], values["v2_start"] = values["x1_start"], values["v1_start"]
+    rate = max(*omegas(values), values["box_frequency"])
+    duration = either(rng, 1.0, 0.01, 1e-3) * decades(rng, -6.0, 2.5) / rate
+    clock = kind == "late" or rng.random() < 0.25
+    start_time = sign(rng) * decades(rng, 0.0, 12.0) if clock else 0.0
+    return ParameterSet(kind, values, start_time, duration)
