@@ -7,6 +7,7 @@ module                idea
 :mod:`.exported`      the FMUs of the present sources: exported where missing, and found
 :mod:`.models`        names of the models
 :mod:`.unpacked`      where FMUs are unpacked, once a process
+:mod:`.library`       their binaries, loaded once a process
 :mod:`.instance`      a co-simulation instance: set, step, read, save its state
 :mod:`.events`        a motion impact by impact
 :mod:`.begin`         how a motion begins, and its states at equal times
@@ -14,7 +15,7 @@ module                idea
 ====================  =============================================================================
 """
 
-from .begin import REST, begin, sampled
+from .begin import REST, begin, last_samples, room_for_samples, sampled
 from .channel import Channel
 from .description import Description, describe
 from .events import STATE, EventInstance, Impacts
@@ -40,6 +41,8 @@ __all__ = [
     "describe",
     "find",
     "finder",
+    "last_samples",
+    "room_for_samples",
     "sampled",
     "up_to_date",
 ]

@@ -58,7 +58,8 @@ def four_numbers(start: ArrayLike) -> list[float]:
         state = np.empty(0)
     if state.shape != (len(STARTS),):
         raise InputError(f"start = {start!r}: expected 4 numbers, x1, x2, v1, v2")
-    return [float(value) for value in state]
+    found: list[float] = state.tolist()
+    return found
 
 
 def sampled(instance: Instance, time: float, target: float, count: int) -> NDArray[np.float64]:
@@ -77,11 +78,21 @@ def sampled(instance: Instance, time: float, target: float, count: int) -> NDArr
     ndarray, shape (count, 4)
         x1, x2 in m, v1, v2 in m/s.
     """
-    room = len(instance.read(*SERIES)) // len(SERIES)
+    room = room_for_samples(instance)
     states, width = np.empty((count, len(SERIES))), (target - time) / count
     for done in range(0, count, room):
         size = min(room, count - done)
         instance.set(sample_count=size)
         instance.step(time + done * width, time + (done + size) * width)
-        states[done : done + size] = instance.read(*SERIES).reshape(len(SERIES), room)[:, :size].T
+        states[done : done + size] = last_samples(instance, size)
     return states
+
+
+def room_for_samples(instance: Instance) -> int:
+    """States that an instance keeps of a step."""
+    return instance.size(*SERIES) // len(SERIES)
+
+
+def last_samples(instance: Instance, count: int) -> NDArray[np.float64]:
+    """The states of the last step, shape (count, 4), valid until the next call."""
+    return instance.read(*SERIES).reshape(len(SERIES), -1)[:, :count].T

@@ -42,6 +42,11 @@ class Description:
     identifier: str = ""
     digest: str = ""
 
+    @property
+    def is_fmi3(self) -> bool:
+        """Whether it is FMI 3.0, not 2.0."""
+        return self.fmi_version.startswith("3")
+
     def variable(self, name: str) -> Any:
         """FMPy's description of a variable.
 

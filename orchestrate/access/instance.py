@@ -5,20 +5,41 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
-from ctypes import byref, c_double, c_uint
+from ctypes import byref, c_bool, c_double, c_int, c_uint
 from os import PathLike
 from types import TracebackType
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import FmuError, InputError, VibroimpactError
 from .description import describe
-from .unpacked import unpacked
+from .library import loaded
 
 REAL = ("Real", "Float64")
-Reader = tuple[Callable[..., Any], list[Any], NDArray[np.float64]]
+WHOLE = ("Integer", "Int32")
+
+
+class Transfer(NamedTuple):
+    """One call that sets or reads some variables of a type, with arrays that are made once.
+
+    Attributes
+    ----------
+    function : str
+        Of the FMU.
+    arguments : tuple
+        After the instance.
+    values : ctypes.Array
+        Where they travel.
+    places : list of int
+        Of them among all that are set or read together.
+    """
+
+    function: str
+    arguments: tuple[Any, ...]
+    values: Any
+    places: list[int]
 
 
 class Instance:
@@ -61,33 +82,29 @@ class Instance:
     def __init__(self, path: str | PathLike[str], name: str = "instance") -> None:
         self.description = describe(path)
         self._messages: list[str] = []
-        self._readers: dict[tuple[str, ...], Reader] = {}
+        self._readers: dict[tuple[str, ...], tuple[Transfer, NDArray[np.float64]]] = {}
+        self._transfers: dict[tuple[str, ...], list[Transfer]] = {}
         self._open = False
         try:
-            identity = {
-                "guid": self.description.guid,
-                "unzipDirectory": str(unpacked(self.description)),
-                "modelIdentifier": self.description.identifier,
-                "instanceName": name,
-            }
-            (self._make3 if self.is_fmi3 else self._make2)(identity)
+            self._fmu = loaded(self.description, name)
+            (self._make3 if self.is_fmi3 else self._make2)()
         except VibroimpactError:
             raise
         except Exception as error:
             reason = f"FMU {path}: cannot be loaded ({error})"
             raise InputError(f"{reason}; expected an FMU with a binary for this machine") from None
         self._open = True
+        self._step = self._stepper3() if self.is_fmi3 else self._stepper2()
 
     @property
     def is_fmi3(self) -> bool:
         """Whether it is FMI 3.0, not 2.0."""
-        return self.description.fmi_version.startswith("3")
+        return self.description.is_fmi3
 
-    def _make2(self, identity: dict[str, str]) -> None:
+    def _make2(self) -> None:
         import fmpy
         from fmpy import fmi2
 
-        self._fmu = fmi2.FMU2Slave(**identity)
         self._callbacks = fmi2.fmi2CallbackFunctions()
         self._callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._log)
         self._callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
@@ -96,11 +113,18 @@ class Instance:
         fmpy.logging.addLoggerProxy(byref(self._callbacks))
         self.call("instantiate", callbacks=self._callbacks, loggingOn=True)
 
-    def _make3(self, identity: dict[str, str]) -> None:
-        from fmpy import fmi3
-
-        self._fmu = fmi3.FMU3Slave(**identity)
+    def _make3(self) -> None:
         self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
+
+    def _stepper2(self) -> Callable[[float, float], None]:
+        """``fmi2DoStep``: time and length of a step."""
+        return lambda time, length: self.run("fmi2DoStep", time, length, True)
+
+    def _stepper3(self) -> Callable[[float, float], None]:
+        """``fmi3DoStep``."""
+        flags, last = [c_bool() for _ in range(3)], c_double()
+        answers = [*map(byref, flags), byref(last)]
+        return lambda time, length: self.run("fmi3DoStep", time, length, True, *answers)
 
     def __enter__(self) -> Any:
         return self
@@ -117,7 +141,8 @@ class Instance:
         """Free the instance; nothing may be asked of it afterwards."""
         if self._open:
             self._open = False
-            self._fmu.freeInstance()
+            free = self._fmu.fmi3FreeInstance if self.is_fmi3 else self._fmu.fmi2FreeInstance
+            free(self._fmu.component)
 
     def _log(self, *arguments: Any) -> None:
         """Keep a message; it is the last argument in both FMI versions."""
@@ -137,42 +162,86 @@ class Instance:
         except Exception as error:
             raise self.failure(error) from None
 
+    def run(self, function: str, *arguments: Any) -> None:
+        """Call a function of the binary itself, past FMPy's wrapper, for what is called often."""
+        self._messages.clear()
+        status = getattr(self._fmu.dll, function)(self._fmu.component, *arguments)
+        if status:
+            raise self.failure(f"{function} failed with status {status}")
+
     def variable(self, name: str) -> Any:
         """FMPy's description of a variable."""
         return self.description.variable(name)
 
     def set(self, **values: float) -> None:
         """Set variables by name."""
-        types: dict[str, dict[int, float]] = {}
-        for variable, value in zip(map(self.variable, values), values.values(), strict=True):
-            types.setdefault(variable.type, {})[variable.valueReference] = value
-        for type_name, chosen in types.items():
-            self.call(f"set{type_name}", list(chosen), list(chosen.values()))
+        names = ("Set", *values)
+        transfers = self._transfers.get(names) or self._grouped(names)
+        given = list(values.values())
+        for function, arguments, array, places in transfers:
+            try:
+                array[:] = [given[place] for place in places]
+            except TypeError as error:
+                raise FmuError(str(error)) from None
+            self.run(function, *arguments)
 
     def get(self, *names: str) -> list[Any]:
         """Values by name, as a list."""
-        return [
-            self.call(f"get{variable.type}", [variable.valueReference])[0]
-            for variable in map(self.variable, names)
+        key = ("Get", *names)
+        found: list[Any] = [None] * len(names)
+        for function, arguments, array, places in self._transfers.get(key) or self._grouped(key):
+            self.run(function, *arguments)
+            for place, value in zip(places, array, strict=True):
+                found[place] = value
+        return found
+
+    def _grouped(self, names: tuple[str, ...]) -> list[Transfer]:
+        """Calls that set or read variables, one a type; the first name says which."""
+        verb, *others = names
+        places: dict[str, list[int]] = {}
+        for place, name in enumerate(others):
+            places.setdefault(self.variable(name).type, []).append(place)
+        found = [
+            self._transfer(verb, kind, [(self.variable(others[i]), 1) for i in some], some)
+            for kind, some in places.items()
         ]
+        self._transfers[names] = found
+        return found
+
+    def _transfer(
+        self, verb: str, kind: str, variables: Sequence[tuple[Any, int]], places: list[int]
+    ) -> Transfer:
+        """A call for variables of a type, each with its number of values."""
+        if kind not in (*REAL, *WHOLE, "Boolean"):
+            raise FmuError(f"{variables[0][0].name}: is {kind}; expected numbers and Booleans")
+        flag = c_bool if self.is_fmi3 else c_int
+        element: Any = c_double if kind in REAL else c_int if kind in WHOLE else flag
+        values = (element * sum(length for _, length in variables))()
+        count = len(variables)
+        references = (c_uint * count)(*(variable.valueReference for variable, _ in variables))
+        sizes = (len(values),) if self.is_fmi3 else ()
+        function = f"fmi{3 if self.is_fmi3 else 2}{verb}{kind}"
+        return Transfer(function, (references, count, values, *sizes), values, places)
 
     def initialize(self, start_time: float = 0.0, **values: float) -> None:
         """Set ``values`` and initialise."""
         self.set(**values)
+        start = (False, 0.0, start_time, False, 0.0)  # no tolerance, no end
         if self.is_fmi3:
-            self.call("enterInitializationMode", startTime=start_time)
+            self.run("fmi3EnterInitializationMode", *start)
+            self.run("fmi3ExitInitializationMode")
         else:
-            self.call("setupExperiment", startTime=start_time)
-            self.call("enterInitializationMode")
-        self.call("exitInitializationMode")
+            self.run("fmi2SetupExperiment", *start)
+            self.run("fmi2EnterInitializationMode")
+            self.run("fmi2ExitInitializationMode")
 
     def reset(self) -> None:
         """Back to the state after instantiation."""
-        self.call("reset")
+        self.run("fmi3Reset" if self.is_fmi3 else "fmi2Reset")
 
     def step(self, time: float, target: float) -> None:
         """One communication step from ``time`` to ``target``, s."""
-        self.call("doStep", currentCommunicationPoint=time, communicationStepSize=target - time)
+        self._step(time, target - time)
 
     def read(self, *names: str) -> NDArray[np.float64]:
         """Values of Real variables, in one call of the FMU.
@@ -188,31 +257,23 @@ class Instance:
         ndarray
             In the order of ``names``, valid until the next call with them.
         """
-        if names not in self._readers:
-            self._readers[names] = self._reader(names)
-        function, arguments, values = self._readers[names]
-        self._messages.clear()
-        try:
-            function(*arguments)
-        except Exception as error:
-            raise self.failure(error) from None
+        transfer, values = self._reader(names)
+        self.run(transfer.function, *transfer.arguments)
         return values
 
-    def _reader(self, names: Sequence[str]) -> Reader:
-        """FMPy's function, its arguments, and the array it fills."""
-        found = [element for name in names for element in self.elements(name)]
-        for variable in (variable for variable, _ in found if variable.type not in REAL):
-            raise FmuError(f"{variable.name}: is {variable.type}; expected Real variables")
-        references = (c_uint * len(found))(*(variable.valueReference for variable, _ in found))
-        values = (c_double * sum(length for _, length in found))()
-        arguments = [self._fmu.component, references, len(found), values]
-        if self.is_fmi3:
-            return (
-                self._fmu.fmi3GetFloat64,
-                [*arguments, len(values)],
-                np.ctypeslib.as_array(values),
-            )
-        return self._fmu.fmi2GetReal, arguments, np.ctypeslib.as_array(values)
+    def size(self, *names: str) -> int:
+        """How many values :meth:`read` gives."""
+        return len(self._reader(names)[1])
+
+    def _reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
+        """A call that reads Real variables, and the array it fills."""
+        if names not in self._readers:
+            found = [element for name in names for element in self.elements(name)]
+            for variable in (variable for variable, _ in found if variable.type not in REAL):
+                raise FmuError(f"{variable.name}: is {variable.type}; expected Real variables")
+            transfer = self._transfer("Get", found[0][0].type, found, [])
+            self._readers[names] = transfer, np.ctypeslib.as_array(transfer.values)
+        return self._readers[names]
 
     def elements(self, name: str) -> list[tuple[Any, int]]:
         """Variables a name stands for, each with its number of values."""

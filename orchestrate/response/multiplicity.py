@@ -34,12 +34,12 @@ def multiplicity(samples: ArrayLike, tolerance: float) -> int:
     """
     states = np.asarray(samples, dtype=float)
     limit = max(1, len(states) // 4)
-    states = states[len(states) // 2 :]
-    scale = np.abs(states).max(axis=0)
+    later = states[len(states) // 2 :].T  # a row a co-ordinate
+    scale = np.abs(later).max(axis=1, keepdims=True)
     scale[scale == 0.0] = 1.0
-    scaled = states / scale
-    first = scaled[1 : limit + 1] - scaled[0]
-    for n in np.flatnonzero(np.abs(first).max(axis=1) <= tolerance) + 1:
-        if np.abs(scaled[n:] - scaled[:-n]).max() <= tolerance:
+    scaled = later / scale
+    first = np.abs(scaled[:, 1 : limit + 1] - scaled[:, :1])
+    for n in np.flatnonzero((first <= tolerance).all(axis=0)) + 1:
+        if np.abs(scaled[:, n:] - scaled[:, :-n]).max() <= tolerance:
             return int(n)
     return 0

@@ -74,7 +74,11 @@ class Drive(NamedTuple):
 
     def at(self, angle: Floats) -> tuple[Floats, Floats]:
         """Minus the box's acceleration at a phase, and its time derivative."""
-        return self.amplitude * np.sin(angle), self.amplitude * self.frequency * np.cos(angle)
+        return self.forces(np.sin(angle), np.cos(angle))
+
+    def forces(self, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
+        """The same by the phase's sine and cosine."""
+        return self.amplitude * sine, self.amplitude * self.frequency * cosine
 
 
 def periods_of(response: Response, most: int) -> int:
@@ -140,11 +144,14 @@ def peaks(
     rates = Rates.of(point.structure for point in points)
     speed = np.array([[point.excitation.frequency] for point in points])
     drive = Drive(speed, np.array([[p.excitation.amplitude] for p in points]) * speed**2)
-    angle = 2.0 * np.pi * np.outer(periods, np.arange(count + 1)) / count
+    kinds, kind = np.unique(periods, return_inverse=True)
+    angles = 2.0 * np.pi * np.outer(kinds, np.arange(count + 1)) / count
+    angle = angles[kind]
     width = angle[:, 1:2] / speed
     touching = in_touch(states)
     columns = np.ascontiguousarray(np.moveaxis(states, -1, 0))
-    motion = Motion.of(columns, rates.felt(touching), drive.at(angle))
+    forces = drive.forces(np.sin(angles)[kind], np.cos(angles)[kind])
+    motion = Motion.of(columns, rates.felt(touching), forces)
     left, right = (motion.part((slice(None), side)) for side in (np.s_[:-1], np.s_[1:]))
     smooth = without_impact(left, right, width, jump * np.abs(columns[2:]).max(axis=(0, 2)))
     largest = np.abs(motion.value).max(axis=2)

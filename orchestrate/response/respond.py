@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,12 +10,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import STATE, Instance, begin
+from ..access import STATE, Instance, begin, last_samples, room_for_samples
 from ..structures import Excitation, Structure
 from .multiplicity import multiplicity
 from .questions import Point
-
-SERIES = tuple(f"{name}_sample" for name in STATE)
 
 
 @dataclass(frozen=True)
@@ -41,6 +40,11 @@ class Response:
     permanent_contact: bool
     multiplicity: int
 
+    @property
+    def gap(self) -> NDArray[np.float64]:
+        """Of the samples, m."""
+        return self.samples[:, 1] - self.samples[:, 0]
+
     @cached_property
     def end(self) -> tuple[float, ...]:
         """The state at the last sample, which a next response starts from."""
@@ -66,14 +70,19 @@ def without_last_digits(state: NDArray[np.float64], bits: int = 44) -> tuple[flo
     >>> without_last_digits(np.array([0.25, 0.3, 1.0, -1.0]))
     (0.25, 0.30000000000001137, 1.0, -1.0)
     """
-    return (*to_bits(state[:2], bits), *to_bits(state[2:], bits))
+    x1, x2, v1, v2 = state.tolist()
+    return (*to_bits(x1, x2, bits), *to_bits(v1, v2, bits))
 
 
-def to_bits(values: NDArray[np.float64], bits: int) -> list[float]:
-    """Values rounded to so many binary digits of the largest of them."""
-    digit = np.ldexp(1.0, int(np.frexp(np.abs(values).max())[1]) - bits)
-    rounded: list[float] = (np.round(values / digit) * digit).tolist()
-    return rounded
+def to_bits(one: float, other: float, bits: int) -> tuple[float, float]:
+    """Two values rounded to so many binary digits of the larger one."""
+    digit = math.ldexp(1.0, math.frexp(max(abs(one), abs(other)))[1] - bits)
+    if digit == 0.0:  # of the smallest numbers there are
+        return one, other
+    return (
+        math.copysign(round(one / digit) * digit, one),
+        math.copysign(round(other / digit) * digit, other),
+    )
 
 
 def respond(
@@ -132,14 +141,14 @@ def sample(
     peak : float
         Largest gap on the way.
     """
-    room = len(instance.read(*SERIES)) // len(SERIES)
-    states, peak = np.empty((samples, len(SERIES))), 0.0
+    room = room_for_samples(instance)
+    states, peak = np.empty((len(STATE), samples)).T, 0.0
     for done in range(0, samples, room):
         count = min(room, samples - done)
         first = transient + done
         instance.set(sample_count=count)
         instance.step(first * period, (first + count) * period)
-        states[done : done + count] = instance.read(*SERIES).reshape(len(SERIES), room)[:, :count].T
+        states[done : done + count] = last_samples(instance, count)
         peak = max(peak, *instance.get("x_rel_max"))
     return states, peak
 

@@ -115,9 +115,8 @@ class SweepJob(SeriesQuestion):
                 first = self.transient + self.samples
                 orbits.append(orbit(instance, point, response, first, spans[-1]))
                 responses.append(response)
-        samples = np.array([response.samples for response in responses])
         return {
-            "gap": samples[:, :, 1] - samples[:, :, 0],
+            "gap": np.array([response.gap for response in responses]),
             "end": np.array([response.end for response in responses]),
             **{
                 name: np.array([getattr(response, name) for response in responses])

@@ -292,7 +292,7 @@ class Structure:
 
     def parameters(self) -> dict[str, float | bool]:
         """The FMU's start values."""
-        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        return dict(vars(self))
 
     def label(self) -> str:
         """A short name for files and titles; structures that differ have different ones."""
