@@ -60,9 +60,11 @@ def information(name: str) -> zipfile.ZipInfo:
 
 
 def read_folder(folder: Path, prefix: str = "") -> dict[str, bytes]:
-    """All files below a folder, without caches, as a dict of name to bytes."""
+    """All files below a folder, without caches and editors' copies, as a dict of name to bytes."""
     return {
         prefix + path.relative_to(folder).as_posix(): path.read_bytes()
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and "__pycache__" not in path.parts
+        if path.is_file()
+        and "__pycache__" not in path.parts
+        and not (path.name.startswith(".") or path.name.endswith("~"))
     }

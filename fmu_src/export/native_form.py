@@ -17,7 +17,16 @@ from .errors import require
 from .linking import link_all
 from .model_header import model_header
 from .platforms import binaries, usual
-from .sources import Files, exporters, load, model_digest, model_sources, read
+from .sources import (
+    Files,
+    check_unedited,
+    exporters,
+    load,
+    model_digest,
+    model_sources,
+    read,
+    texts,
+)
 
 HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
@@ -44,10 +53,10 @@ def fmi_headers(version: str) -> Files:
 
 
 def guid(folder: str, version: str, is_plain: bool = False) -> str:
-    """The GUID: of the sources, and of the exporters that make the FMU from them."""
+    """The GUID: of the sources, the texts, and the exporters that make the FMU from them."""
     kind = f"{version} plain" if is_plain else version
     model = {"sources": model_digest(folder).encode(), "version": kind.encode()}
-    return guid_of({**exporters("export/native_form.py"), **model})
+    return guid_of({**exporters("export/native_form.py"), **texts(folder), **model})
 
 
 def plain(model: Model) -> Model:
@@ -89,7 +98,7 @@ def export(
     Raises
     ------
     CannotExport
-        Where no binary can be made.
+        Where no binary can be made, or a source was edited meanwhile.
     """
     model, digest = load(folder), model_digest(folder)
     token = guid(folder, version, is_plain)
@@ -103,6 +112,7 @@ def export(
     files.update(documentation_files(folder, digest, form))
     kernel = {k: v for k, v in model_sources(folder).items() if k.startswith("kernels/")}
     files.update({f"documentation/{name}": content for name, content in kernel.items()})
+    check_unedited()
     path = target / f"{model.name}.fmu"
     write_archive(path, files)
     return path

@@ -23,7 +23,7 @@ from .description_fmi2 import PYTHON, fmi2_xml
 from .documentation import documentation_files
 from .errors import EXTRA, CannotExport, require
 from .linking import link_all, say_once
-from .sources import ROOT, Files, closure, exporters, load, read
+from .sources import ROOT, Files, check_unedited, closure, exporters, load, read, texts
 
 PYTHONFMU = "0.7.0"  # the slave works around what this version does, see there
 SCRIPT = "runtime/script.py.in"
@@ -43,7 +43,7 @@ def source_digest(folder: str) -> str:
 def guid(folder: str) -> str:
     """The GUID an FMU of the present sources bears; it is told without pythonfmu."""
     sources = {"sources": source_digest(folder).encode()}
-    return guid_of({**exporters("export/pythonfmu_form.py"), **sources})
+    return guid_of({**exporters("export/pythonfmu_form.py"), **texts(folder), **sources})
 
 
 def check_pythonfmu() -> None:
@@ -71,7 +71,7 @@ def export(folder: str, target: Path) -> Path:
     Raises
     ------
     CannotExport
-        Where pythonfmu is missing, or is another version.
+        Where pythonfmu is missing, or is another version, or a source was edited meanwhile.
     """
     check_pythonfmu()
     model, digest = load(folder), source_digest(folder)
@@ -82,6 +82,7 @@ def export(folder: str, target: Path) -> Path:
         files = run_pythonfmu(script, package, Path(scratch) / "built.fmu")
     files["modelDescription.xml"] = fmi2_xml(model, guid(folder), PYTHON)
     files.update(documentation_files(folder, digest, "fmi2-python"))
+    check_unedited()
     path = target / f"{model.name}.fmu"
     write_archive(path, files)
     return path

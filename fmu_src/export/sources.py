@@ -11,9 +11,11 @@ from pathlib import Path
 
 from ..runtime.table import Model
 from .archive import fingerprint, read_folder
+from .errors import CannotExport
 
 ROOT = Path(__file__).resolve().parents[1]
 Files = dict[str, bytes]  # contents by name
+AT_IMPORT = read_folder(ROOT)  # what this process runs, since it imports the rest later
 parsing = threading.Lock()  # Python 3.11 mixes up syntax trees of two threads
 
 
@@ -96,6 +98,33 @@ def model_sources(folder: str) -> Files:
 def model_digest(folder: str) -> str:
     """Fingerprint of a model; states saved by one native form can be read by the other."""
     return fingerprint(model_sources(folder))
+
+
+def texts(folder: str) -> Files:
+    """What people read in a model's FMU: page, pictures, reference results, licence."""
+    shared = ROOT / "models"
+    names = [path.name for path in sorted(shared.iterdir()) if path.suffix in (".in", ".txt")]
+    found = read_folder(shared / folder, f"models/{folder}/")
+    own = {name: content for name, content in found.items() if not name.endswith(".py")}
+    return {**own, **read(*(f"models/{name}" for name in names))}
+
+
+def check_unedited() -> None:
+    """See that no source was edited since this process began.
+
+    Modules and compiled kernels stay in memory, files are read when they are needed: after an edit
+    an FMU would be made of both, under a GUID of the later ones.
+
+    Raises
+    ------
+    CannotExport
+        Names a file.
+    """
+    now = read_folder(ROOT)
+    edited = sorted(name for name in {*AT_IMPORT, *now} if AT_IMPORT.get(name) != now.get(name))
+    if edited:
+        place = ROOT / edited[0]
+        raise CannotExport(f"{place} was edited since this process began: expected a new process")
 
 
 def exporters(name: str) -> Files:

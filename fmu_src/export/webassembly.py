@@ -22,7 +22,7 @@ from typing import Any
 from .archive import guid_of
 from .compile_kernel import SETTINGS, entry_ir, failure, jit_kernel, kernel_modules, link_ir
 from .errors import CannotExport, require
-from .sources import ROOT, closure, load, model_digest
+from .sources import ROOT, check_unedited, closure, load, model_digest
 
 TRIPLE = "wasm32-unknown-unknown"
 SECTION = "guid"  # name of the custom section that bears the GUID
@@ -49,13 +49,15 @@ def export(folder: str) -> bytes:
     Raises
     ------
     CannotExport
-        Where Numba or the linker is missing, or a new version breaks this way.
+        Where Numba or the linker is missing, a new version breaks this way, or a source was
+        edited meanwhile.
     """
     require("numba", "compiles the kernel")
     require("ziglang", "links it")
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as target:
         run([sys.executable, "-m", __name__, folder, target], {**os.environ, **SETTINGS})
         link(Path(target), [f"kernel_{name}" for name in load(folder).entries])
+        check_unedited()
         return (Path(target) / "kernel.wasm").read_bytes() + custom_section(SECTION, guid(folder))
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from fmu_src.export import forms, native_form, pythonfmu_form, sources
+from fmu_src.export.errors import CannotExport
 
 from ..fresh import ROOT
 
@@ -51,7 +52,7 @@ def test_the_native_forms_know_nothing_of_pythonfmu():
 
 @pytest.mark.parametrize("version", native_form.SHIM)
 def test_a_change_of_any_source_is_another_guid(monkeypatch, version):
-    """Kernel, table, exporter and C shim; the other form's exporter is none of them."""
+    """Kernel, table, texts, exporter and C shim; another form's or model's is none of them."""
     before = native_form.guid("oscillator", version)
     read = Path.read_bytes
     for changed, same in (
@@ -59,6 +60,11 @@ def test_a_change_of_any_source_is_another_guid(monkeypatch, version):
         ("models/oscillator/variables.py", False),
         ("export/linking.py", False),
         ("runtime/native/core.c", False),
+        ("models/form.html.in", False),
+        ("models/license.txt", False),
+        ("models/oscillator/documentation/index.html.in", False),
+        ("models/oscillator/reference/TwoMassImpactOscillator_ref.csv", False),
+        ("models/motor_shaker/documentation/index.html.in", True),
         ("kernels/shaker/stepper.py", True),
         ("export/pythonfmu_form.py", True),
         ("runtime/slave.py", True),
@@ -69,6 +75,21 @@ def test_a_change_of_any_source_is_another_guid(monkeypatch, version):
 
         monkeypatch.setattr(Path, "read_bytes", altered)
         assert (native_form.guid("oscillator", version) == before) == same, changed
+
+
+def test_sources_edited_during_an_export_are_named(monkeypatch, tmp_path):
+    """And no FMU of two readings is written."""
+    read = Path.read_bytes
+    place = sources.ROOT / "kernels/oscillator/impact.py"
+
+    def edited_meanwhile(*_):
+        monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b"#" * (path == place))
+        return {}
+
+    monkeypatch.setattr(pythonfmu_form, "libraries", edited_meanwhile)
+    with pytest.raises(CannotExport, match=f"^{place} was edited .*: expected a new process$"):
+        forms.export("TwoMassImpactOscillator", "fmi2-python", tmp_path)
+    assert not list(tmp_path.rglob("*.fmu"))
 
 
 def test_guids_need_the_standard_library_alone():

@@ -6,31 +6,33 @@
 
 #include "importer.h"
 
+enum { MOST = 3 }; /* variables in one call */
+
 typedef struct { const uint8_t *at, *end; } Bytes;
 
-static inline uint8_t take(Bytes *in) { return in->at < in->end ? *in->at++ : 0; }
-static inline bool one_in(Bytes *in, int count) { return take(in) % count == 0; }
+/* An instance, a state of it that was kept, and the time it has reached. */
+typedef struct { void *instance, *state; double time; } Slot;
 
-/* Any variable, now and then no variable at all. */
-static inline unsigned any_reference(Bytes *in) {
-    static const unsigned other[] = {0u, 1000u, 1005u, 1006u, 2000u, 2001u, 0x7fffffffu, 0xffffffffu};
-    if (one_in(in, 8)) return other[take(in) % 8];
-    unsigned place = take(in);
-    return NAMES[(one_in(in, 16) ? place * 256u + take(in) : place % 48u) % NAME_COUNT].reference;
-}
+uint8_t take(Bytes *in);
+bool one_in(Bytes *in, int count);
+unsigned any_reference(Bytes *in);
+double any_number(Bytes *in);
 
-/* Numbers that keep a step short, and those that are refused; no driver of 1e30 rad/s, which is refused only after ten seconds. */
-static inline double any_number(Bytes *in) {
-    static const double special[] = {NAN, INFINITY, -INFINITY, -1.0, 0.0, 1.0, 0.5, 1e301};
-    uint8_t kind = take(in);
-    return kind < 64 ? special[kind % 8] : ((double)take(in) - 64.0) / 16.0;
-}
+/* Every refusal comes with a message. */
+void told(int status);
 
-static inline double any_step(Bytes *in) {
-    static const double special[] = {NAN, INFINITY, -1.0, 5e-324, 0.0};
-    uint8_t kind = take(in);
-    return kind < 32 ? special[kind % 5] : (kind - 31) / 64.0;
-}
+/* An FMI version: each reads its arguments from the bytes. */
+void fuzz_open(Bytes *in, Slot *slot);
+void fuzz_values(Bytes *in, void *instance);
+void fuzz_life(Bytes *in, void *instance);
+void fuzz_rest(Bytes *in, void *instance);
+void fuzz_step(Bytes *in, void *instance, double time, double size);
+double fuzz_time(void *instance, double otherwise); /* reached, where the FMU tells it */
+void fuzz_reset(void *instance);
+void fuzz_keep(Slot *slot);
+bool fuzz_return(Slot *slot);
+void fuzz_forget(Slot *slot);
+int fuzz_read(void *instance, const char *bytes, size_t size, void **state);
 
 /* The calls of one input, on a few instances; all are freed at the end. */
 void fuzz(const uint8_t *data, size_t size);

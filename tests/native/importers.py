@@ -102,7 +102,7 @@ def compile_importer(version, fmu, folder, command=None, options=("-O1", "-g")):
         (folder / name).write_bytes(content)
     number = version[-1]
     parts = ("importer", "fuzz", "hostile", "arguments")
-    sources = [HERE / "modes.c", *(HERE / f"{part}{number}.c" for part in parts)]
+    sources = [*(HERE / f"{part}{number}.c" for part in parts), HERE / "modes.c", HERE / "fuzz.c"]
     target = folder / f"importer{number}.exe"
     windows = any("windows" in word for word in command or ())
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]

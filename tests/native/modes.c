@@ -274,6 +274,20 @@ static void random_calls(unsigned seed, int count) {
     }
 }
 
+/* Inputs of the standard input, one a line in hexadecimal digits. */
+static void replay(void) {
+    char line[2048];
+    int played = 0;
+    while (scanf("%2047s", line) == 1) {
+        uint8_t data[1024];
+        size_t size = strlen(line) / 2;
+        for (size_t i = 0; i < size; i++) data[i] = (uint8_t)strtoul((char[]){line[2 * i], line[2 * i + 1], 0}, NULL, 16);
+        fuzz(data, size);
+        played++;
+    }
+    printf("PLAYED %d\n", played);
+}
+
 int main(int count, char **arguments) {
     if (count < 3) return 2;
     const char *mode = arguments[2];
@@ -286,6 +300,7 @@ int main(int count, char **arguments) {
     else if (strcmp(mode, "many") == 0 && count > 5) many(NUMBER(3), NUMBER(4), NUMBER(5));
     else if (strcmp(mode, "million") == 0 && count > 3) million(NUMBER(3), count < 5);
     else if (strcmp(mode, "speed") == 0 && count > 3) speed(NUMBER(3));
+    else if (strcmp(mode, "replay") == 0) replay();
     else if (strcmp(mode, "forge") == 0) forge();
     else if (strcmp(mode, "corrupt") == 0 && count > 4) corrupt((size_t)NUMBER(3), strtod(arguments[4], NULL), count > 5);
     else return 2;

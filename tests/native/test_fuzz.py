@@ -2,6 +2,7 @@
 shim all hostile tests together reach.
 """
 
+import hashlib
 import os
 import re
 import shutil
@@ -19,6 +20,7 @@ from .test_memory_checks import VALGRIND, needs_valgrind
 
 MODELS = tuple(forms.MODELS)
 SECONDS = int(os.environ.get("FUZZ_SECONDS", "600"))  # of the coverage-guided fuzzer, each
+CORPUS = Path(os.environ["FUZZ_CORPUS"]) if "FUZZ_CORPUS" in os.environ else None  # kept there
 SHIM = ("core.c", "fmi2.c", "fmi3.c", "fmi3_absent.c")
 
 
@@ -42,6 +44,11 @@ def importer_of_model(request, exported, fmus, tmp_path_factory):
 
 def is_shaker(importer):
     return importer.library.stem == "MotorShaker"
+
+
+def seeds(version):
+    """Inputs that the fuzzer has found to take different ways, in hexadecimal digits."""
+    return (importers.HERE / "corpus" / f"{version}.txt").read_text().split()
 
 
 def test_calls_drawn_at_random_are_survived(importer_of_model):
@@ -171,7 +178,9 @@ def test_a_coverage_guided_fuzzer_finds_nothing(exported, fmus, tmp_path, versio
         forms.MODELS[model],
         ("clang",),
     )
-    units = [importers.HERE / f"{unit}{number}.c" for unit in ("importer", "fuzz")]
+    units = [
+        importers.HERE / f"{unit}.c" for unit in (f"importer{number}", f"fuzz{number}", "fuzz")
+    ]
     options = ["-std=gnu11", "-O1", "-g", f"-fsanitize=fuzzer,{guards}", f"-I{folder}"]
     command = [
         "clang",
@@ -184,10 +193,13 @@ def test_a_coverage_guided_fuzzer_finds_nothing(exported, fmus, tmp_path, versio
         "fuzzer",
     ]
     importers.run_compiler(command, folder)
-    (folder / "corpus").mkdir()
+    corpus = CORPUS / f"{version}-{model}" if CORPUS else folder / "corpus"
+    corpus.mkdir(parents=True, exist_ok=True)
+    for line in seeds(version):
+        (corpus / hashlib.sha1(bytes.fromhex(line)).hexdigest()).write_bytes(bytes.fromhex(line))
     limits = [f"-max_total_time={SECONDS}", "-max_len=512", "-timeout=60", "-print_final_stats=1"]
     done = subprocess.run(
-        ["./fuzzer", "corpus", *limits],
+        ["./fuzzer", corpus, *limits],
         cwd=folder,
         env={**os.environ, "FMU_BINARY": str(library)},
         capture_output=True,

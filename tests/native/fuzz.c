@@ -1,0 +1,95 @@
+/* What both FMI versions are put through, see fuzz.h. */
+#include "fuzz.h"
+
+enum { INSTANCES = 3 };
+
+uint8_t take(Bytes *in) { return in->at < in->end ? *in->at++ : 0; }
+
+bool one_in(Bytes *in, int count) { return take(in) % count == 0; }
+
+/* Any variable, now and then no variable at all. */
+unsigned any_reference(Bytes *in) {
+    static const unsigned other[] = {0u, 1000u, 1005u, 1006u, 2000u, 2001u, 0x7fffffffu, 0xffffffffu};
+    if (one_in(in, 8)) return other[take(in) % 8];
+    unsigned place = take(in);
+    return NAMES[(one_in(in, 16) ? place * 256u + take(in) : place % 48u) % NAME_COUNT].reference;
+}
+
+/* Numbers that keep a step short, and those that are refused; no driver of 1e30 rad/s, which is refused only after ten seconds. */
+double any_number(Bytes *in) {
+    static const double special[] = {NAN, INFINITY, -INFINITY, -1.0, 0.0, 1.0, 0.5, 1e301};
+    uint8_t kind = take(in);
+    return kind < 64 ? special[kind % 8] : ((double)take(in) - 64.0) / 16.0;
+}
+
+static double any_step(Bytes *in) {
+    static const double special[] = {NAN, INFINITY, -1.0, 5e-324, 0.0};
+    uint8_t kind = take(in);
+    return kind < 32 ? special[kind % 5] : (kind - 31) / 64.0;
+}
+
+void told(int status) {
+    CHECK(status == 0 || messages > 0);
+    messages = 0;
+}
+
+/* A byte changed anywhere, or a number of the state: another one, or that of another place. */
+static void damage(Bytes *in, char *bytes, size_t size) {
+    size_t place = (size_t)take(in) * 256 + take(in), count = size / sizeof(double) - 1; /* the last is the checksum */
+    char *number = bytes + size - (place % count + 2) * sizeof(double);
+    double value;
+    switch (take(in) % 3) {
+    case 0: bytes[place % size] ^= (char)take(in); return;
+    case 1: value = any_number(in); break;
+    default: memcpy(&value, bytes + size - ((size_t)take(in) % count + 2) * sizeof value, sizeof value);
+    }
+    memcpy(number, &value, sizeof value);
+}
+
+/* Saved, damaged or not, sealed or not, and read again. */
+static void serialised(Bytes *in, Slot *slot) {
+    char *bytes;
+    size_t size = fmu_save(slot->instance, &bytes);
+    bool damaged = !one_in(in, 3);
+    for (int i = damaged ? 1 + take(in) % 3 : 0; i > 0; i--) damage(in, bytes, size);
+    if (one_in(in, 2)) seal(bytes, size);
+    messages = 0;
+    Slot read = {.instance = slot->instance};
+    int status = fuzz_read(read.instance, bytes, one_in(in, 16) ? size - 1 : size, &read.state);
+    told(status);
+    if (status == 0 && fuzz_return(&read)) {
+        slot->time = fuzz_time(slot->instance, slot->time);
+        fuzz_step(in, slot->instance, slot->time, damaged ? 0x1p-20 : 0.25);
+        if (damaged) fuzz_reset(slot->instance); /* what nobody saved may take long to step */
+        slot->time = fuzz_time(slot->instance, slot->time);
+    }
+    fuzz_forget(&read);
+    free(bytes);
+}
+
+static void call(Bytes *in, Slot *slot) {
+    switch (take(in) % 14) {
+    case 0: case 1: case 2: fuzz_values(in, slot->instance); break;
+    case 3: case 4: case 5: fuzz_life(in, slot->instance); break;
+    case 6: case 7: serialised(in, slot); break;
+    case 8: fuzz_keep(slot); break;
+    case 9: if (slot->state) fuzz_return(slot); break;
+    case 10: fuzz_rest(in, slot->instance); break;
+    default: {
+        double size = any_step(in), time = one_in(in, 16) ? any_number(in) : slot->time;
+        fuzz_step(in, slot->instance, time, size);
+    }
+    }
+    slot->time = fuzz_time(slot->instance, slot->time);
+}
+
+void fuzz(const uint8_t *data, size_t size) {
+    Bytes in = {data, data + size};
+    Slot slots[INSTANCES] = {0};
+    for (int i = 0; i < INSTANCES; i++) fuzz_open(&in, &slots[i]);
+    while (in.at < in.end) call(&in, &slots[take(&in) % INSTANCES]);
+    for (int i = 0; i < INSTANCES; i++) {
+        fuzz_forget(&slots[i]);
+        fmu_close(slots[i].instance);
+    }
+}
