@@ -2,7 +2,9 @@
 the machine that made it.
 """
 
+import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -12,6 +14,8 @@ from pathlib import Path
 import fmpy
 import pytest
 from fmpy.validation import validate_fmu
+
+from fmu_src.export.forms import FORMS, PLAIN_FORMS
 
 from ..fresh import ROOT
 from .copies import export_copy
@@ -68,21 +72,43 @@ def test_guid_belongs_to_the_sources(copies, tmp_path):
         assert ours and not ours & names
 
 
+def other_pythons():
+    """Interpreters of other versions than this one that can build: by pyenv, or on the path."""
+    ours = f"{sys.version_info.major}.{sys.version_info.minor}"
+    versions = [f"3.{minor}" for minor in range(10, 15) if f"3.{minor}" != ours]
+    pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
+    found = [[*pyenv.glob(f"{v}.*/bin/python"), shutil.which(f"python{v}")] for v in versions]
+    return [path for paths in found for path in paths if path]
+
+
+def built(python, root):
+    """All forms from the sources in ``root``; bytes by name."""
+    command = [python, "-m", "orchestrate", "build", "--folder", root / "made"]
+    for form in ([], ["--plain"]):
+        subprocess.run([*command, *form], cwd=root, check=True, capture_output=True)
+    return {path.relative_to(root): path.read_bytes() for path in root.rglob("made/*/*.fmu")}
+
+
 @pytest.mark.slow
 def test_two_complete_builds_are_the_same_bytes(tmp_path):
-    """With everything compiled: all forms."""
-    built = []
-    for name in ("a", "b"):
-        command = [sys.executable, "-m", "orchestrate", "build", "--folder", str(tmp_path / name)]
-        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
-        built.append(
-            {
-                path.relative_to(tmp_path / name): path.read_bytes()
-                for path in sorted((tmp_path / name).rglob("*.fmu"))
-            }
-        )
-    assert set(FMUS) <= {path.parts[0] for path in built[0]}
-    assert built[0] == built[1]
+    """In different folders, by different versions of Python."""
+    roots = [tmp_path / "a", tmp_path / "another place"]
+    for root in roots:
+        root.mkdir()
+        for name in ("fmu_src", "orchestrate"):
+            shutil.copytree(ROOT / name, root / name, ignore=shutil.ignore_patterns("__pycache__"))
+        for name in ("pyproject.toml", "README.md", "LICENSE", "hatch_build.py"):
+            shutil.copy(ROOT / name, root)
+    others = other_pythons()
+    if not others:
+        pytest.skip("there is no other Python from 3.10 to 3.14")
+    subprocess.run([others[-1], "-m", "venv", tmp_path / "environment"], check=True)
+    other = tmp_path / "environment" / "bin" / "python"
+    pip = [other, "-m", "pip", "install", "-q", "-e", f"{roots[1]}[build]"]
+    subprocess.run(pip, check=True)
+    first, second = built(sys.executable, roots[0]), built(other, roots[1])
+    assert len(first) == 2 * len((*FORMS, *PLAIN_FORMS))
+    assert first == second
 
 
 def test_fmpy_finds_no_problem(fmu):
