@@ -114,9 +114,9 @@ class Commands:
         return sum(map(chunks_in, self.output.glob("*.journal")))
 
 
-def end(process: subprocess.Popen[str]) -> Done:
-    """Wait for the end of a process."""
-    out, err = process.communicate(timeout=PATIENCE)
+def end(process: subprocess.Popen[str], patience: float = PATIENCE) -> Done:
+    """Wait for the end of a process, ``patience`` seconds at most."""
+    out, err = process.communicate(timeout=patience)
     return Done(process.returncode, out, err)
 
 

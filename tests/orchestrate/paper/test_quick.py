@@ -27,7 +27,7 @@ PICTURES = [
 def test_the_whole_paper(exported, tmp_path):
     commands = Commands(tmp_path)
     try:
-        done = end(commands.start("paper", "--quick"))
+        done = end(commands.start("paper", "--quick"), patience=1800.0)
         assert done.code == 0, done.err
     finally:
         commands.clean_up()
