@@ -171,5 +171,5 @@ def stored(option: str, path: Path) -> xr.Dataset:
         raise InputError(f"{option} {path}: no such file; expected a result of an earlier command")
     try:
         return load(path)
-    except StoreError:
-        raise InputError(f"{option} {path}: not readable; expected a NetCDF file") from None
+    except StoreError as error:
+        raise InputError(f"{option} {error}; expected a NetCDF file") from None

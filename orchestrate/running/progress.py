@@ -78,12 +78,36 @@ class Progress:
         self.job, self.store, self.identity, self.fmus = job, store, identity, fmus
         self.chunks = job.chunks()
         self.result = store.result()
-        self.there = set(range(len(self.chunks))) if self.complete else store.indices()
+        self.there = set(range(len(self.chunks))) if self.complete else self.sound()
         self.under_way: set[int] = set()
         self.guesses: dict[int, Guess] = {}
         self.wasted = 0  # items that were guessed in vain
         self.inputs: Mapping[str, xr.Dataset] = {}
         self.items: Sequence[Any] | None = None
+
+    def sound(self) -> set[int]:
+        """Chunks that are there and are this job's; others are dropped."""
+        found = set()
+        for index in sorted(self.store.indices()):
+            problem = self.problem(index)
+            if problem:
+                self.store.drop(index, problem)
+            else:
+                found.add(index)
+        return found
+
+    def problem(self, index: int) -> str:
+        """Why a stored chunk cannot be one of this job's; an empty string where it can."""
+        if not 0 <= index < len(self.chunks):
+            return f"none of the {len(self.chunks)} of this job"
+        try:
+            table = self.store.get(index)
+        except Exception:
+            return "not readable"
+        lengths = {len(values) for values in table.values() if values.ndim}
+        if lengths != {self.size(index)}:
+            return f"not of {self.size(index)} items"
+        return ""
 
     @property
     def complete(self) -> bool:
@@ -220,7 +244,7 @@ class Progress:
             return
         if self.wasted:
             log.debug("%s: %d items were guessed in vain", self.job.name, self.wasted)
-        dataset = self.job.dataset(self.store.table(), self.inputs)
+        dataset = self.job.dataset(self.store.table(len(self.chunks)), self.inputs)
         dataset = with_provenance(dataset, self.job, self.identity, self.fmus, self.store.begun)
         self.result = self.store.finish(dataset)
         self.inputs, self.items = {}, None

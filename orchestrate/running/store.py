@@ -15,9 +15,10 @@ import numpy as np
 
 from ..errors import InputError, StaleError, StoreError
 from ..files import open_folder, write_whole
+from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
-from .journal import Journal, Lock, discard, journal_path
+from .journal import ANEW, Journal, Lock, discard, journal_path
 from .options import RunOptions
 
 if TYPE_CHECKING:
@@ -55,6 +56,10 @@ class Store(ABC):
         """Keep a chunk."""
 
     @abstractmethod
+    def drop(self, index: int, reason: str) -> None:
+        """Forget a chunk that cannot be used, so that it is computed anew."""
+
+    @abstractmethod
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
         """Keep the result and drop the chunks."""
 
@@ -62,9 +67,9 @@ class Store(ABC):
     def close(self) -> None:
         """Let go of everything."""
 
-    def table(self) -> Table:
+    def table(self, count: int) -> Table:
         """All chunks put together along their first axis."""
-        parts = [self.get(index) for index in sorted(self.indices())]
+        parts = [self.get(index) for index in range(count)]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
@@ -91,6 +96,10 @@ class Memory(Store):
     def put(self, index: int, table: Table) -> None:
         """Keep a chunk."""
         self._chunks[index] = table
+
+    def drop(self, index: int, reason: str) -> None:
+        """Forget a chunk."""
+        del self._chunks[index]
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
         """Keep the result and drop the chunks."""
@@ -124,15 +133,22 @@ class Disk(Store):
     def __init__(self, path: Path, identity: Identity, options: RunOptions) -> None:
         self.path, self.identity, self.options = path, identity, options
         open_folder(path.parent)
+        if path.is_dir():
+            raise InputError(
+                f"{path}: a folder; expected a place for a file: remove it, or choose another"
+            )
         self._lock = Lock(path)
         self._journal: Journal | None = None
+        self._found: xr.Dataset | None = None
         self.begun = ""
         try:
             if path.exists() and options.force:
                 path.unlink()
                 discard(journal_path(path))
             if path.exists():
-                self.check(read_identity(path), path)
+                identity = read_identity(path)
+                self._found = load(path)  # first of all, or damage is taken for another question
+                self.check(identity, path)
             else:
                 self._journal = self.open_journal()
                 self.begun = self._journal.begun
@@ -143,12 +159,16 @@ class Disk(Store):
     def open_journal(self) -> Journal:
         """The journal of this job, begun where there is none."""
         path = journal_path(self.path)
-        journal = Journal(path, self.identity, now())
+        journal: Journal | None = None
         try:
+            journal = Journal(path, self.identity, now())
             self.check(journal.identity, path)
-        except InputError:
-            journal.close()
-            if not self.options.force:
+            if self.options.force:
+                journal.indices()  # a journal whose rows cannot even be listed goes
+        except (InputError, StoreError):
+            if journal is not None:
+                journal.close()
+            if not self.options.force or path.is_dir():
                 raise
             discard(path)
             return Journal(path, self.identity, now())
@@ -173,7 +193,7 @@ class Disk(Store):
 
     def result(self) -> xr.Dataset | None:
         """The finished result, where it is there."""
-        return load(self.path) if self._journal is None and self.path.exists() else None
+        return self._found
 
     @property
     def journal(self) -> Journal:
@@ -193,12 +213,17 @@ class Disk(Store):
         """Keep a chunk."""
         self.journal.put(index, table)
 
+    def drop(self, index: int, reason: str) -> None:
+        """Forget a chunk."""
+        self.journal.drop(index, reason)
+
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
         """Keep the result and drop the chunks."""
         write_netcdf(dataset, self.path)
         self.journal.remove()
         self._journal = None
-        return load(self.path)
+        self._found = load(self.path)
+        return self._found
 
     def close(self) -> None:
         """Close the journal and let others at it; where nothing is in it, it goes."""
@@ -217,21 +242,29 @@ def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
 
 
 def load(path: Path) -> xr.Dataset:
-    """A result from disk, in memory.
+    """A result from disk, in memory; its checksum has been verified and is left out.
+
+    A result without one, of a version that wrote none or of another tool, is taken as it is.
 
     Raises
     ------
     StoreError
-        Where it cannot be read.
+        Where it cannot be read, or its checksum does not fit.
     """
     import xarray as xr
 
     try:
-        return xr.load_dataset(path, engine="netcdf4")
+        data = xr.load_dataset(path, engine="netcdf4")
+        told = data.attrs.pop(ATTRIBUTE, None)
+        fits = told is None or told == checksum(data)
     except Exception as error:
+        raise StoreError(f"{path}: damaged ({first_line(error)}); {ANEW}") from error
+    if not fits:
         raise StoreError(
-            f"{path}: damaged ({first_line(error)}); remove it to begin anew"
-        ) from error
+            f"{path}: its contents do not fit its checksum: damaged, or changed by hand; {ANEW}, "
+            f"or delete its attribute {ATTRIBUTE} to take it as it is"
+        )
+    return data
 
 
 def first_line(error: BaseException) -> str:
@@ -261,7 +294,8 @@ def read_identity(path: Path) -> Identity:
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
-    """Write a dataset, whole or not at all."""
+    """Write a dataset with its checksum, whole or not at all."""
+    dataset = dataset.assign_attrs({ATTRIBUTE: checksum(dataset)})
     large = [name for name, variable in dataset.data_vars.items() if variable.size > COMPRESSED]
     encoding = {name: {"zlib": True, "complevel": 4} for name in large}
     return write_whole(
