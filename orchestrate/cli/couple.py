@@ -222,8 +222,13 @@ def told_jump(at: xr.Dataset, volts: float, lag: float) -> str:
     if not math.isfinite(voltage):
         return f"jump {jump} none ({at.no_jump.item()})"
     text = f"jump {jump} at {voltage:.4f} V (eta0 = {voltage / volts:.4f})"
+    held = float(at.held_jumps)
+    if math.isfinite(held):
+        return f"{text}, told by held voltages: the motion is lost at {held:.4f} V"
     if math.isfinite(lag):
-        about = f", about {voltage - lag:.4f} V at rate 0"
+        kind = str(at.averaged_kind.item()) if "averaged_kind" in at else ""
+        by = f" ({kind})" if kind not in ("", "fold") else ""
+        about = f", about {voltage - lag:.4f} V at rate 0{by}"
         return f"{text}, {abs(lag):.4f} V late at this rate{about}"
     return f"{text}, late by what jump-voltages tells"
 

@@ -129,7 +129,8 @@ def voltages_of(
     volts = drive.volts(structure)
     if arguments.eta0:
         return tuple(volts * value for value in number_or_ends("--eta0", arguments.eta0))
-    if arguments.drive in USUAL and not arguments.set and not arguments.structure:
+    own = arguments.set or arguments.structure or arguments.rated_voltage is not None
+    if arguments.drive in USUAL and not own:
         first, last = ends_of("--eta0", USUAL[arguments.drive][0])
         return first * volts, last * volts
     down, up = folds_of(arguments, structure, drive)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -165,6 +165,12 @@ def add_drive(parser: argparse.ArgumentParser) -> None:
     other = "file or set with another [structure] than that of --drive"
     group.add_argument("--structure", metavar="FILE", help=other)
     add_set(group, "a parameter of the structure, or of motor and box in SI; may be repeated")
+    sheet = parser.add_argument_group(
+        "a motor by its datasheet", "in place of motor_constant and armature_resistance: all three"
+    )
+    sheet.add_argument("--rated-voltage", type=float, metavar="V", help="of the motor, V")
+    sheet.add_argument("--no-load-rpm", type=float, metavar="RPM", help="its speed without load")
+    sheet.add_argument("--stall-torque", type=float, metavar="N.M", help="its torque at rest, N m")
 
 
 def described(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
@@ -177,7 +183,34 @@ def described(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
     own = {field.name for field in fields(Drive)}
     of_drive = {name: float(value) for name, value in changes.items() if name in own}
     of_structure = {name: value for name, value in changes.items() if name not in own}
+    of_drive |= datasheet_of(arguments, of_drive)
     return structure.replace(**of_structure), drive.replace(**of_drive)
+
+
+def datasheet_of(arguments: argparse.Namespace, beside: Mapping[str, float]) -> dict[str, float]:
+    """The motor's constants by the datasheet's options, where they are given."""
+    from ..structures.drive import torque_line
+
+    names = ("rated_voltage", "no_load_rpm", "stall_torque")
+    values = {name: getattr(arguments, name) for name in names}
+    options = {name: f"--{name.replace('_', '-')}" for name in names}
+    given = [name for name in names if values[name] is not None]
+    if not given:
+        return {}
+    if len(given) < len(names):
+        missing = next(name for name in names if name not in given)
+        text = f"{options[given[0]]} {values[given[0]]:g}: without {options[missing]}"
+        raise InputError(f"{text}; expected {', '.join(options.values())} together")
+    for name, option in options.items():
+        if not (math.isfinite(values[name]) and values[name] > 0.0):
+            raise InputError(f"{option} {values[name]:g}: expected a number > 0")
+    for name in ("motor_constant", "armature_resistance"):
+        if name in beside:
+            text = f"--set {name}={beside[name]:g}: beside {options['rated_voltage']}"
+            raise InputError(f"{text}; expected one of them")
+    speed = 2.0 * math.pi * values["no_load_rpm"] / 60.0
+    line = torque_line(values["rated_voltage"], speed, values["stall_torque"])
+    return dict(zip(("motor_constant", "armature_resistance"), line, strict=True))
 
 
 # -- the box's motion -----------------------------------------------------------------------------

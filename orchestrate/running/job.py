@@ -56,6 +56,7 @@ class Job(ABC):
     models: ClassVar[tuple[str, ...]] = ("TwoMassImpactOscillator",)
     chunk: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
+    closing: ClassVar[bool] = False  # a sequential job's last chunk starts from all before it
     lead: ClassVar[int] = 0  # items after which a sequential job has forgotten its beginning
     item: ClassVar[str] = "it"  # what the progress bar counts
 
@@ -85,7 +86,8 @@ class Job(ABC):
             FMU by model name.
         items : sequence
         carry : dict of ndarray, optional
-            Result of the chunk before, in a sequential job.
+            Result of the chunk before, in a sequential job; of all before, put together, for the
+            last chunk of a ``closing`` one.
 
         Returns
         -------

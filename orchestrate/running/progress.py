@@ -146,8 +146,14 @@ class Progress:
         """Chunks whose beginning is known."""
         for chunk in self.chunks:
             if self.is_certain(chunk):
-                carry = None if chunk.after is None else self.store.get(chunk.after)
-                yield Task(chunk, self.items_of(chunk), carry, (), False)
+                yield Task(chunk, self.items_of(chunk), self.carry(chunk), (), False)
+
+    def carry(self, chunk: Chunk) -> Table | None:
+        """What a chunk starts from: the one before, or all of them."""
+        if chunk.after is None:
+            return None
+        last = chunk.index == len(self.chunks) - 1
+        return self.store.table() if self.job.closing and last else self.store.get(chunk.after)
 
     def is_certain(self, chunk: Chunk) -> bool:
         """Whether nobody is at a chunk whose beginning is known."""

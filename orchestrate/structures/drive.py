@@ -170,16 +170,7 @@ class Drive:
         >>> drive.motor_constant, drive.armature_resistance, round(drive.rotor_inertia, 9)
         (0.06, 12.0, 5e-05)
         """
-        given = {
-            "rated_voltage": rated_voltage,
-            "no_load_speed": no_load_speed,
-            "stall_torque": stall_torque,
-        }
-        for name, value in given.items():
-            if not (math.isfinite(value) and value > 0.0):
-                raise InputError(f"{name} = {value}: expected a number > 0")
-        constant = rated_voltage / no_load_speed
-        resistance = constant * rated_voltage / stall_torque
+        constant, resistance = torque_line(rated_voltage, no_load_speed, stall_torque)
         if (rotor_inertia is None) == (mechanical_time_constant is None):
             raise InputError(
                 f"rotor_inertia = {rotor_inertia} and mechanical_time_constant = "
@@ -262,6 +253,27 @@ class Drive:
     def parameters(self) -> dict[str, float]:
         """The start values of ``MotorShaker``."""
         return dataclasses.asdict(self)
+
+
+def torque_line(
+    rated_voltage: float, no_load_speed: float, stall_torque: float
+) -> tuple[float, float]:
+    """K in N m/A and R_a in Ohm of the line between a datasheet's two points, V, rad/s and N m.
+
+    Raises
+    ------
+    InputError
+    """
+    given = {
+        "rated_voltage": rated_voltage,
+        "no_load_speed": no_load_speed,
+        "stall_torque": stall_torque,
+    }
+    for name, value in given.items():
+        if not (math.isfinite(value) and value > 0.0):
+            raise InputError(f"{name} = {value}: expected a number > 0")
+    constant = rated_voltage / no_load_speed
+    return constant, constant * rated_voltage / stall_torque
 
 
 def stiffness(ratio: float, omega: float, mass: float) -> float:

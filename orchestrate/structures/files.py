@@ -10,7 +10,11 @@ section           keys
                   (m) and ``acceleration_g`` (peak, in 9.80665 m/s^2), which may be left out with
                   ``eta``: 1/eta^2 m; ``phase`` (rad)
 ``[motor]``       ``unbalance_mass unbalance_radius rotor_inertia motor_constant
-                  armature_resistance armature_inductance``, SI; or ``beta epsilon b``
+                  armature_resistance armature_inductance``, SI; or, in place of ``motor_constant
+                  armature_resistance``, a datasheet's ``rated_voltage stall_torque`` and one of
+                  ``no_load_speed_rpm no_load_speed_rad_s no_load_speed_hz``: ``rotor_inertia`` is
+                  then the rotor's alone, without the unbalance, or ``mechanical_time_constant``
+                  (s) stands in place of it; or ``beta epsilon b``
 ``[box]``         ``box_mass box_stiffness box_damping``, SI; or ``Omega_b D_b``. What is not SI
                   refers to the structure.
 ================  ================================================================================

@@ -38,14 +38,21 @@ FREQUENCIES = (*(f"frequency_{unit}" for unit in TO_RAD_S), "eta")
 AMPLITUDES = ("amplitude", "acceleration_g")
 SI_BOX = tuple(name for name in DRIVE if name.startswith("box_"))
 SI_MOTOR = tuple(name for name in DRIVE if name not in SI_BOX)
+LINE = ("motor_constant", "armature_resistance")  # what a datasheet tells in its own way:
+SPEEDS = tuple(f"no_load_speed_{unit}" for unit in TO_RAD_S)
+SHEET = ("rated_voltage", "stall_torque", *SPEEDS, "mechanical_time_constant")
 MOTOR_NUMBERS, BOX_NUMBERS = ("beta", "epsilon", "b"), ("Omega_b", "D_b")
 QUANTITIES = {
     **{q.name: q for q in (*STRUCTURE.values(), *EXCITATION.values(), *DRIVE.values())},
     **NUMBERS,
     **{
         f"{what}_{unit}": Quantity(f"{what}_{unit}", "1", "", SMALLEST, LARGEST)
-        for what in ("omega", "frequency")
+        for what in ("omega", "frequency", "no_load_speed")
         for unit in TO_RAD_S
+    },
+    **{
+        name: Quantity(name, unit, "", SMALLEST, LARGEST)
+        for name, unit in zip(SHEET[:2] + SHEET[-1:], ("V", "N.m", "s"), strict=True)
     },
     "acceleration_g": Quantity("acceleration_g", "1", "", 0.0, LARGEST),
 }
@@ -116,7 +123,7 @@ class Section:
 
     def rad_s(self, key: str) -> float:
         """The frequency at a key whose ending says the unit, rad/s."""
-        what, _, unit = key.partition("_")
+        unit = next(unit for unit in TO_RAD_S if key.endswith(f"_{unit}"))
         return TO_RAD_S[unit](self.number(key))
 
     def make(self, maker: Callable[[], Described]) -> Described:
@@ -171,21 +178,32 @@ def read_excitation(section: Section, structure: Structure | None) -> Excitation
 
 def read_drive(motor: Section, box: Section, structure: Structure | None) -> Drive:
     """The drive of ``[motor]`` and ``[box]``."""
-    motor.allow(*SI_MOTOR, *MOTOR_NUMBERS)
+    motor.allow(*SI_MOTOR, *SHEET, *MOTOR_NUMBERS)
     box.allow(*SI_BOX, *BOX_NUMBERS)
-    by_numbers = motor.either(SI_MOTOR, MOTOR_NUMBERS)
+    by_numbers = motor.either((*SI_MOTOR, *SHEET), MOTOR_NUMBERS)
     if box.either(SI_BOX, BOX_NUMBERS) != by_numbers:
         kind = ", ".join(BOX_NUMBERS if by_numbers else SI_BOX)
         beside = "non-dimensional" if by_numbers else "SI"
         raise InputError(f"{box.path}: [box] beside a {beside} [motor]: expected {kind}")
     if not by_numbers:
-        motor.need([name for name in SI_MOTOR if name != "armature_inductance"])
         box.need(SI_BOX)
-        values = {**motor.numbers(SI_MOTOR), **box.numbers(SI_BOX)}
-        return motor.make(lambda: Drive(**values))
+        return si_drive(motor, box.numbers(SI_BOX))
     motor.need(MOTOR_NUMBERS)
     box.need(BOX_NUMBERS)
     if structure is None:
         raise motor.error("beta", "it refers to a structure; expected a section [structure]")
     numbers = {**motor.numbers(MOTOR_NUMBERS), **box.numbers(BOX_NUMBERS)}
     return motor.make(lambda: Drive.nondimensional(**numbers, structure=structure))
+
+
+def si_drive(motor: Section, box: dict[str, float]) -> Drive:
+    """The drive of a motor in SI, by its constants or as its datasheet has it."""
+    values = {**motor.numbers(SI_MOTOR), **box}
+    if not motor.either(LINE, SHEET):
+        motor.need([name for name in SI_MOTOR if name != "armature_inductance"])
+        return motor.make(lambda: Drive(**values))
+    motor.need(("rated_voltage", "stall_torque", "unbalance_mass", "unbalance_radius"))
+    speed = motor.rad_s(motor.exactly_one(SPEEDS))
+    motor.exactly_one(("rotor_inertia", "mechanical_time_constant"))
+    values |= motor.numbers(("rated_voltage", "stall_torque", "mechanical_time_constant"))
+    return motor.make(lambda: Drive.from_datasheet(**values, no_load_speed=speed))

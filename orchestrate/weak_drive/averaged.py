@@ -15,6 +15,7 @@ eta0 = U/(K omega).
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,8 @@ from numpy.typing import ArrayLike
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 
+FOLD, TORUS = "fold", "Neimark-Sacker"
+
 
 class Place(NamedTuple):
     """A point of the branch of stationary motions: a fold, or a Neimark-Sacker point.
@@ -32,10 +35,13 @@ class Place(NamedTuple):
     ----------
     eta0, Omega : float
         Voltage and speed.
+    kind : str
+        ``"fold"`` or ``"Neimark-Sacker"``.
     """
 
     eta0: float
     Omega: float
+    kind: str
 
 
 def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial, Polynomial]:
@@ -110,7 +116,7 @@ def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
     speeds = [polished(numerator, root) for root in real if low <= root <= high]
-    return [Place(float(no_load_speed(structure, drive, Omega)), Omega) for Omega in speeds]
+    return [Place(float(no_load_speed(structure, drive, Omega)), Omega, FOLD) for Omega in speeds]
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
@@ -195,8 +201,32 @@ def torus_points(
         roots = growth(structure, drive, Omega)
         pairs = roots[np.abs(roots.imag) > 1e-9]
         if np.abs(pairs.real).min() < 1e-6:  # no two real ones of opposite signs
-            found.append(Place(float(no_load_speed(structure, drive, Omega)), Omega))
+            found.append(Place(float(no_load_speed(structure, drive, Omega)), Omega, TORUS))
     return found
+
+
+def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | None]:
+    """Where a slow ramp up and one down lose their stable motion: by a fold, or before it.
+
+    Returns
+    -------
+    up, down : Place or None
+        The end of the stable branch that comes from below, and of the one from beyond; None where
+        all motions are stable.
+    """
+    ends, at = folds(structure, drive), resonance(structure, drive)
+    torus = torus_points(structure, drive, 0.8 * at, 1.5 * at, count=151)
+    places = sorted([*ends, *torus], key=lambda place: place.Omega)
+    if not places:
+        return None, None
+    speeds = [place.Omega for place in places]
+    between = [0.5 * (low + high) for low, high in pairwise(speeds)]
+    middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]]
+    stable = [growth(structure, drive, Omega)[0].real < 0.0 for Omega in middles]
+    first, last = (ends[0], ends[-1]) if ends else (places[-1], places[0])
+    below = [i for i in range(places.index(first) + 1) if stable[i]]
+    beyond = [i for i in range(places.index(last) + 1, len(stable)) if stable[i]]
+    return (places[below[-1]] if below else None, places[beyond[0] - 1] if beyond else None)
 
 
 def on_the_axis(polynomial: Polynomial) -> Polynomial:

@@ -130,7 +130,7 @@ class CaptureJob(Job):
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
             run = Run(job, oscillator, shaker)
             try:
-                return first_stay(run, range(job.count()), divide, self.stay)
+                return first_stay(run, range(job.steps()), divide, self.stay)
             finally:
                 run.master.close()
 

@@ -17,13 +17,24 @@ import numpy as np
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
-from ..running.job import Inputs, Job, Table
+from ..running.job import Chunk, Inputs, Job, Table
 from ..running.options import Running
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
 from .controllers import Controller, Seen
-from .jumps import Jump, Way, find_jump, stays_beyond, why_none
+from .held import FOLLOWS, LEFT_BEFORE, LOST, NOT_ASKED, TOLD, Holder, Verdict, with_a_last_one
+from .jumps import (
+    DOUBTFUL,
+    JUMP,
+    SMOOTH,
+    UNFINISHED,
+    Passing,
+    Way,
+    find_passing,
+    stays_beyond,
+    why_none,
+)
 from .master import Master, Scheme
 from .revolutions import COLUMNS, Revolutions
 from .schedule import Constant, Ramp, Schedule, check
@@ -35,6 +46,7 @@ if TYPE_CHECKING:
 MOST_STEPS = 1e9
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
+UPWARD = (True, False)  # ways: whether the voltage rises
 Variable = tuple[str, Sequence[float] | Sequence[str], dict[str, str]]
 
 
@@ -70,18 +82,41 @@ class CoupleJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
+    closing: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
-    def count(self) -> int:
+    def steps(self) -> int:
         """Number of communication steps."""
         return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
+    def count(self) -> int:
+        """The steps, and a look at the jumps of them all."""
+        return self.steps() + 1
+
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """The steps."""
+        """The steps, and one more."""
         return range(self.count())
 
+    def chunks(self) -> list[Chunk]:
+        """Steps; the look at them is a chunk of its own."""
+        return with_a_last_one(super().chunks())
+
+    def whole(self, fmus: Mapping[str, Path]) -> Table:
+        """All of it, here and now."""
+        parts: list[Table] = []
+        for chunk in self.chunks():
+            carry = parts[-1] if parts else None
+            if chunk.first == self.steps():
+                carry = together(parts)
+            parts.append(self.work(fmus, range(chunk.first, chunk.last), carry))
+        return together(parts)
+
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
-        """Some steps: their complete revolutions, and all to go on from."""
+        """Some steps: their complete revolutions, and all to go on from; at last the verdicts."""
+        if items[0] == self.steps():
+            assert carry is not None
+            nothing = {name: values[:0] for name, values in carry.items()}
+            return {**nothing, "verdicts": self.verdicts(fmus, carry, self.chunk)[np.newaxis]}
         with (
             Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
             Instance(fmus[SHAKER], "shaker") as shaker,
@@ -90,9 +125,73 @@ class CoupleJob(Job):
             try:
                 if carry is not None:
                     run.remember(carry)
-                return {**run.revolve(items), **run.memory()}
+                return {**run.revolve(items), **run.memory(), **no_verdicts()}
             finally:
                 run.master.close()
+
+    def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> np.ndarray:
+        """What held voltages tell of both ways, shape (2, 3); asked where the record does not tell.
+
+        Parameters
+        ----------
+        fmus : mapping
+        table : dict of ndarray
+            Revolutions, and the states after ``every`` steps each.
+        every : int
+        """
+        doubts = [self.doubt(table, up) for up in UPWARD]
+        found = [Verdict(NOT_ASKED, math.nan, math.nan)] * len(doubts)
+        if not any(doubts):
+            return np.array(found)
+        structure, drive = self.structure, self.drive
+        divide = averaged.dividing_speed(structure, drive)
+        with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
+
+            def begin(schedule: Schedule) -> Run:
+                for instance in (oscillator, shaker):
+                    instance.reset()
+                return Run(replace(self, schedule=schedule), oscillator, shaker)
+
+            units = (self.scheme.h, structure.omega, drive.volts(structure))
+            holder = Holder(begin, self.schedule, *units)
+            holder.know(table, every, self.steps())
+            for i, doubt in enumerate(doubts):
+                if doubt is not None:
+                    found[i] = holder.judge(*doubt, divide, UPWARD[i])
+        return np.array(found)
+
+    def way(self, table: Table, up: bool) -> tuple[Way, np.ndarray]:
+        """Revolutions on which the voltage goes up or down, and their rows."""
+        eta0 = np.abs(table["voltage"]) / self.drive.volts(self.structure)
+        Omega = np.abs(table["speed"]) / self.structure.omega
+        trend = self.schedule.trend(table["time"])
+        rows = np.flatnonzero(trend > 0 if up else trend < 0)
+        return Way(table["time"][rows] * self.structure.omega, eta0[rows], Omega[rows]), rows
+
+    def passing(self, table: Table, up: bool) -> Passing | None:
+        """How the speed passes the resonance, by rows of the table; None where it does not."""
+        way, rows = self.way(table, up)
+        divide = averaged.dividing_speed(self.structure, self.drive)
+        found = find_passing(way, self.drive.b(self.structure), up, divide)
+        if found is None:
+            return None
+        row, before, after = (int(rows[place]) for place in found[:3])
+        return Passing(row, before, after, found.look)
+
+    def doubt(self, table: Table, up: bool) -> tuple[Passing, int] | None:
+        """A passing that the record alone does not tell from a steep branch, by steps of the run,
+        and the step at which the voltage begins to go that way.
+        """
+        found = None if self.control else self.passing(table, up)
+        if found is None or found.look not in (DOUBTFUL, SMOOTH):
+            return None
+        if found.look == SMOOTH and not averaged.folds(self.structure, self.drive):
+            return None
+        ends = np.append(table["time"][list(found[:3])], table["time"][self.way(table, up)[1][0]])
+        row, before, after, first = (
+            min(math.ceil(end / self.scheme.h), self.steps() - 1) for end in ends
+        )
+        return Passing(row, before, after, found.look), first
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """All revolutions, and the jumps.
@@ -129,43 +228,61 @@ class CoupleJob(Job):
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
         passed = stays_beyond(table["time"], np.abs(Omega), divide)
         found["passage_time"] = ((), passed, {"units": "s", "long_name": text})
-        dataset = xr.Dataset(
-            {**found, **self.jumps(table, eta0, Omega)}, coordinates, self.attributes(table)
-        )
+        dataset = xr.Dataset({**found, **self.jumps(table)}, coordinates, self.attributes(table))
         names = {"long_name": "direction in which the speed jumps"}
         return dataset.assign_coords(jump=("jump", ["up", "down"], names))
 
-    def jumps(self, table: Table, eta0: np.ndarray, Omega: np.ndarray) -> dict[str, Variable]:
+    def jumps(self, table: Table) -> dict[str, Variable]:
         """The jumps up and down, or why there is none; where bonded, the averaged theory's too."""
-        structure, drive = self.structure, self.drive
-        volts = drive.volts(structure)
-        trend, time = self.schedule.trend(table["time"]), table["time"] * structure.omega
-        folds = averaged.folds(structure, drive)
-        found, reasons, lags = [], [], [math.nan, math.nan]
-        for up in (True, False):
-            rows = np.flatnonzero(trend > 0 if up else trend < 0)
-            way = Way(time[rows], np.abs(eta0[rows]), np.abs(Omega[rows]))
-            jump = None if self.control else find_jump(way, drive.b(structure), up)
-            found.append(None if jump is None else Jump._make(int(rows[i]) for i in jump))
-            reasons.append("" if jump else self.why_none(way, up))
-        columns = jump_columns(table, found)
-        if structure.bonded:
-            theory = [folds[0].eta0, folds[-1].eta0] if folds else [math.nan, math.nan]
-            text = "voltage at which the speed jumps, by the averaged theory"
-            ends = [volts * value for value in theory]
-            columns["averaged_jumps"] = ("jump", ends, {"units": "V", "long_name": text})
-            lags = (np.array(columns["jumps"][1], dtype=float) - ends).tolist()
-        text = "how late the jump comes on the ramp, by the averaged theory (bonded only)"
-        columns["jump_lag"] = ("jump", lags, {"units": "V", "long_name": text})
+        verdicts = [Verdict(*row) for row in table["verdicts"][-1]]
+        passings = [None if self.control else self.passing(table, up) for up in UPWARD]
+        jumps = [
+            found if found and (found.look == JUMP or verdict.what == LOST) else None
+            for found, verdict in zip(passings, verdicts, strict=True)
+        ]
+        columns = jump_columns(table, jumps)
+        columns |= self.theory(np.array(columns["jumps"][1], dtype=float))
+        reasons, decided = [], []
+        for up, found, verdict, jump in zip(UPWARD, passings, verdicts, jumps, strict=True):
+            reasons.append("" if jump else self.why_none(table, up, found, verdict))
+            by = "by the record" if found and not self.control else ""
+            decided.append("by held voltages" if verdict.what != NOT_ASKED else by)
         columns["no_jump"] = ("jump", reasons, {"long_name": "why there is no jump"})
+        columns["decided"] = ("jump", decided, {"long_name": "how jump or none was told"})
+        held = [0.5 * (verdict.low + verdict.high) for verdict in verdicts]
+        text = "voltage at which the motion is lost though it is held; where held voltages decide"
+        columns["held_jumps"] = ("jump", held, {"units": "V", "long_name": text})
         return columns
 
-    def why_none(self, way: Way, up: bool) -> str:
+    def theory(self, jumps: np.ndarray) -> dict[str, Variable]:
+        """Where the averaged theory loses the motion of the bonded structure, and by what."""
+        structure, volts = self.structure, self.drive.volts(self.structure)
+        text = "how late the jump comes on the ramp, by the averaged theory (bonded only)"
+        late = {"units": "V", "long_name": text}
+        if not structure.bonded:
+            return {"jump_lag": ("jump", [math.nan, math.nan], late)}
+        places = averaged.losses(structure, self.drive)
+        ends = [volts * place.eta0 if place else math.nan for place in places]
+        kinds = [place.kind if place else "" for place in places]
+        text = "voltage at which the motion is lost, by the averaged theory"
+        return {
+            "averaged_jumps": ("jump", ends, {"units": "V", "long_name": text}),
+            "averaged_kind": ("jump", kinds, {"long_name": "by what it is lost there"}),
+            "jump_lag": ("jump", (jumps - ends).tolist(), late),
+        }
+
+    def why_none(self, table: Table, up: bool, found: Passing | None, verdict: Verdict) -> str:
         """Why there is no jump on a way up or down."""
         if self.control:
             return "a controller sets the voltage"
-        folds = averaged.folds(self.structure, self.drive)
-        return why_none(way, up, averaged.resonance(self.structure, self.drive), bool(folds))
+        if found is None:
+            way = self.way(table, up)[0]
+            return why_none(way, up, averaged.resonance(self.structure, self.drive))
+        if found.look == UNFINISHED:
+            return "the ramp ends within a jump"
+        if verdict.what in (FOLLOWS, LEFT_BEFORE):
+            return TOLD[int(verdict.what)]
+        return "no fold: the speed follows the voltage through the resonance"
 
     def attributes(self, table: Table) -> dict[str, str | float]:
         """Title, and what the coupling has lost of the motor's work."""
@@ -178,7 +295,17 @@ class CoupleJob(Job):
         }
 
 
-def jump_columns(table: Table, jumps: Sequence[Jump | None]) -> dict[str, Variable]:
+def no_verdicts() -> Table:
+    """Of steps: they come at the end."""
+    return {"verdicts": np.empty((0, len(UPWARD), len(Verdict._fields)))}
+
+
+def together(parts: Sequence[Table]) -> Table:
+    """Tables of chunks put together."""
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
     """Voltage, speed, amplitude and rate at jumps; NaN where there is none."""
 
     def at(name: str, place: str) -> list[float]:
@@ -186,7 +313,7 @@ def jump_columns(table: Table, jumps: Sequence[Jump | None]) -> dict[str, Variab
             math.nan if jump is None else float(table[name][getattr(jump, place)]) for jump in jumps
         ]
 
-    def rate(jump: Jump | None) -> float:
+    def rate(jump: Passing | None) -> float:
         if jump is None:
             return math.nan
         ends = [jump.before, jump.after]
@@ -461,8 +588,11 @@ def couple(
         start (J), and the numbers ``eta0`` = U/(K omega) and ``Omega`` = speed/omega. Dimension
         ``jump``: ``jumps`` (V), ``jump_time`` (s), ``jump_speed`` (rad/s), speed and amplitude
         before and after, ``jump_rate`` (V/s) at the jumps up and down, NaN where there is none,
-        and ``no_jump`` says why; for a bonded structure ``averaged_jumps`` and ``jump_lag`` (V)
-        too. From ``passage_time`` (s) on the speed stays beyond the resonance.
+        and ``no_jump`` says why. ``decided`` says how it was told: by the record of the ramp, or
+        by held voltages, which give ``held_jumps`` (V) too. For a bonded structure
+        ``averaged_jumps`` (V), ``averaged_kind`` and ``jump_lag`` (V): where the averaged theory
+        loses the motion, by a fold or a Neimark-Sacker point. From
+        ``passage_time`` (s) on the speed stays beyond the resonance.
 
     Raises
     ------
@@ -472,7 +602,10 @@ def couple(
     Notes
     -----
     A ramp's jump comes late, about as rate^(2/3). What counts as a jump is told in
-    :mod:`orchestrate.weak_drive.jumps`.
+    :mod:`orchestrate.weak_drive.jumps`. Where the ramp's record does not tell a jump from a steep
+    branch, states of the run are restored and the voltage is held there, for 4000/omega each:
+    a motion that is lost leaves a gap between the speeds that last, see
+    :mod:`orchestrate.weak_drive.held`.
 
     Examples
     --------

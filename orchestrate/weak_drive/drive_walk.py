@@ -15,9 +15,10 @@ import numpy as np
 
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import NoConvergenceError, Root, Walk, corrected, held, null_vector
+from .averaged import FOLD, TORUS
 from .shooting import Period, Shooter
 
-FOLD, FLIP, TORUS = "fold", "period doubling", "Neimark-Sacker"
+FLIP = "period doubling"
 LIMIT, STUCK, LONG, NONE = "limit", "no convergence", "most points", "no motion at the start"
 NOT_BEGUN = "not begun: the other leg has gone all the way"
 ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN)

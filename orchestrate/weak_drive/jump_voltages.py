@@ -111,8 +111,7 @@ class JumpVoltagesJob(Job):
         rows = []
         for structure, schedule in items:
             job = couple_job(structure, self.drive, schedule, self.scheme)
-            table = job.work(fmus, range(job.count()), None)
-            found = job.dataset(table, {})
+            found = job.dataset(job.whole(fmus), {})
             rows.append([found.jumps.values, found.jump_speed_before.values])
         return {"jumps": np.array(rows).reshape(-1, 2, len(WAYS))}
 

@@ -1,9 +1,10 @@
 """Where the speed jumps, as the voltage comes and goes.
 
 A slow ramp takes the motor along a branch of stationary motions. Where the branch ends the speed
-leaves it: it changes many times as much as the voltage does meanwhile, and so fast that the rotor's
-inertia takes a good part of the torque that the vibration sets free. A steep but stable branch is
-followed in the ramp's own time: it is no jump.
+leaves it and passes the resonance: it changes many times as much as the voltage does meanwhile, and
+so fast that the rotor's inertia takes a good part of the torque that the vibration sets free. A
+steep but stable branch is followed in the ramp's own time: it is no jump. A record of a ramp does
+not always tell the two apart; :mod:`.held` asks the FMUs then.
 
 Non-dimensional throughout: time 1/omega, speeds over omega, the voltage as no-load speed over
 omega. The slip is no-load speed less speed: what the vibration takes from the motor.
@@ -15,6 +16,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+
+JUMP, DOUBTFUL, SMOOTH, UNFINISHED = "jump", "doubtful", "smooth", "unfinished"
 
 
 class Way(NamedTuple):
@@ -31,8 +34,8 @@ class Way(NamedTuple):
     Omega: np.ndarray
 
 
-class Jump(NamedTuple):
-    """A jump of the speed, by rows.
+class Passing(NamedTuple):
+    """How the speed passes the resonance, by rows.
 
     Attributes
     ----------
@@ -40,15 +43,19 @@ class Jump(NamedTuple):
         Where the slip passes half of its largest value.
     before, after : int
         Where the speed leaves its branch, and where it follows the voltage again.
+    look : str
+        What the record tells: ``JUMP``; ``SMOOTH`` where the speed never changes much more than
+        the voltage; ``DOUBTFUL`` between the two; ``UNFINISHED`` where the record ends on the way.
     """
 
     row: int
     before: int
     after: int
+    look: str
 
 
 class Criterion(NamedTuple):
-    """What counts as a jump.
+    """What counts as a jump by the record alone.
 
     Attributes
     ----------
@@ -59,11 +66,13 @@ class Criterion(NamedTuple):
     """
 
     growth: float = 3.0
-    share: float = 0.12
+    share: float = 0.25
 
 
-def find_jump(way: Way, b: float, up: bool, criterion: Criterion | None = None) -> Jump | None:
-    """Find the jump on a way up or down; None where the speed follows the voltage.
+def find_passing(
+    way: Way, b: float, up: bool, divide: float, criterion: Criterion | None = None
+) -> Passing | None:
+    """Find where the speed passes the resonance for good; None where it does not.
 
     Parameters
     ----------
@@ -71,7 +80,9 @@ def find_jump(way: Way, b: float, up: bool, criterion: Criterion | None = None) 
     b : float
         Slope of the torque line, the inverse of the time in which a rotor without load settles.
     up : bool
-        Whether the voltage rises; a jump goes the same way.
+        Whether the voltage rises; the speed has to pass the same way.
+    divide : float
+        Speed between the motions below and beyond the resonance.
     criterion : Criterion, optional
     """
     limits, sign = criterion or Criterion(), 1.0 if up else -1.0
@@ -82,22 +93,30 @@ def find_jump(way: Way, b: float, up: bool, criterion: Criterion | None = None) 
         return None
     time, eta0, speed = (running_mean(values, width) for values in way)
     rise, change = sign * apart(speed, width), np.abs(apart(eta0, width))
-    top = int(np.argmax(rise / apart(time, width)))
-    before, after = extent(rise > limits.growth * change, top)
-    unfinished = after == len(rise) - 1 and rise[-1] > 0.5 * rise[top]
-    if rise[top] <= limits.growth * change[top] or unfinished:
+    early = np.flatnonzero(sign * (speed - divide) <= 0.0)
+    if not early.size or early[-1] == len(speed) - 1:
         return None
+    cross = min(max(0, int(early[-1]) - width // 2), len(rise) - 1)
+    fast = rise > limits.growth * change
+    near = np.flatnonzero(fast[max(0, cross - 2 * width) : cross + 2 * width + 1])
+    if near.size:
+        cross = max(0, cross - 2 * width) + int(near[np.argmin(np.abs(near - 2 * width))])
+    before, after = extent(fast, cross) if fast[cross] else (cross, cross + width)
     last = min(after + 2 * width, len(way.time) - 1)
+    row = half_slip(np.abs(way.eta0 - way.Omega), before, up)
+    row = cross + width if row is None else row
+    if not fast[cross]:
+        return Passing(row, before, last, SMOOTH)
+    top = before + int(np.argmax(rise[before : after + 1] / apart(time, width)[before : after + 1]))
+    if after == len(rise) - 1 and rise[-1] > 0.5 * rise[top]:
+        return Passing(row, before, last, UNFINISHED)
     slip = sign * (way.eta0 - way.Omega)
-    freed = slip[before] - slip[last]
     inertia = rise[top] / (b * (time[top + width] - time[top]))
     grown = abs(way.Omega[last] - way.Omega[before])
-    if inertia < limits.share * freed or grown < limits.growth * np.ptp(
-        way.eta0[before : last + 1]
-    ):
-        return None
-    row = half_slip(np.abs(way.eta0 - way.Omega), before, up)
-    return None if row is None else Jump(row, before, last)
+    if grown < limits.growth * np.ptp(way.eta0[before : last + 1]):
+        return Passing(row, before, last, SMOOTH)
+    sure = before > width and inertia >= limits.share * (slip[before] - slip[last])
+    return Passing(row, before, last, JUMP if sure else DOUBTFUL)
 
 
 def running_mean(values: np.ndarray, width: int) -> np.ndarray:
@@ -139,8 +158,8 @@ def stays_beyond(time: np.ndarray, Omega: np.ndarray, divide: float) -> float:
     return float(time[below[-1] + 1]) if below.size else float(time[0])
 
 
-def why_none(way: Way, up: bool, resonance: float, has_folds: bool) -> str:
-    """Why there is no jump.
+def why_none(way: Way, up: bool, resonance: float) -> str:
+    """Why the speed does not pass the resonance for good.
 
     Parameters
     ----------
@@ -148,8 +167,6 @@ def why_none(way: Way, up: bool, resonance: float, has_folds: bool) -> str:
     up : bool
     resonance : float
         Speed of the resonance over omega.
-    has_folds : bool
-        Whether the averaged theory, bonded, has folds.
     """
     if not len(way.time):
         return f"the voltage does not {'rise' if up else 'fall'}"
@@ -158,10 +175,4 @@ def why_none(way: Way, up: bool, resonance: float, has_folds: bool) -> str:
     beyond = first > resonance
     if beyond == up and (last > resonance) == up:
         return f"began {'beyond' if up else 'below'} the resonance"
-    if abs(speed[-1] - speed[-5:][0]) > np.ptp(way.eta0[-5:]) * Criterion().growth:
-        return "the ramp ends within a jump"
-    if (last > resonance) != up:
-        return f"ends {'below' if up else 'beyond'} the resonance"
-    if has_folds:
-        return "not told from a steep branch at this rate: the averaged theory has a fold"
-    return "no fold: the speed follows the voltage through the resonance"
+    return f"ends {'below' if up else 'beyond'} the resonance"

@@ -19,12 +19,13 @@ from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
 from ..response.labels import variable
-from ..running.job import Inputs, Job, Table
+from ..running.job import Chunk, Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from .controllers import Controller
-from .couple import CoupleJob, Run, checked_motor, couple_job, schedule_of, scheme_of
+from .couple import CoupleJob, Run, checked_motor, couple_job, no_verdicts, schedule_of, scheme_of
+from .held import with_a_last_one
 from .revolutions import COLUMNS, TURN
 from .schedule import Schedule, check
 
@@ -72,18 +73,27 @@ class PassageJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
+    closing: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
-        """Number of communication steps."""
+        """The steps, and a look at the jumps of them all."""
         return self.run.count()
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """The steps."""
+        """The steps, and one more."""
         return range(self.count())
 
+    def chunks(self) -> list[Chunk]:
+        """Steps; the look at them is a chunk of its own."""
+        return with_a_last_one(super().chunks())
+
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
-        """Some steps: their revolutions, their ends, and all to go on from."""
+        """Some steps: revolutions, ends, and all to go on from; at last the verdicts."""
+        if items[0] == self.run.steps():
+            assert carry is not None
+            nothing = {name: values[:0] for name, values in carry.items()}
+            return {**nothing, "verdicts": self.run.verdicts(fmus, carry, self.chunk)[np.newaxis]}
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
             run = Run(self.run, oscillator, shaker)
             try:
@@ -93,7 +103,8 @@ class PassageJob(Job):
                 revolutions = run.revolve(items, lambda: rows.append(sample(run)))
                 columns = np.array(rows).T
                 names = (KEPT + name for name in SAMPLES)
-                return {**revolutions, **dict(zip(names, columns, strict=True)), **run.memory()}
+                kept = dict(zip(names, columns, strict=True))
+                return {**revolutions, **kept, **run.memory(), **no_verdicts()}
             finally:
                 run.master.close()
 
@@ -101,7 +112,8 @@ class PassageJob(Job):
         """Samples over time, and the jumps."""
         import xarray as xr
 
-        revolutions = self.run.dataset({name: table[name] for name in COLUMNS}, inputs)
+        of_run = {name: table[name] for name in (*COLUMNS, "verdicts")}
+        revolutions = self.run.dataset(of_run, inputs)
         samples = {name: table[KEPT + name] for name in SAMPLES}
         centres, what = self.centres(revolutions)
         away = np.abs(samples["time"][:, np.newaxis] - centres).min(axis=1, initial=math.inf)

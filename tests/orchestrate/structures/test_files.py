@@ -226,6 +226,57 @@ WRONG = [
 ]
 
 
+SHEET = """
+[motor]
+rated_voltage = 12.0
+stall_torque = 0.06
+unbalance_mass = 0.025
+unbalance_radius = 0.02
+{more}
+
+[box]
+box_mass = 5.5
+box_stiffness = 309.375
+box_damping = 4.125
+"""
+
+
+@pytest.mark.parametrize("speed", ["rad_s = 200.0", "hz = 31.830988618379067"])
+@pytest.mark.parametrize(
+    "rotor", ["rotor_inertia = 4e-5", "mechanical_time_constant = 0.1333333333"]
+)
+def test_a_motor_by_its_datasheet(file, speed, rotor):
+    """The motor of `beam`, whose inertia has the unbalance in it."""
+    drive = Drive.from_file(file(SHEET.format(more=f"no_load_speed_{speed}\n{rotor}")))
+    expected = Drive.from_file("beam").parameters()
+    assert drive.parameters() == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ("rotor_inertia = 4e-5", ["[motor]", "expected one of no_load_speed_hz"]),
+        ("no_load_speed_rpm = 0\nrotor_inertia = 4e-5", ["no_load_speed_rpm = 0"]),
+        ("no_load_speed_rpm = 1900", ["expected one of rotor_inertia, mechanical_time_constant"]),
+        (
+            "no_load_speed_rpm = 1900\nrotor_inertia = 4e-5\nmotor_constant = 0.06",
+            ["motor.rated_voltage = 12.0", "beside motor_constant"],
+        ),
+        (
+            "no_load_speed_rpm = 1900\nrotor_inertia = 4e-5\nmechanical_time_constant = 0.1",
+            ["mechanical_time_constant = 0.1", "beside rotor_inertia"],
+        ),
+        ("no_load_speed = 200.0", ["no_load_speed = 200.0", "no key", "did you mean"]),
+    ],
+)
+def test_mistakes_in_a_datasheet(file, more, words):
+    with pytest.raises(InputError) as error:
+        read(file(SHEET.format(more=more)))
+    line = str(error.value)
+    assert "\n" not in line and "expected" in line
+    assert all(word in line for word in words), line
+
+
 @pytest.mark.parametrize(("text", "words"), WRONG, ids=[repr(text) for text, _ in WRONG])
 def test_mistakes_are_one_line(file, text, words):
     path = file(text)

@@ -16,7 +16,7 @@ from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_of
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
 from orchestrate.weak_drive.drive_walk import FLIP, FOLD, TORUS, Pace
-from orchestrate.weak_drive.jumps import Way, find_jump
+from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, Way, find_passing
 
 from .coupled import BEAM, QUICK, System, master, rest, state_of
 from .monolithic import Monolith
@@ -239,8 +239,10 @@ def jump_of(system, times, angles, eta0):
     ends = CubicSpline(angles, times)(turns)
     speed = 2.0 * np.pi / np.diff(ends) / system.structure.omega
     way = Way(ends[1:] * system.structure.omega, eta0(ends[1:]), speed)
-    jump = find_jump(way, system.drive.b(system.structure), up=True)
-    return float("nan") if jump is None else float(way.eta0[jump.row])
+    divide = averaged.dividing_speed(*system.as_bonded())
+    found = find_passing(way, system.drive.b(system.structure), True, divide)
+    fast = found is not None and found.look in (JUMP, DOUBTFUL)
+    return float(way.eta0[found.row]) if fast else float("nan")
 
 
 def coupled_jump(system, state, voltages, rate):
