@@ -10,7 +10,6 @@ from orchestrate.weak_drive.jumps import DOUBTFUL, Passing
 from orchestrate.weak_drive.schedule import Ramp
 
 H = 2.0
-RAMP = Ramp(1.4, 1.6, 1e-4, back=False)
 
 
 class Rotor:
@@ -36,9 +35,9 @@ class Rotor:
         self.speed = float(table["speed"][0])
 
 
-def judged(slope, up=True, start=1.1):
+def judged(slope, up=True, start=1.1, first=1.4):
     """The verdict on the whole ramp, from its beginning to its end."""
-    schedule = RAMP if up else Ramp(1.6, 1.4, 1e-4, back=False)
+    schedule = Ramp(first, 1.6, 1e-4, back=False) if up else Ramp(1.6, first, 1e-4, back=False)
     steps = round(schedule.duration / H)
     holder = Holder(lambda other: Rotor(other, slope, start), schedule, H, 1.0, 1.0)
     passing = Passing(round(0.8 * steps), steps // 4, steps - 1, DOUBTFUL)
@@ -65,4 +64,4 @@ def test_a_steep_branch(slope):
 
 def test_what_has_left_before():
     """The first state of the way is beyond already."""
-    assert judged(-0.2, start=1.45).what == LEFT_BEFORE
+    assert judged(-0.2, start=1.45, first=1.5).what == LEFT_BEFORE
