@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
+from .archive import check_archive, check_identifier
 
 
 @dataclass(frozen=True)
@@ -105,8 +106,11 @@ def read_description(path: Path) -> Description:
     if digest not in _known:
         import fmpy
 
+        check_archive(data)
         found = fmpy.read_model_description(io.BytesIO(data))
         slave = found.coSimulation
+        if slave:
+            check_identifier(slave.modelIdentifier)
         _known[digest] = Description(
             path=path,
             name=found.modelName,

@@ -133,4 +133,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def tell(line: str) -> None:
     """A line on the error output."""
-    print(line, file=sys.stderr)
+    print(readable(line), file=sys.stderr)
+
+
+def readable(text: str, most: int = 1000) -> str:
+    r"""A text as one line that a terminal shows as it is, shortened in its middle.
+
+    Examples
+    --------
+    >>> readable("one\ntwo\x1b[2J")
+    'one\\ntwo\\x1b[2J'
+    >>> readable("123456789", most=4)
+    '12 ... 89'
+    """
+    plain = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
+    half = most // 2
+    return plain if len(plain) <= most else f"{plain[:half]} ... {plain[-half:]}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -170,6 +171,12 @@ def stored(option: str, path: Path) -> xr.Dataset:
     if not path.is_file():
         raise InputError(f"{option} {path}: no such file; expected a result of an earlier command")
     try:
-        return load(path)
+        found = load(path)
     except StoreError as error:
         raise InputError(f"{option} {error}; expected a NetCDF file") from None
+    try:
+        json.loads(found.attrs.get("identity", '{"question": ""}'))["question"]
+    except (ValueError, TypeError, KeyError, RecursionError):
+        expected = "expected a result of an earlier command"
+        raise InputError(f"{option} {path}: its identity is damaged; {expected}") from None
+    return found

@@ -39,6 +39,7 @@ from .structure import Structure
 
 FOLDER = Path(__file__).parent / "sets"
 SETS = {name: FOLDER / f"{name}.toml" for name in ("paper", "quick", "beam", "rig")}
+MOST_BYTES = 1 << 16  # of a file: some twenty numbers and as many remarks as they need
 SECTIONS = ("structure", "excitation", "motor", "box")
 
 Described = Structure | Excitation | Drive
@@ -134,11 +135,15 @@ def parse(path: Path) -> dict[str, Any]:
     else:
         import tomli as tomllib
     try:
+        if path.stat().st_size > MOST_BYTES:
+            raise ValueError(f"{path.stat().st_size} bytes, at most {MOST_BYTES}")
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         reason = error.strerror or str(error)
     except ValueError as error:  # of the syntax, or of the encoding
         reason = str(error).splitlines()[0]
+    except RecursionError:
+        reason = "nested too deeply"
     raise InputError(f"{path}: not readable as TOML ({reason}); expected sections and key = value")
 
 

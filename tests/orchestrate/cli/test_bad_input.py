@@ -352,3 +352,20 @@ def test_no_scheduler(ask, tmp_path, monkeypatch):
 
 def test_undamped_resonance_is_a_failure_not_a_mistake(ask):
     ask("sweep", "--eta", "1", "--set", "D=0", *QUICK).complaint("natural frequency", code=1)
+
+
+def test_what_a_file_says_is_shown_in_one_line(ask, tmp_path):
+    """Neither a line of its own, nor a terminal's commands, nor pages of it."""
+    path = tmp_path / "own.toml"
+    path.write_text('[structure]\n"one\\ntwo\\u001b[2J" = 1\n')
+    line = ask("sweep", "--eta", "1", "--structure", path).complaint("no key of [structure]")
+    assert "one\\ntwo\\x1b[2J" in line
+    path.write_text(f"[structure]\nm1 = '{'x' * 50_000}'\n")
+    assert len(ask("sweep", "--eta", "1", "--structure", path).complaint(" ... ")) < 1100
+
+
+def test_a_result_whose_identity_is_damaged(ask, tmp_path):
+    path = tmp_path / "branch.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        file.setncattr("identity", "[")
+    ask("border", "--start", path, *PAIRS).complaint("identity is damaged")

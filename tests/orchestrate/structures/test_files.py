@@ -310,3 +310,19 @@ def test_any_text_is_read_or_refused_in_one_line(file, text):
         read(path)
     except InputError as error:
         assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[structure]\nm1 = 1 # " + "x" * 70_000, "at most 65536"),
+        ("[structure]\nm1 = " + "[" * 10_000 + "]" * 10_000, "nested too deeply"),
+    ],
+    ids=["huge", "deep"],
+)
+def test_what_is_no_file_of_parameters(tmp_path, text, words):
+    path = tmp_path / "own.toml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=words) as told:
+        read(path)
+    assert len(str(told.value)) < 300

@@ -1,0 +1,57 @@
+"""Whether an FMU is an archive that may be unpacked: before anything of it is."""
+
+from __future__ import annotations
+
+import io
+import re
+import stat
+import zipfile
+
+MOST_FILES = 10_000
+MOST_BYTES = 1 << 30  # unpacked
+
+
+def check_archive(data: bytes) -> None:
+    """See that nothing in an archive would lie outside of its folder, or fill the disk.
+
+    Parameters
+    ----------
+    data : bytes
+        The archive.
+
+    Raises
+    ------
+    ValueError
+        With the reason, in a line.
+    zipfile.BadZipFile
+        Where it is no archive.
+    """
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        entries = archive.infolist()
+    if len(entries) > MOST_FILES:
+        raise ValueError(f"{len(entries)} files in it, at most {MOST_FILES} expected")
+    total = sum(entry.file_size for entry in entries)
+    if total > MOST_BYTES:
+        raise ValueError(f"{total} bytes unpacked, at most {MOST_BYTES} expected")
+    names = [entry.orig_filename for entry in entries]
+    if len(set(names)) < len(names):
+        raise ValueError("two files of one name in it")
+    for entry in entries:
+        name = entry.orig_filename
+        parts = name.removesuffix("/").split("/")
+        plain = name.isprintable() and not re.search(r"[\\:]", name)
+        if not plain or {"", ".", ".."} & set(parts):
+            raise ValueError(f"{name!r} in it, expected paths below the archive")
+        if stat.S_ISLNK(entry.external_attr >> 16):
+            raise ValueError(f"{name!r} in it is a link, expected files")
+
+
+def check_identifier(name: str) -> None:
+    """See that a binary's name is a name, not a path.
+
+    Raises
+    ------
+    ValueError
+    """
+    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+        raise ValueError(f"modelIdentifier {name[:100]!r}, expected letters, digits and _")

@@ -1,0 +1,56 @@
+"""Short forms of the campaigns on flights: they find nothing, and would find what is wrong."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from orchestrate.access import OSCILLATOR, find
+from tools.trust import flights, programs
+from tools.trust.flights import Energy, Impacts, Roots
+
+pytestmark = pytest.mark.skipif(programs.sys.platform != "linux", reason="programs for Linux")
+
+
+@pytest.fixture(scope="module")
+def fmu(exported):
+    return find(OSCILLATOR).path
+
+
+def test_no_root_is_missed_and_none_made_up(fmu):
+    found = Roots().run(fmu, 1, 20_000)
+    assert found.done >= 20_000 and found.findings == 0, found.notes
+    assert len(found.counts) == 8 and min(found.counts.values()) > 200
+
+
+def test_impacts_balance(fmu):
+    found = Energy().run(fmu, 1, 20_000)
+    assert found.done >= 20_000 and found.findings == 0, found.notes
+    assert 1e-17 < found.worst < 1e-12
+
+
+def test_impacts_agree_with_50_digits(fmu):
+    found = Impacts().run(fmu, 1, 60)
+    assert found.done == 60 and found.findings == 0, found.notes
+    assert 1e-4 < found.worst <= 1.0
+
+
+def test_what_is_wrong_is_found(fmu):
+    """A structure, a restitution and an end that differ by a billionth from the FMU's."""
+    lines = programs.run(fmu, "roots", 1, 2000, "wrong").splitlines()
+    wrong = [sum(map(int, line.split()[1:3])) for line in lines if not line.startswith("FLIGHT")]
+    assert sum(wrong) > 500
+    assert all(number > 20 for number in wrong[:6]), wrong
+    numbers = programs.run(fmu, "energy", 1, 2000, "wrong").split()
+    assert float(numbers[4]) > 1e-11
+    flight = next(flight for flight in flights.flights(fmu, 1, 50) if flight.impact)
+    later = dataclasses.replace(flight, end=flight.end * (1.0 + 1e-9))
+    assert flights.deviation(flight) <= 1.0 < flights.deviation(later)
+
+
+@pytest.mark.slow
+def test_middle_forms(fmu):
+    for campaign, count in ((Roots(), 2_000_000), (Energy(), 5_000_000), (Impacts(), 3000)):
+        found = campaign.run(fmu, 2, count)
+        assert found.done >= count and found.findings == 0, found.notes

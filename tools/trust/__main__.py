@@ -1,0 +1,83 @@
+"""``python -m tools.trust list``, ``run CAMPAIGN --seed S --budget N``, ``page``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from orchestrate.access.exported import finder
+from orchestrate.errors import VibroimpactError
+from orchestrate.files import write_whole
+from orchestrate.running.runner import answer
+
+from . import page, records
+from .campaign import Campaign, CampaignJob, sources
+from .registry import CAMPAIGNS
+
+STORE = Path(__file__).resolve().parents[2] / "results" / "trust"
+
+
+def listed() -> None:
+    """Campaigns with their targets."""
+    for campaign in CAMPAIGNS.values():
+        print(f"{campaign.name:10s}{campaign.target:>14,} {campaign.unit}: {campaign.title}")
+
+
+def run(
+    campaign: Campaign, seed: int, budget: int, store: Path = STORE, **running: object
+) -> records.Record:
+    """Run a campaign, or go on with it; a batch that was done is not done again."""
+    job = CampaignJob(
+        name=campaign.name,
+        campaign=campaign.name,
+        seed=seed,
+        budget=budget,
+        size=campaign.batch,
+        sources=sources(),
+    )
+    place = store / f"{campaign.name}-{seed}-{budget}.nc"
+    found = answer(job, {"store": place, **running}, finder(running))
+    return records.record_of(campaign.name, seed, budget, found)
+
+
+def parse(arguments: list[str] | None) -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="python -m tools.trust", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+    commands.add_parser("list", help="campaigns and their targets")
+    commands.add_parser("page", help="write docs/trust.md from the records")
+    one = commands.add_parser("run", help="run a campaign, or go on with it")
+    one.add_argument("campaign", choices=CAMPAIGNS)
+    one.add_argument("--seed", type=int, required=True)
+    one.add_argument("--budget", type=int, required=True, help="units to do")
+    one.add_argument("--jobs", type=int, default=1, help="processes at once")
+    one.add_argument("--cluster", help="address of a Dask scheduler")
+    one.add_argument("--force", action="store_true", help="begin anew")
+    return parser.parse_args(arguments)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Do what the command line says; 1 where something was found."""
+    options = parse(arguments)
+    if options.command == "list":
+        listed()
+        return 0
+    if options.command == "page":
+        text = page.text(records.read())
+        write_whole(page.PAGE, lambda place: place.write_text(text, "utf-8"))
+        return 0
+    running = {"jobs": options.jobs, "cluster": options.cluster, "force": options.force}
+    try:
+        record = run(CAMPAIGNS[options.campaign], options.seed, options.budget, **running)
+    except VibroimpactError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    records.append(record)
+    print(f"{record.done:,} done, {record.findings} findings, {record.seconds:.1f} s")
+    print("\n".join(record.notes))
+    return 1 if record.findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

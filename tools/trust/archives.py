@@ -1,0 +1,204 @@
+"""FMUs as an enemy would make them, by a seed."""
+
+from __future__ import annotations
+
+import functools
+import io
+import random
+import re
+import struct
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+Make = Callable[[Path, Path, random.Random], None]  # from a good FMU, to a place
+XML = "modelDescription.xml"
+LINK = 0o120777 << 16
+BOMB = 5 << 28  # bytes that come out of one
+CROWD = 70_000  # files
+
+
+def content(fmu: Path) -> dict[str, bytes]:
+    """Files of an FMU."""
+    with zipfile.ZipFile(fmu) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def pack(place: Path, files: dict[str, bytes], attributes: dict[str, int] | None = None) -> None:
+    """An FMU of files; attributes say which are links."""
+    with zipfile.ZipFile(place, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in files.items():
+            entry = zipfile.ZipInfo(name)
+            entry.filename = name  # as it stands, NUL and all
+            entry.external_attr = (attributes or {}).get(name, 0o644 << 16)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, data)
+
+
+def traversal(fmu: Path, place: Path, chance: random.Random) -> None:
+    """A file that would lie outside."""
+    ups = "../" * chance.randint(1, 12)
+    name = chance.choice(
+        (
+            f"{ups}escaped",
+            f"binaries/{ups}escaped",
+            f"resources/x/../../{ups}escaped",
+            "/tmp/escaped",
+            "//escaped",
+            "..\\escaped",
+            "C:\\escaped",
+            "C:escaped",
+            f"{ups}{'x' * 200}/escaped",
+            "./../escaped",
+        )
+    )
+    pack(place, {**content(fmu), name: b"escaped"})
+
+
+def link(fmu: Path, place: Path, chance: random.Random) -> None:
+    """A link out of the archive, and a file behind it."""
+    name = chance.choice(("resources", "binaries/out", "link"))
+    target = chance.choice(("/tmp", "../..", "/etc/passwd", ".")).encode()
+    files = {**content(fmu), name: target, f"{name}/escaped": b"escaped"}
+    if chance.random() < 0.5:
+        files.pop(f"{name}/escaped")
+    pack(place, files, {name: LINK})
+
+
+def bomb(fmu: Path, place: Path, chance: random.Random) -> None:
+    """A megabyte that becomes more than one gigabyte, in one file or in many."""
+    place.write_bytes(made_bomb(fmu, chance.randrange(3)))
+
+
+@functools.cache
+def made_bomb(fmu: Path, kind: int) -> bytes:
+    """One large file, many of them, or a large one that says it is small."""
+    zeros, stream = bytes(1 << 24), io.BytesIO()
+    count = BOMB >> 24
+    files, parts = (count, 1) if kind == 1 else (1, count)
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        for name, data in content(fmu).items():
+            archive.writestr(name, data)
+        for i in range(files):
+            with archive.open(f"resources/{i}", "w") as file:
+                for _ in range(parts):
+                    file.write(zeros)
+    data = stream.getvalue()
+    said = struct.pack("<I", parts << 24)
+    return data.replace(said, struct.pack("<I", 16)) if kind == 2 else data
+
+
+def crowd(fmu: Path, place: Path, chance: random.Random) -> None:
+    """More files than any model has."""
+    extra = {f"resources/{i:x}": b"" for i in range(CROWD)}
+    pack(place, {**content(fmu), **extra})
+
+
+def entities(fmu: Path, place: Path, chance: random.Random) -> None:
+    """A document that grows while it is read, or reads other files."""
+    files = content(fmu)
+    levels = "".join(
+        f'<!ENTITY e{i} "{"&e" + str(i - 1) + ";" if i else "lol"}'
+        f'{("&e" + str(i - 1) + ";") * 9 if i else ""}">'
+        for i in range(chance.randint(8, 12))
+    )
+    depth = levels.count("ENTITY") - 1
+    kind = chance.randrange(3)
+    secret = '<!ENTITY e SYSTEM "file:///etc/hostname">'
+    remote = '<!ENTITY % d SYSTEM "http://127.0.0.1:9/d.dtd"> %d; <!ENTITY e "">'
+    document = (levels, secret, remote)[kind]
+    name = (f"&e{depth};", "&e;", "&e;")[kind]
+    text = files[XML].decode()
+    text = re.sub(r"(<\?xml[^>]*>)", rf"\1<!DOCTYPE f [{document}]>", text, count=1)
+    files[XML] = re.sub(r'description="[^"]*"', f'description="{name}"', text, count=1).encode()
+    pack(place, files)
+
+
+def name_in_xml(fmu: Path, place: Path, chance: random.Random) -> None:
+    """A name that is a path, or a line of its own, or markup."""
+    files = content(fmu)
+    text = files[XML].decode()
+    attribute = chance.choice(("modelIdentifier", "modelName", "instantiationToken", "fmiVersion"))
+    value = chance.choice(
+        (
+            "../../../../../../tmp/escaped",
+            "/tmp/escaped",
+            "a&#10;b&#10;Traceback",
+            "&lt;script&gt;alert(1)&lt;/script&gt;",
+            "x" * 100_000,
+            "&#27;[2J",
+            "",
+            "%s%n%s%n",
+        )
+    )
+    changed = re.sub(rf'(\b{attribute}=")[^"]*', lambda m: m[1] + value, text, count=1)
+    pack(place, {**files, XML: changed.encode()})
+
+
+def nested(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Elements in elements, or attributes of a size that nobody expects."""
+    files = content(fmu)
+    depth = chance.choice((1000, 100_000))
+    if chance.random() < 0.5:
+        body = b"<a>" * depth + b"</a>" * depth
+    else:
+        body = b'<a b="' + b"x" * (depth * 1000) + b'"/>'
+    files[XML] = files[XML].replace(b"<ModelVariables>", b"<ModelVariables>" + body)
+    pack(place, files)
+
+
+def damaged(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Cut short, or with bytes changed."""
+    data = bytearray(fmu.read_bytes())
+    if chance.random() < 0.4:
+        place.write_bytes(data[: chance.randrange(len(data))])
+        return
+    with zipfile.ZipFile(fmu) as archive:  # where a change is not in a text that nobody reads
+        first = archive.getinfo(XML).header_offset
+    for _ in range(chance.randint(1, 50)):
+        data[chance.choice((first + chance.randrange(2000), -1 - chance.randrange(2000)))] ^= 0xFF
+    place.write_bytes(data)
+
+
+def foreign(fmu: Path, place: Path, chance: random.Random) -> None:
+    """No archive at all, or one without what makes an FMU."""
+    files = content(fmu)
+    kind = chance.randrange(5)
+    if kind == 0:
+        place.write_bytes(chance.randbytes(chance.randrange(10_000)))
+    elif kind == 1:
+        pack(place, {name: data for name, data in files.items() if name != XML})
+    elif kind == 2:
+        pack(place, {XML: chance.choice((b"", b"<", b"\xff\xfe<a/>", b"<html/>", b"\0" * 1000))})
+    elif kind == 3:
+        pack(place, {n: d for n, d in files.items() if not n.startswith("binaries/")})
+    else:
+        pack(place, {n: chance.randbytes(99) if "binaries" in n else d for n, d in files.items()})
+
+
+def twice(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Two descriptions of one name: who reads the first, who the last?"""
+    files = content(fmu)
+    other = files[XML].replace(b'modelName="', b'modelName="Another')
+    with zipfile.ZipFile(place, "w") as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+        import warnings
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            archive.writestr(XML, other if chance.random() < 0.5 else files[XML])
+
+
+KINDS: dict[str, Make] = {
+    "path traversal": traversal,
+    "link": link,
+    "bomb": bomb,
+    "crowd of files": crowd,
+    "entities": entities,
+    "name in the description": name_in_xml,
+    "nesting": nested,
+    "damaged archive": damaged,
+    "no FMU": foreign,
+    "a name twice": twice,
+}

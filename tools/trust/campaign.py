@@ -1,0 +1,169 @@
+"""What a campaign is: a promise that is attacked by a seed, in batches that know nothing of each
+other; and how it is run, by the project's own runner.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import xarray as xr
+
+from orchestrate.access import OSCILLATOR
+from orchestrate.running.job import Inputs, Job, Table
+
+HERE = Path(__file__).parent
+TOLD = 20  # notes of a batch that are kept
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a batch found.
+
+    Attributes
+    ----------
+    done : int
+        Units done: flights, impacts, faults.
+    findings : int
+        Of these, where the promise did not hold.
+    worst : float
+        The largest of what the campaign measures; 0 where it measures nothing.
+    counts : mapping of str to int
+        What else was counted, to be summed.
+    notes : tuple of str
+        A line a finding, with what is needed to see it again.
+    """
+
+    done: int
+    findings: int = 0
+    worst: float = 0.0
+    counts: Mapping[str, int] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+class Campaign(ABC):
+    """One promise, and how it is attacked.
+
+    Attributes
+    ----------
+    name, title : str
+        For the command line, and for people.
+    asks : str
+        What must hold, as sentences.
+    unit : str
+        What is counted.
+    target : int
+        How many of them are wanted.
+    batch : int
+        How many make a chunk of the job.
+    measures : str
+        What ``worst`` is; empty where nothing is measured.
+    package : bool
+        Whether the package is under test: its version then names what was tested, else the FMU's
+        GUID.
+    """
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    asks: ClassVar[str]
+    unit: ClassVar[str]
+    target: ClassVar[int]
+    batch: ClassVar[int]
+    measures: ClassVar[str] = ""
+    package: ClassVar[bool] = False
+
+    @abstractmethod
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """Attack.
+
+        Parameters
+        ----------
+        fmu : Path
+            The native FMI 3.0 FMU of the oscillator.
+        seed : int
+            All that is drawn depends on it.
+        count : int
+            Units to do.
+        """
+
+
+def batch_seed(seed: int, batch: int) -> int:
+    """The seed of a batch: those of neighbours have nothing in common."""
+    return int.from_bytes(hashlib.sha256(f"{seed} {batch}".encode()).digest()[:6], "big")
+
+
+def sources() -> str:
+    """A digest of all campaigns' sources: other sources, another question."""
+    digest = hashlib.sha256()
+    for path in sorted(HERE.rglob("*.*")):
+        if path.suffix in (".py", ".c", ".h"):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class CampaignJob(Job):
+    """A campaign as a job of the runner, a batch an item."""
+
+    campaign: str = ""
+    seed: int = 0
+    budget: int = 0
+    size: int = 1
+    sources: str = ""
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR,)
+    item: ClassVar[str] = "batch"
+
+    def count(self) -> int:
+        """Number of batches."""
+        return -(-self.budget // self.size)
+
+    def items(self, inputs: Inputs) -> Sequence[tuple[int, int]]:
+        """Seed and units of each batch."""
+        left = [self.budget - i * self.size for i in range(self.count())]
+        return [(batch_seed(self.seed, i), min(self.size, n)) for i, n in enumerate(left)]
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], carry: Table | None) -> Table:
+        """Run batches."""
+        from .registry import CAMPAIGNS
+
+        campaign, rows = CAMPAIGNS[self.campaign], []
+        for seed, count in items:
+            clock = processor_time()
+            found = campaign.run(fmus[OSCILLATOR], seed, count)
+            told = json.dumps({"counts": dict(found.counts), "notes": found.notes[:TOLD]})
+            seconds = processor_time() - clock
+            rows.append((found.done, found.findings, found.worst, seconds, seed, told))
+        names = ("done", "findings", "worst", "seconds", "seed", "told")
+        return {
+            name: np.array(part) for name, part in zip(names, zip(*rows, strict=True), strict=True)
+        }
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Batches side by side."""
+        about = {
+            "done": ("1", "units done"),
+            "findings": ("1", "units where the promise did not hold"),
+            "worst": ("1", "the largest of what is measured"),
+            "seconds": ("s", "processor time"),
+            "seed": ("1", "seed of the batch"),
+            "told": ("1", "further counts and notes, as JSON"),
+        }
+        return xr.Dataset(
+            {
+                name: ("batch", table[name], {"units": unit, "long_name": text})
+                for name, (unit, text) in about.items()
+            }
+        )
+
+
+def processor_time() -> float:
+    """Seconds that this process and its ended children have used."""
+    spent = os.times()
+    return spent.user + spent.system + spent.children_user + spent.children_system

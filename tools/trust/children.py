@@ -1,0 +1,178 @@
+"""Commands in forked children: what is imported already is not imported again, so that a thousand
+of them take minutes.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import io
+import os
+import re
+import resource
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+MEMORY = 4 << 30  # bytes that a command may ask for
+PATIENCE = 60.0  # s
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a command ended.
+
+    Attributes
+    ----------
+    code : int
+        Its exit code; minus the signal's number where one ended it.
+    out, err : str
+    seconds : float
+        From its start.
+    """
+
+    code: int
+    out: str
+    err: str
+    seconds: float
+
+    @property
+    def lines(self) -> list[str]:
+        """Lines of the error output, without the progress bar."""
+        parts = (part.strip() for part in re.split(r"[\r\n]+", self.err))
+        return [part for part in parts if part and not re.search(r"\d+%\|", part)]
+
+
+class Child:
+    """A command under way.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Of ``python -m orchestrate``.
+    folder : Path
+        For temporary files and both outputs.
+    prepare : callable, optional
+        Called in the child first.
+    environment : mapping, optional
+        Further variables.
+    """
+
+    def __init__(
+        self,
+        arguments: list[str],
+        folder: Path,
+        prepare: Callable[[], object] | None = None,
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.begun = time.monotonic()
+        self.files = [folder / f"{os.getpid()}-{time.monotonic_ns()}.{end}" for end in "oe"]
+        sys.stdout.flush()
+        self.pid = os.fork()
+        if self.pid == 0:
+            live(arguments, self.files, folder, prepare, environment or {})
+        self.ended: Ended | None = None
+
+    def running(self) -> bool:
+        """Whether it has not ended."""
+        if self.ended is None:
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            if pid:
+                self._take(status)
+        return self.ended is None
+
+    def send(self, number: int) -> None:
+        """A signal to it and all that it has started."""
+        if self.running():
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self.pid, number)
+
+    def wait(self, patience: float = PATIENCE) -> Ended:
+        """Its end; where it does not end, it is killed."""
+        stop = time.monotonic() + patience
+        while self.running():
+            if time.monotonic() > stop:
+                self.send(signal.SIGKILL)
+                _, status = os.waitpid(self.pid, 0)
+                self._take(status)
+                break
+            time.sleep(0.002)
+        assert self.ended is not None
+        return self.ended
+
+    def _take(self, status: int) -> None:
+        code = os.waitstatus_to_exitcode(status)
+        out, err = (path.read_text("utf-8", "replace") for path in self.files)
+        for path in self.files:
+            path.unlink()
+        self.ended = Ended(code, out, err, time.monotonic() - self.begun)
+
+
+def live(
+    arguments: list[str],
+    files: list[Path],
+    folder: Path,
+    prepare: Callable[[], object] | None,
+    environment: Mapping[str, str],
+) -> None:
+    """The child's life; it does not return."""
+    code = 70
+    try:
+        os.setsid()
+        for path, number in zip(files, (1, 2), strict=True):
+            os.dup2(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), number)
+        sys.stdout, sys.stderr = (io.TextIOWrapper(io.FileIO(n, "w")) for n in (1, 2))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_DFL)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        os.environ.update({"TMPDIR": str(folder), "SOURCE_DATE_EPOCH": "0", **environment})
+        tempfile.tempdir = None
+        atexit._clear()  # type: ignore[attr-defined]
+        if prepare:
+            prepare()
+        code = call(arguments)
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        atexit._run_exitfuncs()  # type: ignore[attr-defined]
+        os._exit(code)
+
+
+def call(arguments: list[str]) -> int:
+    """The command's exit code; what it does not catch is printed, as the interpreter would."""
+    from orchestrate.cli import main
+
+    try:
+        return main(arguments)
+    except SystemExit as ended:
+        return int(ended.code or 0)
+    except BaseException:
+        sys.excepthook(*sys.exc_info())  # type: ignore[arg-type]
+        return 1
+
+
+def in_little_memory() -> None:
+    """For what may try to take all of it."""
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 30, 1 << 30))
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+
+
+def import_all() -> None:
+    """What every command imports, once for all children."""
+    import matplotlib.pyplot
+    import xarray
+
+    import orchestrate.cli
+    from orchestrate.access import OSCILLATOR, SHAKER, find
+    from orchestrate.access.webassembly import web_kernel
+
+    for model in (OSCILLATOR, SHAKER):
+        find(model)
+        web_kernel(model)
+    assert matplotlib.pyplot and xarray and orchestrate.cli

@@ -1,0 +1,168 @@
+"""Flights against a dense search, and their impacts against 50 digits and against the balances."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from . import programs
+from .campaign import Campaign, Outcome
+
+NAMES = (
+    *("m1", "m2", "k1", "k2", "d1", "d2", "e", "box_amplitude", "box_frequency", "phase_start"),
+    *("box_acceleration", "box_jerk", "box_snap", "box_crackle", "x1", "x2", "v1", "v2"),
+)
+WRONG = ("", "a root is missed", "no root at its end", "it does not end")
+CONTACT = 6  # the kind that is no flight
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A flight as ``roots`` prints it: verdict of the dense search, whether it ends in an impact,
+    and when.
+    """
+
+    kind: int
+    verdict: int
+    impact: bool
+    end: float
+    values: dict[str, float]
+
+    @classmethod
+    def read(cls, line: str) -> Flight:
+        """From a line."""
+        _, kind, verdict, impact, end, *row = line.split()
+        values = dict(zip(NAMES, map(float.fromhex, row), strict=True))
+        return cls(int(kind), int(verdict), impact == "1", float.fromhex(end), values)
+
+
+class Roots(Campaign):
+    """The certified walk against a dense search."""
+
+    name = "roots"
+    title = "Missed roots"
+    asks = (
+        "No impact is missed and none is made up. Flights of seven kinds (near grazing, nearly "
+        "equal oscillators, chattering, high frequency ratio, cubic inputs, steep damping, long "
+        "contact) are flown by the native FMU, and up to three flights that follow. A search in C, "
+        "written by Newton's law as sums of complex exponentials, samples the gap (or the contact "
+        "force) up to the flight's end at 25 points or more a radian of its fastest oscillation, "
+        "and goes to the bottom of every dip. A gap below -1e-14 of the sum of its terms is a "
+        "finding."
+    )
+    unit, target, batch = "flights", 100_000_000, 1_000_000
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """Fly."""
+        counts, done, findings, notes = {}, 0, 0, []
+        for line in programs.run(fmu, "roots", seed, count).splitlines():
+            if line.startswith("FLIGHT"):
+                found = Flight.read(line)
+                notes.append(f"seed {seed}: {WRONG[found.verdict]}: {found.values}")
+                continue
+            right, *wrong, left_out, kind = line.split(maxsplit=5)
+            counts[f"{kind}:"] = int(right)
+            counts["left out:"] = counts.get("left out:", 0) + int(left_out)
+            findings += sum(map(int, wrong))
+            done += int(right) + sum(map(int, wrong))
+        return Outcome(done, findings, counts=counts, notes=tuple(notes))
+
+
+class Energy(Campaign):
+    """Momentum and energy of impacts."""
+
+    name = "energy"
+    title = "Momentum and energy"
+    asks = (
+        "Momentum is kept in every impact, the speeds follow the coefficient of restitution, and "
+        "the energy lost is what the FMU says. The speeds before an impact come from the closed "
+        "form of the flight in C, those after it from the FMU, and the FMU's sum of losses is "
+        "compared with ours at the end of each run. Deviations are in parts of the momentum and "
+        "energy of the motion's terms; the clock of the run resolves 7e-15 of a radian. More than "
+        "1e-12 is a finding."
+    )
+    unit, target, batch = "impacts", 1_000_000_000, 10_000_000
+    measures = "deviation"
+    BOUND = 1e-12
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """Let them collide."""
+        line = programs.run(fmu, "energy", seed, count).split()
+        done, runs, failed = map(int, line[:3])
+        parts = dict(
+            zip(("momentum", "restitution", "energy", "sum"), map(float, line[3:]), strict=True)
+        )
+        wrong = [name for name, value in parts.items() if not value <= self.BOUND]
+        notes = tuple(f"seed {seed}: {name} is off by {parts[name]:.1e}" for name in wrong)
+        worst = max(parts.values())
+        return Outcome(done, len(wrong) + failed, worst, {"runs:": runs}, notes)
+
+
+class Impacts(Campaign):
+    """Ends of flights against 50 digits."""
+
+    name = "impacts"
+    title = "Impacts against 50 digits"
+    asks = (
+        "The time of an impact is right. The flights of *Missed roots* again, each one's end "
+        "compared with the root of the gap in 50 digits (mpmath, Newton's law, no formula of the "
+        "kernel). The bound that the tests state: 1e-15 (1 + t) + 1e-14 S/|v|, where S is the sum "
+        "of the gap's terms and v the closing speed: what rounding of the terms allows. For a "
+        "flight without an impact the gap at its end is positive."
+    )
+    unit, target, batch = "flights", 100_000, 500
+    measures = "deviation in parts of the bound"
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """Fly and compare."""
+        done, worst, notes = 0, 0.0, []
+        for flight in flights(fmu, seed, count):
+            part = deviation(flight)
+            done, worst = done + 1, max(worst, part)
+            if not part <= 1.0:
+                notes.append(f"seed {seed}: {part:.3g} of the bound: {flight.values}")
+        return Outcome(done, len(notes), worst, notes=tuple(notes))
+
+
+def flights(fmu: Path, seed: int, count: int) -> Iterator[Flight]:
+    """So many flights, contacts left out."""
+    found = 0
+    for line in programs.run(fmu, "roots", seed, 2 * count, "show").splitlines():
+        if line.startswith("FLIGHT") and found < count:
+            flight = Flight.read(line)
+            if flight.kind != CONTACT:
+                found += 1
+                yield flight
+
+
+def deviation(flight: Flight) -> float:
+    """How far a flight's end is from the truth, in parts of what is allowed."""
+    from mpmath import mp
+
+    from tests.kernels.oscillator import truth
+
+    values, end = flight.values, flight.end
+    state = [values[name] for name in ("x1", "v1", "x2", "v2")]
+    with mp.workdps(50):
+        first, second = truth.apart(values, state, mp.mpf(values["phase_start"]))
+        gap = second - first
+        speed = gap.derivative()
+        terms = size(gap, end)
+        if not flight.impact:
+            return 0.0 if gap(end) > -1e-14 * terms else float("inf")
+        root = mp.mpf(end)
+        for _ in range(2):  # from a place that is right to ten digits at the least
+            root -= gap(root) / speed(root)
+        allowed = 1e-15 * (1.0 + end) + 1e-14 * terms / abs(speed(root))
+        return float(abs(root - end) / allowed)
+
+
+def size(gap: Any, t: float) -> float:
+    """The sum of a signal's terms, which rounding is a part of."""
+    size, power = sum(abs(complex(c)) for c, _ in gap.terms), 1.0
+    for k, part in enumerate(gap.polynomial):
+        size += abs(float(part)) * power
+        power *= t / (k + 1.0)
+    return size

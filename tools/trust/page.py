@@ -1,0 +1,114 @@
+"""The manual's page of the ledger, made from the records."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+from .campaign import Campaign
+from .records import Record
+from .registry import CAMPAIGNS
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "trust.md"
+REPOSITORY = "https://github.com/vibroimpact/vibroimpact/blob/main"
+HEAD = f"""\
+# The ledger of trust
+
+What is promised is attacked: by campaigns that draw their attacks from a seed and say what they
+found. This page is made from their records, [`trust.jsonl`]({REPOSITORY}/docs/trust.jsonl), by
+`python -m tools.trust page`; a test keeps both together. A campaign's figures are the sum of its
+runs on the FMU (or, where the package is attacked, the version) that was attacked last. Each run is
+repeated by its command, in a clone; `python -m tools.trust list` names the campaigns.
+
+What a campaign finds becomes a test, then is mended. A short form of each campaign is among the
+ordinary tests, a longer one among the slow ones. What is trusted, what is checked and how to
+report: [SECURITY.md]({REPOSITORY}/SECURITY.md).
+
+"""
+TABLE = ["| campaign | target | reached | findings |", "|---|---|---|---|"]
+
+
+def together(records: Sequence[Record], campaign: Campaign) -> list[Record]:
+    """A campaign's runs on what it attacked last."""
+    own = [record for record in records if record.campaign == campaign.name]
+
+    def subject(record: Record) -> str:
+        return record.version if campaign.package else record.fmu
+
+    return [record for record in own if subject(record) == subject(own[-1])]
+
+
+def number(value: float) -> str:
+    """A count as people write it."""
+    return f"{value:,.0f}"
+
+
+def summary(records: Sequence[Record]) -> list[str]:
+    """A table, a campaign a row."""
+    lines = list(TABLE)
+    for campaign in CAMPAIGNS.values():
+        runs = together(records, campaign)
+        done, found = sum(r.done for r in runs), sum(r.findings for r in runs)
+        target = f"{number(campaign.target)} {campaign.unit}"
+        link = f"[{campaign.title}](#trust-{campaign.name})"
+        lines.append(f"| {link} | {target} | {number(done)} | {number(found)} |")
+    return lines
+
+
+def reached(campaign: Campaign, runs: Sequence[Record]) -> list[str]:
+    """How much was done, what was found, and how long what is missing would take."""
+    done, seconds = sum(r.done for r in runs), sum(r.seconds for r in runs)
+    found = sum(r.findings for r in runs)
+    lines = [
+        f"{number(done)} {campaign.unit} of {number(campaign.target)} wanted; "
+        f"{number(found)} findings.",
+        f"Rate: {number(3600.0 * done / max(seconds, 1e-9))} {campaign.unit} an hour of one core.",
+    ]
+    if done < campaign.target:
+        hours = (campaign.target - done) / done * seconds / 3600.0
+        lines.append(f"What is missing would take {hours:.1f} hours of one core at this rate.")
+    if campaign.measures:
+        worst = max(runs, key=lambda record: record.worst)
+        lines.append(f"Worst {campaign.measures}: {worst.worst:.3g}, in batch {worst.worst_seed}.")
+    counts: Counter[str] = Counter()
+    for record in runs:
+        counts.update(record.counts)
+    if counts:
+        parts = (f"{name} {number(value)}" for name, value in sorted(counts.items()))
+        lines.append(f"Counted: {', '.join(parts)}.")
+    return lines
+
+
+def section(campaign: Campaign, runs: Sequence[Record]) -> list[str]:
+    """One campaign."""
+    lines = [f"(trust-{campaign.name})=", f"## {campaign.title}", "", campaign.asks, ""]
+    if not runs:
+        return [*lines, "Not run yet.", ""]
+    lines += [*reached(campaign, runs), ""]
+    lines += [f"- {note}" for record in runs for note in record.notes]
+    if lines[-1]:
+        lines.append("")
+    lines += ["| command | done | findings | date | version |", "|---|---|---|---|---|"]
+    for r in runs:
+        cells = [f"`{r.command()}`", number(r.done), number(r.findings), r.date, r.version]
+        lines.append(f"| {' | '.join(cells)} |")
+    return [*lines, ""]
+
+
+def about(records: Sequence[Record]) -> list[str]:
+    """What was attacked, and where."""
+    guids = sorted({r.fmu for c in CAMPAIGNS.values() for r in together(records, c)})
+    machines = sorted({r.machine for r in records})
+    lines = ["## What was attacked, and where", ""]
+    lines += [f"- the FMU with the instantiation token `{guid}`" for guid in guids]
+    lines += [f"- on: {machine}" for machine in machines]
+    return [*lines, ""]
+
+
+def text(records: Sequence[Record]) -> str:
+    """The whole page."""
+    lines = [*summary(records), ""]
+    for campaign in CAMPAIGNS.values():
+        lines += section(campaign, together(records, campaign))
+    return HEAD + "\n".join([*lines, *about(records)])

@@ -1,0 +1,78 @@
+"""Programs in C that call a native FMU, compiled for it once in a process."""
+
+from __future__ import annotations
+
+import functools
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from fmu_src.export import native_form
+from orchestrate.access import describe
+from orchestrate.access.unpacked import unpacked
+from tests.native import importers
+
+NATIVE = Path(__file__).parent / "native"
+OPTIONS = ("-std=gnu11", "-O3", "-march=native", "-Wall", "-Wextra", "-Wno-unused-function")
+CALLS = ("-fno-math-errno", "-fno-trapping-math", "-fcx-limited-range")
+
+
+def compiler() -> list[str]:
+    """The machine's own C compiler, else ziglang's."""
+    own = shutil.which("cc") or shutil.which("gcc")
+    return [own] if own else [sys.executable, "-m", "ziglang", "cc"]
+
+
+@functools.cache
+def compiled(fmu: Path, name: str) -> Path:
+    """``native/NAME.c`` against an FMI 3.0 FMU.
+
+    Parameters
+    ----------
+    fmu : Path
+    name : str
+
+    Returns
+    -------
+    Path
+        In a temporary folder of the process, kept until its end.
+    """
+    folder = temporary() / describe(fmu).digest[:16]
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "names.h").write_text(importers.names_header(fmu), encoding="utf-8")
+    for header, content in native_form.fmi_headers("fmi3").items():
+        (folder / header).write_bytes(content)
+    program = folder / name
+    files = [NATIVE / f"{name}.c", importers.HERE / "importer3.c"]
+    places = [f"-I{folder}", f"-I{importers.HERE}"]
+    own = [*compiler(), *OPTIONS, *CALLS, *places]
+    subprocess.run([*own, "-o", program, *files, "-ldl", "-lm"], check=True)
+    return program
+
+
+@functools.cache
+def temporary() -> Path:
+    """A folder of this process, removed at its end."""
+    holder = tempfile.TemporaryDirectory(prefix="vibroimpact-trust-")
+    _kept.append(holder)
+    return Path(holder.name)
+
+
+_kept: list[tempfile.TemporaryDirectory[str]] = []
+
+
+def library(fmu: Path) -> Path:
+    """The FMU's binary for this machine, unpacked."""
+    found = describe(fmu)
+    return unpacked(found) / "binaries" / "x86_64-linux" / f"{found.identifier}.so"
+
+
+def run(fmu: Path, name: str, *arguments: object, success: bool = True) -> str:
+    """What a program prints."""
+    command = [str(compiled(fmu, name)), str(library(fmu)), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if success and done.returncode:
+        raise RuntimeError(f"{name}: exit code {done.returncode}: {done.stderr[-2000:]}")
+    return done.stdout
