@@ -152,8 +152,9 @@ class Progress:
         """What a chunk starts from: the one before, or all of them."""
         if chunk.after is None:
             return None
-        last = chunk.index == len(self.chunks) - 1
-        return self.store.table() if self.job.closing and last else self.store.get(chunk.after)
+        if self.job.closing and chunk.index == len(self.chunks) - 1:
+            return self.store.table(chunk.index)
+        return self.store.get(chunk.after)
 
     def is_certain(self, chunk: Chunk) -> bool:
         """Whether nobody is at a chunk whose beginning is known."""
