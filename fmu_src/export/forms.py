@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from . import native_form, pythonfmu_form
 from .platforms import chosen
 
 __all__ = ["FORMS", "MODELS", "PLAIN_FORMS", "chosen", "export", "guid"]
@@ -43,6 +42,8 @@ def export(name: str, form: str, build: Path, platforms: tuple[str, ...] | None 
     OSError
         Where the folder cannot be written.
     """
+    from . import native_form, pythonfmu_form
+
     if form == PYTHON_FORM:
         return pythonfmu_form.export(MODELS[name], Path(build) / form)
     version, is_plain = PLAIN_FORMS.get(form, form), form in PLAIN_FORMS
@@ -64,6 +65,8 @@ def guid(name: str, form: str) -> str:
     str
         In braces. It needs neither a compiler nor pythonfmu.
     """
+    from . import native_form, pythonfmu_form
+
     if form == PYTHON_FORM:
         return pythonfmu_form.guid(MODELS[name])
     return native_form.guid(MODELS[name], PLAIN_FORMS.get(form, form), form in PLAIN_FORMS)

@@ -7,7 +7,9 @@ import hashlib
 import json
 import math
 import os
-from collections.abc import Callable, Mapping
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 FORMATS = ("nc", "csv", "mat", "xlsx")
 PLOTS = ("png", "pdf", "svg")
 DIGITS = 6  # of the digest in a file's name
+MOMENT = 1.0  # s: after so much computing, a picture is prepared beside it
 
 
 # -- options --------------------------------------------------------------------------------------
@@ -245,6 +248,11 @@ class Files:
         endings = (*(ending for ending in self.formats if ending != "nc"), *self.plots)
         return [self.result.with_suffix(f".{ending}") for ending in endings]
 
+    def lacks_pictures(self) -> bool:
+        """Whether a picture is to be drawn."""
+        places = (self.result.with_suffix(f".{ending}") for ending in self.plots)
+        return any(self.fresh or not path.exists() for path in places)
+
     def write(self, data: xr.Dataset, draw: Callable[[], Any] | None) -> None:
         """Write what is missing beside the result, and tell all files.
 
@@ -259,6 +267,27 @@ class Files:
         pictures = drawn(self.result, self.plots, self.fresh, draw) if draw else []
         for path in (*others, *pictures):
             print(path)
+
+
+@contextmanager
+def preparing_a_picture(wanted: bool) -> Iterator[None]:
+    """Import what draws while something is computed that takes longer than a moment."""
+
+    def prepare() -> None:
+        from ..figures.files import prepare
+
+        with suppress(Exception):  # it comes again where the picture is drawn
+            prepare()
+
+    timer = threading.Timer(MOMENT, prepare)
+    if wanted:
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+    if wanted:
+        timer.join()
 
 
 def exported(data: xr.Dataset, result: Path, formats: tuple[str, ...], fresh: bool) -> list[Path]:

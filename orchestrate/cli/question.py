@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError, StoreError
-from .output import Files, name_of, running_of
+from .output import Files, name_of, preparing_a_picture, running_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,9 +57,9 @@ def carry_out(
     command = arguments.command
     name = "_".join(filter(None, [name_of(command, structure, question), ending]))
     files = Files.of(arguments, name)
-    data = getattr(orchestrate, command)(
-        structure, **question, **running_of(arguments, files.result)
-    )
+    ask = getattr(orchestrate, command)
+    with preparing_a_picture(draw is not None and files.lacks_pictures()):
+        data: xr.Dataset = ask(structure, **question, **running_of(arguments, files.result))
     for line in notes(structure):
         print(line)
     report(data)

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 
 FEW = 600  # values along an axis that marks are told apart at
 CELLS = (1500, 750)  # of a panel, for samples that lie on each other
@@ -41,29 +42,38 @@ def mark(count: int, marks: Marks) -> dict[str, Any]:
     return {**style, "marker": "o", "markersize": size, "markerfacecolor": "none"}
 
 
-def cells(axes: Axes, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """One point of each cell of a panel that points fall into, and how many fall there.
+def cells(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """One sample of each cell of a panel that samples fall into, and how many fall there.
 
     Parameters
     ----------
     axes : Axes
         With its scales and limits.
-    x, y : ndarray, shape (n,)
+    x : ndarray, shape (n,)
+    samples : ndarray, shape (n, m)
 
     Returns
     -------
     chosen : ndarray of int
-        Indices of points.
+        Indices of the samples as a flat list.
     count : ndarray of int
     """
     columns, rows = CELLS
-    place = axes.transLimits.transform(axes.transScale.transform(np.column_stack([x, y])))
-    column, row = (place * CELLS).astype(np.int64).clip(0, (columns - 1, rows - 1)).T
-    cell = column * rows + row
+    column = part_of(axes.xaxis, x, columns)
+    row = part_of(axes.yaxis, samples, rows)
+    cell = (column[:, None] * rows + row).ravel()
     last = np.full(columns * rows, -1)
     last[cell] = np.arange(len(cell))
     chosen = last[last >= 0]
     return chosen, np.bincount(cell, minlength=columns * rows)[last >= 0]
+
+
+def part_of(axis: Axis, values: np.ndarray, count: int) -> np.ndarray:
+    """Which of so many equal parts of an axis values fall into."""
+    change = axis.get_transform().transform
+    first, last = change(axis.get_view_interval())
+    place = (change(values.ravel()) - first) * (count / (last - first))
+    return place.clip(0.0, count - 1.0).astype(np.intp).reshape(values.shape)
 
 
 def draw_samples(
@@ -79,16 +89,16 @@ def draw_samples(
     marks : Marks
     label : str
     """
-    values, gaps = np.repeat(x, samples.shape[1]), samples.ravel()
+    gaps, each = samples.ravel(), samples.shape[1]
     style = {**mark(len(x), marks), "rasterized": True}
     if len(x) <= FEW:
-        axes.plot(values, gaps, **style, alpha=0.8, label=label)
+        axes.plot(np.repeat(x, each), gaps, **style, alpha=0.8, label=label)
         return
-    chosen, count = cells(axes, values, gaps)
+    chosen, count = cells(axes, x, samples)
     ends = [*(least for least, _ in SHADES[1:]), np.inf]
     for (least, opacity), end in zip(SHADES, ends, strict=True):
         some = chosen[(count >= least) & (count < end)]
-        axes.plot(values[some], gaps[some], **style, alpha=opacity)
+        axes.plot(x[some // each], gaps[some], **style, alpha=opacity)
     size: Any = {"marker": "s", "markersize": 5.0, "linestyle": "none", "color": marks.colour}
     axes.plot([], [], **size, label=label)
 

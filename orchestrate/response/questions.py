@@ -48,7 +48,8 @@ class Point(NamedTuple):
     @property
     def scale(self) -> NDArray[np.float64]:
         """Units of the four co-ordinates of a state."""
-        length, speed = self.length, self.speed
+        length = self.length
+        speed = self.structure.omega * length
         return np.array([length, length, speed, speed])
 
 

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from ..errors import InputError, WorkerError
-from .job import Job, Table
+from .job import Job, Table, last_entries
 
 IDLE = 30  # s that processes wait for another question
 CONNECT = "5s"
@@ -60,7 +60,7 @@ def compute(
         for model, fmu in fmus.items()
     }
     if lead:
-        carry = job.work(paths, lead, None)
+        carry = last_entries(job.work(paths, lead, None))
     start = job.seam(carry) if job.lead and carry is not None else b""
     return start, job.work(paths, items, carry)
 

@@ -86,8 +86,8 @@ class Job(ABC):
             FMU by model name.
         items : sequence
         carry : dict of ndarray, optional
-            Result of the chunk before, in a sequential job; of all before, put together, for the
-            last chunk of a ``closing`` one.
+            The last entries of the chunk before, in a sequential job; of the last chunk of a
+            ``closing`` one, all entries of all before, put together.
 
         Returns
         -------
@@ -95,7 +95,9 @@ class Job(ABC):
         """
 
     def seam(self, table: Table) -> bytes:
-        """What the chunk after this one starts from, of a sequential job with a ``lead``."""
+        """What a chunk starts from, of a sequential job with a ``lead``: by the last entries of
+        the one before.
+        """
         raise NotImplementedError
 
     @abstractmethod
@@ -125,6 +127,11 @@ class Job(ABC):
                 after = len(found) - 1 if self.sequential and first > begin else None
                 found.append(Chunk(len(found), first, min(first + self.chunk, end), after))
         return found
+
+
+def last_entries(table: Table) -> Table:
+    """The last entry of each array of a chunk, all that the next one starts from."""
+    return {name: values[-1:].copy() for name, values in table.items()}
 
 
 def plain(value: Any) -> Any:

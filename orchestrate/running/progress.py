@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from .identity import Fmu, Identity
-from .job import Chunk, Job, Table
+from .job import Chunk, Job, Table, last_entries
 from .provenance import with_provenance
 from .store import Store
 
@@ -34,7 +34,7 @@ class Task:
     chunk : Chunk
     items : sequence
     carry : dict of ndarray, optional
-        What it starts from.
+        What it starts from: the last entries of the chunk before.
     lead : sequence
         Items to compute first, from any state, where it is guessed what it starts from.
     guess : bool
@@ -81,6 +81,7 @@ class Progress:
         self.there = set(range(len(self.chunks))) if self.complete else self.sound()
         self.under_way: set[int] = set()
         self.guesses: dict[int, Guess] = {}
+        self._ends: dict[int, Table] = {}  # last entries of chunks that are certain
         self.wasted = 0  # items that were guessed in vain
         self.inputs: Mapping[str, xr.Dataset] = {}
         self.items: Sequence[Any] | None = None
@@ -149,12 +150,18 @@ class Progress:
                 yield Task(chunk, self.items_of(chunk), self.carry(chunk), (), False)
 
     def carry(self, chunk: Chunk) -> Table | None:
-        """What a chunk starts from: the one before, or all of them."""
+        """What a chunk starts from: the end of the one before, or all of them."""
         if chunk.after is None:
             return None
         if self.job.closing and chunk.index == len(self.chunks) - 1:
             return self.store.table(chunk.index)
-        return self.store.get(chunk.after)
+        return self.end_of(chunk.after)
+
+    def end_of(self, index: int) -> Table:
+        """The last entries of a chunk that is certain."""
+        if index not in self._ends:
+            self._ends[index] = last_entries(self.store.get(index))
+        return self._ends[index]
 
     def is_certain(self, chunk: Chunk) -> bool:
         """Whether nobody is at a chunk whose beginning is known."""
@@ -167,7 +174,7 @@ class Progress:
         for index in sorted(self.guesses):
             following = index + 1
             if following < len(self.chunks) and self.chunks[following].after == index:
-                carry = self.guesses[index].table
+                carry = last_entries(self.guesses[index].table)
                 if self.untouched(following) or self.begun_elsewhere(following, carry):
                     chunk = self.chunks[following]
                     yield Task(chunk, self.items_of(chunk), carry, (), True)
@@ -233,6 +240,8 @@ class Progress:
         """Keep a chunk that is certain."""
         self.store.put(index, table)
         self.there.add(index)
+        if self.job.sequential:
+            self._ends[index] = last_entries(table)
 
     def settle(self) -> None:
         """Take over guesses that began where the chunk before ends, throw away the others."""
@@ -240,7 +249,7 @@ class Progress:
             after = self.chunks[index].after
             if after is None or after in self.there:
                 guess = self.guesses.pop(index)
-                if after is None or self.job.seam(self.store.get(after)) == guess.start:
+                if after is None or self.job.seam(self.end_of(after)) == guess.start:
                     self.keep(index, guess.table)
                 else:
                     self.wasted += self.size(index)

@@ -9,7 +9,7 @@ import time
 from abc import ABC, abstractmethod
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -295,9 +295,16 @@ def read_identity(path: Path) -> Identity:
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
     """Write a dataset with its checksum, whole or not at all."""
+    from xarray.backends import NetCDF4DataStore
+
     dataset = dataset.assign_attrs({ATTRIBUTE: checksum(dataset)})
     large = [name for name, variable in dataset.data_vars.items() if variable.size > COMPRESSED]
     encoding = {name: {"zlib": True, "complevel": 4} for name in large}
-    return write_whole(
-        path, lambda place: dataset.to_netcdf(place, engine="netcdf4", encoding=encoding)
-    )
+    make: Any = NetCDF4DataStore.open
+
+    def write(place: Path) -> None:
+        # xarray's to_netcdf imports Dask's scheduler to find a lock that nobody needs here
+        with make(place, mode="w", lock=False) as file:
+            dataset.dump_to_store(file, encoding=encoding)
+
+    return write_whole(path, write)
