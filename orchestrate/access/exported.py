@@ -95,8 +95,22 @@ def export_all(
     return written
 
 
-def export(name: str, form: str, folder: Path, platforms: tuple[str, ...] = ()) -> Path:
+def export(
+    name: str,
+    form: str,
+    folder: Path,
+    platforms: tuple[str, ...] = (),
+    level: int = logging.INFO,
+) -> Path:
     """Export one model in one form to ``folder/FORM/NAME.fmu``, whole or not at all.
+
+    Parameters
+    ----------
+    name, form : str
+    folder : Path
+    platforms : tuple of str
+    level : int
+        At which it is said that this takes long.
 
     Raises
     ------
@@ -107,7 +121,7 @@ def export(name: str, form: str, folder: Path, platforms: tuple[str, ...] = ()) 
     """
     check(name, form)
     open_folder(folder)
-    announce(folder)
+    announce(folder, level)
     log.info("exporting %s", folder / form / f"{name}.fmu")
     try:
         return sources.export(name, form, folder, platforms or None)
@@ -117,9 +131,10 @@ def export(name: str, form: str, folder: Path, platforms: tuple[str, ...] = ()) 
 
 
 @functools.cache
-def announce(folder: Path) -> None:
+def announce(folder: Path, level: int) -> None:
     """Say once that it takes long."""
-    log.info("exporting FMUs to %s: compiling takes up to a minute a model", folder)
+    text = "exporting FMUs to %s, this once: compiling takes up to a minute a model"
+    log.log(level, text, folder)
 
 
 @functools.cache
@@ -166,6 +181,7 @@ def find(
     form: str = "fmi3",
     folder: str | PathLike[str] | None = None,
     fmu: str | PathLike[str] | None = None,
+    level: int = logging.INFO,
 ) -> Description:
     """A model's FMU, exported first where there is none of the present sources.
 
@@ -180,6 +196,8 @@ def find(
         FMUs that came with the package, and the user's cache folder.
     fmu : path-like, optional
         The user's own FMU, taken as it is.
+    level : int
+        Of :mod:`logging`, at which an export says that it takes long.
 
     Returns
     -------
@@ -207,7 +225,7 @@ def find(
             if up_to_date(wanted, model, place):
                 return describe(place / wanted / f"{model}.fmu", model)
         try:
-            return describe(export(model, wanted, places[0]), model)
+            return describe(export(model, wanted, places[0], level=level), model)
         except CannotExport as reason:
             reasons.append(reason)
     text = f"FMU {model}: there is none of the present sources, and none can be made here"
@@ -227,7 +245,8 @@ def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
     ----------
     running : mapping
         ``fmu``: the user's own FMU, or a mapping of model names to them. ``build_folder``: as
-        ``folder`` of :func:`find`.
+        ``folder`` of :func:`find`. ``progress``: whether an export says that it takes long in a
+        plain script too, whose log shows warnings alone.
 
     Returns
     -------
@@ -235,12 +254,13 @@ def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
         Model name to :class:`.description.Description`.
     """
     own, folder = running.get("fmu"), running.get("build_folder")
+    level = logging.WARNING if running.get("progress", True) else logging.INFO
     if isinstance(own, Mapping):
         for name in own:
             check(name, "fmi3")
 
     def found(model: str) -> Description:
         path = own.get(model) if isinstance(own, Mapping) else own
-        return find(model, folder=folder, fmu=path)
+        return find(model, folder=folder, fmu=path, level=level)
 
     return found

@@ -92,6 +92,14 @@ def test_export_is_said(maker, places, caplog):
     assert f"exporting {places[0] / 'fmi3' / OSCILLATOR}.fmu" in caplog.text
 
 
+@pytest.mark.parametrize("progress", [True, False])
+def test_a_script_is_told_that_an_export_takes_long(maker, places, caplog, progress):
+    exported.announce.cache_clear()
+    finder({"progress": progress})(OSCILLATOR)
+    said = [record.getMessage() for record in caplog.records if record.levelname == "WARNING"]
+    assert any("takes up to a minute" in line for line in said) == progress
+
+
 def test_what_came_with_the_package_needs_no_export(maker, places, real):
     put(real["fmi3"], places[1])
     assert find(OSCILLATOR).path == places[1] / "fmi3" / f"{OSCILLATOR}.fmu"
