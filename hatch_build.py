@@ -2,8 +2,9 @@
 
 For a wheel, not for an editable installation, ``build/FORM/NAME.fmu`` of the source tree becomes
 ``orchestrate/access/fmus/FORM/NAME.fmu``, and ``build/wasm/NAME.wasm``, the kernel for web pages,
-``orchestrate/access/fmus/wasm/NAME.wasm``. What is not there, or was made of other sources, is left
-out, and said to be.
+``orchestrate/access/fmus/wasm/NAME.wasm``; so do ``build/libraries/PLATFORM/``, compiled from the
+package's own C sources, for all platforms that are there. What is not there, or was made of other
+sources, is left out, and said to be.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ class CustomBuildHook(BuildHookInterface):
             return
         root = Path(self.root)
         sys.path.insert(0, str(root))
-        from fmu_src.export import forms, webassembly
+        from fmu_src.export import c_library, forms, webassembly
 
         for form in forms.FORMS:
             for name in forms.MODELS:
@@ -55,3 +56,11 @@ class CustomBuildHook(BuildHookInterface):
                 build_data["force_include"][str(path)] = f"{PLACE}/wasm/{name}.wasm"
             else:
                 self.app.display_warning(f"{path}: none of these sources, left out")
+        for source in sorted(root.glob("orchestrate/*/*.c")):
+            token = c_library.guid(source).encode()
+            for path in sorted((root / "build" / "libraries").glob(f"*/{source.stem}.*")):
+                if token in path.read_bytes():
+                    place = f"{PLACE}/libraries/{path.parent.name}/{path.name}"
+                    build_data["force_include"][str(path)] = place
+                else:
+                    self.app.display_warning(f"{path}: none of these sources, left out")

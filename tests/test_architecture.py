@@ -174,9 +174,9 @@ def test_the_fmus_know_nothing_of_their_use():
     assert not {file for file in users("orchestrate") if file.startswith("fmu_src/")}
 
 
-def test_the_sources_of_the_fmus_are_known_in_four_places():
+def test_the_sources_of_the_fmus_are_known_in_five_places():
     found = {file for file in users("fmu_src") if file.startswith("orchestrate/")}
-    access = {f"orchestrate/access/{name}.py" for name in ("exported", "webassembly")}
+    access = {f"orchestrate/access/{name}.py" for name in ("c_library", "exported", "webassembly")}
     assert found == {*access, "orchestrate/structures/ranges.py", "orchestrate/version.py"}
 
 

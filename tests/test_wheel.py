@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from fmu_src.export.platforms import this_machine
+
 ROOT = Path(__file__).resolve().parents[1]
 TOOLS = ("numba", "llvmlite", "ziglang", "pythonfmu", "hatchling")  # to build, not to ask
 WITHOUT = f"""
@@ -67,7 +69,8 @@ def ask(python: Path, folder: Path, **more: str) -> None:
         )
         assert done.returncode == 0, (command, done.stdout, done.stderr)
     assert len(list((folder / "results").glob("*.nc"))) >= 3
-    assert not list((folder / "home").rglob("*.fmu"))  # those it came with served
+    came_along = ("*.fmu", "compiled.*")
+    assert not [path for name in came_along for path in (folder / "home").rglob(name)]
 
 
 def test_a_wheel_without_compiler_numba_and_ziglang(wheel, tmp_path):
@@ -97,6 +100,9 @@ def test_the_wheel_carries_nothing_else(wheel):
     names = zipfile.ZipFile(wheel).namelist()
     assert sum(name.endswith(".fmu") for name in names) == 6
     assert sum(name.endswith(".wasm") for name in names) == 2
+    assert f"orchestrate/access/fmus/libraries/{this_machine()}/compiled" in {
+        name.partition(".")[0] for name in names
+    }
     roots = {name.split("/")[0] for name in names if ".dist-info" not in name}
     assert roots == {"fmu_src", "orchestrate"}
     assert "orchestrate/py.typed" in names

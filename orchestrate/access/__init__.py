@@ -12,10 +12,12 @@ module                idea
 :mod:`.events`        a motion impact by impact
 :mod:`.begin`         how a motion begins, and its states at equal times
 :mod:`.channel`       fast calls on one instance, for co-simulation masters
+:mod:`.c_library`     C sources of the package compiled, and found
 ====================  =============================================================================
 """
 
 from .begin import REST, begin, last_samples, room_for_samples, sampled
+from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
 from .events import STATE, EventInstance, Impacts
@@ -38,6 +40,7 @@ __all__ = [
     "Instance",
     "begin",
     "build",
+    "build_libraries",
     "describe",
     "find",
     "finder",

@@ -7,10 +7,33 @@ variables. Both FMI versions; statuses are checked by FMPy.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from ctypes import byref, c_bool, c_double, c_uint, c_void_p
-from typing import Any
+from ctypes import Array, byref, c_bool, c_double, c_uint, c_void_p, cast
+from typing import Any, NamedTuple
 
+from ..errors import FmuError
 from .instance import Instance
+
+
+class Pointers(NamedTuple):
+    """What compiled code needs to do the same with an FMI 3.0 instance.
+
+    Attributes
+    ----------
+    instance : int
+    functions : tuple of int
+        Addresses of ``fmi3SetFloat64``, ``fmi3GetFloat64``, ``fmi3DoStep``, ``fmi3GetFMUState``
+        and ``fmi3SetFMUState``.
+    inputs, outputs : array of c_uint
+        Value references.
+    kept : c_void_p
+        The place of the state kept; the channel frees it.
+    """
+
+    instance: int
+    functions: tuple[int, ...]
+    inputs: Array[c_uint]
+    outputs: Array[c_uint]
+    kept: c_void_p
 
 
 class Channel:
@@ -70,11 +93,26 @@ class Channel:
 
     def _call(self, function: Callable[..., int], *arguments: Any) -> None:
         """Call the FMU itself, past FMPy's wrapper; its message where the status is not OK."""
-        self.instance._messages.clear()
+        self.begin()
         status = function(*arguments)
         if status:
-            name = getattr(function, "__name__", "a call of the FMU")
-            raise self.instance.failure(f"{name} failed with status {status}")
+            raise self.failure(getattr(function, "__name__", "a call of the FMU"), status)
+
+    def pointers(self) -> Pointers:
+        """For compiled code, of an FMI 3.0 instance whose states are reused."""
+        names = ("SetFloat64", "GetFloat64", "DoStep", "GetFMUState", "SetFMUState")
+        functions = (getattr(self._fmu.dll, f"fmi3{name}") for name in names)
+        addresses = tuple(cast(function, c_void_p).value or 0 for function in functions)
+        kept = self._states.setdefault(0, c_void_p())
+        return Pointers(self._fmu.component, addresses, self._puts[-1][1], self._gets[1], kept)
+
+    def begin(self) -> None:
+        """Forget messages of calls before."""
+        self.instance._messages.clear()
+
+    def failure(self, function: str, status: int) -> FmuError:
+        """The FMU's message after a call that did not answer OK."""
+        return self.instance.failure(f"{function} failed with status {status}")
 
     def put(self, *values: float) -> None:
         """Set the first of the inputs, as many as values are given."""

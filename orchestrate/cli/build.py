@@ -16,7 +16,7 @@ EXAMPLES = """  {program} build
 
 def add_parser(commands: Commands) -> None:
     """Declare the command."""
-    text = "export the FMUs, each form with the same variables and numbers"
+    text = "export the FMUs, each form with the same variables and numbers, and compile the master"
     parser = commands.add("build", run, text, EXAMPLES)
     parser.add_argument(
         "--folder",
@@ -40,11 +40,14 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
-    from ..access import FORMS, PLAIN_FORMS, build
+    from ..access import FORMS, PLAIN_FORMS, build, build_libraries
 
     if arguments.folder is not None:
         check_output(arguments.folder, "--folder")
     forms = PLAIN_FORMS if arguments.plain else FORMS
     platforms = [name for name in arguments.platforms.split(",") if name]
-    for path in build(arguments.folder, forms, platforms=platforms):
+    made = build(arguments.folder, forms, platforms=platforms)
+    if not arguments.plain:
+        made += build_libraries(arguments.folder, platforms)
+    for path in made:
         print(f"{path}  {path.stat().st_size / 1024:.0f} kB")

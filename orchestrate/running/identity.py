@@ -145,9 +145,11 @@ def source_of(module: str) -> Path | None:
 def read_source(path: Path, module: str) -> tuple[str, tuple[str, ...]]:
     """Digest of a source file, and the names that it imports."""
     source = path.read_bytes().replace(b"\r\n", b"\n")
+    beside = path.with_suffix(".c")  # what the module has compiled
+    own = source + (beside.read_bytes().replace(b"\r\n", b"\n") if beside.is_file() else b"")
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
     names = tuple(dict.fromkeys(imported_names(ast.parse(source), package)))
-    return hashlib.sha256(source).hexdigest()[:DIGITS], names
+    return hashlib.sha256(own).hexdigest()[:DIGITS], names
 
 
 def imported_names(tree: ast.AST, package: str) -> Iterator[str]:

@@ -7,7 +7,8 @@ and of the master, so an interrupted run goes on with the same bits.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -22,6 +23,7 @@ from ..running.options import Running
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
+from .compiled import master_of
 from .controllers import Controller, Seen
 from .held import FOLLOWS, LEFT_BEFORE, LOST, NOT_ASKED, TOLD, Holder, Verdict, with_a_last_one
 from .jumps import (
@@ -35,7 +37,7 @@ from .jumps import (
     stays_beyond,
     why_none,
 )
-from .master import Master, Scheme
+from .master import Scheme
 from .revolutions import COLUMNS, Revolutions
 from .schedule import Constant, Ramp, Schedule, check
 
@@ -352,8 +354,8 @@ class Run:
         oscillator.initialize(**oscillator_start(job.structure))
         voltage = job.schedule.voltage(0.0)
         shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
-        self.master = Master(oscillator, shaker, job.structure, job.scheme)
-        self.revolutions = Revolutions(self.master, job.structure, self.impact_count)
+        self.master = master_of(oscillator, shaker, job.structure, job.scheme)
+        self.revolutions = Revolutions(self.master, self.impact_count)
         self.control_memory = job.control.begin(job.speed_start) if job.control else ()
 
     def impact_count(self) -> float:
@@ -370,19 +372,34 @@ class Run:
         voltage, self.control_memory = control.act(seen, self.control_memory)
         return voltage
 
-    def revolve(self, steps: Sequence[int], look: Callable[[], None] | None = None) -> Table:
-        """Do some steps, and look at the end of each; columns of their complete revolutions."""
-        master, add, voltage = self.master, self.revolutions.add, self.voltage
-        rows = []
-        for i in steps:
-            master.step(voltage(i))
-            if look:
-                look()
-            row = add()
-            if row:
-                rows.append(row)
+    def revolve(self, steps: Sequence[int], kept: np.ndarray | None = None) -> Table:
+        """Do some steps; columns of their complete revolutions.
+
+        Parameters
+        ----------
+        steps : sequence of int
+        kept : ndarray, optional
+            Takes the master's memory after each step, a row each.
+        """
+        rows, begin = [], 0
+        for voltages in self.at_once(steps):
+            piece = None if kept is None else kept[begin : begin + len(voltages)]
+            done = 0
+            while done < len(voltages):
+                done = self.master.run(voltages, done, kept=piece)
+                row = self.revolutions.add()
+                if row:
+                    rows.append(row)
+            begin += done
         table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
         return dict(zip(COLUMNS, table.T.copy(), strict=True))
+
+    def at_once(self, steps: Sequence[int]) -> Iterator[array[float]]:
+        """Voltages of steps that follow each other unseen: all, or one where a controller looks."""
+        if self.job.control is None:
+            yield array("d", map(self.voltage, steps))
+        else:
+            yield from (array("d", (self.voltage(i),)) for i in steps)
 
     def memory(self) -> Table:
         """All that a run goes on from, one row."""

@@ -26,7 +26,7 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
 from .couple import Run, couple_job, scheme_of
-from .revolutions import TURN
+from .master import TURN, parts_of
 from .schedule import Ramp, check
 
 if TYPE_CHECKING:
@@ -117,12 +117,12 @@ class DriveSpectraJob(Job):
 
     def sample(self, run: Run, interval: float) -> np.ndarray:
         """Displacements of both masses in space at equal times."""
-        master, voltage, rows = run.master, self.approach.last, []
-        for _ in range(self.revolutions * self.points):
-            master.step(voltage, interval)
-            motion, box = master.motion, master.shaking.box_position
-            rows.append((motion.x1 + box, motion.x2 + box))
-        return np.array(rows).T
+        count = self.revolutions * self.points
+        kept = np.empty((count, len(run.master.memory())))
+        run.master.revolution = None
+        run.master.run([self.approach.last] * count, h=interval, kept=kept)
+        _, motion, shaking, _ = parts_of(kept.T)
+        return np.array([motion.x1 + shaking.box_position, motion.x2 + shaking.box_position])
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Amplitudes over the lines."""

@@ -55,3 +55,11 @@ class ShakerOutputs(NamedTuple):
     box_damper_energy: float
     box_force_work: float
     stored_energy: float
+
+
+class Step(NamedTuple):
+    """A step that both sides have done: what the structure was told, and both ends of it."""
+
+    acceleration: Cubic
+    motion: OscillatorOutputs
+    shaking: ShakerOutputs

@@ -4,14 +4,16 @@ Between impacts the first mass follows m x'' + d x' + k x = -m y'' with the cubi
 told: its Taylor series is known from a state at either end of the step. Before an impact the series
 from the beginning holds, after it the one from the end, so the turning points are as exact as the
 states at the communication points. Of several impacts in one step only the last is told apart.
+``compiled.c`` has the same.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..structures.structure import Structure
-from .exchange import Cubic, OscillatorOutputs, ShakerOutputs
+from .exchange import Cubic, OscillatorOutputs, ShakerOutputs, Step
 from .polynomials import end_slope, end_value
 
 TERMS = 8  # derivatives of the series: a step of 0.2/omega leaves 1e-11 of the amplitude
@@ -103,3 +105,62 @@ def reach_of_box(before: ShakerOutputs, after: ShakerOutputs, told: Cubic, h: fl
     if before.box_velocity * after.box_velocity < 0.0:
         positions += turning((before.box_position, before.box_velocity, *told), 0.0, h)
     return Reach(min(positions), max(positions))
+
+
+@dataclass
+class Revolution:
+    """What is seen of a revolution under way.
+
+    Attributes
+    ----------
+    turn : float
+        Full turns of the motor at its beginning.
+    time, impacts : float
+        s, and impacts so far, at its beginning.
+    x1_high, x1_low, box_high, box_low : float
+        Extreme positions since, m.
+    acceleration : float
+        Largest of the box, m/s2.
+    """
+
+    turn: float
+    time: float
+    impacts: float
+    x1_high: float
+    x1_low: float
+    box_high: float
+    box_low: float
+    acceleration: float = 0.0
+
+    @classmethod
+    def begin(
+        cls,
+        motion: OscillatorOutputs,
+        shaking: ShakerOutputs,
+        turn: float = 0.0,
+        time: float = 0.0,
+        impacts: float = 0.0,
+    ) -> Revolution:
+        """One that begins with these outputs."""
+        x, y = motion.x1, shaking.box_position
+        return cls(turn, time, impacts, x, x, y, y)
+
+    def add(
+        self,
+        structure: Structure,
+        before: tuple[OscillatorOutputs, ShakerOutputs],
+        done: Step,
+        begin: float,
+        h: float,
+    ) -> None:
+        """A step, from outputs at a time on, s, and its length, s."""
+        motion, shaking = before
+        x = reach_of_mass(structure, (motion, done.motion), done.acceleration, begin, h)
+        self.x1_high, self.x1_low = max(self.x1_high, x.high), min(self.x1_low, x.low)
+        y = reach_of_box(shaking, done.shaking, done.acceleration, h)
+        self.box_high, self.box_low = max(self.box_high, y.high), min(self.box_low, y.low)
+        self.acceleration = max(self.acceleration, abs(done.shaking.box_acceleration))
+
+    def complete(self, turns: float) -> bool:
+        """Whether the motor, after so many turns, has made one more, forward or backward."""
+        return turns >= self.turn + 1.0 or turns <= self.turn - 1.0

@@ -13,17 +13,47 @@ values have.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..access.channel import Channel
 from ..access.instance import Instance
 from ..errors import InputError
 from ..structures.structure import Structure
 from .energy_balance import EnergyBalance
-from .exchange import Cubic, OscillatorInputs, OscillatorOutputs, ShakerInputs, ShakerOutputs
+from .exchange import (
+    Cubic,
+    OscillatorInputs,
+    OscillatorOutputs,
+    ShakerInputs,
+    ShakerOutputs,
+    Step,
+)
+from .extremes import Revolution
 from .polynomials import end_slope, matched_cubic, parabola, work
+
+TURN = 2.0 * math.pi
+OWN = (
+    *("time", "voltage", "slope", "force_before", "h_before"),
+    *("acceleration_before", "jerk_before", "level"),
+)
+PLACES = {  # of what is remembered
+    name: place
+    for place, name in enumerate((*OWN, *OscillatorOutputs._fields, *ShakerOutputs._fields))
+}
+
+
+def parts_of(
+    numbers: Any,
+) -> tuple[Any, OscillatorOutputs, ShakerOutputs, Any]:
+    """The master's own part of its memory, both outputs, the balance's; of columns of many too."""
+    motion, shaking = PLACES[OscillatorOutputs._fields[0]], PLACES[ShakerOutputs._fields[0]]
+    rest = len(PLACES)
+    ends = OscillatorOutputs(*numbers[motion:shaking]), ShakerOutputs(*numbers[shaking:rest])
+    return numbers[:motion], *ends, numbers[rest:]
 
 
 class Algorithm(NamedTuple):
@@ -124,16 +154,10 @@ class Scheme:
         return self.passes > 1
 
 
-class Step(NamedTuple):
-    """A step that both sides have done: what the structure was told, and both ends of it."""
-
-    acceleration: Cubic
-    motion: OscillatorOutputs
-    shaking: ShakerOutputs
-
-
 class Master:
     """Two initialised instances, stepped together.
+
+    :class:`.compiled.CompiledMaster` does the same with the same bits, faster.
 
     Parameters
     ----------
@@ -157,11 +181,8 @@ class Master:
         Length of the last step, s.
     level : int
         How often ``h`` is halved for the next step.
-    halved : int
-        Steps that the tolerance has refused.
-    watch : callable, optional
-        Called at the end of every step, halves too, with what was done and its length, before the
-        master goes on.
+    revolution : Revolution, optional
+        Is told every step, halves too.
     """
 
     def __init__(
@@ -175,10 +196,10 @@ class Master:
         self.oscillator = Channel(oscillator, OscillatorInputs._fields, OscillatorOutputs._fields)
         self.shaker = Channel(shaker, ShakerInputs._fields, ShakerOutputs._fields)
         self.scheme, self._algorithm = scheme, ALGORITHMS[scheme.algorithm]
-        self.time, self.halved, self.voltage = start_time, 0, math.nan
+        self.structure, self.time, self.voltage = structure, start_time, math.nan
         self.level = 0
         self.motion, self.shaking = self._motion(), self._shaking()
-        self.watch: Callable[[Step, float], None] | None = None
+        self.revolution: Revolution | None = None
         self.slope = 0.0  # of the force, at the present communication point
         self.force_before = self.h_before = 0.0
         self.acceleration_before = self.jerk_before = 0.0
@@ -198,6 +219,39 @@ class Master:
                 self._step(voltage, h * part / sum(parts))
         self.time = begin + h
 
+    def run(
+        self,
+        voltages: Sequence[float],
+        first: int = 0,
+        h: float | None = None,
+        kept: np.ndarray | None = None,
+    ) -> int:
+        """Intervals one after the other, up to the first that completes the revolution.
+
+        Parameters
+        ----------
+        voltages : sequence of float
+            Of each, V.
+        first : int
+            The one to begin with.
+        h : float, optional
+            Their length, s, where it is not the scheme's.
+        kept : ndarray, shape (len(voltages), len(memory())), optional
+            Takes the memory after each.
+
+        Returns
+        -------
+        int
+            The one that comes next.
+        """
+        for i in range(first, len(voltages)):
+            self.step(voltages[i], h)
+            if kept is not None:
+                kept[i] = self.memory()
+            if self.revolution and self.revolution.complete(self.shaking.angle / TURN):
+                return i + 1
+        return len(voltages)
+
     def _parts_by_defect(self, voltage: float, h: float) -> None:
         """An interval in steps of h, h/2, h/4 ... as their defects ask for.
 
@@ -212,7 +266,6 @@ class Master:
             defect = self._step(voltage, h / (1 << self.level), self.level < self.scheme.halvings)
             if defect > self.scheme.tolerance and self.level < self.scheme.halvings:
                 self.level += 1
-                self.halved += 1
                 continue
             done += size
             even = done % (2 * size) == 0
@@ -253,8 +306,9 @@ class Master:
 
     def _go_on(self, done: Step, h: float) -> None:
         """To the step's end."""
-        if self.watch:
-            self.watch(done, h)
+        if self.revolution:
+            ends = self.motion, self.shaking
+            self.revolution.add(self.structure, ends, done, self.time, h)
         # at the start the force's slope was not known, nor the jerk
         self.jerk_before = self.shaking.box_jerk if self.h_before else done.acceleration[1]
         self.acceleration_before = self.shaking.box_acceleration
@@ -373,20 +427,16 @@ class Master:
 
     def memory(self) -> list[float]:
         """What the master itself remembers: with both FMUs' states, all that a run goes on from."""
-        own = [self.time, self.voltage, self.slope, self.force_before, self.h_before]
-        own += [self.acceleration_before, self.jerk_before, float(self.level)]
+        own = [float(getattr(self, name)) for name in OWN]
         return [*own, *self.motion, *self.shaking, *self.balance.memory()]
 
     def remember(self, numbers: Sequence[float]) -> None:
         """The inverse of :meth:`memory`."""
-        self.time, self.voltage, self.slope, self.force_before, self.h_before = numbers[:5]
-        self.acceleration_before, self.jerk_before = numbers[5:7]
-        self.level = int(numbers[7])
-        motion = 8 + len(OscillatorOutputs._fields)
-        shaking = motion + len(ShakerOutputs._fields)
-        self.motion = OscillatorOutputs(*numbers[8:motion])
-        self.shaking = ShakerOutputs(*numbers[motion:shaking])
-        self.balance.remember(numbers[shaking:])
+        own, self.motion, self.shaking, balance = parts_of(numbers)
+        for name, value in zip(OWN, own, strict=True):
+            setattr(self, name, value)
+        self.level = int(self.level)
+        self.balance.remember(balance)
 
     def close(self) -> None:
         """Free the states kept in the FMUs."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -26,7 +27,8 @@ from ..structures.structure import Structure
 from .controllers import Controller
 from .couple import CoupleJob, Run, checked_motor, couple_job, no_verdicts, schedule_of, scheme_of
 from .held import with_a_last_one
-from .revolutions import COLUMNS, TURN
+from .master import PLACES, TURN, Master, parts_of
+from .revolutions import COLUMNS
 from .schedule import Schedule, check
 
 if TYPE_CHECKING:
@@ -99,12 +101,12 @@ class PassageJob(Job):
             try:
                 if carry is not None:
                     run.remember(carry)
-                rows: list[tuple[float, ...]] = []
-                revolutions = run.revolve(items, lambda: rows.append(sample(run)))
-                columns = np.array(rows).T
+                kept = np.empty((len(items), len(run.master.memory())))
+                revolutions = run.revolve(items, kept)
+                columns = samples(run.master, kept)
                 names = (KEPT + name for name in SAMPLES)
-                kept = dict(zip(names, columns, strict=True))
-                return {**revolutions, **kept, **run.memory(), **no_verdicts()}
+                found = dict(zip(names, columns, strict=True))
+                return {**revolutions, **found, **run.memory(), **no_verdicts()}
             finally:
                 run.master.close()
 
@@ -141,13 +143,14 @@ class PassageJob(Job):
         return np.array([self.run.schedule.duration - self.around]), "the end, there is no jump"
 
 
-def sample(run: Run) -> tuple[float, ...]:
-    """A communication point, in the order of ``SAMPLES``."""
-    master = run.master
-    motion, shaking = master.motion, master.shaking
-    energies = master.balance.energies(motion, shaking)
+def samples(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
+    """Communication points of a master's memories, in the order of ``SAMPLES``."""
+    own, motion, shaking, balance = parts_of(kept.T)
+    accounts = copy(master.balance)
+    accounts.remember(balance)
+    energies = accounts.energies(motion, shaking)
     return (
-        *(master.time, master.voltage, shaking.speed, shaking.angle),
+        *(own[PLACES["time"]], own[PLACES["voltage"]], shaking.speed, shaking.angle),
         *(motion.x1, motion.x2, motion.v1, motion.v2),
         *(shaking.box_position, shaking.box_velocity, shaking.box_acceleration),
         *(energies.motor, energies.box_damper, energies.impact_loss),

@@ -7,6 +7,7 @@ motions make a curve, which :mod:`orchestrate.dynamics.continuation` follows rou
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -17,10 +18,10 @@ from ..dynamics.continuation import NoConvergenceError
 from ..errors import FmuError
 from ..structures.drive import Drive
 from ..structures.structure import Structure
+from .compiled import master_of
 from .couple import oscillator_start
-from .extremes import reach_of_mass
-from .master import Master, Scheme, Step
-from .revolutions import TURN
+from .extremes import Revolution
+from .master import PLACES, TURN, Master, Scheme
 
 STARTS = {  # start values of the shaker and of the structure by the outputs that they are
     **{"box_position": "position_start", "box_velocity": "velocity_start", "speed": "speed_start"},
@@ -124,7 +125,7 @@ class Shooter:
         oscillator.initialize(**oscillator_start(self.structure), **own)
         more = {"angle_start": self.angle, "voltage": voltage}
         shaker.initialize(**self.drive.parameters(), **starts, **more)
-        return Master(oscillator, shaker, self.structure, Scheme("rollback", h))
+        return master_of(oscillator, shaker, self.structure, Scheme("rollback", h))
 
     def begin(self, unknowns: Floats) -> tuple[Master, float]:
         """Both FMUs at the start of a period, and the voltage, V."""
@@ -175,8 +176,7 @@ class Shooter:
         """
         try:
             master, voltage = self.begin(unknowns)
-            for _ in range(self.count):
-                master.step(voltage)
+            master.run([voltage] * self.count)
         except FmuError as error:
             raise NoConvergenceError(str(error)) from None
         turned = master.shaking.angle - self.angle - self.turns * TURN
@@ -187,27 +187,22 @@ class Shooter:
     def look(self, unknowns: Floats) -> Period:
         """What a motion does over a period."""
         master, voltage = self.begin(unknowns)
-        seen, gaps = [master.motion.x1], [master.motion.x2 - master.motion.x1]
-
-        def watch(done: Step, h: float) -> None:
-            ends = (master.motion, done.motion)
-            seen.extend(reach_of_mass(self.structure, ends, done.acceleration, master.time, h))
-
-        master.watch = watch
-        for _ in range(self.count):
-            master.step(voltage)
-            gaps.append(master.motion.x2 - master.motion.x1)
+        ends = master.motion, master.shaking
+        seen = master.revolution = Revolution.begin(*ends, turn=math.nan)  # never complete
+        kept = np.empty((self.count + 1, len(master.memory())))
+        kept[0] = master.memory()
+        master.run([voltage] * self.count, kept=kept[1:])
+        gaps = kept[:, PLACES["x2"]] - kept[:, PLACES["x1"]]
         master.close()
         impacts = int(self.fmus[0].get("impact_count")[0])
         clear = int(np.argmax(gaps))
         share = gaps[0] / gaps[clear] if gaps[clear] > 0.0 else 1.0
-        return Period(0.5 * (max(seen) - min(seen)), impacts, self.turns, clear, share)
+        return Period(0.5 * (seen.x1_high - seen.x1_low), impacts, self.turns, clear, share)
 
     def begin_later(self, unknowns: Floats, steps: int) -> Floats:
         """Begin periods some steps later from now on; the unknowns of the same motion there."""
         master, voltage = self.begin(unknowns)
-        for _ in range(steps):
-            master.step(voltage)
+        master.run([voltage] * steps)
         self.angle = master.shaking.angle % TURN
         found = np.append(self.state_of(master), unknowns[-2:])
         master.close()

@@ -7,8 +7,9 @@ import numpy as np
 
 from orchestrate import Drive, Structure
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.weak_drive.compiled import master_of
 from orchestrate.weak_drive.couple import oscillator_start
-from orchestrate.weak_drive.master import Master, Scheme
+from orchestrate.weak_drive.master import Scheme
 
 GRID = 0.2  # of the comparisons
 ORDER = ("x1", "v1", "x2", "v2", "box_position", "box_velocity", "angle", "speed")
@@ -44,16 +45,23 @@ def rest(speed=0.0):
     return [0.0] * 7 + [speed, 0.0]
 
 
+def starts_of(state):
+    """Start values of the structure and of the shaker for a state."""
+    return (
+        dict(zip(STARTS, state[:4], strict=True)),
+        dict(zip(SHAKER_STARTS, state[4:], strict=True)),
+    )
+
+
 @contextlib.contextmanager
-def master(system, scheme, state, form="fmi3"):
+def master(system, scheme, state, form="fmi3", kind=master_of):
     """A master from a state as :mod:`.monolithic` has it."""
     oscillator, shaker = (find(model, form).path for model in (OSCILLATOR, SHAKER))
-    starts = dict(zip(STARTS, state[:4], strict=True))
-    shaker_starts = dict(zip(SHAKER_STARTS, state[4:], strict=True))
+    starts, shaker_starts = starts_of(state)
     with Instance(oscillator) as one, Instance(shaker) as other:
         one.initialize(**oscillator_start(system.structure), **starts)
         other.initialize(**system.drive.parameters(), **shaker_starts)
-        made = Master(one, other, system.structure, scheme)
+        made = kind(one, other, system.structure, scheme)
         yield made
         made.close()
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate.errors import InputError
-from orchestrate.weak_drive.master import ALGORITHMS, Scheme
+from orchestrate.weak_drive.master import ALGORITHMS, Master, Scheme
 
 from .coupled import GRID, QUICK, history, master, rest, settled, state_of
 from .monolithic import Monolith
@@ -105,18 +105,28 @@ def test_a_small_defect_does_not_prove_accuracy(jumping):
     assert error > 5e-4
 
 
+class Recording(Master):
+    """A master that keeps the lengths of its steps."""
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        self.lengths = []
+
+    def _go_on(self, done, h):
+        self.lengths.append(h)
+        super()._go_on(done, h)
+
+
 def controlled(case, tolerance):
     """Error of the displacements over the amplitude with the step control, and the steps done."""
-    lengths = []
     scheme = Scheme("rollback", 0.4, tolerance=tolerance)
-    with master(case.system, scheme, case.state) as m:
-        m.watch = lambda done, h: lengths.append(h)
+    with master(case.system, scheme, case.state, kind=Recording) as m:
         rows = [case.state]
         for _ in range(round(case.time / 0.4)):
             m.step(case.voltage)
             rows.append(state_of(m))
     error = np.abs(np.array(rows) - case.truth[::2])[:, [0, 2]].max()
-    return error / case.amplitude, lengths
+    return error / case.amplitude, m.lengths
 
 
 @pytest.mark.parametrize("name", ["quick", "jumping"])

@@ -1,0 +1,45 @@
+"""One C source as a shared library: what orchestration has compiled beside the FMUs.
+
+The source includes ``token.h``, which defines ``TOKEN``, and keeps it as a string: so a library of
+other sources is known by its bytes, for whatever platform it was made.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .archive import guid_of
+from .errors import CannotExport
+from .linking import link
+from .platforms import PLATFORMS
+from .sources import closure
+
+
+def guid(source: Path) -> str:
+    """The token that a library of the present source bears, in braces.
+
+    Parameters
+    ----------
+    source : Path
+        The C file.
+    """
+    return guid_of({**closure("export/c_library.py"), source.name: source.read_bytes()})
+
+
+def export(source: Path, platform: str) -> bytes:
+    """Compile a C source for a platform.
+
+    Raises
+    ------
+    CannotExport
+        Where there is no compiler for it.
+    """
+    if platform not in PLATFORMS:
+        raise CannotExport(f"platform {platform}: expected one of {', '.join(PLATFORMS)}")
+    header = f'#define TOKEN "{guid(source)}"\n'.encode()
+    return link(platform, {source.name: source.read_bytes(), "token.h": header})
+
+
+def file_name(source: Path, platform: str) -> str:
+    """Of a library, with its platform as the folder."""
+    return f"{platform}/{source.stem}{PLATFORMS[platform].suffix}"

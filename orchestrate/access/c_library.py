@@ -1,0 +1,87 @@
+"""C libraries of the package beside the FMUs: compiled where they are missing, and found."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterable
+from os import PathLike
+from pathlib import Path
+
+from fmu_src.export import c_library as sources
+from fmu_src.export.errors import CannotExport
+from fmu_src.export.platforms import PLATFORMS, chosen, this_machine, usual
+
+from ..errors import StoreError
+from ..files import open_folder, write_whole
+from .exported import SHIPPED, default_folder
+
+log = logging.getLogger(__name__)
+FORM = "libraries"
+PACKAGE = Path(__file__).resolve().parents[1]
+
+
+def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | None:
+    """The library of a C source for this machine, compiled first where there is none of it.
+
+    Parameters
+    ----------
+    source : Path
+        The C file.
+    folder : path-like, optional
+        Build folder; by default that of a clone, without a clone what came with the package and
+        the user's cache folder.
+
+    Returns
+    -------
+    Path, or None
+        None where there is none and none can be made or written here.
+    """
+    platform = this_machine()
+    if platform not in PLATFORMS:
+        return None
+    places = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
+    token = sources.guid(source).encode()
+    for place in places:
+        path = place / FORM / sources.file_name(source, platform)
+        if path.is_file() and token in path.read_bytes():
+            return path
+    try:
+        return compiled(source, platform, places[0])
+    except (CannotExport, StoreError) as reason:
+        log.info("%s is not compiled, Python does the same: %s", source.name, reason)
+        return None
+
+
+def build_libraries(
+    folder: str | PathLike[str] | None = None, platforms: Iterable[str] = ()
+) -> list[Path]:
+    """Compile all C sources of the package; those that cannot be made here are left out.
+
+    Parameters
+    ----------
+    folder, platforms
+        As of :func:`.exported.build`.
+
+    Returns
+    -------
+    list of Path
+        The libraries written.
+    """
+    target, made = default_folder() if folder is None else Path(folder), []
+    for source in sorted(PACKAGE.glob("*/*.c")):
+        for platform in chosen(platforms) or usual():
+            try:
+                made.append(compiled(source, platform, target))
+            except CannotExport as reason:
+                log.warning("%s left out: %s", sources.file_name(source, platform), reason)
+    return made
+
+
+def compiled(source: Path, platform: str, folder: Path) -> Path:
+    """Compile a C source to a build folder, whole or not at all."""
+    path = folder / FORM / sources.file_name(source, platform)
+    log.info("compiling %s", path)
+    made = sources.export(source, platform)
+    open_folder(path.parent)
+    write_whole(path, lambda place: place.write_bytes(made))
+    return path

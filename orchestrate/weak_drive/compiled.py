@@ -1,0 +1,173 @@
+"""The master's communication steps in compiled code: the same calls of the FMUs, the same bits.
+
+``compiled.c`` calls the FMUs' functions itself, past Python: where two FMI 3.0 instances are native
+and the library can be had, :func:`master_of` makes a master that steps so. Structures are those of
+the C source.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+from array import array
+from collections.abc import Sequence
+from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, pointer
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..access.c_library import library
+from ..access.channel import Channel
+from ..access.instance import Instance
+from ..errors import FmuError
+from ..structures.structure import Structure
+from .extremes import Revolution
+from .master import ALGORITHMS, Master, Scheme
+
+SOURCE = Path(__file__).with_suffix(".c")
+PLACES = tuple(Revolution.__dataclass_fields__)
+
+
+class Side(ctypes.Structure):
+    """An instance as the library calls it."""
+
+    _fields_ = [
+        *((name, c_void_p) for name in ("instance", "set", "get", "step", "save", "restore")),
+        *((name, POINTER(c_uint)) for name in ("inputs", "outputs")),
+        *((name, c_size_t) for name in ("input_count", "output_count")),
+        ("kept", POINTER(c_void_p)),
+        ("failed", c_char_p),
+        ("status", c_int),
+    ]
+
+
+class Pair(ctypes.Structure):
+    """Both sides, the structure, and the scheme."""
+
+    _fields_ = [
+        ("oscillator", Side),
+        ("shaker", Side),
+        *((name, c_double) for name in ("m1", "m2", "k1", "k2", "d1", "d2")),
+        *((name, c_double) for name in ("tolerance", "easy", "converged")),
+        *((name, c_int) for name in ("passes", "terms", "iterations", "matched", "halvings")),
+        ("part_count", c_int),
+        ("parts", POINTER(c_int)),
+    ]
+
+
+@functools.cache
+def loaded() -> Any:
+    """The library's function, once a process; None where there is no library."""
+    path = library(SOURCE)
+    if path is None:
+        return None
+    run = ctypes.CDLL(str(path)).run
+    run.argtypes = [*[c_void_p] * 4, c_int, c_int, c_double, c_void_p]
+    return run
+
+
+def master_of(
+    oscillator: Instance,
+    shaker: Instance,
+    structure: Structure,
+    scheme: Scheme,
+    start_time: float = 0.0,
+) -> Master:
+    """The fastest master that there is for two instances; see :class:`.master.Master`."""
+    native = all(one.is_fmi3 and not one.description.needs_tool for one in (oscillator, shaker))
+    kind = CompiledMaster if native and loaded() else Master
+    return kind(oscillator, shaker, structure, scheme, start_time)
+
+
+class CompiledMaster(Master):
+    """A master whose steps are compiled."""
+
+    def __init__(
+        self,
+        oscillator: Instance,
+        shaker: Instance,
+        structure: Structure,
+        scheme: Scheme,
+        start_time: float = 0.0,
+    ) -> None:
+        super().__init__(oscillator, shaker, structure, scheme, start_time)
+        self._run = loaded()
+        self._pair = pair_of(self.oscillator, self.shaker, structure, scheme)
+        self._memory = array("d", self.memory())
+        self._seen = array("d", bytes(8 * len(PLACES)))
+
+    def step(self, voltage: float, h: float | None = None) -> None:
+        """As :meth:`.master.Master.step`."""
+        self.run(array("d", (voltage,)), 0, h)
+
+    def run(
+        self,
+        voltages: Sequence[float],
+        first: int = 0,
+        h: float | None = None,
+        kept: np.ndarray | None = None,
+    ) -> int:
+        """As :meth:`.master.Master.run`; an ``array`` of voltages is taken as it is."""
+        given = voltages if isinstance(voltages, array) else array("d", voltages)
+        revolution = self.revolution
+        if revolution:
+            self._seen[:] = array("d", (getattr(revolution, name) for name in PLACES))
+        self.oscillator.begin()
+        self.shaker.begin()
+        done = self._run(
+            *(byref(self._pair), address(self._memory)),
+            *(address(self._seen) if revolution else None, address(given)),
+            *(first, len(given), h or self.scheme.h),
+            None if kept is None else kept.ctypes.data,
+        )
+        if done < 0:
+            raise self._failure()
+        super().remember(self._memory.tolist())
+        if revolution:
+            for name, value in zip(PLACES, self._seen, strict=True):
+                setattr(revolution, name, value)
+        return int(done)
+
+    def _failure(self) -> FmuError:
+        """What the side says that failed."""
+        pair = self._pair
+        for channel, side in ((self.oscillator, pair.oscillator), (self.shaker, pair.shaker)):
+            if side.status:
+                return channel.failure(side.failed.decode(), side.status)
+        raise AssertionError("a step failed, and none of both sides")
+
+    def remember(self, numbers: Sequence[float]) -> None:
+        """As :meth:`.master.Master.remember`."""
+        super().remember(numbers)
+        self._memory[:] = array("d", numbers)
+
+
+def address(numbers: array[float]) -> int:
+    """Where numbers lie."""
+    return numbers.buffer_info()[0]
+
+
+def pair_of(oscillator: Channel, shaker: Channel, structure: Structure, scheme: Scheme) -> Pair:
+    """Both sides as the library takes them."""
+    pair = Pair(side_of(oscillator), side_of(shaker))
+    for name in ("m1", "m2", "k1", "k2", "d1", "d2"):
+        setattr(pair, name, getattr(structure, name))
+    for name in ("tolerance", "easy", "converged", "passes", "matched", "halvings"):
+        setattr(pair, name, getattr(scheme, name))
+    pair.terms = ALGORITHMS[scheme.algorithm].terms
+    pair.iterations = ALGORITHMS["iterated"].passes
+    pair.part_count = len(scheme.beginning)
+    pair.parts = (c_int * len(scheme.beginning))(*scheme.beginning)
+    return pair
+
+
+def side_of(channel: Channel) -> Side:
+    """One side; the channel has to live as long."""
+    found = channel.pointers()
+    counts = len(found.inputs), len(found.outputs)
+    return Side(
+        *(found.instance, *found.functions),
+        *(found.inputs, found.outputs),
+        *(*counts, pointer(found.kept)),
+    )
