@@ -1,0 +1,93 @@
+"""A job of ``.github/workflows`` on this machine: its ``run:`` steps, one by one, in a clean clone.
+
+``python -m tools.workflow tests.yml lint``. Checkout is a clone of the last commit, ``setup-python`` an
+environment of the named version where there is one, artifacts are folders beside the clone. What needs
+GitHub (``gh``) or another system is named and left out. Needs PyYAML, which the manual's packages bring.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+ROOT = Path(__file__).resolve().parents[1]
+SUDO = "sudo apt-get"  # the machine's own software is left as it is
+
+
+def interpreter(version: str) -> str:
+    """Python of a version, from the path or pyenv; else this one, which is said."""
+    pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
+    found = [*map(str, pyenv.glob(f"{version}.*/bin/python")), shutil.which(f"python{version}")]
+    chosen = next(filter(None, found), None)
+    if chosen is None:
+        print(f"no Python {version} here: {sys.version.split()[0]} instead")
+    return chosen or sys.executable
+
+
+def filled(text: str, matrix: dict[str, str]) -> str:
+    """Text with the matrix's values put in."""
+    for name, value in matrix.items():
+        text = text.replace("${{ matrix." + name + " }}", str(value))
+    return text
+
+
+def prepare(step: dict[str, Any], clone: Path, matrix: dict[str, str]) -> None:
+    """What an action of the marketplace does."""
+    action, given = step["uses"].split("@")[0], step.get("with", {})
+    if action == "actions/checkout":
+        subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
+    elif action == "actions/setup-python":
+        version = filled(given["python-version"], matrix)
+        subprocess.run([interpreter(version), "-m", "venv", str(clone / ".venv")], check=True)
+    elif action == "actions/upload-artifact":
+        shutil.copytree(clone / given["path"], clone.parent / given["name"], dirs_exist_ok=True)
+    elif action == "actions/download-artifact":
+        shutil.copytree(clone.parent / given["name"], clone / given["path"], dirs_exist_ok=True)
+
+
+def run_job(steps: list[dict[str, Any]], clone: Path, matrix: dict[str, str], tag: str) -> None:
+    """All steps; the first that fails ends it."""
+    path = f"{clone / '.venv' / 'bin'}{os.pathsep}{os.environ['PATH']}"
+    known = {"CI": "true", "GITHUB_REF_NAME": tag, "PATH": path}
+    for step in steps:
+        if "uses" in step:
+            prepare(step, clone, matrix)
+            continue
+        command = filled(step["run"], matrix)
+        print(f"$ {command.strip()}", flush=True)
+        if SUDO in command or command.startswith("gh "):
+            print("left out: it changes the machine, or needs GitHub")
+            continue
+        shell = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", command]
+        subprocess.run(shell, cwd=clone, env={**os.environ, **known}, check=True)
+
+
+def main() -> None:
+    """Run a job of a workflow."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("workflow", help="file below .github/workflows")
+    parser.add_argument("jobs", nargs="+", help="in this order; artifacts go from one to the next")
+    parser.add_argument("--python", default="3.12", help="where the job has a matrix of them")
+    parser.add_argument("--tag", default="v0.0.0", help="that a release is made of")
+    parser.add_argument("--folder", type=Path, help="kept; else a temporary one")
+    given = parser.parse_args()
+    text = (ROOT / ".github" / "workflows" / given.workflow).read_text(encoding="utf-8")
+    jobs = yaml.safe_load(text)["jobs"]
+    folder = given.folder or Path(tempfile.mkdtemp(prefix="workflow-"))
+    for name in given.jobs:
+        print(f"== {name}, in {folder / name}", flush=True)
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        run_job(jobs[name]["steps"], folder / name, {"python": given.python}, given.tag)
+    print("all steps passed")
+
+
+if __name__ == "__main__":
+    main()
