@@ -101,10 +101,7 @@ def test_absurd_time_in_source_and_compiled(tmp_path):
 
 
 @pytest.mark.slow
-@limit(
-    "1e8 evaluations are some ten seconds for the compiled kernel, but a quarter of an hour for "
-    "its source"
-)
+@limit("1e7 evaluations are a second or two for the compiled kernel, but minutes for its source")
 def test_endless_step_in_the_source_ends(tmp_path):
     try:
         messages = run(
@@ -116,12 +113,7 @@ def test_endless_step_in_the_source_ends(tmp_path):
 
 
 @limit("an answer that is not finite is refused without naming the variable that makes it so")
-@pytest.mark.parametrize(
-    ("values", "culprit"),
-    [
-        ({"box_frequency": 1e-155, "x2_start": 1.0}, "x2_start = 1.0"),
-        ({"bonded": True, "box_crackle": 1e100}, "box_crackle = 1e+100"),
-    ],
-)
-def test_message_names_what_leaves_the_range(fmu, tmp_path, values, culprit):
-    assert culprit in run("limits.message_names_what_leaves_the_range", fmu, values, cwd=tmp_path)
+def test_message_names_what_leaves_the_range(fmu, tmp_path):
+    values = {"bonded": True, "box_crackle": 1e100}
+    told = run("limits.message_names_what_leaves_the_range", fmu, values, cwd=tmp_path)
+    assert "box_crackle = 1e+100" in told

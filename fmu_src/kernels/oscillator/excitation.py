@@ -11,7 +11,7 @@ from ..numerics.elementary import TWO_PI
 from . import memory as at
 from .nodes import set_grid
 
-# (|i eta - lambda| / omega_i)^2 below which an undamped response has no usable closed form
+# detuning^2 + (damping over critical)^2 below which the closed form has no six digits to spare
 NEAR_RESONANCE = 1e-12
 
 
@@ -31,8 +31,8 @@ def begin_segment(m):
     Returns
     -------
     int
-        OK, or RESONANCE_i where branch i is undamped and driven within 1e-6 of its natural
-        frequency.
+        OK, or RESONANCE_i where branch i is driven within 1e-6 of its natural frequency, and damped
+        by less than 1e-6 of critical.
     """
     for i in range(6):
         m[at.SEGMENT_INPUTS + i] = m[at.BOX_AMPLITUDE + i]
@@ -65,7 +65,9 @@ def begin_segment(m):
 
 
 def set_harmonic(m, b, harmonic):
-    """Forced amplitudes a_i, b_i of (11), times ``a eta^2``; True at an undamped resonance."""
+    """Forced amplitudes a_i, b_i of (11), times ``a eta^2``; True at a resonance with no damping or
+    next to none.
+    """
     forcing, eta = m[at.FORCING], m[at.ETA]
     m[harmonic] = 0.0
     m[harmonic + 1] = 0.0

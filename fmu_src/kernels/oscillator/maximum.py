@@ -4,12 +4,14 @@ From summit to summit, with the certified steps of the root finder.
 """
 
 from . import memory as at
-from .event_function import evaluate
+from .event_function import envelope, evaluate
 from .hermite import has_summit, interval_is_below
-from .roots import accuracy, clear_from_node, clear_step, creep, glide, next_step, parabola_root
+from .roots import EPS, LEAST_BOUND, clear_from_node, clear_step, creep, glide, parabola_root
 from .series import taylor
 
-SMALLEST = 1e-9  # least progress, in tau: a summit is flat, nothing is lost
+# least progress, of a spacing: a summit is flat, nothing is lost; it grows from step to step, so
+# that no rounding can hold the search up: after 95 steps an interval is through
+SMALLEST, GROWTH = 1e-9, 1.25
 
 
 def watch(m, start, target):
@@ -59,19 +61,46 @@ def climb(h1, h2, h3, h4, bound, reach):
         h2 + h3 * root
     ):
         return root, True
-    scale = 1.0 / bound if bound > 0.0 else 1.0
-    step = clear_step(h1 * scale, h2 * scale, h3 * scale, h4 * scale, -bound * scale, 0.0, reach)
-    return step, step <= 1e-9 * reach
+    return clear(h1, h2, h3, h4, -bound, 0.0, reach), False
+
+
+def clear(h0, h1, h2, h3, h4, bound, reach):
+    """:func:`.roots.clear_step` in units of the last bound given, or of the one before: scaled
+    amplitudes take the same steps.
+    """
+    unit = bound if bound > 0.0 else -h4
+    scale = 1.0 / unit if unit > LEAST_BOUND else 1.0
+    return clear_step(
+        h0 * scale, h1 * scale, h2 * scale, h3 * scale, h4 * scale, bound * scale, reach
+    )
+
+
+def noise(m, tau):
+    """What rounding makes of the gap at ``tau``, where it was evaluated last: no larger gap is
+    looked for that is larger by less.
+    """
+    if m[at.SERIES] != 0.0:
+        return 2.0 * EPS * m[at.SERIES_GAP + 1] * m[at.END]
+    p = at.POINT
+    size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
+    size += envelope(m, at.BRANCH_1, m[p], m[p + 1]) + envelope(m, at.BRANCH_2, m[p + 2], m[p + 3])
+    if m[at.CUBIC_PRESENT] != 0.0:
+        power = 1.0
+        for i in range(4):
+            size += abs(m[at.EVENT_CUBIC + i]) * power
+            power *= tau
+    return 2.0 * EPS * size
 
 
 def largest_gap(m, start, stop, highest):
     """The larger of ``highest`` and the present flight's largest gap in ``start <= tau <= stop``.
 
-    Climbing, the walk goes to the first root of the gap's slope; elsewhere to the first point that
-    rises above what is known.
+    From each point the walk goes on as far as the gap certainly stays below what is known, or,
+    climbing, to the first root of the gap's slope.
     """
     tau = start
     reach = 5.0 * m[at.SPACING]
+    least = SMALLEST * m[at.SPACING]
     summit = False
     while m[at.WORK] < m[at.WORK_LIMIT]:
         h0, h1, h2, h3, h4, bound = evaluate(m, tau)
@@ -79,26 +108,14 @@ def largest_gap(m, start, stop, highest):
             highest = h0
         if tau >= stop:
             break
+        step, reached = 0.0, False
         if h1 > 0.0 and not summit:
-            step, summit = climb(h1, h2, h3, h4, bound, reach)
-        elif highest > h0:
-            step, _ = next_step(
-                highest - h0, -h1, -h2, -h3, -h4, bound, tau, reach, accuracy(m, tau)
-            )
-            summit = False
-        else:
-            scale = 1.0 / bound if bound > 0.0 else 1.0
-            step = clear_step(
-                0.0,
-                -h1 * scale if h1 < 0.0 else 0.0,
-                -h2 * scale,
-                -h3 * scale,
-                -h4 * scale,
-                bound * scale,
-                reach,
-            )
-            summit = False
-            if step < SMALLEST:
-                step = SMALLEST
+            step, reached = climb(h1, h2, h3, h4, bound, reach)
+        summit = reached
+        if not summit:
+            room = (highest - h0) + noise(m, tau)
+            step = max(step, clear(room, -h1, -h2, -h3, -h4, bound, reach))
+        step = max(step, least)
+        least *= GROWTH
         tau = tau + step if tau + step < stop else stop
     return highest

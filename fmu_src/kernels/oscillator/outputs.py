@@ -3,7 +3,13 @@
 from ..numerics.elementary import TWO_PI, fraction, sincos_turns
 from . import memory as at
 from .contact import contact_force
+from .excitation import cubic_at
 from .motion import state_and_phase_at
+
+LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the range of numbers
+# of a radian of the fastest change: over shorter steps the momenta at both ends agree in so many
+# digits that a quintic of the force is the better integral, which misses 1e-17 of the momentum
+SHORT = 0.01
 
 
 def write(m, tau):
@@ -15,7 +21,7 @@ def write(m, tau):
     flight = m[at.MODE] == at.FLIGHT
     m[at.X1], m[at.X2], m[at.X_REL] = x1, x2, x2 - x1
     m[at.V1], m[at.V2], m[at.V_REL] = omega * v1, omega * v2, omega * (v2 - v1)
-    unit = m[at.FORCING]
+    unit = unit_of_length(m)
     m[at.XI1] = x1 / unit if unit != 0.0 else 0.0  # (3)
     m[at.XI2] = x2 / unit if unit != 0.0 else 0.0
     m[at.XI_REL] = (x2 - x1) / unit if unit != 0.0 else 0.0
@@ -28,19 +34,69 @@ def write(m, tau):
     m[at.PHASE] = phase if phase < TWO_PI else 0.0
 
 
+def unit_of_length(m):
+    """The ``a eta^2`` of (3), m; 0 where there is none to speak of."""
+    unit = m[at.FORCING]
+    return unit if abs(unit) >= LEAST_UNIT else 0.0
+
+
+def accelerations(m, sine, age):
+    """Accelerations of both masses relative to the box, m/s2, by (6), at the displacements and
+    velocities among the outputs.
+
+    ``sine`` is that of the phase there, ``age`` the time since the segment began, in tau.
+    """
+    drive = m[at.FORCING] * sine
+    if m[at.CUBIC_PRESENT] != 0.0:
+        drive += cubic_at(m, age)[0]
+    return both_rates(m, drive, m[at.X1], m[at.V1], m[at.X2], m[at.V2])
+
+
+def both_rates(m, drive, x1, v1, x2, v2):
+    """Accelerations of both masses, m/s2; or of one order more, from velocities, accelerations and
+    the drive's rate.
+    """
+    if m[at.MODE] == at.FLIGHT:
+        a1 = acceleration(m, at.BRANCH_1, drive, x1, v1)
+        return a1, acceleration(m, at.BRANCH_2, drive, x2, v2)
+    both = acceleration(m, at.BRANCH_3, drive, x1, v1)
+    return both, both
+
+
+def acceleration(m, b, drive, x, v):
+    """Acceleration of one oscillator at displacement ``x`` (m) and velocity ``v`` (m/s)."""
+    omega = m[at.OMEGA]
+    pull = m[b + at.OMEGA_SQUARED] * x
+    return omega * (omega * (drive - pull) - 2.0 * m[b + at.DAMPING] * v)
+
+
+def force_rates(m, cosine, sine, age):
+    """First and second time derivative of the force on the box; ``cosine``, ``sine`` and ``age`` as
+    for :func:`accelerations`.
+    """
+    a1, a2 = accelerations(m, sine, age)
+    drive = m[at.FORCING] * m[at.ETA] * cosine
+    if m[at.CUBIC_PRESENT] != 0.0:
+        drive += cubic_at(m, age)[1]
+    j1, j2 = both_rates(m, drive * m[at.OMEGA], m[at.V1], a1, m[at.V2], a2)
+    k1, k2, d1, d2 = m[at.K1], m[at.K2], m[at.D1], m[at.D2]
+    first = k1 * m[at.V1] + d1 * a1 + k2 * m[at.V2] + d2 * a2
+    return first, k1 * a1 + d1 * j1 + k2 * a2 + d2 * j2
+
+
 def momentum(m):
     """Momentum relative to the box, and its integral, the moment of mass."""
     return m[at.M1] * m[at.V1] + m[at.M2] * m[at.V2], m[at.M1] * m[at.X1] + m[at.M2] * m[at.X2]
 
 
-def write_impulse(m, h, momentum_before, moment_before, cosine, sine):
+def write_impulse(m, h, before, cosine, sine):
     """Integrals of the force on the box over a step of ``h`` seconds, by momentum: impacts are
     internal and drop out.
 
     ``box_force = -P' - (m1 + m2) y''`` with P the momentum relative to the box and y'' its
     acceleration, so the integral is a difference of momenta, its moment a difference of
-    displacements, and what the box's motion adds is known in closed form. ``cosine`` and ``sine``
-    are those of the phase before the step.
+    displacements, and what the box's motion adds is known in closed form. ``before`` is
+    :func:`momentum` before the step, ``cosine`` and ``sine`` are those of the phase there.
     """
     after, moment_after = momentum(m)
     mass = m[at.M1] + m[at.M2]
@@ -59,5 +115,19 @@ def write_impulse(m, h, momentum_before, moment_before, cosine, sine):
             drive -= derivative * power / (i + 1)
             drive_moment -= derivative * power * h / (i + 2)
             power *= h / (i + 1)
-    m[at.BOX_IMPULSE] = momentum_before - after + mass * drive
-    m[at.BOX_IMPULSE_MOMENT] = (moment_after - moment_before) - h * after + mass * drive_moment
+    m[at.BOX_IMPULSE] = before[0] - after + mass * drive
+    m[at.BOX_IMPULSE_MOMENT] = (moment_after - before[1]) - h * after + mass * drive_moment
+
+
+def write_short_impulse(m, h, force, rates, rates_after):
+    """The same over a short step without an impact or a change of state, by the quintic through the
+    force and two derivatives at both ends: ``force`` and ``rates`` before the step.
+    """
+    after, square = m[at.BOX_FORCE], h * h
+    p1, p2, q1, q2 = rates[0] * h, rates[1] * square, rates_after[0] * h, rates_after[1] * square
+    m[at.BOX_IMPULSE] = h * (0.5 * (force + after) + ((p1 - q1) * 0.1 + (p2 + q2) * (1.0 / 120.0)))
+    m[at.BOX_IMPULSE_MOMENT] = square * (
+        (force * (1.0 / 7.0) + after * (5.0 / 14.0))
+        + (p1 * (4.0 / 105.0) - q1 * (13.0 / 210.0))
+        + (p2 * (1.0 / 280.0) + q2 * (1.0 / 210.0))
+    )

@@ -5,7 +5,7 @@ where an input jumps, to what comes before the jump of an input and after the im
 """
 
 from . import memory as at
-from .excitation import cubic_at
+from .outputs import accelerations, unit_of_length
 from .stepper import local_time
 
 
@@ -17,10 +17,10 @@ def differentiate(m, time):
     int
         OK.
     """
-    a1, a2 = accelerations(m)
+    a1, a2 = accelerations(m, m[at.PHASE_SINE], m[at.SEGMENT_AGE] + local_time(m, m[at.TIME]))
     omega = m[at.OMEGA]
     v1, v2, v_rel = m[at.V1], m[at.V2], m[at.V_REL]
-    unit = m[at.FORCING]
+    unit = unit_of_length(m)
     force = m[at.BOX_FORCE]
     contact = 0.0
     if m[at.CONTACT_FORCE] > 0.0:
@@ -44,22 +44,3 @@ def differentiate(m, time):
     m[to + at.PHASE] = m[at.ETA] * omega
     m[to + at.X_REL_MAX] = largest
     return at.OK
-
-
-def accelerations(m):
-    """Accelerations of both masses relative to the box, m/s2, by (6)."""
-    drive = m[at.FORCING] * m[at.PHASE_SINE]
-    if m[at.CUBIC_PRESENT] != 0.0:
-        drive += cubic_at(m, m[at.SEGMENT_AGE] + local_time(m, m[at.TIME]))[0]
-    if m[at.MODE] == at.FLIGHT:
-        a1 = acceleration(m, at.BRANCH_1, drive, m[at.X1], m[at.V1])
-        return a1, acceleration(m, at.BRANCH_2, drive, m[at.X2], m[at.V2])
-    both = acceleration(m, at.BRANCH_3, drive, m[at.X1], m[at.V1])
-    return both, both
-
-
-def acceleration(m, b, drive, x, v):
-    """Acceleration of one oscillator at displacement ``x`` (m) and velocity ``v`` (m/s)."""
-    omega = m[at.OMEGA]
-    pull = m[b + at.OMEGA_SQUARED] * x
-    return omega * (omega * (drive - pull) - 2.0 * m[b + at.DAMPING] * v)

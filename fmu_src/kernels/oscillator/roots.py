@@ -17,6 +17,7 @@ from .nodes import put, renewed, set_at_end, starts_block, turned
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
+LEAST_BOUND = 1e-290  # smaller ones have no finite inverse
 TRIALS = 3
 CLOSE = (
     0.00390625  # relative change of the slope up to a root that two steps of Newton's method find
@@ -229,7 +230,7 @@ def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
 def step_from(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
     """As :func:`next_step`, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
     # powers of time only: scaled amplitudes take the same steps
-    scale = 1.0 / bound if bound > 0.0 else 1.0
+    scale = 1.0 / bound if bound > LEAST_BOUND else 1.0
     h0, h1, h2 = h0 * scale, h1 * scale, h2 * scale
     h3, h4, bound = h3 * scale, h4 * scale, bound * scale
     step = clear_step(h0, h1, h2, h3, h4, bound, reach)

@@ -9,13 +9,13 @@ from .event_function import evaluate
 from .excitation import begin_segment, inputs_changed
 from .maximum import watch
 from .motion import begin, begin_common, begin_flight, end_state, move_origin, set_turn, state_at
-from .outputs import momentum, write, write_impulse
+from .outputs import SHORT, force_rates, momentum, write, write_impulse, write_short_impulse
 from .parameters import derive
 from .roots import lifted, walk
 
 WORK_BASE = 100000.0  # evaluations of the event function a step may take whatever its length,
-WORK_RATE = 64.0  # and in a time gamma, the shortest flight that is told from sticking,
-WORK_MOST = 1e8  # and at the very most: some ten seconds, compiled
+WORK_RATE = 256.0  # and in a time gamma, the shortest flight that is told from sticking,
+WORK_MOST = 1e7  # and at the very most: a second or two, compiled
 
 
 def initialize(m, time):
@@ -90,7 +90,7 @@ def advance(m, time):
     m[at.WORK_LIMIT] = min(
         WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA]
     )
-    momentum_before, moment_before = momentum(m)
+    at_start = momentum(m)
     now = local_time(m, m[at.TIME])
     if inputs_changed(m):
         code = renew_segment(m, now)
@@ -100,6 +100,10 @@ def advance(m, time):
         m[at.PHASE_COSINE] = m[at.COSINE]
         m[at.PHASE_SINE] = m[at.SINE]
     cosine, sine = m[at.PHASE_COSINE], m[at.PHASE_SINE]
+    force, rates, mode, impacts = m[at.BOX_FORCE], (0.0, 0.0), m[at.MODE], m[at.IMPACT_COUNT]
+    short = h * m[at.OMEGA] * m[at.RATE] < SHORT
+    if short:
+        rates = force_rates(m, cosine, sine, m[at.SEGMENT_AGE] + now)
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     tau = run_samples(m, before, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:
@@ -113,7 +117,12 @@ def advance(m, time):
     write(m, tau)
     if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
         m[at.X_REL_MAX] = m[at.X_REL]
-    write_impulse(m, h, momentum_before, moment_before, cosine, sine)
+    if short and m[at.MODE] == mode and m[at.IMPACT_COUNT] == impacts:
+        age = m[at.SEGMENT_AGE] + tau
+        rates_after = force_rates(m, m[at.PHASE_COSINE], m[at.PHASE_SINE], age)
+        write_short_impulse(m, h, force, rates, rates_after)
+    else:
+        write_impulse(m, h, at_start, cosine, sine)
     return finite(m)
 
 

@@ -12,7 +12,9 @@ from .outputs import write
 
 WORK_BASE = 100000.0  # evaluations of the right-hand side a step may take whatever its length,
 WORK_RATE = 200.0  # and for each radian of box, rotor or no-load speed,
-WORK_MOST = 1e8  # and at the very most: some ten seconds, compiled
+WORK_MOST = 1e7  # and at the very most: about a second, compiled
+# of the fastest decay's time constant: no sub-step is longer, the formula is not stable beyond
+STABLE = 8.0
 REGULAR = 1.000001  # M J over S^2, at least: the rotor is not all unbalance, nor the box all rotor
 
 
@@ -60,6 +62,11 @@ def advance(m, time):
     m[at.TARGET] = time
     m[at.WORK] = 0.0
     m[at.WORK_LIMIT] = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * max(length, 0.0))
+    least = at.STAGES / STABLE * fastest_decay(m) * length
+    if least > m[at.WORK_LIMIT]:
+        m[at.WORK] = least
+        m[at.REPORT] = before
+        return at.UNFINISHED
     code = through(m, length)
     m[at.REPORT] += before
     if code != at.OK:
@@ -67,6 +74,18 @@ def advance(m, time):
     m[at.TIME] = time
     write(m)
     return finite(m)
+
+
+def fastest_decay(m):
+    """The largest rate, 1/s, at which something decays: the box's speed by its damper, the current
+    by the armature's resistance, or, without inductance, the rotor's speed by the motor.
+    """
+    constant, resistance = m[at.MOTOR_CONSTANT], m[at.ARMATURE_RESISTANCE]
+    if m[at.ARMATURE_INDUCTANCE] > 0.0:
+        motor = resistance / m[at.ARMATURE_INDUCTANCE]
+    else:
+        motor = constant * constant / resistance / m[at.ROTOR_INERTIA]
+    return max(motor, m[at.BOX_DAMPING] / m[at.BOX_MASS])
 
 
 def refresh(m, time):

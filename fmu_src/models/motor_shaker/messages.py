@@ -5,9 +5,9 @@ from ...runtime.table import with_slots
 
 MESSAGES = with_slots(
     {
-        at.UNFINISHED: "the step to time = {TARGET} s cannot finish: {WORK} evaluations (at most "
-        "{WORK_LIMIT}) reached only {REPORT} s; a time constant is too short for such a step: "
-        "armature_inductance = {ARMATURE_INDUCTANCE} H over "
+        at.UNFINISHED: "the step to time = {TARGET} s cannot finish: it needs at least {WORK} "
+        "evaluations (at most {WORK_LIMIT}), and reached {REPORT} s; a time constant is too "
+        "short for such a step: armature_inductance = {ARMATURE_INDUCTANCE} H over "
         "armature_resistance = {ARMATURE_RESISTANCE} Ohm (expected 0 H, or more), "
         "rotor_inertia = {ROTOR_INERTIA} kg.m2 with motor_constant = {MOTOR_CONSTANT} N.m/A, "
         "or box_damping = {BOX_DAMPING} N.s/m with box_mass = {BOX_MASS} kg",

@@ -4,15 +4,17 @@ from ...kernels.oscillator import memory as at
 from ...runtime.table import with_slots
 
 RESONANCE = (
-    "box_frequency = {BOX_FREQUENCY} rad/s is the natural frequency of MASS ({REPORT} rad/s), "
-    "which has no damping: expected DAMPING > 0 or a box_frequency that differs by more than 1e-6 "
-    "of it"
+    "box_frequency = {BOX_FREQUENCY} rad/s is the natural frequency of MASS ({REPORT} rad/s) to "
+    "within 1e-6 of it, with VALUES: expected SUM > 0, by more than 1e-6 of the critical damping, "
+    "or a box_frequency that differs by more than 1e-6 of it"
 )
 
 
-def resonance(mass: str, damping: str) -> str:
-    """Text for a driven oscillator without damping."""
-    return RESONANCE.replace("MASS", mass).replace("DAMPING", damping)
+def resonance(mass: str, *dampers: str) -> str:
+    """Text for a driven oscillator without damping, or with next to none."""
+    values = ", ".join(f"{name} = {{{name.upper()}}} N.s/m" for name in dampers)
+    text = RESONANCE.replace("MASS", mass).replace("VALUES", values)
+    return text.replace("SUM", " + ".join(dampers))
 
 
 MESSAGES = with_slots(
@@ -23,7 +25,7 @@ MESSAGES = with_slots(
         "e = {E} and gamma = {GAMMA} decide how many impacts chattering has",
         at.RESONANCE_1: resonance("mass 1", "d1"),
         at.RESONANCE_2: resonance("mass 2", "d2"),
-        at.RESONANCE_3: resonance("both masses together", "d1 + d2"),
+        at.RESONANCE_3: resonance("both masses together", "d1", "d2"),
         at.NOT_FINITE: "the motion leaves the range of floating-point numbers in the step to "
         "time = {TARGET} s: box_amplitude = {BOX_AMPLITUDE} m, "
         "box_frequency = {BOX_FREQUENCY} rad/s, box_acceleration = {BOX_ACCELERATION} m/s2; "

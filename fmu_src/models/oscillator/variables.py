@@ -155,19 +155,19 @@ SCALARS = (
     output(
         "xi1",
         "1",
-        "Displacement of mass 1 over a eta^2, paper's (3); 0 where a eta = 0",
+        "Displacement of mass 1 over a eta^2, paper's (3); 0 where that is below 1e-200 m",
         MASS_1 + DRIVE + ("k1", "m1"),
     ),
     output(
         "xi2",
         "1",
-        "Displacement of mass 2 over a eta^2, paper's (3); 0 where a eta = 0",
+        "Displacement of mass 2 over a eta^2, paper's (3); 0 where that is below 1e-200 m",
         MASS_2 + DRIVE + ("k1", "m1"),
     ),
     output(
         "xi_rel",
         "1",
-        "Gap over a eta^2, paper's (21); 0 where a eta = 0",
+        "Gap over a eta^2, paper's (21); 0 where that is below 1e-200 m",
         ("x1_start", "x2_start", "k1", "m1") + DRIVE,
     ),
     output(

@@ -49,7 +49,7 @@ def test_a_step_with_too_many_impacts_gives_up():
 
 def test_the_work_allowed_grows_with_the_step():
     m = started()
-    limits = [advanced(m, time)[at.WORK_LIMIT] for time in (1e-3, 10.0, 1000.0)]
+    limits = [advanced(m, time)[at.WORK_LIMIT] for time in (1e-3, 1.0, 3.0)]
     assert limits[0] < limits[1] < limits[2]
 
 

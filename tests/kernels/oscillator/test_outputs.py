@@ -4,6 +4,7 @@ between, at or after impacts.
 
 import math
 
+import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,7 +13,8 @@ from hypothesis import strategies as st
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.motion import state_at
 
-from .kernel import CHAOTIC, advanced, examples, pieces, set_inputs, started
+from . import truth
+from .kernel import CHAOTIC, DEFAULTS, advanced, examples, pieces, set_inputs, started
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 CUBIC = {"box_acceleration": 0.3, "box_jerk": -0.2, "box_snap": 0.15, "box_crackle": -0.1}
@@ -183,3 +185,37 @@ def test_outputs_agree_with_each_other(values):
         assert 0.0 <= m[at.PHASE] < 2 * math.pi
         assert m[at.IN_CONTACT] == 0.0 or (m[at.X_REL], m[at.V_REL]) == (0.0, 0.0)
         assert m[at.TIME] == 0.21 * i
+
+
+@pytest.mark.parametrize("step", [1e-10, 1e-8, 1e-6, 1e-4, 3e-3])
+@pytest.mark.parametrize("push", [0.0, 0.3])
+def test_impulses_of_short_steps(step, push):
+    """Of heavy masses, whose momenta at both ends of a step differ in their last digits."""
+    values = {
+        **{"m1": 40.0, "m2": 60.0, "k1": 30.0, "k2": 70.0, "d1": 9.0, "d2": 0.4},
+        **{"box_amplitude": 0.3, "box_frequency": 1.7, "box_acceleration": push},
+    }
+    start = {"x1_start": -0.2, "v1_start": 3.0, "x2_start": 0.1, "v2_start": 5.0}
+    m = advanced(started(**values, **start, phase_start=0.5), step)
+    first, second = truth.apart({**DEFAULTS, **values}, start.values(), mp.mpf(0.5))
+    force = 30 * first + 9 * first.derivative() + 70 * second + mp.mpf(0.4) * second.derivative()
+    impulse = mp.quad(force, [0, mp.mpf(step)])
+    moment = mp.quad(lambda t: t * force(t), [0, mp.mpf(step)])
+    assert m[at.BOX_IMPULSE] == pytest.approx(float(impulse), rel=2e-14)
+    assert m[at.BOX_IMPULSE_MOMENT] == pytest.approx(float(moment), rel=2e-14)
+
+
+def test_impulses_of_a_short_step_with_an_impact():
+    """There the force is no quintic: the dampers pull the other way behind it."""
+    values = {"d1": 2.0, "x2_start": 1e-4, "v1_start": 1.0}
+    whole, parts = started(**values), started(**values)
+    impulse = sum(advanced(parts, 1e-3 * i / 64.0)[at.BOX_IMPULSE] for i in range(1, 65))
+    assert advanced(whole, 1e-3)[at.IMPACT_COUNT] == parts[at.IMPACT_COUNT] == 1
+    assert whole[at.BOX_IMPULSE] == pytest.approx(impulse, rel=1e-11)
+
+
+@pytest.mark.parametrize("amplitude", [5e-324, 1e-310, 1e-201])
+def test_a_drive_next_to_nothing_leaves_the_numbers_finite(amplitude):
+    """Displacements over such an amplitude have no finite value; there is no drive to speak of."""
+    m = advanced(started(x2_start=1.0, v1_start=-1e90, box_amplitude=amplitude), 0.1, 5.0)
+    assert (m[at.XI1], m[at.XI2], m[at.XI_REL]) == (0.0, 0.0, 0.0)

@@ -1,6 +1,7 @@
 """The shaker's kernel against scipy: motion, energies, sub-steps, and steps that cannot be done."""
 
 import math
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -140,11 +141,29 @@ def test_many_turns_keep_their_digits():
     assert min(m[at.TURN], 1.0 - m[at.TURN]) < 1e-10
 
 
-def test_a_step_that_would_take_too_long_ends():
-    m = started(armature_inductance=1e-9, voltage=5.0)
-    assert stepper.advance(m, 1.0) == at.UNFINISHED
-    assert m[at.WORK] <= m[at.WORK_LIMIT] + at.STAGES
-    assert 0.0 < m[at.REPORT] < 1.0
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"armature_inductance": 1e-9},
+        {"armature_inductance": 1e-30, "armature_resistance": 1e30},
+        {"rotor_inertia": 1e-15, "unbalance_mass": 0.0},
+        {"box_damping": 1e12},
+    ],
+)
+def test_a_time_constant_far_below_the_step_is_known_at_once(values):
+    m = started(voltage=5.0, **values)
+    with patch.object(stepper, "through") as through:
+        assert stepper.advance(m, 1.0) == at.UNFINISHED
+    through.assert_not_called()
+    assert m[at.WORK] > m[at.WORK_LIMIT]
+
+
+@pytest.mark.parametrize("values", [{"armature_inductance": 3e-4}, {"box_damping": 1e5}])
+def test_a_short_time_constant_that_can_be_followed_is(values):
+    m = started(voltage=5.0, **values)
+    assert stepper.advance(m, 0.5) == at.OK
+    decay = stepper.fastest_decay(m)
+    assert m[at.WORK] >= at.STAGES / stepper.STABLE * decay * 0.5  # what is counted on beforehand
 
 
 @pytest.mark.parametrize(
