@@ -15,7 +15,7 @@ unsigned any_reference(Bytes *in) {
     return NAMES[(one_in(in, 16) ? place * 256u + take(in) : place % 48u) % NAME_COUNT].reference;
 }
 
-/* Numbers that keep a step short, and those that are refused; no driver of 1e30 rad/s, which is refused only after ten seconds. */
+/* Numbers that keep a step short, and those that are refused; no driver of 1e30 rad/s, which is refused only after a second or two. */
 double any_number(Bytes *in) {
     static const double special[] = {NAN, INFINITY, -INFINITY, -1.0, 0.0, 1.0, 0.5, 1e301};
     uint8_t kind = take(in);

@@ -130,7 +130,7 @@ def test_two_versions_in_one_process_do_not_meet(fmus, importer_of, tmp_path):
 
 @pytest.mark.slow
 def test_a_step_that_cannot_finish_ends_with_a_message(importer):
-    """A hundred million evaluations, and no more."""
+    """Ten million evaluations, and no more."""
     done = importer.run("simulate", "x1", "box_frequency=1e30", times=[0.0, 1.0], success=False)
     assert done.returncode == 2
     assert "cannot finish" in done.stderr
