@@ -409,6 +409,7 @@ static bool interval(Pair *p, Memory *now, Revolution *revolution, double voltag
 /* Intervals from `first` on, up to the one that completes a revolution; where the next begins, or -1 after a failure.
  * `revolution` and `kept`, the memory after each interval, may be NULL. */
 EXPORT int run(Pair *p, Memory *now, Revolution *revolution, const double *voltages, int first, int count, double h, Memory *kept) {
+    p->oscillator.status = p->shaker.status = 0;
     for (int i = first; i < count; i++) {
         if (!interval(p, now, revolution, voltages[i], h)) return -1;
         if (kept) kept[i] = *now;

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import logging
 from array import array
 from collections.abc import Sequence
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, pointer
@@ -25,6 +26,7 @@ from ..structures.structure import Structure
 from .extremes import Revolution
 from .master import ALGORITHMS, Master, Scheme
 
+log = logging.getLogger(__name__)
 SOURCE = Path(__file__).with_suffix(".c")
 PLACES = tuple(Revolution.__dataclass_fields__)
 
@@ -62,7 +64,11 @@ def loaded() -> Any:
     path = library(SOURCE)
     if path is None:
         return None
-    run = ctypes.CDLL(str(path)).run
+    try:
+        run = ctypes.CDLL(str(path)).run
+    except OSError as reason:  # such as a folder from which nothing may be run
+        log.info("%s cannot be loaded, Python does the same: %s", path, reason)
+        return None
     run.argtypes = [*[c_void_p] * 4, c_int, c_int, c_double, c_void_p]
     return run
 
@@ -110,6 +116,9 @@ class CompiledMaster(Master):
     ) -> int:
         """As :meth:`.master.Master.run`; an ``array`` of voltages is taken as it is."""
         given = voltages if isinstance(voltages, array) else array("d", voltages)
+        if kept is not None:
+            rows = len(given), len(self._memory)
+            assert kept.shape == rows and kept.flags.c_contiguous and kept.dtype == np.float64
         revolution = self.revolution
         if revolution:
             self._seen[:] = array("d", (getattr(revolution, name) for name in PLACES))

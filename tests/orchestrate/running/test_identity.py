@@ -65,6 +65,16 @@ def test_an_edit_of_a_constant_or_a_function_is_seen(ours, file, old, new):
     assert line == f"small/{file} changed since"
 
 
+def test_an_edit_of_what_a_module_has_compiled_is_seen(ours):
+    (ours / "tools.c").write_text("int limit = 1;")
+    identity.read_source.cache_clear()
+    before = code_of("small.sweep")
+    (ours / "tools.c").write_text("int limit = 2;")
+    identity.read_source.cache_clear()
+    line = difference({"code": before}, {"code": code_of("small.sweep")})
+    assert line == "small/tools.py changed since"
+
+
 def test_an_edit_elsewhere_is_not(ours):
     before = code_of("small.sweep")
     (ours / "other.py").write_text("x = 1")
