@@ -161,10 +161,10 @@ class Importer:
     library: Path
     version: str
 
-    def run(self, *arguments, under=(), times=(), timeout=300, success=True, env=None):
-        """Run a mode; returns the completed process."""
+    def run(self, *arguments, under=(), times=(), text="", timeout=300, success=True, env=None):
+        """Run a mode, with times or a text as its standard input; returns the completed process."""
         command = [*under, self.program, self.library, *arguments]
-        text = "".join(f"{float(time).hex()}\n" for time in times)
+        text += "".join(f"{float(time).hex()}\n" for time in times)
         done = subprocess.run(
             [*map(str, command)],
             input=text,

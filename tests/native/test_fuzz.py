@@ -57,6 +57,13 @@ def test_calls_drawn_at_random_are_survived(importer_of_model):
     assert int(re.search(r"CHECKS (\d+) FAILURES 0", done.stdout).group(1)) > 2000
 
 
+def test_what_the_fuzzer_found_is_survived(importer_of_model):
+    """Its kept inputs, in the FMU's own binary."""
+    lines = seeds(importer_of_model.version)
+    done = importer_of_model.run("replay", text="\n".join(lines))
+    assert f"PLAYED {len(lines)}\n" in done.stdout and " FAILURES 0" in done.stdout
+
+
 def test_the_motor_in_many_instances_threads_and_steps(importer_of_model):
     """What the oscillator is put through elsewhere; hostile calls and forged states."""
     if not is_shaker(importer_of_model):
