@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .options import (
     Commands,
     add_excitation,
     add_numbers,
     add_over,
+    add_settling,
     add_structure,
     along,
     numbers_of,
     one_value,
     structure_of,
 )
-from .output import add_files, add_running
-from .question import along_of, carry_out, place, ranges, several, tell_attractors
+from .output import add_results
+from .question import along_of, carry_out, picture_of, place, ranges, several, tell_attractors
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,12 +49,9 @@ def add_parser(commands: Commands) -> None:
         starts=(60, "random starts at each value"),
         seed=(0, "of the random numbers: the same seed, the same starts"),
         width=(3.0, "half width of the box of starts over the largest gap from rest"),
-        transient=(400, "periods dropped at least"),
-        settle=(300.0, "periods dropped at least, over eta"),
-        samples=(48, "periods looked at"),
     )
-    add_files(parser)
-    add_running(parser)
+    add_settling(option, (48, "periods looked at"), transient=400)
+    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -64,13 +62,6 @@ def run(arguments: argparse.Namespace) -> None:
     scale = None if arguments.scale is None else one_value("--scale", arguments.scale)
     question = {**asked, "scale": scale, **numbers_of(arguments, *names)}
     carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
-
-
-def picture_of(data: xr.Dataset) -> Any:
-    """Attractors and their shares."""
-    from ..figures.attractors import draw
-
-    return draw(data)
 
 
 def report(data: xr.Dataset) -> None:

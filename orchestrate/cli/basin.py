@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from .options import (
     Commands,
     add_excitation,
     add_numbers,
+    add_settling,
     add_structure,
     excitation_of,
     numbers_of,
     state_of,
     structure_of,
 )
-from .output import add_files, add_running
-from .question import carry_out, tell_attractors
+from .output import add_results
+from .question import carry_out, picture_of, tell_attractors
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,12 +48,9 @@ def add_parser(commands: Commands) -> None:
     add_numbers(
         option,
         phase=(0.0, "phase of the box at the start, rad"),
-        transient=(400, "periods dropped at least"),
-        settle=(300.0, "periods dropped at least, over eta"),
-        samples=(48, "periods looked at"),
     )
-    add_files(parser)
-    add_running(parser)
+    add_settling(option, (48, "periods looked at"), transient=400)
+    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -92,13 +90,6 @@ def side_of(option: str, text: str | None) -> Side | None:
     except ValueError:
         expected = "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60"
         raise InputError(f"{option} {text}: expected {expected}") from None
-
-
-def picture_of(data: xr.Dataset) -> Any:
-    """The plane."""
-    from ..figures.basin import draw
-
-    return draw(data)
 
 
 def report(data: xr.Dataset) -> None:

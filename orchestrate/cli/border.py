@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from .options import Commands, add_numbers, add_structure, ends_of, numbers_of, structure_of
-from .output import add_files, add_running
+from .output import add_results
 from .question import carry_out, place, stored
 
 if TYPE_CHECKING:
@@ -36,8 +36,7 @@ def add_parser(commands: Commands) -> None:
         longest=(0.03, "longest step along the curve"),
         most=(500, "points in one direction, at most"),
     )
-    add_files(parser)
-    add_running(parser)
+    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -20,7 +20,7 @@ from .options import (
     numbers_of,
     structure_of,
 )
-from .output import add_files, add_running
+from .output import add_results
 from .question import TURN, carry_out, place, stored
 
 if TYPE_CHECKING:
@@ -57,8 +57,7 @@ def add_parser(commands: Commands) -> None:
         longest=(0.03, "longest step along the branch"),
         most=(1000, "points in one direction, at most"),
     )
-    add_files(parser)
-    add_running(parser)
+    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -22,7 +22,7 @@ from .drives import (
     two_voltages,
 )
 from .options import Commands, add_drive, described, values_of
-from .output import add_files, add_running
+from .output import add_results
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,8 +55,7 @@ def add_parser(commands: Commands) -> None:
     option("--time", type=float, metavar="S", help="time given to pass, s (default: 1500/omega)")
     add_step(group)
     add_control(parser)
-    add_files(parser, store=False)
-    add_running(parser, several=True)
+    add_results(parser, store=False, several=True)
 
 
 def range_of(

@@ -24,7 +24,7 @@ from .drives import (
     title_of_runs,
 )
 from .options import Commands, add_drive, described
-from .output import add_files, add_running, digest, drawn, exported, own_fmus, running_of
+from .output import add_results, digest, drawn, exported, own_fmus, running_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -59,8 +59,7 @@ def add_parser(commands: Commands) -> None:
     add_master(parser)
     branches = "compute the branches of stationary motions too, and draw them under the ramps"
     parser.add_argument("--branches", action="store_true", help=branches)
-    add_files(parser, store=False)
-    add_running(parser, several=True)
+    add_results(parser, store=False, several=True)
     package = "write the coupled system for other tools instead"
     parser.add_argument("--ssp", type=Path, metavar="FILE", help=package)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from .drives import ask_once
 from .options import Commands, add_drive, described, ends_of
-from .output import add_files, add_running
+from .output import add_results
 
 if TYPE_CHECKING:
     import numpy as np
@@ -40,8 +40,7 @@ def add_parser(commands: Commands) -> None:
     steps = "communication steps in a revolution (default: %(default)s)"
     option("--steps", type=int, default=48, help=steps)
     option("--settle", type=float, metavar="S", help="time to the first motion (default 600/omega)")
-    add_files(parser)
-    add_running(parser, several=True)
+    add_results(parser, several=True)
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -20,7 +20,7 @@ from .drives import (
     two_voltages,
 )
 from .options import Commands, add_drive, described
-from .output import add_files, add_running
+from .output import add_results
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,8 +45,7 @@ def add_parser(commands: Commands) -> None:
     add_settle(group)
     group.add_argument("--one-way", action="store_true", help="do not come back: jumps up only")
     add_step(group)
-    add_files(parser)
-    add_running(parser, several=True)
+    add_results(parser, several=True)
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -18,8 +18,8 @@ from .options import (
     numbers_of,
     structure_of,
 )
-from .output import add_files, add_running, running_of
-from .question import along_of, carry_out, place, ranges, several
+from .output import add_results, running_of
+from .question import along_of, carry_out, picture_of, place, ranges, several
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,8 +48,7 @@ def add_parser(commands: Commands) -> None:
         periods=(2500, "periods followed"),
         sigmas=(3.0, "standard errors from zero that decide"),
     )
-    add_files(parser)
-    add_running(parser)
+    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -62,13 +61,6 @@ def run(arguments: argparse.Namespace) -> None:
         swept["transient"] = arguments.transient
         question["start"] = orchestrate.sweep(structure, **swept, **running_of(arguments))
     carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
-
-
-def picture_of(data: xr.Dataset) -> Any:
-    """The exponents with their errors."""
-    from ..figures.lyapunov import draw
-
-    return draw(data)
 
 
 def report(data: xr.Dataset) -> None:

@@ -11,6 +11,7 @@ from .options import (
     add_excitation,
     add_numbers,
     add_over,
+    add_settling,
     add_structure,
     check_over,
     excitation_of,
@@ -18,8 +19,8 @@ from .options import (
     structure_of,
     values_of,
 )
-from .output import add_files, add_running
-from .question import carry_out, place
+from .output import add_results
+from .question import carry_out, picture_of, place
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,16 +43,13 @@ def add_parser(commands: Commands) -> None:
     option = add_excitation(parser).add_argument
     add_over(option, twice=True)
     option("--exponent", action="store_true", help="the largest Lyapunov exponents too")
+    add_settling(option, (60, "periods kept"), transient=300)
     add_numbers(
         option,
-        transient=(300, "periods dropped at least"),
-        settle=(300.0, "periods dropped at least, over eta"),
-        samples=(60, "periods kept"),
         periods=(500, "periods for an exponent"),
         tolerance=(1e-2, "relative deviation within which a state repeats"),
     )
-    add_files(parser)
-    add_running(parser)
+    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -88,13 +86,6 @@ def axes(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
             "--values, or --over with --values twice at one frequency"
         )
     return found
-
-
-def picture_of(data: xr.Dataset) -> Any:
-    """The maps."""
-    from ..figures.maps import draw
-
-    return draw(data)
 
 
 def report(data: xr.Dataset) -> None:

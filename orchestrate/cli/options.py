@@ -355,6 +355,26 @@ def add_numbers(option: Callable[..., Any], **numbers: tuple[int | float, str]) 
         )
 
 
+def add_settling(option: Callable[..., Any], samples: tuple[int, str], transient: int) -> None:
+    """How long a response settles, and how many periods of it are looked at.
+
+    Parameters
+    ----------
+    option : callable
+        Adds an option to a group.
+    samples : (int, str)
+        Default and meaning.
+    transient : int
+        Default.
+    """
+    add_numbers(
+        option,
+        transient=(transient, "periods dropped at least"),
+        settle=(300.0, "periods dropped at least, over eta"),
+        samples=samples,
+    )
+
+
 def numbers_of(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
     """Some of the options as keywords of the public API."""
     return {name: getattr(arguments, name) for name in names}

@@ -17,7 +17,7 @@ from .options import (
     state_of,
     structure_of,
 )
-from .output import add_files, add_running
+from .output import add_results
 from .question import carry_out
 
 if TYPE_CHECKING:
@@ -43,8 +43,7 @@ def add_parser(commands: Commands) -> None:
         period=(1, "excitation periods after which it closes"),
         box_acceleration=(0.0, "constant acceleration of the box beside the harmonic one, m/s2"),
     )
-    add_files(parser)
-    add_running(parser)
+    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:

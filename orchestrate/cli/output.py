@@ -31,6 +31,21 @@ MOMENT = 1.0  # s: after so much computing, a picture is prepared beside it
 # -- options --------------------------------------------------------------------------------------
 
 
+def add_results(parser: argparse.ArgumentParser, store: bool = True, several: bool = False) -> None:
+    """What is written, where results go, and how they are computed.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+    store : bool
+        Whether there is one result, which may have a file of its own.
+    several : bool
+        Whether FMUs of several models compute it.
+    """
+    add_files(parser, store)
+    add_running(parser, several=several)
+
+
 def add_running(
     parser: argparse.ArgumentParser,
     output: Path | None = Path("results"),

@@ -21,7 +21,7 @@ from .drives import (
     title_of_runs,
 )
 from .options import Commands, add_drive, described
-from .output import add_files, add_running
+from .output import add_results
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,8 +53,7 @@ def add_parser(commands: Commands) -> None:
     mass = "whose acceleration the spectra are of (default: %(default)s)"
     group.add_argument("--mass", type=int, default=1, choices=(1, 2), help=mass)
     add_step(group)
-    add_files(parser, store=False)
-    add_running(parser, several=True)
+    add_results(parser, store=False, several=True)
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .options import (
     Commands,
@@ -14,8 +14,8 @@ from .options import (
     numbers_of,
     structure_of,
 )
-from .output import add_files, add_running
-from .question import along_of, carry_out, place, several, tell_one
+from .output import add_results
+from .question import along_of, carry_out, picture_of, place, several, tell_one
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,8 +47,7 @@ def add_parser(commands: Commands) -> None:
         prominence=(0.1, "by what part of itself a peak stands out at least"),
         jump=(0.15, "by what part of itself the gap jumps at least"),
     )
-    add_files(parser)
-    add_running(parser)
+    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -58,13 +57,6 @@ def run(arguments: argparse.Namespace) -> None:
     names = ("direction", "transient", "samples", "prominence", "jump")
     question = {**asked, **numbers_of(arguments, *names)}
     carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
-
-
-def picture_of(data: xr.Dataset) -> Any:
-    """The curves."""
-    from ..figures.resonance import draw
-
-    return draw(data)
 
 
 def report(data: xr.Dataset) -> None:

@@ -17,7 +17,7 @@ from .options import (
     state_of,
     structure_of,
 )
-from .output import add_files, add_running
+from .output import add_results
 from .question import carry_out
 
 if TYPE_CHECKING:
@@ -44,8 +44,7 @@ def add_parser(commands: Commands) -> None:
     )
     option("--start", metavar="X1,X2,V1,V2", help="state at the start, m and m/s (default: rest)")
     option("--beside", action="store_true", help="the same of the bonded structure, beside it")
-    add_files(parser)
-    add_running(parser)
+    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:

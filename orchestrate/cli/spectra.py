@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from .options import (
@@ -20,8 +20,8 @@ from .options import (
     numbers_of,
     options,
 )
-from .output import Files, add_files, add_running, digest, running_of
-from .question import carry_out, place
+from .output import Files, add_results, digest, running_of
+from .question import carry_out, picture_of, place
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,8 +55,7 @@ def add_parser(commands: Commands) -> None:
         periods=(64, "periods of the record"),
         points=(1024, "samples a period"),
     )
-    add_files(parser)
-    add_running(parser, several=True)
+    add_results(parser, several=True)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -105,13 +104,6 @@ def shaken_harmonically(arguments: argparse.Namespace) -> None:
         **numbers_of(arguments, "transient", "periods", "points"),
     }
     carry_out(arguments, structure, question, report, picture_of)
-
-
-def picture_of(data: xr.Dataset) -> Any:
-    """The spectra, a panel a frequency."""
-    from ..figures.spectra import draw
-
-    return draw(data)
 
 
 def report(data: xr.Dataset) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .options import (
     Commands,
@@ -15,8 +15,8 @@ from .options import (
     numbers_of,
     structure_of,
 )
-from .output import add_files, add_running
-from .question import along_of, carry_out, place, ranges, several, tell_one
+from .output import add_results
+from .question import along_of, carry_out, picture_of, place, ranges, several, tell_one
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,8 +50,7 @@ def add_parser(commands: Commands) -> None:
         samples=(200, "periods kept"),
         tolerance=(1e-2, "relative deviation within which a state repeats"),
     )
-    add_files(parser)
-    add_running(parser)
+    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -64,13 +63,6 @@ def run(arguments: argparse.Namespace) -> None:
         **numbers_of(arguments, "transient", "samples", "tolerance"),
     }
     carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
-
-
-def picture_of(data: xr.Dataset) -> Any:
-    """The orbit diagram."""
-    from ..figures.orbit_diagram import draw
-
-    return draw(data)
 
 
 def report(data: xr.Dataset) -> None:
