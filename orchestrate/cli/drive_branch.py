@@ -35,7 +35,7 @@ def add_parser(commands: Commands) -> None:
     option("--longest", type=float, default=0.05, help=longest)
     most = "most points in one direction (default: %(default)s)"
     option("--most", type=int, default=200, help=most)
-    period = "revolutions after which the delaminated motion repeats (default: %(default)s)"
+    period = "most revolutions after which the delaminated motion repeats (default: %(default)s)"
     option("--period", type=int, default=2, help=period)
     steps = "communication steps in a revolution (default: %(default)s)"
     option("--steps", type=int, default=48, help=steps)

@@ -14,7 +14,9 @@ from matplotlib.figure import Figure
 from .style import GREY, in_our_look, panels
 from .weak_drive import COLOURS, SINKS
 
-HALF_TURN = np.pi
+TURN = 2.0 * np.pi
+MOST = 4  # revolutions after which a motion is seen to repeat
+CALM = 0.9  # of the revolutions: the others belong to the jump
 FLOOR = 1e-4  # of the largest line: the lower end of the colours
 
 
@@ -39,16 +41,20 @@ def draw(
     for column, (name, data) in enumerate(runs.items()):
         begin, words = beginning(data)
         own = axes[column::count]
-        revolution = over_revolutions(data)
+        period = repeats_after(data)
+        means = over_revolutions(data, period)
         time = data.time.values - begin
-        draw_speed(own[0], time, data, revolution)
+        draw_speed(own[0], time, data, means)
         own[1].plot(time, data.voltage, color="k", linewidth=1.0)
         own[2].plot(time, data.x1, color=COLOURS.get(name, "C0"), linewidth=0.3)
-        draw_powers(own[3], time, revolution)
+        draw_powers(own[3], time, means)
         mesh = draw_waterfall(own[4], spectra[name], begin, top)
         for panel in own[:4]:
             panel.axvline(0.0, color=GREY, linewidth=0.8, zorder=0)
         own[0].set_title(f"{name}: {told(data)}")
+        own[3].set_title(
+            "means of a revolution" if period == 1 else f"means of {period} revolutions"
+        )
         own[4].set_xlabel(f"time {words} in s")
         own[4].set_xlim(time[0], time[-1])
     labels = ("speed in rad/s", "voltage in V", "$x_1$ in m", "power in W", "multiple of the speed")
@@ -88,13 +94,34 @@ def told(data: xr.Dataset) -> str:
     return "the resonance is not passed"
 
 
-def over_revolutions(data: xr.Dataset) -> dict[str, np.ndarray]:
-    """Mean speed and powers over the revolution around each sample; NaN at the ends."""
-    angle, time = np.abs(data.angle.values), data.time.values
+def repeats_after(data: xr.Dataset) -> int:
+    """Revolutions after which the largest displacements of the revolutions repeat best."""
+    angle = np.maximum.accumulate(np.abs(data.angle.values))
+    turns = ((angle - angle[0]) // TURN).astype(int)
+    first = np.unique(turns, return_index=True)[1]
+    peaks = np.maximum.reduceat(data.x1.values, first)[:-1]  # the last one is not complete
+    if len(peaks) < 4 * MOST:
+        return 1
+    changes = [np.sort(np.abs(peaks[lag:] - peaks[:-lag])) for lag in range(1, MOST + 1)]
+    sizes = np.array([change[: int(CALM * len(change))].mean() for change in changes])
+    return 1 + int(np.flatnonzero(sizes <= 2.0 * sizes.min())[0])
+
+
+def over_revolutions(data: xr.Dataset, count: int = 1) -> dict[str, np.ndarray]:
+    """Mean speed of the revolution around each sample, and mean powers of ``count`` revolutions;
+    NaN at the ends.
+    """
+    one = means_over(data, 1)
+    return {**means_over(data, count), "speed": one["speed"]}
+
+
+def means_over(data: xr.Dataset, count: int) -> dict[str, np.ndarray]:
+    """Mean speed and powers of ``count`` revolutions around each sample; NaN at the ends."""
+    angle, time, half = np.abs(data.angle.values), data.time.values, 0.5 * count * TURN
     far = np.maximum.accumulate(angle)
-    before, after = (np.interp(angle + side, far, time) for side in (-HALF_TURN, HALF_TURN))
+    before, after = (np.interp(angle + side, far, time) for side in (-half, half))
     span = after - before
-    whole = (angle - HALF_TURN > far[0]) & (angle + HALF_TURN < far[-1])
+    whole = (angle - half > far[0]) & (angle + half < far[-1])
     turned = np.interp(after, time, angle) - np.interp(before, time, angle)
     found = {"speed": turned / span}
     for account in ("motor", *SINKS, "stored"):
@@ -113,12 +140,12 @@ def draw_speed(
     axes.plot(time, revolution["speed"], **mean)
 
 
-def draw_powers(axes: Axes, time: np.ndarray, revolution: Mapping[str, np.ndarray]) -> None:
-    """Where the motor's power goes, means of a revolution."""
-    axes.plot(time, revolution["motor"], "k", linewidth=1.6, label="motor")
+def draw_powers(axes: Axes, time: np.ndarray, means: Mapping[str, np.ndarray]) -> None:
+    """Where the motor's power goes, means of the motion's period."""
+    axes.plot(time, means["motor"], "k", linewidth=1.6, label="motor")
     for account, label in SINKS.items():
-        axes.plot(time, revolution[account], linewidth=1.0, label=label)
-    axes.plot(time, revolution["stored"], color=GREY, linewidth=1.0, label="stored")
+        axes.plot(time, means[account], linewidth=1.0, label=label)
+    axes.plot(time, means["stored"], color=GREY, linewidth=1.0, label="stored")
 
 
 def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, top: float) -> Any:

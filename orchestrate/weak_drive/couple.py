@@ -178,7 +178,8 @@ class CoupleJob(Job):
         if found is None:
             return None
         row, before, after = (int(rows[place]) for place in found[:3])
-        return Passing(row, before, after, found.look)
+        half = float(np.interp(found.half, np.arange(len(rows)), rows))
+        return Passing(row, before, after, found.look, half)
 
     def doubt(self, table: Table, up: bool) -> tuple[Passing, int] | None:
         """A passing that the record alone does not tell from a steep branch, by steps of the run,
@@ -193,7 +194,7 @@ class CoupleJob(Job):
         row, before, after, first = (
             min(math.ceil(end / self.scheme.h), self.steps() - 1) for end in ends
         )
-        return Passing(row, before, after, found.look), first
+        return Passing(row, before, after, found.look, float(row)), first
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """All revolutions, and the jumps.
@@ -311,8 +312,12 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
     """Voltage, speed, amplitude and rate at jumps; NaN where there is none."""
 
     def at(name: str, place: str) -> list[float]:
+        values = table[name]
         return [
-            math.nan if jump is None else float(table[name][getattr(jump, place)]) for jump in jumps
+            math.nan
+            if jump is None
+            else float(np.interp(getattr(jump, place), np.arange(len(values)), values))
+            for jump in jumps
         ]
 
     def rate(jump: Passing | None) -> float:
@@ -322,8 +327,8 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
         return float(np.diff(table["voltage"][ends])[0] / np.diff(table["time"][ends])[0])
 
     wanted = {
-        "jumps": ("voltage", "row", "V", "voltage at which the speed jumps"),
-        "jump_time": ("time", "row", "s", "time of that voltage"),
+        "jumps": ("voltage", "half", "V", "voltage at which the speed jumps"),
+        "jump_time": ("time", "half", "s", "time of that voltage"),
         "jump_speed": ("speed", "row", "rad/s", "mean speed of that revolution"),
         "jump_speed_before": ("speed", "before", "rad/s", "mean speed where it leaves its branch"),
         "jump_speed_after": ("speed", "after", "rad/s", "mean speed after the jump"),

@@ -27,7 +27,22 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
 from .couple import checked_motor
-from .drive_walk import ENDS, LIMIT, NONE, NOT_BEGUN, TESTS, Leg, Motion, Pace, follow, motion_near
+from .drive_walk import (
+    ENDS,
+    FLIP,
+    HALVED,
+    LIMIT,
+    NONE,
+    NOT_BEGUN,
+    TESTS,
+    Bifurcation,
+    Leg,
+    Motion,
+    Pace,
+    doubled,
+    follow,
+    motion_near,
+)
 from .schedule import check
 from .shooting import Shooter
 
@@ -38,7 +53,8 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
-LEGS = ("from below", "from above")
+LEGS = ("from below", "from above", "first doubled", "second doubled")
+REPEATS = 1e-3  # of the unit: change of a settled state in a revolution after which it repeats
 EVENTS = tuple(TESTS)
 MULTIPLIERS = 4  # the largest ones, that are kept
 TOLD: dict[str, tuple[str, str]] = {  # of a motion, with units
@@ -46,6 +62,7 @@ TOLD: dict[str, tuple[str, str]] = {  # of a motion, with units
     "voltage": ("V", "voltage that holds the speed"),
     "amplitude": ("m", "half the range of x1 over a period"),
     "impacts": ("1", "impacts in a revolution"),
+    "revolutions": ("1", "revolutions after which the motion repeats"),
 }
 Variable = tuple[Any, np.ndarray, dict[str, str]]
 
@@ -62,7 +79,7 @@ class DriveBranchJob(Job):
         rad/s, rising.
     pace : Pace
     period : int
-        Revolutions after which the delaminated motion repeats.
+        Most revolutions after which the delaminated motion repeats.
     steps : int
         Communication steps in a revolution.
     settle : float
@@ -107,7 +124,9 @@ class DriveBranchJob(Job):
         }
 
     def legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
-        """The branch from the lowest speed and, where that ends on the way, from the highest."""
+        """The branch from the lowest speed and, where that ends on the way, from the highest; then
+        those of twice the period off the first doublings of both.
+        """
         omega, drive = structure.omega, self.drive
         low, high = (speed / omega for speed in self.speeds)
         sizes = averaged.amplitude(structure, drive, np.linspace(low, high, 2001))
@@ -116,16 +135,47 @@ class DriveBranchJob(Job):
         shooter = Shooter(fmus, structure, drive, turns, self.steps, length)
         below = self.leg(shooter, (low, high), up=True)
         passed = below.end == LIMIT and below.motions[-1].root.unknowns[-1] > 0.5 * (low + high)
-        return [below, Leg(end=NOT_BEGUN) if passed else self.leg(shooter, (low, high), up=False)]
+        above = Leg(end=NOT_BEGUN) if passed else self.leg(shooter, (low, high), up=False)
+        found = [below, above]
+        for leg in (below, above):
+            for flip in leg.bifurcations:
+                if len(found) < len(LEGS) and self.is_to_double(flip, found, structure):
+                    found.append(self.doubled_leg(shooter, flip.motion, (low, high)))
+        return [*found, *(Leg(end=NOT_BEGUN) for _ in LEGS[len(found) :])]
+
+    def is_to_double(self, flip: Bifurcation, legs: Sequence[Leg], structure: Structure) -> bool:
+        """Whether a branch of twice the period begins here that is wanted, and not known yet."""
+        turns = 1 if structure.bonded else self.period
+        if flip.kind != FLIP or 2 * flip.motion.period.revolutions > turns:
+            return False
+        place = flip.motion.root.unknowns[-2:]
+        ends = [leg.motions[-1].root.unknowns[-2:] for leg in legs if leg.end == HALVED]
+        return not any(np.abs(place - end).max() < 2.0 * self.pace.longest for end in ends)
+
+    def doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
+        """The branch of twice the period off a period doubling."""
+        try:
+            return follow(shooter, doubled(shooter, flip), speeds, self.pace)
+        except NoConvergenceError:
+            return Leg(end=NONE)
 
     def leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
-        """The branch from one of two speeds over omega, which a simulation is held at."""
+        """The branch from one of two speeds over omega, which a simulation is held at.
+
+        It is followed with the shortest period after which the simulation repeats.
+        """
         speed = speeds[0] if up else speeds[1]
         voltage = float(averaged.no_load_speed(shooter.structure, self.drive, speed))
         omega = shooter.structure.omega
         state = shooter.settle(voltage * shooter.volts, speed * omega, self.settle)
+        guess = np.append(state, [voltage, speed])
         try:
-            start = motion_near(shooter, np.append(state, [voltage, speed]), up)
+            turns = 1 if shooter.structure.bonded else self.period
+            parts = [part for part in range(1, turns) if turns % part == 0]
+            changes = [np.abs(shooter.change_in(guess, part)).max() for part in parts]
+            short = [part for part, size in zip(parts, changes, strict=True) if size < REPEATS]
+            shooter.repeat_after(short[0] if short else turns)
+            start = motion_near(shooter, guess, up)
         except NoConvergenceError:
             return Leg(end=NONE)
         return follow(shooter, start, speeds, self.pace)
@@ -138,7 +188,7 @@ class DriveBranchJob(Job):
             voltage, speed = motion.root.unknowns[-2:]
             period = motion.period
             impacts = period.impacts / period.revolutions
-            told = (speed * omega, voltage * volts, period.amplitude, impacts)
+            told = (speed * omega, voltage * volts, period.amplitude, impacts, period.revolutions)
             row[:] = [*told, *motion.multipliers[:MULTIPLIERS]]
         return table
 
@@ -231,7 +281,9 @@ def drive_branch(
     most : int
         Most points in one direction.
     period : int
-        Revolutions after which the delaminated motion repeats; 2 finds those of 1 too.
+        Most revolutions after which the delaminated motion repeats. A motion that repeats after a
+        part of them is followed as such, and where its period doubles, the branch of twice the
+        period too.
     steps : int
         Communication steps in a revolution.
     settle : float, optional
@@ -244,10 +296,12 @@ def drive_branch(
     xarray.Dataset
         ``speed`` (rad/s), ``voltage`` (V), ``amplitude`` (m), ``impacts`` in a revolution and
         ``stable`` over ``structure``, ``leg`` and ``point``, NaN beyond the end of a leg, and
-        ``end`` says why it ends; real and imaginary part of the largest Floquet multipliers. The
+        ``end`` says why it ends; ``revolutions`` after which it repeats; real and imaginary part of
+        the largest Floquet multipliers. The
         same of bifurcations over ``bifurcation``, with ``bifurcation_structure`` and
         ``bifurcation_kind``: fold, period doubling, Neimark-Sacker. The leg from the lowest speed
-        goes up; where it does not arrive at the highest, another one goes down from there.
+        goes up; where it does not arrive at the highest, another one goes down from there. Off the
+        first two period doublings go the branches of twice the period.
 
     Raises
     ------

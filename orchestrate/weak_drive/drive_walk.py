@@ -21,7 +21,9 @@ from .shooting import Period, Shooter
 FLIP = "period doubling"
 LIMIT, STUCK, LONG, NONE = "limit", "no convergence", "most points", "no motion at the start"
 NOT_BEGUN = "not begun: the other leg has gone all the way"
-ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN)
+HALVED = "meets the motion of half its period"
+ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN, HALVED)
+AWAY = 0.01  # of the unit: how far from a doubling the motion of twice the period is begun
 ON_CIRCLE = 1e-3  # of a pair that has been located: how far its size may be from 1
 NEAR = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere
 
@@ -146,6 +148,24 @@ def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
     return motion_at(shooter, root, ahead)
 
 
+def doubled(shooter: Shooter, flip: Motion) -> Motion:
+    """A motion of twice the period near a period doubling, to go away from it.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where there is none.
+    """
+    shooter.repeat_after(flip.period.revolutions)
+    shooter.angle, shooter.matrix = flip.angle, flip.matrix
+    away = np.append(shooter.alternating(), [0.0, 0.0])
+    guess = flip.root.unknowns + AWAY * away
+    shooter.repeat_after(2 * shooter.turns)
+    shooter.renew(guess)
+    root = corrected(shooter, guess, away, most=12)
+    return motion_at(shooter, root, away)
+
+
 def clear_start(shooter: Shooter, motion: Motion) -> Motion:
     """The same motion, begun where the gap is wide: an impact at the start has no derivative."""
     if motion.period.share > NEAR:
@@ -165,6 +185,7 @@ def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: P
     leg = Leg([start])
     begin = clear_start(shooter, start)
     walk = Walk(shooter, begin.root, pace.longest, pace.longest, shortest=1e-3 * pace.longest)
+    halves = half_way(shooter, begin.root)
     while not leg.end:
         if len(leg.motions) >= pace.most:
             leg.end = LONG
@@ -175,12 +196,26 @@ def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: P
         except NoConvergenceError:
             leg.end = STUCK
             break
+        halves_before, halves = halves, half_way(shooter, after.root)
+        if halves_before @ halves < 0.0:  # the same motion from here on, half a period later
+            leg.end = HALVED
+            break
         leg.bifurcations += located(walk, leg.motions[-1], after, length)
         leg.motions.append(after)
         leg.end = LIMIT if arrived else ""
         shooter.matrix = after.matrix
-        walk.root = clear_start(shooter, after).root
+        begin = clear_start(shooter, after)
+        walk.root = begin.root
+        if begin is not after:
+            halves = half_way(shooter, begin.root)
     return leg
+
+
+def half_way(shooter: Shooter, root: Root) -> Floats:
+    """What the state changes in half of an even period; nothing in an odd one."""
+    if shooter.turns % 2:
+        return np.zeros(1)
+    return shooter.change_in(root.unknowns, shooter.turns // 2)
 
 
 def located(walk: Walk[Shooter], before: Motion, after: Motion, length: float) -> list[Bifurcation]:

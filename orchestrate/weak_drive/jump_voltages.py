@@ -1,7 +1,8 @@
 """Jump voltages with an error: ramps at several rates, bonded and delaminated, extrapolated to 0.
 
-A ramp's jump comes late, about as rate^(2/3): so it is where a fold is passed at a finite rate. A
-line through the voltages over rate^(2/3) meets rate 0 at the voltage of the fold.
+A ramp's jump comes late, about as rate^(2/3): so it is where a fold is passed at a finite rate. The
+time that the speed then takes on its way makes a term that grows as the rate itself. Both are
+fitted to the voltages; at rate 0 is the voltage of the fold.
 """
 
 from __future__ import annotations
@@ -49,7 +50,10 @@ def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
     Returns
     -------
     voltage, error : float
-        NaN with fewer than two jumps; the error NaN with two, which a line always meets.
+            NaN with fewer than two jumps; the error NaN with two, which a line in rate^(2/3) always
+        meets. From three on the term in the rate is fitted too. The error has two parts: what the
+        scatter makes of it, from four jumps on, and half of what the term in the rate changes,
+        since that is not the last term of the law.
 
     Examples
     --------
@@ -62,15 +66,25 @@ def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
     count = int(known.sum())
     if count < 2:
         return float("nan"), float("nan")
-    lag = rates[known] ** EXPONENT
-    design = np.stack([np.ones(count), lag], axis=1)
-    scale = np.array([1.0, lag.max()])
-    solution = np.linalg.lstsq(design / scale, voltages[known], rcond=None)[0]
+    line, _ = at_zero(rates[known], voltages[known], (EXPONENT,))
     if count == 2:
-        return float(solution[0]), float("nan")
-    misfit = voltages[known] - design / scale @ solution
-    variance = float(misfit @ misfit) / (count - 2)
-    covariance = variance * np.linalg.inv((design / scale).T @ (design / scale))
+        return line, float("nan")
+    value, scatter = at_zero(rates[known], voltages[known], (EXPONENT, 1.0))
+    return value, float(np.hypot(scatter, 0.5 * (value - line)))
+
+
+def at_zero(
+    rates: np.ndarray, voltages: np.ndarray, exponents: tuple[float, ...]
+) -> tuple[float, float]:
+    """The constant of a fit with powers of the rate, and its error by the scatter around it."""
+    design = np.stack([np.ones(len(rates)), *(rates**power for power in exponents)], axis=1)
+    design /= design.max(axis=0)
+    solution = np.linalg.lstsq(design, voltages, rcond=None)[0]
+    free = len(rates) - design.shape[1]
+    if not free:
+        return float(solution[0]), 0.0
+    misfit = voltages - design @ solution
+    covariance = float(misfit @ misfit) / free * np.linalg.inv(design.T @ design)
     return float(solution[0]), float(np.sqrt(covariance[0, 0]))
 
 

@@ -46,12 +46,15 @@ class Passing(NamedTuple):
     look : str
         What the record tells: ``JUMP``; ``SMOOTH`` where the speed never changes much more than
         the voltage; ``DOUBTFUL`` between the two; ``UNFINISHED`` where the record ends on the way.
+    half : float
+        The same as ``row``, between two rows.
     """
 
     row: int
     before: int
     after: int
     look: str
+    half: float
 
 
 class Criterion(NamedTuple):
@@ -103,20 +106,21 @@ def find_passing(
         cross = max(0, cross - 2 * width) + int(near[np.argmin(np.abs(near - 2 * width))])
     before, after = extent(fast, cross) if fast[cross] else (cross, cross + width)
     last = min(after + 2 * width, len(way.time) - 1)
-    row = half_slip(np.abs(way.eta0 - way.Omega), before, up)
-    row = cross + width if row is None else row
+    half = half_slip(np.abs(way.eta0 - way.Omega), before, up)
+    half = float(cross + width) if half is None else half
+    row = math.ceil(half)
     if not fast[cross]:
-        return Passing(row, before, last, SMOOTH)
+        return Passing(row, before, last, SMOOTH, half)
     top = before + int(np.argmax(rise[before : after + 1] / apart(time, width)[before : after + 1]))
     if after == len(rise) - 1 and rise[-1] > 0.5 * rise[top]:
-        return Passing(row, before, last, UNFINISHED)
+        return Passing(row, before, last, UNFINISHED, half)
     slip = sign * (way.eta0 - way.Omega)
     inertia = rise[top] / (b * (time[top + width] - time[top]))
     grown = abs(way.Omega[last] - way.Omega[before])
     if grown < limits.growth * np.ptp(way.eta0[before : last + 1]):
-        return Passing(row, before, last, SMOOTH)
+        return Passing(row, before, last, SMOOTH, half)
     sure = before > width and inertia >= limits.share * (slip[before] - slip[last])
-    return Passing(row, before, last, JUMP if sure else DOUBTFUL)
+    return Passing(row, before, last, JUMP if sure else DOUBTFUL, half)
 
 
 def running_mean(values: np.ndarray, width: int) -> np.ndarray:
@@ -139,15 +143,19 @@ def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
     )
 
 
-def half_slip(slip: np.ndarray, before: int, up: bool) -> int | None:
-    """The row at which the slip falls below (down: rises above) half of its largest value."""
+def half_slip(slip: np.ndarray, before: int, up: bool) -> float | None:
+    """Where the slip falls below (down: rises above) half of its largest value, between rows."""
     level = slip[before:]
-    if up:
-        highest = int(np.argmax(level))
-        after = 1 + highest + np.flatnonzero(level[highest + 1 :] < 0.5 * level[highest])
-    else:
-        after = np.flatnonzero(level > 0.5 * level.max())
-    return before + int(after[0]) if after.size else None
+    highest, half = int(np.argmax(level)), 0.5 * float(level.max())
+    first = highest + 1 if up else 0
+    found = first + np.flatnonzero((level[first:] < half) == up)
+    if not found.size:
+        return None
+    row = int(found[0])
+    if row == 0:
+        return float(before)
+    ahead = (half - level[row]) / (level[row - 1] - level[row])
+    return before + row - float(min(max(ahead, 0.0), 1.0))
 
 
 def stays_beyond(time: np.ndarray, Omega: np.ndarray, divide: float) -> float:

@@ -108,6 +108,20 @@ class Shooter:
         self.matrix: Floats = np.empty((0, 0))
         self._last: tuple[Floats, Floats] | None = None
 
+    def repeat_after(self, revolutions: int) -> None:
+        """From now on motions are to repeat after another number of revolutions."""
+        self.turns, self.count = revolutions, self.count // self.turns * revolutions
+        self.matrix, self._last = np.empty((0, 0)), None
+
+    def change_in(self, unknowns: Floats, revolutions: int) -> Floats:
+        """What the state changes in some revolutions, of a motion that repeats after more."""
+        turns = self.turns
+        self.repeat_after(revolutions)
+        try:
+            return self.after(unknowns)[: self.size] - unknowns[: self.size]
+        finally:
+            self.repeat_after(turns)
+
     # -- both FMUs over a period --
 
     def master(self, state: Floats, voltage: float, h: float) -> Master:
@@ -254,9 +268,18 @@ class Shooter:
 
         The angle's own, 1 for every motion, is not among them.
         """
+        values = np.linalg.eigvals(self.section())
+        return np.asarray(values[np.argsort(-np.abs(values))])
+
+    def section(self) -> Floats:
+        """The derivative of the map from the angle at the start to itself, by the Jacobian."""
         count = self.size
         flow = self.matrix[:, :count] + np.eye(count + 1, count)
         drift = self.matrix[:, -1]  # a longer period is a slower mean speed
-        section = flow[:count] - np.outer(drift[:count], flow[count]) / drift[count]
-        values = np.linalg.eigvals(section)
-        return np.asarray(values[np.argsort(-np.abs(values))])
+        return np.asarray(flow[:count] - np.outer(drift[:count], flow[count]) / drift[count])
+
+    def alternating(self) -> Floats:
+        """The direction of length 1 of the state that the map turns round: multiplier -1."""
+        values, vectors = np.linalg.eig(self.section())
+        found = vectors[:, np.argmin(np.abs(values + 1.0))].real
+        return np.asarray(found / np.linalg.norm(found))

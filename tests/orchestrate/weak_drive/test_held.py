@@ -40,7 +40,7 @@ def judged(slope, up=True, start=1.1, first=1.4):
     schedule = Ramp(first, 1.6, 1e-4, back=False) if up else Ramp(1.6, first, 1e-4, back=False)
     steps = round(schedule.duration / H)
     holder = Holder(lambda other: Rotor(other, slope, start), schedule, H, 1.0, 1.0)
-    passing = Passing(round(0.8 * steps), steps // 4, steps - 1, DOUBTFUL)
+    passing = Passing(round(0.8 * steps), steps // 4, steps - 1, DOUBTFUL, 0.8 * steps)
     return holder.judge(passing, 0, 1.3, up)
 
 

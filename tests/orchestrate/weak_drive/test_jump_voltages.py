@@ -5,18 +5,35 @@ import pytest
 
 from orchestrate import InputError, jump_voltages
 from orchestrate.weak_drive.averaged import folds
-from orchestrate.weak_drive.jump_voltages import extrapolate
+from orchestrate.weak_drive.jump_voltages import at_zero, extrapolate
 
 from .coupled import QUICK
 
 
 def test_the_error_is_that_of_many_trials():
-    """Voltages with noise of 1e-3: the values found scatter as much as the error says."""
+    """Voltages with noise of 1e-3: the error says at least how the values found scatter."""
     rates = np.array([2e-4, 1e-4, 5e-5, 2e-5, 1e-5])
     noise = np.random.default_rng(5).normal(0.0, 1e-3, (2000, len(rates)))
     found = np.array([extrapolate(rates, 1.5 + 9.0 * rates ** (2 / 3) + row) for row in noise])
-    assert found[:, 0].mean() == pytest.approx(1.5, abs=1e-4)
-    assert np.sqrt((found[:, 1] ** 2).mean()) == pytest.approx(found[:, 0].std(), rel=0.05)
+    assert found[:, 0].mean() == pytest.approx(1.5, abs=2e-4)
+    scatter, told = found[:, 0].std(), np.sqrt((found[:, 1] ** 2).mean())
+    assert scatter < told < 1.5 * scatter
+
+
+@pytest.mark.parametrize("rates", [[1e-4, 5e-5, 2.5e-5], [4e-5, 2e-5, 1e-5]])
+def test_a_speed_that_passes_a_fold(rates):
+    """x' = b (eta0 - x^2 / 2) leaves at eta0 = 0, late; a line in rate^(2/3) is off by more."""
+    b, late = 0.05, []
+    for rate in rates:
+        x, eta0, h = -0.25, -0.03, 0.5
+        while x < 0.3:  # where the jump is seen: it takes a time, whatever the rate
+            x -= h * b * (-eta0 - 0.5 * x * x)
+            eta0 += h * rate
+        late.append(eta0)
+    value, error = extrapolate(np.array(rates), np.array(late))
+    line, _ = at_zero(np.array(rates), np.array(late), (2.0 / 3.0,))
+    assert abs(value) < error < 1e-3
+    assert abs(value) < 0.4 * abs(line)
 
 
 def test_too_few_jumps_give_no_error():

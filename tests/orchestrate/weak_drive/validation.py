@@ -242,7 +242,8 @@ def jump_of(system, times, angles, eta0):
     divide = averaged.dividing_speed(*system.as_bonded())
     found = find_passing(way, system.drive.b(system.structure), True, divide)
     fast = found is not None and found.look in (JUMP, DOUBTFUL)
-    return float(way.eta0[found.row]) if fast else float("nan")
+    rows = np.arange(len(way.eta0))
+    return float(np.interp(found.half, rows, way.eta0)) if fast else float("nan")
 
 
 def coupled_jump(system, state, voltages, rate):
