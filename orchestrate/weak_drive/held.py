@@ -68,7 +68,10 @@ class Patience:
     Attributes
     ----------
     time : float
-        For which a voltage is held, 1/omega.
+        For which a voltage is held at most, 1/omega.
+    look, rest : float
+        Mean speeds of such times, 1/omega, that come closer by a third or more each time, and have
+        less than this left, over omega, have arrived.
     width : float
         Of the voltages between which the gap is measured first, over K omega.
     halvings : int
@@ -80,6 +83,8 @@ class Patience:
     """
 
     time: float = 4000.0
+    look: float = 150.0
+    rest: float = 1e-4
     width: float = 4e-4
     halvings: int = 2
     kept: float = 0.8
@@ -138,18 +143,20 @@ class Holder:
 
     def hold(self, step: float, divide: float, up: bool, whole: bool = False) -> Ending:
         """Hold the voltage of a step from there on; to the end, or until the motion has left."""
-        count, piece = math.ceil(self.patience.time / self.omega / self.h), 250
+        count = math.ceil(self.patience.time / self.omega / self.h)
+        piece = max(1, round(self.patience.look / self.omega / self.h))
         state, voltage = self.state(int(step)), self.voltage(step)
-        run, speeds = self.begin(Constant(voltage, count * self.h)), np.zeros(0)
+        run, speeds, means = self.begin(Constant(voltage, count * self.h)), np.zeros(0), []
         try:
             if state is not None:
                 run.remember(state)
             for first in range(0, count, piece):
                 rows = run.revolve(range(first, min(first + piece, count)))
-                speeds = np.append(speeds, np.abs(rows["speed"]) / self.omega)
+                now = np.abs(rows["speed"]) / self.omega
+                speeds, means = np.append(speeds, now), [*means, now.mean() if now.size else 0.0]
                 last = speeds[-self.patience.stay :]
                 left = bool(((last > divide) == up).all()) and len(last) == self.patience.stay
-                if left and not whole:
+                if (left and not whole) or at_rest(np.diff(means[-5:]), self.patience.rest):
                     break
         finally:
             run.master.close()
@@ -205,6 +212,16 @@ class Holder:
             else:
                 low, ending = middle, found
         return low, high, ending
+
+
+def at_rest(changes: np.ndarray, rest: float) -> bool:
+    """Whether speeds with these last changes have arrived: those by a fold are slow, but go on."""
+    sizes = np.abs(changes)
+    if len(sizes) < 4:
+        return False
+    return bool((sizes[1:] < 0.67 * sizes[:-1]).all() and 2.0 * sizes[-1] < rest) or bool(
+        sizes.max() < 0.01 * rest
+    )
 
 
 def with_a_last_one(chunks: list[Chunk]) -> list[Chunk]:
