@@ -625,8 +625,8 @@ def couple(
     -----
     A ramp's jump comes late, about as rate^(2/3). What counts as a jump is told in
     :mod:`orchestrate.weak_drive.jumps`. Where the ramp's record does not tell a jump from a steep
-    branch, states of the run are restored and the voltage is held there: a motion that is lost leaves
-    a gap between the speeds that last, see :mod:`orchestrate.weak_drive.held`.
+    branch, states of the run are restored and the voltage is held there: a motion that is lost
+    leaves a gap between the speeds that last, see :mod:`orchestrate.weak_drive.held`.
 
     Examples
     --------
