@@ -146,7 +146,8 @@ class Holder:
         count = math.ceil(self.patience.time / self.omega / self.h)
         piece = max(1, round(self.patience.look / self.omega / self.h))
         state, voltage = self.state(int(step)), self.voltage(step)
-        run, speeds, means = self.begin(Constant(voltage, count * self.h)), np.zeros(0), []
+        run, speeds = self.begin(Constant(voltage, count * self.h)), np.zeros(0)
+        means: list[float] = []
         try:
             if state is not None:
                 run.remember(state)

@@ -115,12 +115,13 @@ class Shooter:
 
     def change_in(self, unknowns: Floats, revolutions: int) -> Floats:
         """What the state changes in some revolutions, of a motion that repeats after more."""
-        turns = self.turns
+        turns, matrix, last = self.turns, self.matrix, self._last
         self.repeat_after(revolutions)
         try:
             return self.after(unknowns)[: self.size] - unknowns[: self.size]
         finally:
             self.repeat_after(turns)
+            self.matrix, self._last = matrix, last
 
     # -- both FMUs over a period --
 
