@@ -21,9 +21,10 @@ UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, tod
 
 def prepare() -> None:
     """What a process's first picture takes most of a second for: fonts, and formulas in them."""
-    figure, (axes,) = panels(1, 1, (1.0, 1.0))
-    axes.set_xlabel(XI_REL)
-    figure.savefig(io.BytesIO(), format="png")
+    with look():
+        figure, (axes,) = panels(1, 1, (1.0, 1.0))
+        axes.set_xlabel(XI_REL)
+        figure.savefig(io.BytesIO(), format="png")
 
 
 def save(
