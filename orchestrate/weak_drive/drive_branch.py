@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 KINDS = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
-REPEATS = 1e-3  # of the unit: change of a settled state in a revolution after which it repeats
+REPEATS = 1e-6  # of the unit: change of a motion in a part of its period, after which it repeats
 EVENTS = tuple(TESTS)
 MULTIPLIERS = 4  # the largest ones, that are kept
 TOLD: dict[str, tuple[str, str]] = {  # of a motion, with units
@@ -162,20 +162,22 @@ class DriveBranchJob(Job):
     def leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
         """The branch from one of two speeds over omega, which a simulation is held at.
 
-        It is followed with the shortest period after which the simulation repeats.
+        It is followed with the shortest period after which it repeats.
         """
         speed = speeds[0] if up else speeds[1]
         voltage = float(averaged.no_load_speed(shooter.structure, self.drive, speed))
         omega = shooter.structure.omega
         state = shooter.settle(voltage * shooter.volts, speed * omega, self.settle)
         guess = np.append(state, [voltage, speed])
+        turns = 1 if shooter.structure.bonded else self.period
         try:
-            turns = 1 if shooter.structure.bonded else self.period
-            parts = [part for part in range(1, turns) if turns % part == 0]
-            changes = [np.abs(shooter.change_in(guess, part)).max() for part in parts]
-            short = [part for part, size in zip(parts, changes, strict=True) if size < REPEATS]
-            shooter.repeat_after(short[0] if short else turns)
+            shooter.repeat_after(turns)
             start = motion_near(shooter, guess, up)
+            for part in (part for part in range(1, turns) if turns % part == 0):
+                if np.abs(shooter.change_in(start.root.unknowns, part)).max() < REPEATS:
+                    shooter.repeat_after(part)
+                    start = motion_near(shooter, start.root.unknowns, up)
+                    break
         except NoConvergenceError:
             return Leg(end=NONE)
         return follow(shooter, start, speeds, self.pace)

@@ -23,7 +23,7 @@ LIMIT, STUCK, LONG, NONE = "limit", "no convergence", "most points", "no motion 
 NOT_BEGUN = "not begun: the other leg has gone all the way"
 HALVED = "meets the motion of half its period"
 ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN, HALVED)
-AWAY = 0.01  # of the unit: how far from a doubling the motion of twice the period is begun
+AWAY = 3e-3  # of the unit: how far from a doubling the motion of twice the period is begun
 ON_CIRCLE = 1e-3  # of a pair that has been located: how far its size may be from 1
 NEAR = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere
 

@@ -121,3 +121,18 @@ def test_an_orbit_and_its_multipliers_are_the_whole_systems():
 def test_mistakes(arguments, text):
     with pytest.raises(InputError, match=text):
         drive_branch(*QUICK, progress=False, **arguments)
+
+
+def test_the_doubling_of_one_revolution_motions():
+    """Located with multiplier -1, and the branch of twice the period goes off it."""
+    omega, volts = BEAM.structure.omega, BEAM.drive.volts(BEAM.structure)
+    asked = {"speed": (1.29 * omega, 1.37 * omega), "longest": 0.1, "most": 60}
+    found = drive_branch(*BEAM, **asked, progress=False)
+    of_one = (found.bifurcation_structure == "delaminated") & (found.bifurcation_revolutions == 1)
+    flip = found.isel(bifurcation=(of_one & (found.bifurcation_kind == "period doubling")).values)
+    assert flip.bifurcation_voltage.values / volts == pytest.approx([1.51831], abs=1e-4)
+    nearest = abs(flip.bifurcation_multiplier_real + 1.0).min("multiplier")
+    assert nearest.values == pytest.approx([0.0], abs=1e-3)
+    doubled = found.sel(structure="delaminated", leg="first doubled").dropna("point")
+    assert (doubled.revolutions == 2).all() and doubled.sizes["point"] > 10
+    assert doubled.voltage.values[0] / volts == pytest.approx(1.51831, abs=2e-4)
