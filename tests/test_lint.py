@@ -18,7 +18,8 @@ COMMANDS = {
 @pytest.mark.parametrize("name", COMMANDS)
 def test_finds_nothing(name, tmp_path):
     """Nothing is written into the tree, so that runs side by side do not meet."""
-    if name == "mypy" and metadata.version("numpy") >= "2.5":
+    numpy = tuple(map(int, metadata.version("numpy").split(".")[:2]))
+    if name == "mypy" and numpy >= (2, 5):
         pytest.skip("NumPy 2.5's annotations refuse max() and argmin() of arrays in 26 places")
     cache = [str(tmp_path)] if name == "mypy" else []
     command = [sys.executable, "-m", *COMMANDS[name], *cache]
