@@ -67,6 +67,7 @@ def definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
         "STOP_SLOT": str(model.stop_slot),
         "VARIABLE_COUNT": f"{len(model.variables)}u",
         "REFRESH": str(int(model.refresh is not None)),
+        "COAST": str(int(model.coast is not None)),
         "EVENT_CLOCK": str(int(model.clock is not None)),
         "EVENT_COUNT_SLOT": str(slots[model.clock.counter] if model.clock else 0),
         "CLOCK_REFERENCE": f"{CLOCK_REFERENCE}u",

@@ -105,8 +105,9 @@ def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
 
 def libraries(folder: str, model: Model) -> Files:
     """The compiled kernel by file name, a platform each; none, and said so, without a compiler."""
-    refresh = b"#define REFRESH\n" if model.refresh else b""
-    entry = refresh + (ROOT / "runtime" / "native" / "library.c").read_bytes()
+    optional = {"REFRESH": model.refresh, "COAST": model.coast}
+    known = "".join(f"#define {name}\n" for name, entry in optional.items() if entry).encode()
+    entry = known + (ROOT / "runtime" / "native" / "library.c").read_bytes()
     try:
         platforms = tuple(dict.fromkeys(platform for platform, _ in LIBRARIES.values()))
         made = link_all(compile_objects(folder, platforms), {"library.c": entry})

@@ -217,6 +217,9 @@ class Slave:
 
     def step(self, time: float) -> str:
         """Advance; on failure the memory is put back and the reason returned."""
+        coast = self._entries.get("coast")
+        if coast and not coast(self._memory, time):
+            return ""
         first, count = self.model.written_only
         head, tail = self._memory[:first], self._memory[first + count :]
         code = self._entries["advance"](self._memory, time)

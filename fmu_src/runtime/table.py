@@ -221,6 +221,9 @@ class Model:
     refresh : callable or None
         A third one, of a model with outputs that follow an input at once: the outputs for the
         inputs as set now.
+    coast : callable or None
+        A fourth one, tried first: a step on which only outputs change. Where it does not return 0
+        it has changed nothing, and ``advance`` does the step.
     messages : dict of int to str
         What a code of the entry points says, as one line, see :func:`explain`.
     stop_time, step_size : float
@@ -254,6 +257,7 @@ class Model:
     terminals: tuple[Terminal, ...] = ()
     series_count: str = ""
     refresh: Entry | None = None
+    coast: Entry | None = None
 
     def rate_slot(self, variable: Variable) -> int:
         """Slot of a variable's rate of change; -1 where it has none: no continuous output."""
@@ -270,6 +274,7 @@ class Model:
             "advance": self.advance,
             "differentiate": self.differentiate,
             "refresh": self.refresh,
+            "coast": self.coast,
         }
         return {name: function for name, function in given.items() if function is not None}
 

@@ -78,9 +78,8 @@ def envelope(m, b, x, v):
 
 
 def begin_nodes(m):
-    """Set the state's first interval: the event function at both ends, and the remainder."""
+    """Set the state's first interval: the event function at its end, and the remainder."""
     start_nodes(m)
-    set_values(m, at.LEFT_VALUES, at.LEFT, 0.0)
     set_values(m, at.RIGHT_VALUES, at.RIGHT, m[at.RIGHT_AGE])
     set_remainder(m)
 

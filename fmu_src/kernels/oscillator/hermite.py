@@ -42,22 +42,25 @@ def present_coefficients(m, low):
     )
 
 
-def is_clear(m, l0, l1, l2, r0, r1, r2, low):
-    """Whether an interval has no root, but perhaps its start."""
-    b0, b1, b2, b3, b4, b5 = coefficients(m, l0, l1, l2, r0, r1, r2, low)
+def lowest_after(m, h0, h1, h2, low):
+    """The lowest of the three coefficients that belong to the left end of an interval, from value
+    and derivatives there.
+    """
+    fifth = m[at.HERMITE] * h1
+    b2 = (h0 + 2.0 * fifth) + (m[at.HERMITE + 1] * h2 - low)
+    return min(h0, min(h0 + fifth, b2))
+
+
+def lowest_before(m, h0, h1, h2, low):
+    """The same of the right end, but for the value itself."""
+    fifth = m[at.HERMITE] * h1
+    b3 = (h0 - 2.0 * fifth) + (m[at.HERMITE + 1] * h2 - low)
+    return min(h0 - fifth, b3)
+
+
+def is_positive(b0, b1, b2, b3, b4, b5):
+    """Whether a quintic with these coefficients has no root, but perhaps the interval's start."""
     return min(min(b0, b1), min(b2, b3), b4) >= 0.0 and b5 > 0.0
-
-
-def interval_is_clear(m):
-    """Whether the present interval has no root, but perhaps its start."""
-    b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
-    return min(min(b0, b1), min(b2, b3), b4) >= 0.0 and b5 > 0.0
-
-
-def is_below(m, l0, l1, l2, r0, r1, r2, low, ceiling):
-    """Whether the event function does not rise above ``ceiling`` in an interval."""
-    b0, b1, b2, b3, b4, b5 = coefficients(m, l0, l1, l2, r0, r1, r2, -low)
-    return max(max(b0, b1), max(b2, b3), max(b4, b5)) <= ceiling
 
 
 def interval_is_below(m, ceiling):
@@ -88,13 +91,12 @@ def has_summit(m, start, stop):
     return abs(slope) <= change + 2.15 * low
 
 
-def clear_part(m):
-    """A part of the present interval, from its start, that has no root; 0 where none is seen.
+def clear_part(b0, b1, b2, b3, b4, b5):
+    """A part of an interval, from its start, where a quintic has no root; 0 where none is seen.
 
-    Near the lower quintic's root from the right, found by Newton's method; the coefficients of the
+    Near the quintic's root from the right, found by Newton's method; the coefficients of the
     quintic's part before it prove that it is clear.
     """
-    b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
     s = 0.5
     if b5 < 0.0:
         s = crossing(b0, b1, b2, b3, b4, b5)

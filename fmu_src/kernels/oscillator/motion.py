@@ -9,7 +9,14 @@ first derivative that does not vanish.
 from ..numerics.elementary import fraction, sincos_turns
 from . import memory as at
 from .contact import contact_force, first_derivative
-from .event_function import begin_nodes, bounds, evaluate, set_contact_force, set_gap
+from .event_function import (
+    begin_nodes,
+    bounds,
+    evaluate,
+    set_contact_force,
+    set_gap,
+    set_values,
+)
 from .excitation import cubic_at, set_cubic_response
 from .impact import common_velocity, count_impact, restitution, sticks
 from .nodes import BLOCK, phasors_at
@@ -199,6 +206,7 @@ def begin_common(m, mode, x, v):
     set_contact_force(m)
     open_end(m, x, v, x, v)
     begin_nodes(m)
+    set_values(m, at.LEFT_VALUES, at.LEFT, 0.0)
 
 
 def open_end(m, x1, v1, x2, v2):

@@ -12,26 +12,34 @@ LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the r
 SHORT = 0.01
 
 
-def write(m, tau):
-    """Write the outputs that belong to a point of time, ``tau`` after the present state's start."""
+def look(m, tau):
+    """The outputs that belong to a point of time, ``tau`` after the present state's start.
+
+    Returns
+    -------
+    x1, x2, v1, v2, x_rel, v_rel, xi1, xi2, xi_rel, box_force : float
+    contact_force, in_contact, phase : float
+    cosine, sine : float
+        Of the excitation's phase; with harmonic forcing only.
+    """
     x1, v1, x2, v2, cosine, sine = state_and_phase_at(m, tau)
-    m[at.PHASE_COSINE] = cosine
-    m[at.PHASE_SINE] = sine
     omega = m[at.OMEGA]
     flight = m[at.MODE] == at.FLIGHT
-    m[at.X1], m[at.X2], m[at.X_REL] = x1, x2, x2 - x1
-    m[at.V1], m[at.V2], m[at.V_REL] = omega * v1, omega * v2, omega * (v2 - v1)
+    gap, gap_speed = x2 - x1, omega * (v2 - v1)
     unit = unit_of_length(m)
-    m[at.XI1] = x1 / unit if unit != 0.0 else 0.0  # (3)
-    m[at.XI2] = x2 / unit if unit != 0.0 else 0.0
-    m[at.XI_REL] = (x2 - x1) / unit if unit != 0.0 else 0.0
-    m[at.BOX_FORCE] = m[at.K1] * x1 + m[at.D1] * m[at.V1] + m[at.K2] * x2 + m[at.D2] * m[at.V2]
+    xi1 = x1 / unit if unit != 0.0 else 0.0  # (3)
+    xi2 = x2 / unit if unit != 0.0 else 0.0
+    xi_rel = gap / unit if unit != 0.0 else 0.0
     force = 0.0 if flight else -contact_force(m, x1, v1)
     reduced_mass = m[at.M2] * m[at.SHARE]
-    m[at.CONTACT_FORCE] = reduced_mass * omega * omega * force if force > 0.0 else 0.0
-    m[at.IN_CONTACT] = 0.0 if flight else 1.0
+    contact = reduced_mass * omega * omega * force if force > 0.0 else 0.0
+    v1, v2 = omega * v1, omega * v2
+    box_force = m[at.K1] * x1 + m[at.D1] * v1 + m[at.K2] * x2 + m[at.D2] * v2
     phase = TWO_PI * fraction(m[at.TURN] + m[at.ETA_TURNS] * tau)
-    m[at.PHASE] = phase if phase < TWO_PI else 0.0
+    phase = phase if phase < TWO_PI else 0.0
+    touch = 0.0 if flight else 1.0
+    motion = x1, x2, v1, v2, gap, gap_speed, xi1, xi2, xi_rel, box_force
+    return motion, (contact, touch, phase), (cosine, sine)
 
 
 def unit_of_length(m):
@@ -40,16 +48,44 @@ def unit_of_length(m):
     return unit if abs(unit) >= LEAST_UNIT else 0.0
 
 
-def accelerations(m, sine, age):
-    """Accelerations of both masses relative to the box, m/s2, by (6), at the displacements and
-    velocities among the outputs.
+def write(m, seen):
+    """Write what :func:`look` has found."""
+    motion, boundary, rotation = seen
+    m[at.X1], m[at.X2], m[at.V1], m[at.V2], m[at.X_REL], m[at.V_REL] = motion[:6]
+    m[at.XI1], m[at.XI2], m[at.XI_REL], m[at.BOX_FORCE] = motion[6:]
+    m[at.CONTACT_FORCE], m[at.IN_CONTACT], m[at.PHASE] = boundary
+    m[at.PHASE_COSINE], m[at.PHASE_SINE] = rotation
 
-    ``sine`` is that of the phase there, ``age`` the time since the segment began, in tau.
+
+def total(seen):
+    """The sum of these outputs: finite only where all are."""
+    x1, x2, v1, v2, gap, gap_speed, xi1, xi2, xi_rel, box_force = seen[0]
+    contact, _, phase = seen[1]
+    sum_1, sum_2 = (x1 + v1) + (xi1 + box_force), (x2 + v2) + (xi2 + gap)
+    return sum_1 + sum_2 + ((gap_speed + xi_rel) + (contact + phase))
+
+
+def written(m, age):
+    """The point that was written last, ``age`` after the segment began, in tau: x1, x2, v1, v2,
+    force on the box, cosine and sine of the phase, and the age.
     """
-    drive = m[at.FORCING] * sine
+    motion = m[at.X1], m[at.X2], m[at.V1], m[at.V2]
+    return motion, m[at.BOX_FORCE], (m[at.PHASE_COSINE], m[at.PHASE_SINE]), age
+
+
+def found(m, seen, tau):
+    """The same of what :func:`look` has found, ``tau`` after the present state's start."""
+    return seen[0][:4], seen[0][9], seen[2], m[at.SEGMENT_AGE] + tau
+
+
+def accelerations(m, point):
+    """Accelerations of both masses relative to the box at a point, m/s2, by (6)."""
+    motion, _, rotation, age = point
+    drive = m[at.FORCING] * rotation[1]
     if m[at.CUBIC_PRESENT] != 0.0:
         drive += cubic_at(m, age)[0]
-    return both_rates(m, drive, m[at.X1], m[at.V1], m[at.X2], m[at.V2])
+    x1, x2, v1, v2 = motion
+    return both_rates(m, drive, x1, v1, x2, v2)
 
 
 def both_rates(m, drive, x1, v1, x2, v2):
@@ -70,35 +106,37 @@ def acceleration(m, b, drive, x, v):
     return omega * (omega * (drive - pull) - 2.0 * m[b + at.DAMPING] * v)
 
 
-def force_rates(m, cosine, sine, age):
-    """First and second time derivative of the force on the box; ``cosine``, ``sine`` and ``age`` as
-    for :func:`accelerations`.
-    """
-    a1, a2 = accelerations(m, sine, age)
-    drive = m[at.FORCING] * m[at.ETA] * cosine
+def force_rates(m, point):
+    """First and second time derivative of the force on the box at a point."""
+    motion, _, rotation, age = point
+    _, _, v1, v2 = motion
+    a1, a2 = accelerations(m, point)
+    drive = m[at.FORCING] * m[at.ETA] * rotation[0]
     if m[at.CUBIC_PRESENT] != 0.0:
         drive += cubic_at(m, age)[1]
-    j1, j2 = both_rates(m, drive * m[at.OMEGA], m[at.V1], a1, m[at.V2], a2)
+    j1, j2 = both_rates(m, drive * m[at.OMEGA], v1, a1, v2, a2)
     k1, k2, d1, d2 = m[at.K1], m[at.K2], m[at.D1], m[at.D2]
-    first = k1 * m[at.V1] + d1 * a1 + k2 * m[at.V2] + d2 * a2
+    first = k1 * v1 + d1 * a1 + k2 * v2 + d2 * a2
     return first, k1 * a1 + d1 * j1 + k2 * a2 + d2 * j2
 
 
-def momentum(m):
+def momentum(m, motion):
     """Momentum relative to the box, and its integral, the moment of mass."""
-    return m[at.M1] * m[at.V1] + m[at.M2] * m[at.V2], m[at.M1] * m[at.X1] + m[at.M2] * m[at.X2]
+    x1, x2, v1, v2 = motion
+    return m[at.M1] * v1 + m[at.M2] * v2, m[at.M1] * x1 + m[at.M2] * x2
 
 
-def write_impulse(m, h, before, cosine, sine):
-    """Integrals of the force on the box over a step of ``h`` seconds, by momentum: impacts are
-    internal and drop out.
+def impulse(m, h, left, reached):
+    """Integrals of the force on the box over a step of ``h`` seconds between two points, by
+    momentum: impacts are internal and drop out.
 
     ``box_force = -P' - (m1 + m2) y''`` with P the momentum relative to the box and y'' its
     acceleration, so the integral is a difference of momenta, its moment a difference of
-    displacements, and what the box's motion adds is known in closed form. ``before`` is
-    :func:`momentum` before the step, ``cosine`` and ``sine`` are those of the phase there.
+    displacements, and what the box's motion adds is known in closed form.
     """
-    after, moment_after = momentum(m)
+    before, moment_before = momentum(m, left[0])
+    after, moment_after = momentum(m, reached[0])
+    cosine, sine = left[2]
     mass = m[at.M1] + m[at.M2]
     drive, drive_moment = 0.0, 0.0
     if m[at.NODE_ETA] != 0.0:
@@ -107,7 +145,7 @@ def write_impulse(m, h, before, cosine, sine):
         sine_mid = sine * cosine_half + cosine * sine_half
         cosine_mid = cosine * cosine_half - sine * sine_half
         drive = 2.0 * amplitude * speed * sine_mid * sine_half
-        drive_moment = amplitude * (2.0 * cosine_mid * sine_half - speed * h * m[at.PHASE_COSINE])
+        drive_moment = amplitude * (2.0 * cosine_mid * sine_half - speed * h * reached[2][0])
     if m[at.CUBIC_PRESENT] != 0.0:
         power = h
         for i in range(4):  # integrals of tau^i/i! and of tau^(i+1)/i!
@@ -115,19 +153,20 @@ def write_impulse(m, h, before, cosine, sine):
             drive -= derivative * power / (i + 1)
             drive_moment -= derivative * power * h / (i + 2)
             power *= h / (i + 1)
-    m[at.BOX_IMPULSE] = before[0] - after + mass * drive
-    m[at.BOX_IMPULSE_MOMENT] = (moment_after - before[1]) - h * after + mass * drive_moment
+    moment = (moment_after - moment_before) - h * after + mass * drive_moment
+    return before - after + mass * drive, moment
 
 
-def write_short_impulse(m, h, force, rates, rates_after):
+def short_impulse(m, h, left, reached):
     """The same over a short step without an impact or a change of state, by the quintic through the
-    force and two derivatives at both ends: ``force`` and ``rates`` before the step.
+    force and two derivatives at both points.
     """
-    after, square = m[at.BOX_FORCE], h * h
+    rates, rates_after = force_rates(m, left), force_rates(m, reached)
+    force, after, square = left[1], reached[1], h * h
     p1, p2, q1, q2 = rates[0] * h, rates[1] * square, rates_after[0] * h, rates_after[1] * square
-    m[at.BOX_IMPULSE] = h * (0.5 * (force + after) + ((p1 - q1) * 0.1 + (p2 + q2) * (1.0 / 120.0)))
-    m[at.BOX_IMPULSE_MOMENT] = square * (
+    moment = square * (
         (force * (1.0 / 7.0) + after * (5.0 / 14.0))
         + (p1 * (4.0 / 105.0) - q1 * (13.0 / 210.0))
         + (p2 * (1.0 / 280.0) + q2 * (1.0 / 210.0))
     )
+    return h * (0.5 * (force + after) + ((p1 - q1) * 0.1 + (p2 + q2) * (1.0 / 120.0))), moment

@@ -12,8 +12,14 @@ import math
 
 from . import memory as at
 from .event_function import evaluate, rounding, set_remainder, values
-from .hermite import clear_part, interval_is_clear, is_below, is_clear
-from .nodes import put, renewed, set_at_end, starts_block, turned
+from .hermite import (
+    clear_part,
+    is_positive,
+    lowest_after,
+    lowest_before,
+    present_coefficients,
+)
+from .nodes import BLOCK, put, renewed, set_at_end, turned
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
@@ -116,22 +122,27 @@ def glide(m, target, ceiling):
     r0, r1, r2 = m[at.RIGHT_VALUES], m[at.RIGHT_VALUES + 1], m[at.RIGHT_VALUES + 2]
     node, age, low, h = m[at.NODE], m[at.RIGHT_AGE], m[at.REMAINDER], m[at.SPACING]
     begun = node
-    stop = node + (m[at.WORK_LIMIT] - m[at.WORK])
+    last = min(node + (m[at.WORK_LIMIT] - m[at.WORK]), LONGEST - 1.0)
+    renewal = (math.floor((node + 1.0) * (1.0 / BLOCK)) + 1.0) * BLOCK
+    floor, top = lowest_after(m, r0, r1, r2, low), lowest_after(m, -r0, -r1, -r2, low)
     clear, below = True, True
-    while clear and below and age <= target and node < stop and node + 1.0 < LONGEST:
+    while clear and below and age <= target and node < last:
         node += 1.0
         old_x, old_v, old_x_b, old_v_b, old_cosine, old_sine = x, v, x_b, v_b, cosine, sine
         l0, l1, l2 = r0, r1, r2
         left = age
         age = (node + 1.0) * h
-        if starts_block(node + 1.0):
+        if node + 1.0 == renewal:
             x, v, x_b, v_b, cosine, sine = renewed(m, age)
+            renewal += BLOCK
         else:
             x, v, x_b, v_b, cosine, sine = turned(m, x, v, x_b, v_b, cosine, sine)
         r0, r1, r2 = values(m, x, v, x_b, v_b, cosine, sine, age)
-        clear = is_clear(m, l0, l1, l2, r0, r1, r2, low)
+        clear = min(floor, lowest_before(m, r0, r1, r2, low)) >= 0.0 and r0 > 0.0
+        floor = lowest_after(m, r0, r1, r2, low)
         if ceiling < INFINITE:
-            below = is_below(m, l0, l1, l2, r0, r1, r2, low, ceiling)
+            below = min(top, lowest_before(m, -r0, -r1, -r2, low)) >= -ceiling and r0 <= ceiling
+            top = lowest_after(m, -r0, -r1, -r2, low)
     m[at.WORK] += node - begun
     if node == begun:
         m[at.END] = age
@@ -153,15 +164,18 @@ def glide(m, target, ceiling):
 
 def clear_from_node(m):
     """Whether a part of the present interval is seen to be clear; CLEAR moves to its end."""
-    if not interval_is_clear(m):
-        if m[at.RIGHT_VALUES] > 0.0:
-            set_remainder(m)
-        if m[at.RIGHT_VALUES] <= 0.0 or not interval_is_clear(m):
-            part = clear_part(m)
-            m[at.CLEAR] = m[at.LEFT_AGE] + part * m[at.SPACING]
-            return m[at.CLEAR] > m[at.LEFT_AGE]
-    m[at.CLEAR] = m[at.RIGHT_AGE]
-    return True
+    b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
+    clear = is_positive(b0, b1, b2, b3, b4, b5)
+    if not clear and b5 > 0.0:
+        set_remainder(m)
+        b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
+        clear = is_positive(b0, b1, b2, b3, b4, b5)
+    if clear:
+        m[at.CLEAR] = m[at.RIGHT_AGE]
+        return True
+    part = clear_part(b0, b1, b2, b3, b4, b5)
+    m[at.CLEAR] = m[at.LEFT_AGE] + part * m[at.SPACING]
+    return m[at.CLEAR] > m[at.LEFT_AGE]
 
 
 def creep(m):

@@ -1,15 +1,17 @@
-"""The two entry points: initialise once, then advance from one communication point to the next.
+"""The entry points: initialise once, then advance from one communication point to the next.
 
-An instance is one flat memory.
+Where nothing but time passes, ``coast`` does the same as ``advance``. An instance is one flat
+memory.
 """
 
 from ..numerics.elementary import TWO_PI
 from . import memory as at
 from .event_function import evaluate
 from .excitation import begin_segment, inputs_changed
+from .hermite import has_summit
 from .maximum import watch
 from .motion import begin, begin_common, begin_flight, end_state, move_origin, set_turn, state_at
-from .outputs import SHORT, force_rates, momentum, write, write_impulse, write_short_impulse
+from .outputs import SHORT, found, impulse, look, short_impulse, total, write, written
 from .parameters import derive
 from .roots import lifted, walk
 
@@ -59,9 +61,10 @@ def initialize(m, time):
         m[at.V2_START] / m[at.OMEGA],
         0,
     )
-    write(m, 0.0)
+    seen = look(m, 0.0)
+    write(m, seen)
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
-    return finite(m)
+    return finite(total(seen))
 
 
 def local_time(m, time):
@@ -90,8 +93,7 @@ def advance(m, time):
     m[at.WORK_LIMIT] = min(
         WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA]
     )
-    at_start = momentum(m)
-    now = local_time(m, m[at.TIME])
+    now = local_time(m, before)
     if inputs_changed(m):
         code = renew_segment(m, now)
         if code != at.OK:
@@ -99,11 +101,7 @@ def advance(m, time):
         now = 0.0
         m[at.PHASE_COSINE] = m[at.COSINE]
         m[at.PHASE_SINE] = m[at.SINE]
-    cosine, sine = m[at.PHASE_COSINE], m[at.PHASE_SINE]
-    force, rates, mode, impacts = m[at.BOX_FORCE], (0.0, 0.0), m[at.MODE], m[at.IMPACT_COUNT]
-    short = h * m[at.OMEGA] * m[at.RATE] < SHORT
-    if short:
-        rates = force_rates(m, cosine, sine, m[at.SEGMENT_AGE] + now)
+    left, mode, impacts = written(m, m[at.SEGMENT_AGE] + now), m[at.MODE], m[at.IMPACT_COUNT]
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     tau = run_samples(m, before, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:
@@ -111,31 +109,80 @@ def advance(m, time):
         return at.UNFINISHED
     if m[at.STOPPED] != 0.0:
         time = min(time, m[at.IMPACT_TIME])
-        h = time - before
-    m[at.TIME] = time
-    m[at.STEP] = h
-    write(m, tau)
-    if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] > m[at.X_REL_MAX]:
-        m[at.X_REL_MAX] = m[at.X_REL]
-    if short and m[at.MODE] == mode and m[at.IMPACT_COUNT] == impacts:
-        age = m[at.SEGMENT_AGE] + tau
-        rates_after = force_rates(m, m[at.PHASE_COSINE], m[at.PHASE_SINE], age)
-        write_short_impulse(m, h, force, rates, rates_after)
+    same = m[at.MODE] == mode and m[at.IMPACT_COUNT] == impacts
+    return arrive(m, time, tau, left, m[at.X_REL_MAX], same)
+
+
+def coast(m, time):
+    """As :func:`advance`, where the present state lasts beyond ``time`` and only outputs change.
+
+    Returns
+    -------
+    int
+        OK, or UNFINISHED where there is more to do, or NOT_FINITE: then nothing has changed.
+    """
+    tau = local_time(m, time)
+    if not lasts(m, tau) or m[at.SAMPLE_COUNT] != 0.0 or inputs_changed(m):
+        return at.UNFINISHED
+    now = local_time(m, m[at.TIME])
+    highest = 0.0
+    if m[at.X_REL_MAX_ON] != 0.0:
+        highest = m[at.X_REL]
+        if not is_without_summit(m, now, tau):
+            return at.UNFINISHED
+    return arrive(m, time, tau, written(m, m[at.SEGMENT_AGE] + now), highest, True)
+
+
+def lasts(m, tau):
+    """Whether the present state is known to last beyond an age."""
+    return (m[at.CLEAR] if m[at.END_KIND] == at.END_OPEN else m[at.END]) > tau
+
+
+def is_without_summit(m, start, stop):
+    """Whether a part of the present state is seen at once to have its largest gap at an end."""
+    if m[at.MODE] != at.FLIGHT:
+        return True
+    within = m[at.LEFT_AGE] < start and stop < m[at.RIGHT_AGE] and m[at.CLEAR] <= m[at.RIGHT_AGE]
+    return within and m[at.SERIES] == 0.0 and not has_summit(m, start, stop)
+
+
+def arrive(m, time, tau, left, highest, same):
+    """Write all outputs at the point ``time``, at the present state's age ``tau``, if all are
+    finite.
+
+    ``left`` is the point that the step has left, ``highest`` the largest gap in between, ``same``
+    whether no impact and no change of state was.
+
+    Returns
+    -------
+    int
+        OK, or NOT_FINITE; then nothing is written.
+    """
+    h = time - m[at.TIME]
+    seen = look(m, tau)
+    reached = found(m, seen, tau)
+    if same and h * m[at.OMEGA] * m[at.RATE] < SHORT:
+        force, moment = short_impulse(m, h, left, reached)
     else:
-        write_impulse(m, h, at_start, cosine, sine)
-    return finite(m)
+        force, moment = impulse(m, h, left, reached)
+    gap = seen[0][4]
+    if m[at.X_REL_MAX_ON] != 0.0 and gap > highest:
+        highest = gap
+    last = m[at.IMPACT_TIME] + m[at.IMPACT_VELOCITY] + m[at.IMPACT_ENERGY]
+    code = finite(total(seen) + (force + moment) + (highest + last))
+    if code == at.OK:
+        m[at.TIME] = time
+        m[at.STEP] = h
+        write(m, seen)
+        m[at.BOX_IMPULSE] = force
+        m[at.BOX_IMPULSE_MOMENT] = moment
+        m[at.X_REL_MAX] = highest
+    return code
 
 
-def finite(m):
+def finite(sum_of_outputs):
     """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
-    a, b, c, d = 0.0, 0.0, 0.0, 0.0  # four sums side by side: one after the other would take long
-    for i in range(at.X1, at.CONTACT_COUNT, 4):
-        a += m[i]
-        b += m[i + 1]
-        c += m[i + 2]
-        d += m[i + 3]
-    total = (a + b) + (c + d)
-    return at.OK if total - total == 0.0 else at.NOT_FINITE
+    return at.OK if sum_of_outputs - sum_of_outputs == 0.0 else at.NOT_FINITE
 
 
 def renew_segment(m, now):

@@ -24,6 +24,7 @@ MODEL = Model(
     stop_slot=at.STOP_AT_IMPACT,
     initialize=stepper.initialize,
     advance=stepper.advance,
+    coast=stepper.coast,
     differentiate=rates.differentiate,
     rates=at.RATES,
     messages=MESSAGES,

@@ -172,50 +172,61 @@ Status exit_initialization(Instance *instance, const char *call) {
     return status;
 }
 
-Status step(Instance *instance, const char *call, double current, double size) {
-    if (!in_phase(instance, call, STEPPING)) return FAILED;
-    State *state = &instance->state;
+/* Why a step cannot be tried. */
+static Status refuse_step(Instance *instance, const char *call, double current, double size) {
+    double reached = instance->state.memory[TIME_SLOT];
     char text[TEXT] = "";
     if (!(size >= 0) || isinf(size)) {
         append(text, "communicationStepSize = ");
         append_number(text, size);
         append(text, " s: expected every finite number >= 0");
-        return refuse(instance, call, text);
-    }
-    double reached = state->memory[TIME_SLOT];
-    if (!(fabs(current - reached) <= 1e-9 * (fabs(reached) + size))) {
+    } else if (!(fabs(current - reached) <= 1e-9 * (fabs(reached) + size))) {
         append(text, "currentCommunicationPoint = ");
         append_number(text, current);
         append(text, " s: expected ");
         append_number(text, reached);
         append(text, " s, where the last step ended");
-        return refuse(instance, call, text);
-    }
-    double target = current + size;
-    /* rounding of the importer's own sum of steps is no step past the end */
-    if (target - instance->stop_time > 1e-9 * (fabs(reached) + size)) {
+    } else {
         append(text, "the step to time = ");
-        append_number(text, target);
+        append_number(text, current + size);
         append(text, " s: expected none past stopTime = ");
         append_number(text, instance->stop_time);
         append(text, " s");
-        return refuse(instance, call, text);
     }
-    if (target < reached) target = reached;  /* the importer's clock may be a rounding behind */
+    return refuse(instance, call, text);
+}
+
+/* Advance with a copy of the state to go back to. */
+static Status advance(Instance *instance, const char *call, double target) {
+    double *memory = instance->state.memory, reached = memory[TIME_SLOT];
     double before[MEMORY_SIZE - SKIP_COUNT];  /* what the step only writes need not be put back */
     size_t head = SKIP_FIRST * sizeof(double), tail = sizeof before - head;
-    memcpy(before, state->memory, head);
-    memcpy(before + SKIP_FIRST, state->memory + SKIP_FIRST + SKIP_COUNT, tail);
-    state->memory[STOP_SLOT] = instance->early_return;
-    int code = kernel_advance(state->memory, target);
+    memcpy(before, memory, head);
+    memcpy(before + SKIP_FIRST, memory + SKIP_FIRST + SKIP_COUNT, tail);
+    memory[STOP_SLOT] = instance->early_return;
+    int code = kernel_advance(memory, target);
     if (!code) {  /* the time of an impact just after the communication point may round to one before it */
-        if (state->memory[TIME_SLOT] < reached) state->memory[TIME_SLOT] = reached;
+        if (memory[TIME_SLOT] < reached) memory[TIME_SLOT] = reached;
         return OK;
     }
-    explain(text, state->memory, code);
-    memcpy(state->memory, before, head);
-    memcpy(state->memory + SKIP_FIRST + SKIP_COUNT, before + SKIP_FIRST, tail);
+    char text[TEXT];
+    explain(text, memory, code);
+    memcpy(memory, before, head);
+    memcpy(memory + SKIP_FIRST + SKIP_COUNT, before + SKIP_FIRST, tail);
     return refuse(instance, call, text);
+}
+
+Status step(Instance *instance, const char *call, double current, double size) {
+    if (!in_phase(instance, call, STEPPING)) return FAILED;
+    double *memory = instance->state.memory, reached = memory[TIME_SLOT], target = current + size;
+    double rounding = 1e-9 * (fabs(reached) + size);  /* of the importer's own sum of steps: no step past the end */
+    if (!(size >= 0 && size < INFINITY && fabs(current - reached) <= rounding) || target - instance->stop_time > rounding)
+        return refuse_step(instance, call, current, size);
+    if (target < reached) target = reached;  /* the importer's clock may be a rounding behind */
+#if COAST
+    if (!kernel_coast(memory, target)) return OK;
+#endif
+    return advance(instance, call, target);
 }
 
 Status may_get(Instance *instance, const char *call, const Variable *variable) {

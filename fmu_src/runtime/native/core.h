@@ -14,6 +14,7 @@
 int kernel_initialize(double *memory, double time);
 int kernel_advance(double *memory, double time);
 int kernel_refresh(double *memory, double time);  /* where REFRESH is 1 */
+int kernel_coast(double *memory, double time);  /* where COAST is 1: 0 where the step is done, else nothing is */
 int kernel_differentiate(double *memory, double time);  /* rates of the continuous outputs into their slots */
 
 typedef enum { OK, WARNING, DISCARD, FAILED, FATAL } Status;  /* numbered as in FMI 2.0 and 3.0 */

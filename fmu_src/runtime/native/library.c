@@ -17,3 +17,8 @@ EXPORT int differentiate(double *memory, double time) { return kernel_differenti
 int kernel_refresh(double *memory, double time);
 EXPORT int refresh(double *memory, double time) { return kernel_refresh(memory, time); }
 #endif
+
+#ifdef COAST
+int kernel_coast(double *memory, double time);
+EXPORT int coast(double *memory, double time) { return kernel_coast(memory, time); }
+#endif

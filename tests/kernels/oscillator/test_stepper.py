@@ -1,4 +1,4 @@
-"""The two entry points: the communication grid, the scale and the instance leave no trace in any
+"""The entry points: the communication grid, the scale and the instance leave no trace in any
 bit.
 """
 
@@ -105,6 +105,42 @@ def test_inputs_set_to_what_they_are_change_nothing():
     for i in range(1, 100):
         set_inputs(same, box_frequency=0.7, box_amplitude=1.0)
         assert advanced(same, 0.3 * i) == advanced(m, 0.3 * i)
+
+
+@pytest.mark.parametrize("watched", [0.0, 1.0])
+@pytest.mark.parametrize("name", [*RUNS, "bonded"])
+def test_a_step_on_which_nothing_happens_has_the_bits_of_any_other(name, watched):
+    run = {"x_rel_max_on": watched, **RUNS.get(name, {"bonded": 1.0})}
+    m, other = started(**run), started(**run)
+    coasted = 0
+    for i in range(1, 700):
+        before, time = list(m), 0.03 * i
+        advanced(other, time)
+        if stepper.coast(m, time) == at.OK:
+            coasted += 1
+        else:
+            assert m == before
+            advanced(m, time)
+        assert m[at.X1 : at.SAMPLE_COUNT] == other[at.X1 : at.SAMPLE_COUNT]
+        assert m[at.TIME : at.END_KIND + 1] == other[at.TIME : at.END_KIND + 1]
+    assert coasted > 200
+
+
+@pytest.mark.parametrize("change", ["box_amplitude", "sample_count", "box_jerk"])
+def test_a_step_on_which_more_happens_is_no_such(change):
+    m = started(x1_start=-5.0, x_rel_max_on=0.0)
+    assert stepper.coast(m, 1e-3) == at.UNFINISHED  # the walk has not begun
+    advanced(m, 1e-3)
+    assert stepper.coast(m, 2e-3) == at.OK
+    set_inputs(m, **{change: 3.0})
+    assert stepper.coast(m, 3e-3) == at.UNFINISHED
+
+
+def test_such_a_step_out_of_the_range_of_numbers_changes_nothing():
+    m = started(bonded=1.0, m1=1e160, k1=1e160, box_amplitude=1e160)
+    before = list(m)
+    assert stepper.coast(m, 1.0) == at.NOT_FINITE
+    assert m == before
 
 
 def test_an_empty_step_changes_nothing():
