@@ -7,7 +7,7 @@ form for all later times.
 """
 
 from . import memory as at
-from .nodes import branch_a, phasors_at, put, start_nodes
+from .nodes import branch_a, derivatives, phasors_at, put, start_nodes
 from .series import gap_at
 
 
@@ -141,12 +141,7 @@ def cubic_values(m, tau):
 
 def free_part(m, b, x, v):
     """A free part, its first four derivatives and a bound of the fifth from now on."""
-    twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
-    x2 = -(twice * v + square * x)
-    x3 = -(twice * x2 + square * v)
-    x4 = -(twice * x3 + square * x2)
-    x5 = -(twice * x4 + square * x3)
-    x6 = -(twice * x5 + square * x4)
+    x2, x3, x4, x5, x6 = derivatives(m, b, x, v)
     return x, v, x2, x3, x4, envelope(m, b, x5, x6)
 
 
@@ -162,8 +157,8 @@ def evaluate(m, tau):
     if m[at.SERIES] != 0.0:
         h0, h1, h2, h3, h4 = gap_at(m, tau)
         return h0, h1, h2, h3, h4, m[at.SERIES_BOUND]
-    x, v, x_b, v_b, cosine, sine = phasors_at(m, tau)
-    put(m, at.POINT, x, v, x_b, v_b, cosine, sine)
+    x, x_b, v, v_b, cosine, sine = phasors_at(m, tau)
+    put(m, at.POINT, x, x_b, v, v_b, cosine, sine)
     if m[at.MODE] == at.FLIGHT:
         a0, a1, a2, a3, a4, bound_a = free_part(m, at.BRANCH_1, x, v)
         h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_2, x_b, v_b)

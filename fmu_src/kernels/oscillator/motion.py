@@ -39,8 +39,8 @@ def state_at(m, tau):
         x1, v1 = taylor(m, at.SERIES_X, tau), taylor(m, at.SERIES_X + 1, tau)
         gap, slope = taylor(m, at.SERIES_GAP, tau), taylor(m, at.SERIES_GAP + 1, tau)
         return x1, v1, x1 + gap if gap > 0.0 else x1, v1 + slope
-    x_a, v_a, x_b, v_b, cosine, sine = phasors_at(m, tau)
-    return moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine)
+    x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
+    return moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
 
 
 def state_at_end(m):
@@ -51,7 +51,7 @@ def state_at_end(m):
     return moved(m, m[at.END], m[p], m[p + 1], m[p + 2], m[p + 3], m[p + 4], m[p + 5])
 
 
-def moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine):
+def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):
     """Displacements and velocities from all phasors."""
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
@@ -66,8 +66,8 @@ def moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine):
 def state_and_phase_at(m, tau):
     """:func:`state_at`, and cosine and sine of the excitation's phase there."""
     if tau != 0.0 and m[at.SERIES] == 0.0 and m[at.NODE_ETA] != 0.0:
-        x_a, v_a, x_b, v_b, cosine, sine = phasors_at(m, tau)
-        x1, v1, x2, v2 = moved(m, tau, x_a, v_a, x_b, v_b, cosine, sine)
+        x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
+        x1, v1, x2, v2 = moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
         return x1, v1, x2, v2, cosine, sine
     x1, v1, x2, v2 = state_at(m, tau)
     cosine, sine = m[at.COSINE], m[at.SINE]

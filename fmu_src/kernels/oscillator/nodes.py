@@ -105,14 +105,14 @@ def set_right(m, node):
     put(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
 
 
-def put(m, node, x, v, x_b, v_b, cosine, sine):
-    """Put phasors to a node."""
-    m[node] = x
-    m[node + 1] = v
-    m[node + 2] = x_b
-    m[node + 3] = v_b
-    m[node + 4] = cosine
-    m[node + 5] = sine
+def put(m, slot, p0, p1, p2, p3, cosine, sine):
+    """Put phasors to slots, in the order given."""
+    m[slot] = p0
+    m[slot + 1] = p1
+    m[slot + 2] = p2
+    m[slot + 3] = p3
+    m[slot + 4] = cosine
+    m[slot + 5] = sine
 
 
 def turned(m, x, v, x_b, v_b, cosine, sine):
@@ -154,19 +154,18 @@ def renew_right(m, node):
 
 def renewed(m, age):
     """All phasors at an age from the closed form."""
-    x, v = from_start(m, branch_a(m), at.FREE_A, age)
+    x, v = turned_by(m, branch_a(m), m[at.FREE_A], m[at.FREE_A + 1], age)
     x_b, v_b, cosine, sine = 0.0, 0.0, m[at.COSINE], m[at.SINE]
     if m[at.MODE] == at.FLIGHT:
-        x_b, v_b = from_start(m, at.BRANCH_2, at.FREE_B, age)
+        x_b, v_b = turned_by(m, at.BRANCH_2, m[at.FREE_B], m[at.FREE_B + 1], age)
     if m[at.NODE_ETA] != 0.0:
         sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
     return x, v, x_b, v_b, cosine, sine
 
 
-def from_start(m, b, free, age):
-    """A free part at an age of the state, from the closed form."""
-    xx, xv, vx, vv = turn_by(m, b, age)
-    x, v = m[free], m[free + 1]
+def turned_by(m, b, x, v, t):
+    """A free part a time ``t`` later, from the closed form."""
+    xx, xv, vx, vv = turn_by(m, b, t)
     return x * xx + v * xv, x * vx + v * vv
 
 
@@ -193,21 +192,22 @@ def phasors_at(m, tau):
 
     Returns
     -------
-    x_a, v_a, x_b, v_b, cosine, sine : float
+    x_a, x_b, v_a, v_b, cosine, sine : float
+        Displacements before velocities: so a compiler takes both free parts side by side.
     """
     if tau < m[at.LEFT_AGE] or tau > m[at.RIGHT_AGE]:
         seek(m, tau)
     node, t = at.LEFT, tau - m[at.LEFT_AGE]
     if t > m[at.HALF_SPACING]:
         node, t = at.RIGHT, tau - m[at.RIGHT_AGE]
-    x_a, v_a, x_b, v_b = free_parts(m, node, t) if m[at.STEEP] == 0.0 else steep_parts(m, tau)
+    x_a, x_b, v_a, v_b = free_parts(m, node, t) if m[at.STEEP] == 0.0 else steep_parts(m, tau)
     cosine, sine = m[node + 4], m[node + 5]
     if m[at.NODE_ETA] != 0.0:
         angle = m[at.NODE_ETA] * t
         c, s = small_rotation(angle * angle)
         s *= angle
         cosine, sine = cosine * c - sine * s, sine * c + cosine * s
-    return x_a, v_a, x_b, v_b, cosine, sine
+    return x_a, x_b, v_a, v_b, cosine, sine
 
 
 def set_at_end(m, t):
@@ -217,27 +217,30 @@ def set_at_end(m, t):
     if t * m[at.RATE] > NEAR:
         return
     p = at.POINT
-    x, v = advanced(m, branch_a(m), m[p], m[p + 1], t)
-    x_b, v_b = 0.0, 0.0
-    if m[at.MODE] == at.FLIGHT:
-        x_b, v_b = advanced(m, at.BRANCH_2, m[p + 2], m[p + 3], t)
+    x, v = advanced(m, branch_a(m), m[p], m[p + 2], t)
+    x_b, v_b = advanced(m, at.BRANCH_2, m[p + 1], m[p + 3], t)  # zeros but in a flight
     angle = m[at.NODE_ETA] * t
     square = angle * angle
     c = 1.0 - square * (0.5 - square * (1.0 / 24.0))
     s = angle * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0)))
     cosine, sine = m[p + 4], m[p + 5]
-    put(m, at.AT_END, x, v, x_b, v_b, cosine * c - sine * s, sine * c + cosine * s)
+    put(m, at.AT_END, x, x_b, v, v_b, cosine * c - sine * s, sine * c + cosine * s)
     m[at.AT_END_NODE] = m[at.NODE] + 1.0
 
 
-def advanced(m, b, x, v, t):
-    """A free part a short time later."""
+def derivatives(m, b, x, v):
+    """Derivatives two to six of a free part's displacement."""
     twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
     x2 = -(twice * v + square * x)
     x3 = -(twice * x2 + square * v)
     x4 = -(twice * x3 + square * x2)
     x5 = -(twice * x4 + square * x3)
-    x6 = -(twice * x5 + square * x4)
+    return x2, x3, x4, x5, -(twice * x5 + square * x4)
+
+
+def advanced(m, b, x, v, t):
+    """A free part a short time later."""
+    x2, x3, x4, x5, x6 = derivatives(m, b, x, v)
     half, t2 = 0.5 * t, t * t
     x += t * (
         v + half * x2 + t2 * ((x3 * (1.0 / 6.0) + t * x4 * (1.0 / 24.0)) + t2 * x5 * (1.0 / 120.0))
@@ -250,25 +253,26 @@ def advanced(m, b, x, v, t):
 
 def steep_parts(m, tau):
     """Both free parts where one decays steeply: from the node before, by elementary functions."""
-    t = tau - m[at.LEFT_AGE]
-    x_a, v_a = from_start(m, branch_a(m), at.LEFT, t)
+    t, p = tau - m[at.LEFT_AGE], at.LEFT
+    x_a, v_a = turned_by(m, branch_a(m), m[p], m[p + 1], t)
     if m[at.MODE] != at.FLIGHT:
-        return x_a, v_a, 0.0, 0.0
-    x_b, v_b = from_start(m, at.BRANCH_2, at.LEFT + 2, t)
-    return x_a, v_a, x_b, v_b
+        return x_a, 0.0, v_a, 0.0
+    x_b, v_b = turned_by(m, at.BRANCH_2, m[p + 2], m[p + 3], t)
+    return x_a, x_b, v_a, v_b
 
 
 def free_parts(m, node, t):
     """Both free parts at most half a spacing from a node."""
-    a, b = branch_a(m), at.BRANCH_2
-    decay = small_decay(m[a + at.DAMPING] * t)
-    x_a, v_a = turned_part(m, a, node, t, decay)
+    decay = small_decay(m[branch_a(m) + at.DAMPING] * t)
     if m[at.MODE] != at.FLIGHT:
-        return x_a, v_a, 0.0, 0.0
-    if m[a + at.DAMPING] != m[b + at.DAMPING]:
-        decay = small_decay(m[b + at.DAMPING] * t)
-    x_b, v_b = turned_part(m, b, node + 2, t, decay)
-    return x_a, v_a, x_b, v_b
+        x_a, v_a = turned_part(m, at.BRANCH_3, node, t, decay)
+        return x_a, 0.0, v_a, 0.0
+    decay_b = decay
+    if m[at.BRANCH_1 + at.DAMPING] != m[at.BRANCH_2 + at.DAMPING]:
+        decay_b = small_decay(m[at.BRANCH_2 + at.DAMPING] * t)
+    x_a, v_a = turned_part(m, at.BRANCH_1, node, t, decay)
+    x_b, v_b = turned_part(m, at.BRANCH_2, node + 2, t, decay_b)
+    return x_a, x_b, v_a, v_b
 
 
 def turned_part(m, b, free, t, decay):

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from fmu_src.kernels.numerics.elementary import TWO_PI, sincos_turns
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.excitation import cubic_at, set_cubic_response, set_harmonic
-from fmu_src.kernels.oscillator.nodes import from_start
+from fmu_src.kernels.oscillator.nodes import turned_by
 from fmu_src.kernels.oscillator.parameters import set_branch
 from fmu_src.kernels.oscillator.response import basis, displacement, set_free
 
@@ -64,7 +64,7 @@ def oscillator(damping, omega_squared, x, v, phase, forcing=FORCING):
 
 def state(m, tau):
     """Displacement and velocity at an age."""
-    x, v = from_start(m, BRANCH, FREE, tau)
+    x, v = turned_by(m, BRANCH, m[FREE], m[FREE + 1], tau)
     sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA] / TWO_PI * tau)
     return displacement(m, HARMONIC, CUBIC, tau, x, v, sine, cosine)
 
