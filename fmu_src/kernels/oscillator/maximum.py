@@ -21,7 +21,7 @@ def watch(m, start, target):
     if m[at.SERIES] != 0.0:
         stop = target if target < m[at.END] else m[at.END]
         # a concave gap stays below its tangents at both ends
-        rise, fall = m[at.SERIES_GAP + 1], -taylor(m, at.SERIES_GAP + 1, m[at.END])
+        rise, fall = m[at.SERIES_GAP + 2], -taylor(m, at.SERIES_GAP + 2, m[at.END])
         if rise * fall * m[at.END] > (rise + fall) * m[at.X_REL_MAX]:
             m[at.X_REL_MAX] = largest_gap(m, start, stop, m[at.X_REL_MAX])
         return

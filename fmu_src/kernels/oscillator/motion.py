@@ -36,8 +36,8 @@ def state_at(m, tau):
     if tau == 0.0:  # exactly what the state began with: a start from rest is at rest
         return m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
     if m[at.SERIES] != 0.0:
-        x1, v1 = taylor(m, at.SERIES_X, tau), taylor(m, at.SERIES_X + 1, tau)
-        gap, slope = taylor(m, at.SERIES_GAP, tau), taylor(m, at.SERIES_GAP + 1, tau)
+        x1, v1 = taylor(m, at.SERIES_X, tau), taylor(m, at.SERIES_X + 2, tau)
+        gap, slope = taylor(m, at.SERIES_GAP, tau), taylor(m, at.SERIES_GAP + 2, tau)
         return x1, v1, x1 + gap if gap > 0.0 else x1, v1 + slope
     x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
     return moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
@@ -243,7 +243,7 @@ def leave_impact(m, x, v1, v2):
     begin_flight(m, x, v1, x, v2)
     if not leave_clear(m, slope, curvature):
         set_series(m, x, v1, slope, 8)
-        creep_away(m, slope, curvature, m[at.SERIES_GAP + 3], m[at.SERIES_GAP + 4])
+        creep_away(m, slope, curvature, m[at.SERIES_GAP + 6], m[at.SERIES_GAP + 8])
 
 
 def leave_clear(m, h1, h2):

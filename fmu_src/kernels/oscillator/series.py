@@ -42,10 +42,10 @@ def fifth_bound(m):
         cubic_0, cubic_1, cubic_2, cubic_3 = cubic_at(m, m[at.SEGMENT_AGE])
         growth = abs(cubic_1) + part * (abs(cubic_2) + part * abs(cubic_3))
         forcing += 1.35 * (abs(cubic_0) + part * growth)
-    size = abs(m[at.SERIES_X]) + part * (abs(m[at.SERIES_X + 1]) + part * forcing)
+    size = abs(m[at.SERIES_X]) + part * (abs(m[at.SERIES_X + 2]) + part * forcing)
     drive = (abs(m[at.FORCE_V]) * rate + abs(m[at.FORCE_X])) * size
     square = rate * rate
-    return 10.0 * square * square * (m[at.SERIES_GAP + 1] + 1.35 * part * drive)
+    return 10.0 * square * square * (m[at.SERIES_GAP + 2] + 1.35 * part * drive)
 
 
 def set_series(m, x, v, slope, order):
@@ -53,9 +53,9 @@ def set_series(m, x, v, slope, order):
     velocity ``v`` of mass 1: at least as many as a series of an order needs.
     """
     m[at.SERIES_X] = x
-    m[at.SERIES_X + 1] = v
+    m[at.SERIES_X + 2] = v
     m[at.SERIES_GAP] = 0.0
-    m[at.SERIES_GAP + 1] = slope
+    m[at.SERIES_GAP + 2] = slope
     square = -m[at.ETA] * m[at.ETA]
     drive, drive_next = m[at.FORCING] * m[at.SINE], m[at.FORCING] * m[at.ETA] * m[at.COSINE]
     cubic_0, cubic_1, cubic_2, cubic_3 = 0.0, 0.0, 0.0, 0.0
@@ -71,16 +71,17 @@ def set_series(m, x, v, slope, order):
             drive, drive_next = drive_next, square * drive
     else:
         for k in range(9, at.SERIES_LONGEST + 1):
-            m[at.SERIES_GAP + k] = 0.0
+            m[at.SERIES_GAP + 2 * k] = 0.0
 
 
 def set_derivatives(m, k, drive):
     """The derivatives of order k from the two before and that of the forcing, of order k - 2."""
     one, two = at.BRANCH_1, at.BRANCH_2
-    x, v = m[at.SERIES_X + k - 2], m[at.SERIES_X + k - 1]
-    gap, slope = m[at.SERIES_GAP + k - 2], m[at.SERIES_GAP + k - 1]
-    m[at.SERIES_X + k] = drive - (2.0 * m[one + at.DAMPING] * v + m[one + at.OMEGA_SQUARED] * x)
-    m[at.SERIES_GAP + k] = (m[at.FORCE_V] * v + m[at.FORCE_X] * x) - (
+    i = 2 * k
+    x, v = m[at.SERIES_X + i - 4], m[at.SERIES_X + i - 2]
+    gap, slope = m[at.SERIES_GAP + i - 4], m[at.SERIES_GAP + i - 2]
+    m[at.SERIES_X + i] = drive - (2.0 * m[one + at.DAMPING] * v + m[one + at.OMEGA_SQUARED] * x)
+    m[at.SERIES_GAP + i] = (m[at.FORCE_V] * v + m[at.FORCE_X] * x) - (
         2.0 * m[two + at.DAMPING] * slope + m[two + at.OMEGA_SQUARED] * gap
     )
 
@@ -97,7 +98,7 @@ def short_flight(m, order):
         Of the series.
     """
     g = at.SERIES_GAP
-    c1, c2, c3, c4 = m[g + 1], m[g + 2] * 0.5, m[g + 3] * (1.0 / 6.0), m[g + 4] * (1.0 / 24.0)
+    c1, c2, c3, c4 = m[g + 2], m[g + 4] * 0.5, m[g + 6] * (1.0 / 6.0), m[g + 8] * (1.0 / 24.0)
     part = 1.0 / c2
     root = -c1 * part
     longest = 1.5 * root
@@ -109,8 +110,8 @@ def short_flight(m, order):
     # the quartic's root by reversion of its series
     a, b = c3 * part * root, c4 * part * root * root
     root *= (1.0 - a) + ((2.0 * a * a - b) + 5.0 * a * (b - a * a))
-    c5, c6 = m[g + 5] * (1.0 / 120.0), m[g + 6] * (1.0 / 720.0)
-    c7, c8 = m[g + 7] * (1.0 / 5040.0), m[g + 8] * (1.0 / 40320.0)
+    c5, c6 = m[g + 10] * (1.0 / 120.0), m[g + 12] * (1.0 / 720.0)
+    c7, c8 = m[g + 14] * (1.0 / 5040.0), m[g + 16] * (1.0 / 40320.0)
     for _ in range(8):  # Newton's method for gap/tau, which falls
         t2 = root * root
         t4 = t2 * t2
@@ -121,7 +122,7 @@ def short_flight(m, order):
             5.0 * c6 + 6.0 * c7 * root
         )
         if order > 8:
-            value += t4 * t4 * tail(m, g + 9, root)
+            value += t4 * t4 * tail(m, g + 18, root)
         step = value / slope
         root -= step
         if root <= 0.0 or root >= longest:
@@ -133,30 +134,30 @@ def short_flight(m, order):
 
 def tail(m, first, tau):
     """Terms nine to twelve of ``gap/tau``, over ``tau^8``."""
-    d9, d10 = m[first] * (1.0 / 362880.0), m[first + 1] * (1.0 / 3628800.0)
-    d11, d12 = m[first + 2] * (1.0 / 39916800.0), m[first + 3] * (1.0 / 479001600.0)
+    d9, d10 = m[first] * (1.0 / 362880.0), m[first + 2] * (1.0 / 3628800.0)
+    d11, d12 = m[first + 4] * (1.0 / 39916800.0), m[first + 6] * (1.0 / 479001600.0)
     return (d9 + d10 * tau) + tau * tau * (d11 + d12 * tau)
 
 
 def taylor(m, first, tau):
-    """Value of a series with the derivatives from ``first`` on."""
+    """Value of a series with the derivatives in every second slot from ``first`` on."""
     t2 = tau * tau
     t4 = t2 * t2
-    value = (m[first] + tau * m[first + 1]) + t2 * (
-        m[first + 2] * 0.5 + tau * m[first + 3] * (1.0 / 6.0)
+    value = (m[first] + tau * m[first + 2]) + t2 * (
+        m[first + 4] * 0.5 + tau * m[first + 6] * (1.0 / 6.0)
     )
     value += t4 * (
-        (m[first + 4] * (1.0 / 24.0) + tau * m[first + 5] * (1.0 / 120.0))
-        + t2 * (m[first + 6] * (1.0 / 720.0) + tau * m[first + 7] * (1.0 / 5040.0))
+        (m[first + 8] * (1.0 / 24.0) + tau * m[first + 10] * (1.0 / 120.0))
+        + t2 * (m[first + 12] * (1.0 / 720.0) + tau * m[first + 14] * (1.0 / 5040.0))
     )
     if m[at.SERIES] > 8.0:
         value += (
             t4
             * t4
             * (
-                (m[first + 8] * (1.0 / 40320.0) + tau * m[first + 9] * (1.0 / 362880.0))
+                (m[first + 16] * (1.0 / 40320.0) + tau * m[first + 18] * (1.0 / 362880.0))
                 + t2
-                * (m[first + 10] * (1.0 / 3628800.0) + tau * m[first + 11] * (1.0 / 39916800.0))
+                * (m[first + 20] * (1.0 / 3628800.0) + tau * m[first + 22] * (1.0 / 39916800.0))
             )
         )
     return value
@@ -167,10 +168,10 @@ def gap_at(m, tau):
     h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
     power = 1.0  # tau^k/k!
     for k in range(int(m[at.SERIES]) + 1):
-        h0 += power * m[at.SERIES_GAP + k]
-        h1 += power * m[at.SERIES_GAP + k + 1]
-        h2 += power * m[at.SERIES_GAP + k + 2]
-        h3 += power * m[at.SERIES_GAP + k + 3]
-        h4 += power * m[at.SERIES_GAP + k + 4]
+        h0 += power * m[at.SERIES_GAP + 2 * k]
+        h1 += power * m[at.SERIES_GAP + 2 * k + 2]
+        h2 += power * m[at.SERIES_GAP + 2 * k + 4]
+        h3 += power * m[at.SERIES_GAP + 2 * k + 6]
+        h4 += power * m[at.SERIES_GAP + 2 * k + 8]
         power *= tau / (k + 1.0)
     return h0, h1, h2, h3, h4
