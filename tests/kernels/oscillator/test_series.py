@@ -89,5 +89,5 @@ def test_a_gap_that_is_not_concave_is_walked():
     m[at.FORCING] = 1e9
     assert series.short_flight(m, 8) == 0.0
     m[at.FORCING] = 0.0
-    m[at.SERIES_GAP + 3] = 1e3
+    m[at.SERIES_GAP + 6] = 1e3
     assert series.short_flight(m, 8) == 0.0
