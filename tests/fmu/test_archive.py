@@ -238,5 +238,6 @@ def test_compiled_kernel_stands_alone(tmp_path):
     assert {line.split()[-1] for line in defined.splitlines() if " T " in line} == {
         "initialize",
         "advance",
+        "coast",
         "differentiate",
     }
