@@ -131,6 +131,11 @@ CASES = {
         lambda f: f.call("exitInitializationMode"),
         ["box_frequency = 1.0488088481701516 rad/s", "d1 + d2 > 0"],
     ),
+    "resonance with next to no damping": (
+        in_mode(d1=1e-6, box_frequency=1.0),
+        lambda f: f.call("exitInitializationMode"),
+        ["within 1e-6", "d1 = 1e-06 N.s/m", "more than 1e-6 of the critical damping"],
+    ),
     "resonance by a later input": (
         running(d1=0.0, then={"box_frequency": 1.0}),
         lambda f: f.step(3.0),
