@@ -1,0 +1,174 @@
+"""One motion over several communication grids, by every form, on several platforms: the same bits."""
+
+from __future__ import annotations
+
+import functools
+import math
+import shutil
+import sys
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from orchestrate.access import OSCILLATOR, Instance, find
+from orchestrate.errors import FmuError, InputError
+
+from . import parameter_sets
+from .campaign import Campaign, Outcome
+from .parameter_sets import ParameterSet
+from .programs import temporary
+
+STATE = (
+    *("x1", "x2", "v1", "v2", "x_rel", "v_rel", "xi1", "xi2", "xi_rel", "box_force"),
+    *("contact_force", "in_contact", "phase", "impact_count", "impact_time", "impact_velocity"),
+    *("impact_energy", "contact_count"),
+)
+STEP = ("box_impulse", "box_impulse_moment", "x_rel_max")  # of the last step, not of the state
+FORMS = ("fmi3", "fmi2", "fmi2-python")
+CUBIC = ("box_jerk", "box_snap", "box_crackle")  # inputs that begin anew at each point
+ARM = ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu")
+ARM_EVERY = 25  # sets: a process under an emulator each
+NOT = "no"  # where it is refused, or does not finish
+
+Bits = tuple[str, ...]
+
+
+def hexadecimal(values: Sequence[float]) -> Bits:
+    """Numbers to the last bit; all that are not numbers alike."""
+    return tuple("nan" if math.isnan(value) else float(value).hex() for value in values)
+
+
+def by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
+    """Outputs at the end, by an FMU."""
+    with Instance(fmu) as instance:
+        try:
+            instance.initialize(drawn.start_time, **drawn.values)
+            time = drawn.start_time
+            for target in grid:
+                instance.step(time, target)
+                time = target
+        except (FmuError, InputError):
+            return (NOT,)
+        return hexadecimal([float(value) for value in instance.get(*STATE, *STEP)])
+
+
+@functools.cache
+def web_module() -> Any:
+    """The kernel as WebAssembly under wasmtime."""
+    from orchestrate.access.webassembly import web_kernel
+    from tests.orchestrate.explorer.kernels import Web
+
+    return Web(web_kernel(OSCILLATOR))
+
+
+def by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
+    """Outputs at the end, by the WebAssembly module."""
+    web = web_module()
+    size = 8 * web.slots["SIZE"]
+    web.exports["memory"].write(web.store, bytes(size), web.address)
+    web.set(**{**web.starts, **drawn.values})
+    if web.exports["kernel_initialize"](web.store, web.address, drawn.start_time):
+        return (NOT,)
+    time = drawn.start_time
+    for target in grid:
+        web.set(STOP=0.0)
+        reached = max(time + (target - time), float(web.memory()[web.slots["TIME"]]))
+        if web.exports["kernel_advance"](web.store, web.address, reached):
+            return (NOT,)
+        time = target
+    memory = web.memory()
+    return hexadecimal([float(memory[web.slots[name]]) for name in (*STATE, *STEP)])
+
+
+@functools.cache
+def arm() -> Any:
+    """The importer in C and the FMU's binary for 64-bit ARM; None where nothing runs them here."""
+    from fmu_src.export import forms
+    from tests.native import importers
+
+    command = importers.ziglang("aarch64-linux-gnu.2.28")
+    if shutil.which(ARM[0]) is None or not Path(ARM[2]).is_dir() or command is None:
+        return None
+    folder = temporary() / "arm"
+    forms.export(OSCILLATOR, "fmi3", folder, ("x86_64-linux", "aarch64-linux"))
+    path = folder / "fmi3" / f"{OSCILLATOR}.fmu"
+    program = importers.compile_importer("fmi3", path, folder / "importer", command)
+    with zipfile.ZipFile(path) as archive:
+        binary = archive.extract(f"binaries/aarch64-linux/{OSCILLATOR}.so", folder)
+    return importers.Importer(program, Path(binary), "fmi3")
+
+
+def by_arm(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
+    """Outputs at the end, by the ARM binary under an emulator."""
+    names, values = (*STATE, *STEP), {k: float(v) for k, v in drawn.values.items()}
+    settings = [f"{name}={value.hex()}" for name, value in values.items()]
+    program, times = arm(), [drawn.start_time, *grid]
+    done = program.run(
+        "simulate", ",".join(names), *settings, under=ARM, times=times, success=False
+    )
+    rows = [line.split() for line in done.stdout.splitlines() if not line.startswith("CHECKS")]
+    if done.returncode:
+        return (NOT,)
+    return hexadecimal([float.fromhex(cell) for cell in rows[-1]])
+
+
+def differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
+    """Where one motion has other bits than another: a line each."""
+    found: list[str] = []
+    grids = list(drawn.grids())
+    if any(drawn.values.get(name) for name in CUBIC):
+        grids = grids[:1]
+    first = [by_fmu(find(OSCILLATOR).path, drawn, grid) for grid in grids]
+    for i, bits in enumerate(first[1:], 1):
+        if bits[: len(STATE)] != first[0][: len(STATE)]:
+            found.append(f"grid {i}: {different(bits, first[0])}")
+    last = len(grids) - 1
+    others = {form: by_fmu(find(OSCILLATOR, form).path, drawn, grids[last]) for form in FORMS[1:]}
+    others["wasm"] = by_web(drawn, grids[last])
+    if on_arm:
+        others["aarch64-linux"] = by_arm(drawn, grids[last])
+    for name, bits in others.items():
+        if bits != first[last] and not (name == "wasm" and NOT in (*bits, *first[last])):
+            found.append(f"{name}: {different(bits, first[last])}")
+    return found
+
+
+def different(one: Bits, other: Bits) -> str:
+    """Names of the outputs that differ."""
+    if NOT in (*one, *other):
+        return "one of them does not get there"
+    names = (*STATE, *STEP)
+    pairs = zip(names, one, other, strict=True)
+    return ", ".join(name for name, a, b in pairs if a != b)
+
+
+class Grids(Campaign):
+    """Bits."""
+
+    name = "bits"
+    title = "Grids, forms and platforms"
+    asks = (
+        "The outputs at a time do not depend on the communication points on the way: one step, "
+        "two, five uneven ones, 24 (where inputs are cubic polynomials, which begin anew at each "
+        "point, one step). Nor on the form: native FMI 3.0 and 2.0, the compiled kernel in the "
+        "pythonfmu form, WebAssembly; nor on the platform: each 25th set by the 64-bit ARM binary "
+        "under an emulator. Parameter sets are drawn from twelve adversarial classes; that a set "
+        "is refused, or not finished, may not depend on the grid either. One differing bit is a "
+        "finding."
+    )
+    unit, target, batch = "parameter sets", 10_000, 250
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """Compare."""
+        notes: list[str] = []
+        findings, on_arm = 0, 0
+        for number in range(count):
+            drawn = parameter_sets.draw(seed, number)
+            asked = number % ARM_EVERY == ARM_EVERY - 1 and sys.platform == "linux"
+            asked = asked and arm() is not None
+            on_arm += asked
+            lines = differences(drawn, asked)
+            findings += bool(lines)
+            notes += [f"seed {seed}, set {number} ({drawn.kind}): {line}" for line in lines]
+        return Outcome(count, findings, counts={"on ARM:": on_arm}, notes=tuple(notes))

@@ -1,0 +1,77 @@
+"""Calls that nobody would think of, with sanitizers in the shim: the fuzzers of the tests, longer."""
+
+from __future__ import annotations
+
+import functools
+import re
+from pathlib import Path
+from typing import Any
+
+from orchestrate.access import MODELS
+
+from .campaign import Campaign, Outcome
+from .programs import temporary
+
+VERSIONS = ("fmi2", "fmi3")
+PER_INPUT = 12  # calls of a sequence, about
+COVERAGE = 400  # sequences of the build that counts branches
+
+
+@functools.cache
+def importer(fmu: Path, version: str, model: str, options: tuple[str, ...]) -> Any:
+    """The importer of the tests for a model, with options in it and in the shim."""
+    from tests.native import test_fuzz
+
+    folder = temporary() / f"{version}-{model}-{len(options)}{options[0][2:10]}"
+    return test_fuzz.checked(version, model, fmu.parents[1], folder, options)
+
+
+class Fuzzing(Campaign):
+    """Any function in any order with any argument."""
+
+    name = "fuzzing"
+    title = "Call sequences"
+    asks = (
+        "Sequences of calls drawn at random, of both FMI versions and both models: any function, "
+        "variable, number and step on three instances at once, states saved, changed at a place, "
+        "sealed again or not, and restored. The shim and the importer have the sanitizers of "
+        "addresses and of undefined behaviour in them; the FMU may not crash, and whatever it "
+        "refuses comes with a message. A build that counts says how much of the shim the "
+        "random calls alone reach; all hostile tests together reach more than 95 % of its lines "
+        "and branches, which a slow test checks."
+    )
+    unit, target, batch = "calls", 100_000_000, 1_000_000
+    measures = "share of the shim's branches that random calls alone leave out, in percent"
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """Call, and see that nothing breaks."""
+        from tests.native import importers
+
+        counts, notes, done = {}, [], 0
+        pairs = [(version, model) for version in VERSIONS for model in MODELS]
+        for version, model in pairs:
+            program = importer(fmu, version, model, importers.SANITIZE)
+            number = max(1, count // len(pairs) // PER_INPUT)
+            ended = program.run("random", seed % 2**31, number, timeout=36_000, success=False)
+            found = re.search(r"CHECKS (\d+) FAILURES (\d+)", ended.stdout)
+            calls = int(found[1]) if found else 0
+            done += calls
+            counts[f"{version} {model}:"] = calls
+            if not found or found[2] != "0" or ended.returncode or ended.stderr:
+                text = (ended.stdout + ended.stderr)[:300]
+                notes.append(f"seed {seed}, {version} {model}, {number} sequences: {text}")
+        return Outcome(done, len(notes), left_out(fmu, seed), counts, tuple(notes))
+
+
+def left_out(fmu: Path, seed: int) -> float:
+    """Percent of the shim's branches that random calls of both versions do not take."""
+    from tests.native import importers, test_fuzz
+
+    branches: dict[object, bool] = {}
+    for version in VERSIONS:
+        for model in MODELS:
+            program = importer(fmu, version, model, ("--coverage",))
+            program.run("random", seed % 2**31, COVERAGE, timeout=3600)
+            for unit in importers.units(version):
+                test_fuzz.read_coverage(program.library.parent, unit, {}, branches)
+    return 100.0 * (1.0 - sum(branches.values()) / len(branches))

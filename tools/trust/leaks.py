@@ -1,0 +1,87 @@
+"""Memory that is taken is given back: instances, steps, and a sweep of many frequencies."""
+
+from __future__ import annotations
+
+import os
+import resource
+import tempfile
+from pathlib import Path
+
+from . import programs
+from .campaign import Campaign, Outcome
+from .children import import_all
+
+PER_STEP = 1000  # steps for each instance, and for each frequency of the sweep
+LARGEST = 2000.0  # bytes that a frequency may hold: it has a state and a dozen numbers in the result
+
+
+class Leaks(Campaign):
+    """Flat memory."""
+
+    name = "leaks"
+    title = "Leaks"
+    asks = (
+        "An instance is made, set, run, saved, restored and freed for each thousand steps of "
+        "another one that stays, natively: after the first tenth the heap does not grow by a "
+        "byte. And for each thousand steps a sweep has a frequency: the greatest memory of its "
+        "process, against that of a sweep of a tenth, grows by less than 2,000 bytes a frequency, "
+        "about what the result holds."
+    )
+    unit, target, batch = "steps", 100_000_000, 10_000_000
+    measures = "bytes a frequency"
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """Take and give back."""
+        number = max(10, count // PER_STEP)
+        grown, more, failed = map(int, programs.run(fmu, "leaks", number, count).split())
+        notes = [
+            f"{what}: {value} bytes"
+            for what, value in (("instances", grown), ("steps", more))
+            if value > 0
+        ]
+        import_all()
+        few, many = (peak(fmu, part) for part in (number // 10, number))
+        each = max(0.0, (many - few) / (number - number // 10))
+        if each > LARGEST:
+            notes.append(f"a frequency: {each:.0f} bytes")
+        if failed:
+            notes.append(f"{failed} steps failed")
+        counts = {"instances:": number, "frequencies:": number}
+        return Outcome(count, len(notes), each, counts, tuple(notes))
+
+
+def peak(fmu: Path, number: int) -> int:
+    """Bytes that a process had at most, which a sweep of so many frequencies was computed in."""
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            sweep(fmu, number)
+            peak_now = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+            os.write(writer, str(peak_now).encode())
+        finally:
+            os._exit(0)
+    os.close(writer)
+    with os.fdopen(reader) as told:
+        found = told.read()
+    os.waitpid(child, 0)
+    return int(found)
+
+
+def sweep(fmu: Path, number: int) -> None:
+    """Frequencies, one after the other, kept on disk."""
+    import numpy as np
+
+    import orchestrate
+
+    with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as folder:
+        orchestrate.sweep(
+            orchestrate.Structure.nondimensional(),
+            eta=np.linspace(0.9, 1.3, number),
+            transient=2,
+            samples=1,
+            jobs=1,
+            fmu=fmu,
+            progress=False,
+            store=Path(folder) / "sweep.nc",
+        )
