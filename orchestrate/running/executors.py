@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from ..errors import InputError, WorkerError
+from .identity import changed, code_of
 from .job import Job, Table, last_entries
 
 IDLE = 30  # s that processes wait for another question
@@ -36,6 +37,7 @@ def compute(
     items: Sequence[Any],
     carry: Table | None,
     lead: Sequence[Any],
+    code: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Table]:
     """One chunk, wherever it is computed; FMUs travel to other machines as bytes.
 
@@ -48,13 +50,24 @@ def compute(
         What the chunk starts from.
     lead : sequence
         Items to compute first, from the job's own beginning, in place of ``carry``.
+    code : mapping of str to str, optional
+        Digests of the sources that the job belongs to, where it travels to another machine.
 
     Returns
     -------
     start : bytes
         What it started from, of a sequential job.
     table : dict of ndarray
+
+    Raises
+    ------
+    WorkerError
+        Where the sources here are others: they would give other numbers.
     """
+    here = code_of(type(job).__module__) if code is not None else {}
+    if code is not None and here != code:
+        names = changed(here, code)
+        raise WorkerError(f"a worker has other sources ({names}); expected the same version there")
     paths = {
         model: unpacked(model, fmu) if isinstance(fmu, bytes) else fmu
         for model, fmu in fmus.items()

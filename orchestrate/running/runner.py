@@ -205,8 +205,9 @@ class Runner:
                     break
                 chosen = {model: fmus[model] for model in state.job.models}
                 state.under_way.add(task.chunk.index)
+                code = state.identity["code"] if workers.remote else None
                 future = workers.executor.submit(
-                    compute, state.job, chosen, task.items, task.carry, task.lead
+                    compute, state.job, chosen, task.items, task.carry, task.lead, code
                 )
                 self.futures[future] = state, task
 

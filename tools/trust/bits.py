@@ -1,4 +1,4 @@
-"""One motion over several communication grids, by every form, on several platforms: the same bits."""
+"""One motion over several communication grids, by every form and platform: the same bits."""
 
 from __future__ import annotations
 

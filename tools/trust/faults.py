@@ -1,4 +1,4 @@
-"""Commands that are interrupted, starved and damaged: the same command then gives the same bytes."""
+"""Commands that are interrupted, starved and damaged: asked again, they give the same bytes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Calls that nobody would think of, with sanitizers in the shim: the fuzzers of the tests, longer."""
+"""Calls that nobody would think of, with sanitizers in the shim: the tests' fuzzers, for longer."""
 
 from __future__ import annotations
 

@@ -12,7 +12,9 @@ from .campaign import Campaign, Outcome
 from .children import import_all
 
 PER_STEP = 1000  # steps for each instance, and for each frequency of the sweep
-LARGEST = 2000.0  # bytes that a frequency may hold: it has a state and a dozen numbers in the result
+LARGEST = (
+    2000.0  # bytes that a frequency may hold: it has a state and a dozen numbers in the result
+)
 
 
 class Leaks(Campaign):

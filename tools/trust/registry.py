@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+from .bits import Grids
 from .campaign import Campaign
+from .clusters import Clusters
+from .faults import Faults
 from .flights import Energy, Impacts, Roots
+from .fuzzing import Fuzzing
 from .hostile import Hostile
+from .leaks import Leaks
+from .mutants import Mutants
 
 CAMPAIGNS: dict[str, Campaign] = {
-    campaign.name: campaign for campaign in (Impacts(), Roots(), Energy(), Hostile())
+    campaign.name: campaign
+    for campaign in (
+        *(Impacts(), Roots(), Grids(), Energy(), Fuzzing()),
+        *(Faults(), Clusters(), Hostile(), Mutants(), Leaks()),
+    )
 }

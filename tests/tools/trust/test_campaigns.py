@@ -1,0 +1,81 @@
+"""Short forms of the campaigns on bits, faults, malicious input, leaks and mutants; slow ones."""
+
+from __future__ import annotations
+
+import random
+import sys
+
+import pytest
+
+from orchestrate.access import OSCILLATOR, find
+from tools.trust import bits, faults, mutants, parameter_sets
+from tools.trust.bits import Grids
+from tools.trust.clusters import Clusters
+from tools.trust.faults import Faults
+from tools.trust.fuzzing import Fuzzing
+from tools.trust.hostile import Hostile
+from tools.trust.leaks import Leaks
+from tools.trust.mutants import Mutants
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Linux")
+
+
+@pytest.fixture(scope="module")
+def fmu(exported):
+    return find(OSCILLATOR).path
+
+
+def clean(found, count):
+    assert found.done >= count and found.findings == 0, found.notes
+
+
+def test_bits_of_a_few_sets(fmu):
+    clean(Grids().run(fmu, 5, 12), 12)
+
+
+def test_another_bit_would_be_seen(fmu, monkeypatch):
+    drawn = parameter_sets.draw(1, 4)
+    grid = list(drawn.grids())[0]
+    other = parameter_sets.ParameterSet(
+        drawn.kind, {**drawn.values, "x2_start": drawn.values["x2_start"] + 1e-15}, 0.0, 1.0
+    )
+    assert bits.by_fmu(fmu, drawn, grid) != bits.by_fmu(fmu, other, grid)
+    monkeypatch.setattr(bits, "by_web", lambda *_: ("0x0p+0",) * 21)
+    assert any(line.startswith("wasm") for line in bits.differences(drawn, False))
+
+
+def test_a_few_malicious_inputs(fmu):
+    clean(Hostile().run(fmu, 1, 4), 4)
+
+
+def test_memory_stays_flat(fmu, monkeypatch):
+    monkeypatch.setattr("tools.trust.leaks.peak", lambda _, number: 400 * number)
+    found = Leaks().run(fmu, 1, 100_000)
+    clean(found, 100_000)
+    assert found.worst == 400.0
+
+
+def test_a_few_faults(fmu, monkeypatch):
+    monkeypatch.setattr(faults, "COMMANDS", {"sweep": faults.COMMANDS["sweep"]})
+    clean(Faults().run(fmu, 1, 3), 3)
+
+
+def test_a_mutant_is_another_program():
+    source = "def f(x):\n    return x + 1.5 if x < 2 else -x\n"
+    found = {mutants.mutant(source, random.Random(seed))[0] for seed in range(60)}
+    assert source not in found and len(found) == 5
+    assert "def f(x):\n    return x - 1.5 if x < 2 else -x" in found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("campaign", "count"),
+    [(Grids(), 150), (Hostile(), 60), (Faults(), 48), (Clusters(), 6), (Fuzzing(), 200_000)]
+    + [(Leaks(), 2_000_000), (Mutants(), 2)],
+    ids=lambda value: getattr(value, "name", ""),
+)
+def test_middle_forms(fmu, campaign, count):
+    found = campaign.run(fmu, 2, count)
+    assert found.done >= count
+    if campaign.name != "mutants":  # some survive, and are explained in the ledger
+        assert found.findings == 0, found.notes

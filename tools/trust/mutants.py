@@ -1,0 +1,154 @@
+"""Mutants of the sources: small changes, each of which a test has to notice."""
+
+from __future__ import annotations
+
+import ast
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from .campaign import Campaign, Outcome
+
+ROOT = Path(__file__).resolve().parents[2]
+TREES = ("fmu_src", "orchestrate", "tests", "tools", "pyproject.toml", "docs", "README.md")
+KERNEL = "fmu_src/kernels/oscillator"
+TESTS = {  # which fast tests know a module
+    f"{KERNEL}/{name}.py": f"tests/kernels/oscillator/test_{test}.py"
+    for name, test in (
+        *(("hermite", "roots"), ("roots", "roots"), ("impact", "impact"), ("contact", "contact")),
+        *(("series", "series"), ("motion", "motion"), ("response", "response")),
+        *(("event_function", "event_function"), ("excitation", "excitation")),
+        *(("maximum", "maximum"), ("stepper", "stepper"), ("outputs", "outputs")),
+        *(("nodes", "nodes"),),
+    )
+} | {
+    "fmu_src/kernels/numerics/elementary.py": "tests/kernels/numerics/test_elementary.py",
+    "orchestrate/response/multiplicity.py": "tests/orchestrate/response/test_multiplicity.py",
+    "orchestrate/response/peaks.py": "tests/orchestrate/response/test_peaks.py",
+    "orchestrate/dynamics/clusters.py": "tests/orchestrate/dynamics/test_clusters.py",
+    "orchestrate/weak_drive/averaged.py": "tests/orchestrate/weak_drive/test_averaged.py",
+    "orchestrate/weak_drive/extremes.py": "tests/orchestrate/weak_drive/test_extremes.py",
+}
+ALL = ("tests/kernels/oscillator", "tests/kernels/numerics")
+OTHER: dict[type[ast.AST], type[ast.AST]] = {
+    ast.Add: ast.Sub,
+    ast.Sub: ast.Add,
+    ast.Mult: ast.Div,
+    ast.Div: ast.Mult,
+    ast.Lt: ast.LtE,
+    ast.LtE: ast.Lt,
+    ast.Gt: ast.GtE,
+    ast.GtE: ast.Gt,
+    ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq,
+    ast.And: ast.Or,
+    ast.Or: ast.And,
+}
+PATIENCE = 600.0  # s; who takes longer is noticed too
+
+
+def places(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Nodes that can be changed, by their number in a walk, and how."""
+    for number, node in enumerate(ast.walk(tree)):
+        if isinstance(node, (ast.BinOp, ast.AugAssign)) and type(node.op) in OTHER:
+            yield number, "operator"
+        elif isinstance(node, ast.Compare) and type(node.ops[0]) in OTHER:
+            yield number, "comparison"
+        elif isinstance(node, ast.BoolOp):
+            yield number, "logic"
+        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+            yield number, "sign"
+        elif isinstance(node, ast.Constant) and type(node.value) in (int, float):
+            yield number, "number"
+
+
+def change(tree: ast.AST, number: int) -> str:
+    """Change a node in place; returns where and what."""
+    node = list(ast.walk(tree))[number]
+    before = ast.unparse(node)
+    if isinstance(node, (ast.BinOp, ast.AugAssign, ast.BoolOp)):
+        node.op = OTHER[type(node.op)]()  # type: ignore[assignment]
+    elif isinstance(node, ast.Compare):
+        node.ops[0] = OTHER[type(node.ops[0])]()  # type: ignore[call-overload]
+    elif isinstance(node, ast.UnaryOp):
+        node.op = ast.UAdd()
+    elif isinstance(node, ast.Constant):
+        node.value = node.value + 1 if isinstance(node.value, int) else 1.01 * node.value + 1e-3
+    return f"line {node.lineno}: {before} -> {ast.unparse(node)}"  # type: ignore[attr-defined]
+
+
+def mutant(source: str, chance: random.Random) -> tuple[str, str]:
+    """A source with one change, and what was changed."""
+    tree = ast.parse(source)
+    note = change(tree, chance.choice(list(places(tree)))[0])
+    return ast.unparse(ast.fix_missing_locations(tree)), note
+
+
+def copied(folder: Path) -> Path:
+    """A copy of the sources and tests, to be changed."""
+    for name in TREES:
+        place = ROOT / name
+        if place.is_dir():
+            ignored = shutil.ignore_patterns("__pycache__", "*.png")
+            shutil.copytree(place, folder / name, ignore=ignored)
+        else:
+            shutil.copy(place, folder / name)
+    return folder
+
+
+def noticed(folder: Path, tests: tuple[str, ...]) -> bool:
+    """Whether some test fails, or does not end."""
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider"]
+    surroundings = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    try:
+        done = subprocess.run(
+            [*command, *tests],
+            cwd=folder,
+            env=surroundings,
+            capture_output=True,
+            timeout=PATIENCE,
+        )
+    except subprocess.TimeoutExpired:
+        return True
+    return done.returncode != 0
+
+
+class Mutants(Campaign):
+    """Would the tests notice?"""
+
+    name = "mutants"
+    title = "Mutants"
+    asks = (
+        "One operator, comparison, sign or number of a module is changed, drawn at random from "
+        f"{len(TESTS)} modules of the kernel and of the package's numerics; then the fast tests "
+        "of that module run, and where they pass, those of the whole kernel. A mutant that all of "
+        "them pass has survived and is listed. The certified walk makes many of them equivalent: "
+        "a bound that is larger, a step that is shorter, a comparison that differs for one number "
+        "of 2^53 give the same root later, not another one; such changes are no errors."
+    )
+    unit, target, batch = "mutants", 500, 10
+    package = True
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """Change and test."""
+        chance, notes, counts = random.Random(seed), [], {"noticed:": 0, "survived:": 0}
+        with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder:
+            folder = copied(Path(holder) / "copy")
+            for _ in range(count):
+                name = chance.choice(list(TESTS))
+                source = (ROOT / name).read_text("utf-8")
+                changed, note = mutant(source, chance)
+                (folder / name).write_text(changed, "utf-8")
+                found = noticed(folder, (TESTS[name],))
+                if not found and name.startswith("fmu_src"):
+                    found = noticed(folder, ALL)
+                (folder / name).write_text(source, "utf-8")
+                counts["noticed:" if found else "survived:"] += 1
+                if not found:
+                    notes.append(f"survived: `{name}`, {note}")
+        return Outcome(count, len(notes), counts=counts, notes=tuple(notes))
