@@ -15,7 +15,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future
+from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
@@ -252,6 +252,12 @@ def at_work(workers: Workers) -> Iterator[Workers]:
         raise WorkerError(
             "a worker process ended without a word (killed, or out of memory); "
             "what was stored is kept, the same call goes on from there"
+        ) from None
+    except CancelledError:
+        workers.close(True)
+        raise WorkerError(
+            "the scheduler of the cluster has ended; what was stored is kept, the same call goes "
+            "on from there"
         ) from None
     except BaseException:
         workers.close(True)

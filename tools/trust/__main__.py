@@ -1,4 +1,7 @@
-"""``python -m tools.trust list``, ``run CAMPAIGN --seed S --budget N``, ``page``."""
+"""``python -m tools.trust list``, ``run CAMPAIGN --seed S --budget N``, ``page``.
+
+A run enters a record and writes the page anew.
+"""
 
 from __future__ import annotations
 
@@ -41,6 +44,12 @@ def run(
     return records.record_of(campaign.name, seed, budget, found)
 
 
+def write_page() -> None:
+    """The page, from all records."""
+    text = page.text(records.read())
+    write_whole(page.PAGE, lambda place: place.write_text(text, "utf-8"))
+
+
 def parse(arguments: list[str] | None) -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog="python -m tools.trust", description=__doc__)
@@ -64,8 +73,7 @@ def main(arguments: list[str] | None = None) -> int:
         listed()
         return 0
     if options.command == "page":
-        text = page.text(records.read())
-        write_whole(page.PAGE, lambda place: place.write_text(text, "utf-8"))
+        write_page()
         return 0
     running = {"jobs": options.jobs, "cluster": options.cluster, "force": options.force}
     try:
@@ -74,6 +82,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"error: {error}", file=sys.stderr)
         return 2
     records.append(record)
+    write_page()
     print(f"{record.done:,} done, {record.findings} findings, {record.seconds:.1f} s")
     print("\n".join(record.notes))
     return 1 if record.findings else 0

@@ -18,7 +18,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-MEMORY = 4 << 30  # bytes that a command may ask for
+MEMORY = 2 << 30  # bytes that a command may ask for
 PATIENCE = 60.0  # s
 
 
@@ -157,8 +157,10 @@ def call(arguments: list[str]) -> int:
 
 
 def in_little_memory() -> None:
-    """For what may try to take all of it."""
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    """For what may try to take all of it: so much more than there is already."""
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    most = pages * resource.getpagesize() + MEMORY
+    resource.setrlimit(resource.RLIMIT_AS, (most, most))
     resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 30, 1 << 30))
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
@@ -169,10 +171,8 @@ def import_all() -> None:
     import xarray
 
     import orchestrate.cli
-    from orchestrate.access import OSCILLATOR, SHAKER, find
-    from orchestrate.access.webassembly import web_kernel
+    from orchestrate.access import MODELS, find
 
-    for model in (OSCILLATOR, SHAKER):
+    for model in MODELS:
         find(model)
-        web_kernel(model)
     assert matplotlib.pyplot and xarray and orchestrate.cli

@@ -303,6 +303,7 @@ class Faults(Campaign):
                 folder = Path(holder) / "trial"
                 if name not in known:
                     known[name] = undisturbed(name, Path(holder) / "undisturbed")
+                folder.mkdir()
                 wrong = FAULTS[fault](Trial(name, folder, *known[name], chance))
                 counts[fault] += 1
                 if wrong:

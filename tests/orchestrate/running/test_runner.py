@@ -11,6 +11,7 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError, WorkerError
 from orchestrate.running import runner
+from orchestrate.running.executors import compute
 from orchestrate.running.journal import Journal, Lock, journal_path
 from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
@@ -188,6 +189,12 @@ def test_a_folder_that_cannot_be_made(find, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(StoreError, match="expected a folder that can be written"):
         answer(Squares("squares"), {"store": tmp_path / "file" / "squares.nc"}, find)
+
+
+def test_a_worker_with_other_sources_computes_nothing():
+    with pytest.raises(WorkerError, match=r"other sources \(orchestrate/version\.py\)"):
+        compute(Squares("squares"), {}, [1], None, (), {"orchestrate.version": "other"})
+    assert compute(Squares("squares"), {}, [3], None, (), {})[1]["square"] == [9.0]
 
 
 def test_a_worker_that_dies_is_told(find, monkeypatch):

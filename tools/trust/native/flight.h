@@ -20,10 +20,10 @@ typedef struct {
     double m1, m2, k1, k2, d1, d2, e, amplitude, frequency, phase, box[BOX], x1, x2, v1, v2;
 } Flight;
 
-/* Re sum c_k e^{s_k t} + sum p_k t^k / k! */
+/* Re sum c_k e^{s_k t} + sum p_k t^k / k!; and the sizes of what c_0 and p are differences of, for these may cancel. */
 typedef struct {
     double complex c[TERMS], s[TERMS];
-    double p[BOX];
+    double p[BOX], forced, pushed[BOX];
 } Signal;
 
 /* splitmix64: every seed is a good one. */
@@ -52,7 +52,8 @@ static void add_mass(Signal *to, double m, double d, double k, double x, double 
     to->s[0] = CMPLX(0.0, w);
     to->c[place] = sign * (speed - fast * left) / (slow - fast), to->s[place] = slow;
     to->c[place + 1] = sign * (slow * left - speed) / (slow - fast), to->s[place + 1] = fast;
-    for (int i = 0; i < BOX; i++) to->p[i] += sign * q[i];
+    to->forced += cabs(forced);
+    for (int i = 0; i < BOX; i++) to->p[i] += sign * q[i], to->pushed[i] += fabs(q[i]);
 }
 
 static Signal gap_of(const Flight *f) {
@@ -67,7 +68,9 @@ static Signal push_of(const Flight *f) {
     Signal push = {0};
     add_mass(&push, f->m1 + f->m2, f->d1 + f->d2, f->k1 + f->k2, f->x1, f->v1, f, 1.0, 1);
     double by_speed = f->d2 / f->m2 - f->d1 / f->m1, by_place = f->k2 / f->m2 - f->k1 / f->m1;
+    push.forced *= fabs(by_speed) * f->frequency + fabs(by_place);
     for (int i = 0; i < TERMS; i++) push.c[i] *= by_speed * push.s[i] + by_place;
+    for (int i = 0; i < BOX; i++) push.pushed[i] = fabs(by_place) * push.pushed[i] + (i + 1 < BOX ? fabs(by_speed) * push.pushed[i + 1] : 0.0);
     for (int i = 0; i < BOX; i++) push.p[i] = by_place * push.p[i] + (i + 1 < BOX ? by_speed * push.p[i + 1] : 0.0);
     return push;
 }
@@ -87,9 +90,9 @@ static void value_of(const Signal *f, double t, double out[3]) {
 
 /* Sizes that rounding is measured by: of the terms, and of the rates. */
 static double size_of(const Signal *f, double stop) {
-    double size = 0.0, power = 1.0;
-    for (int i = 0; i < TERMS; i++) size += cabs(f->c[i]);
-    for (int i = 0; i < BOX; i++, power *= stop) size += fabs(f->p[i]) * power;
+    double size = f->forced, power = 1.0;
+    for (int i = 1; i < TERMS; i++) size += cabs(f->c[i]);
+    for (int i = 0; i < BOX; i++, power *= stop) size += f->pushed[i] * power;
     return size;
 }
 
