@@ -37,6 +37,7 @@ from . import (
     sweep,
 )
 from .options import Commands, sets_text
+from .process import Terminated, outputs, signals
 
 COMMANDS = (
     *(build, simulate, resonance, spectra, sweep, map),
@@ -44,7 +45,8 @@ COMMANDS = (
     *(couple, capture, passage, jump_voltages, drive_branch),
     *(explore, paper),
 )
-SUCCESS, FAILURE, MISTAKE, INTERRUPTED = 0, 1, 2, 130
+SUCCESS, FAILURE, MISTAKE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
+KEPT = "nothing computed is lost, the same command goes on from here"
 EXAMPLES = """examples:
   {program} build
   {program} sweep
@@ -111,18 +113,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit code: 0 success, 1 a failure, 2 a user's mistake, 130 interrupted.
+        Exit code: 0 success, 1 a failure, 2 a user's mistake, 130 interrupted, 143 terminated.
     """
+    with outputs() as told, signals():
+        code = carry_out(sys.argv[1:] if arguments is None else arguments)
+        told.flush()
+        if told.complaint():
+            tell(f"error: standard output: {told.complaint()}; what was computed is stored")
+            return code or FAILURE
+        return code
+
+
+def carry_out(arguments: Sequence[str]) -> int:
+    """Run a command; returns the exit code."""
     set_up_logging()
-    chosen = make_parser().parse_args(
-        with_negative_values(sys.argv[1:] if arguments is None else arguments)
-    )
+    chosen = make_parser().parse_args(with_negative_values(arguments))
     try:
         chosen.run(chosen)
         return SUCCESS
-    except KeyboardInterrupt:
-        tell("interrupted: nothing computed is lost, the same command goes on from here")
-        return INTERRUPTED
+    except KeyboardInterrupt as ended:
+        terminated = isinstance(ended, Terminated)
+        tell(f"{'terminated' if terminated else 'interrupted'}: {KEPT}")
+        return TERMINATED if terminated else INTERRUPTED
+    except (MemoryError, ImportError) as error:
+        if chosen.debug:
+            raise
+        reason = (str(error).strip().splitlines() or ["out of memory"])[0]
+        tell(f"error: {reason}; expected more memory, or an installation that is whole: {KEPT}")
+        return FAILURE
     except (VibroimpactError, RuntimeError, OSError) as error:
         if chosen.debug:
             raise

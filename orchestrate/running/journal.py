@@ -183,6 +183,11 @@ class Journal:
         discard(self.path)
 
 
+def reason(error: Exception) -> str:
+    """Why a file cannot be opened."""
+    return str(getattr(error, "strerror", None) or error)
+
+
 class Lock:
     """Keeps a second process off a result that is being computed; it ends with the process.
 
@@ -202,18 +207,19 @@ class Lock:
     def __init__(self, path: Path) -> None:
         self.path = path.with_name(f"{path.name}.lock")
         try:
+            self.path.open("ab").close()  # says why not, where it cannot be opened
             self._db = sqlite3.connect(self.path, timeout=0.0, isolation_level=None)
             self._db.execute("BEGIN EXCLUSIVE")
-        except sqlite3.Error as error:
+        except (sqlite3.Error, OSError) as error:
             if hasattr(self, "_db"):
                 self._db.close()
-            if "locked" in str(error):
+            if isinstance(error, sqlite3.Error) and "locked" in str(error):
                 raise InputError(
                     f"{path}: another process is computing it; wait for it, or choose another place"
                 ) from None
             raise StoreError(
-                f"{self.path}: cannot be made ({error}); expected a writable place where no "
-                "folder or other file of this name is: remove that"
+                f"{self.path}: cannot be made ({reason(error)}); expected a writable "
+                "place where no folder or other file of this name is: remove that"
             ) from error
 
     def release(self) -> None:
