@@ -14,6 +14,8 @@ from .options import (
     add_structure,
     excitation_of,
     numbers_of,
+    plain_float,
+    plain_int,
     state_of,
     structure_of,
 )
@@ -86,7 +88,7 @@ def side_of(option: str, text: str | None) -> Side | None:
         return None
     try:
         name, first, last, count = (part.strip() for part in text.split(","))
-        return name, float(first), float(last), int(count)
+        return name, plain_float(first), plain_float(last), plain_int(count)
     except ValueError:
         expected = "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60"
         raise InputError(f"{option} {text}: expected {expected}") from None

@@ -7,7 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import Commands, add_numbers, add_structure, ends_of, numbers_of, structure_of
+from .options import (
+    Commands,
+    add_numbers,
+    add_structure,
+    ends_of,
+    numbers_of,
+    plain_int,
+    structure_of,
+)
 from .output import add_results
 from .question import carry_out, place, stored
 
@@ -26,7 +34,7 @@ def add_parser(commands: Commands) -> None:
     add_structure(parser)
     option = parser.add_argument_group("question").add_argument
     option("--start", type=Path, metavar="FILE", help="NetCDF file of a branch")
-    option("--bifurcation", type=int, default=0, metavar="N", help="its number (default: 0)")
+    option("--bifurcation", type=plain_int, default=0, metavar="N", help="its number (default: 0)")
     over = "both parameters, that of the branch first (default: %(default)s)"
     option("--over", default="eta,e", metavar="NAME,NAME", help=over)
     limits = "between which each is followed"

@@ -18,6 +18,7 @@ from .options import (
     excitation_of,
     frequency_option,
     numbers_of,
+    plain_int,
     structure_of,
 )
 from .output import add_results
@@ -49,7 +50,7 @@ def add_parser(commands: Commands) -> None:
     start = "NetCDF file of an orbit or a branch to begin with"
     option("--start", type=Path, metavar="FILE", help=start)
     switch = "number of a bifurcation of --start: the branch that leaves there"
-    option("--switch", type=int, metavar="N", help=switch)
+    option("--switch", type=plain_int, metavar="N", help=switch)
     add_numbers(
         option,
         period=(1, "excitation periods of the first orbit"),

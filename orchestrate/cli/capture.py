@@ -21,7 +21,7 @@ from .drives import (
     step_of,
     two_voltages,
 )
-from .options import Commands, add_drive, described, values_of
+from .options import Commands, add_drive, described, plain_float, plain_int, values_of
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -49,10 +49,14 @@ def add_parser(commands: Commands) -> None:
     add_ends(group, "LOWEST:HIGHEST", "from the jump down to above the jump up")
     option("--over", metavar="NAME", help="a second parameter, of drive or structure")
     option("--values", metavar="VALUES", help="its values, FIRST:LAST:STEP or a list A,B,...")
-    option("--count", type=int, default=9, help="voltages tried for each (default: %(default)s)")
+    option(
+        "--count", type=plain_int, default=9, help="voltages tried for each (default: %(default)s)"
+    )
     border = "of the border found by bisection, V (default: %(default)s)"
-    option("--tolerance", type=float, default=1e-4, help=border)
-    option("--time", type=float, metavar="S", help="time given to pass, s (default: 1500/omega)")
+    option("--tolerance", type=plain_float, default=1e-4, help=border)
+    option(
+        "--time", type=plain_float, metavar="S", help="time given to pass, s (default: 1500/omega)"
+    )
     add_step(group)
     add_control(parser)
     add_results(parser, store=False, several=True)

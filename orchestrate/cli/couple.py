@@ -23,7 +23,7 @@ from .drives import (
     step_of,
     title_of_runs,
 )
-from .options import Commands, add_drive, described
+from .options import Commands, add_drive, described, plain_float
 from .output import add_results, digest, drawn, exported, own_fmus, running_of
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def add_master(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("master")
     add_step(group)
     text = "of that control: largest defect over the work exchanged in a step (default: 1e-8)"
-    group.add_argument("--tolerance", type=float, help=text)
+    group.add_argument("--tolerance", type=plain_float, help=text)
     text = "master, see the manual (default: %(default)s)"
     group.add_argument("--algorithm", default="rollback", help=text)
 

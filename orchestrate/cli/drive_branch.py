@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .drives import ask_once
-from .options import Commands, add_drive, described, ends_of
+from .options import Commands, add_drive, described, ends_of, plain_float, plain_int
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -32,14 +32,19 @@ def add_parser(commands: Commands) -> None:
     usual = "0.95 and 1.25 times the resonance"
     option("--speed", metavar="FIRST:LAST", help=f"range of mean speeds, rad/s (default: {usual})")
     longest = "longest step along the branch, without a unit (default: %(default)s)"
-    option("--longest", type=float, default=0.05, help=longest)
+    option("--longest", type=plain_float, default=0.05, help=longest)
     most = "most points in one direction (default: %(default)s)"
-    option("--most", type=int, default=200, help=most)
+    option("--most", type=plain_int, default=200, help=most)
     period = "most revolutions after which the delaminated motion repeats (default: %(default)s)"
-    option("--period", type=int, default=2, help=period)
+    option("--period", type=plain_int, default=2, help=period)
     steps = "communication steps in a revolution (default: %(default)s)"
-    option("--steps", type=int, default=48, help=steps)
-    option("--settle", type=float, metavar="S", help="time to the first motion (default 600/omega)")
+    option("--steps", type=plain_int, default=48, help=steps)
+    option(
+        "--settle",
+        type=plain_float,
+        metavar="S",
+        help="time to the first motion (default 600/omega)",
+    )
     add_results(parser, several=True)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import ends_of
+from .options import ends_of, plain_float
 from .output import FORMATS, PLOTS, Files, check_output, digest, drawn, endings_of, running_of
 
 if TYPE_CHECKING:
@@ -48,13 +48,13 @@ def add_schedule(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("voltage over time: a ramp, steps, one value, or a file")
     option = group.add_argument
     add_ends(group, "FIRST:LAST or VALUE")
-    option("--duration", type=float, metavar="S", help="time of a single VALUE, in s")
+    option("--duration", type=plain_float, metavar="S", help="time of a single VALUE, in s")
     course = "CSV file with time in s and voltage in V, a row each: straight lines between, instead"
     option("--course", type=Path, metavar="FILE", help=course)
     add_rate(group, "RATE", "")
     option("--volt-rate", metavar="RATE", help="the same in V/s")
     steps = "change eta0 in steps of this height, at the same mean rate (default: a ramp)"
-    option("--increment", type=float, default=0.0, help=steps)
+    option("--increment", type=plain_float, default=0.0, help=steps)
     add_settle(group)
     option("--one-way", action="store_true", help="do not come back")
 
@@ -70,7 +70,7 @@ def add_rate(group: Any, form: str, more: str, default: str = "") -> None:
 def add_settle(group: Any) -> None:
     """``--settle``."""
     text = "time at the first voltage, in 1/omega (default: %(default)s)"
-    group.add_argument("--settle", type=float, default=300.0, help=text)
+    group.add_argument("--settle", type=plain_float, default=300.0, help=text)
 
 
 def add_step(group: Any) -> None:
@@ -79,23 +79,25 @@ def add_step(group: Any) -> None:
         "communication step, in 1/omega (default: controlled by its defect, at most 0.4; 0.1 where "
         "a controller or a picture takes samples)"
     )
-    group.add_argument("--step", type=float, help=text)
+    group.add_argument("--step", type=plain_float, help=text)
 
 
 def add_control(parser: argparse.ArgumentParser) -> None:
     """A controller that takes a part of the voltage."""
     title = "controller: starts from rest, takes a part of the voltage at every communication step"
     option = parser.add_argument_group(title).add_argument
-    option("--speed-control", type=float, metavar="SPEED", help="hold a speed in rad/s, by PI")
-    option("--gain", type=float, help="of the PI control, V s/rad (default: 5 K)")
-    option("--reset-time", type=float, metavar="S", help="of it, s (default: J R_a/K^2)")
+    option(
+        "--speed-control", type=plain_float, metavar="SPEED", help="hold a speed in rad/s, by PI"
+    )
+    option("--gain", type=plain_float, help="of the PI control, V s/rad (default: 5 K)")
+    option("--reset-time", type=plain_float, metavar="S", help="of it, s (default: J R_a/K^2)")
     rise = "rate at which the wanted speed rises, rad/s2 (default: at once)"
-    option("--speed-rise", type=float, metavar="RATE", help=rise)
+    option("--speed-rise", type=plain_float, metavar="RATE", help=rise)
     swing = "swing the rotor across the resonance by the speed-gradient method"
     option("--speed-gradient", action="store_true", help=swing)
-    option("--filter-time", type=float, metavar="S", help="of it, s (default: 30/omega)")
+    option("--filter-time", type=plain_float, metavar="S", help="of it, s (default: 30/omega)")
     low = "part of the voltage while slower than the mean (default: 0.6)"
-    option("--low", type=float, metavar="PART", help=low)
+    option("--low", type=plain_float, metavar="PART", help=low)
 
 
 # -- what they mean -------------------------------------------------------------------------------
@@ -112,7 +114,7 @@ def number_or_ends(option: str, text: str) -> tuple[float, ...]:
     if ":" in text:
         return ends_of(option, text)
     try:
-        return (float(text),)
+        return (plain_float(text),)
     except ValueError:
         expected = "expected a number, or FIRST:LAST such as 1.2:1.65"
         raise InputError(f"{option} {text}: {expected}") from None
@@ -175,7 +177,7 @@ def rates_of(option: str, text: str, one: bool = False) -> tuple[float, ...]:
     InputError
     """
     try:
-        found = tuple(float(part) for part in text.split(","))
+        found = tuple(plain_float(part) for part in text.split(","))
     except ValueError:
         found = ()
     several = "" if one else ", or several as A,B,..., such as 1e-4,5e-5,2.5e-5"

@@ -137,7 +137,7 @@ def value_of(text: str, value: str) -> float | bool:
     if value in ("true", "false"):
         return value == "true"
     try:
-        return float(value)
+        return plain_float(value)
     except ValueError:
         raise InputError(
             f"--set {text}: {value or 'nothing'} is no number; expected one, or true or false"
@@ -348,7 +348,7 @@ def add_numbers(option: Callable[..., Any], **numbers: tuple[int | float, str]) 
     for name, (default, text) in numbers.items():
         option(
             f"--{name.replace('_', '-')}",
-            type=type(default),
+            type=plain_int if isinstance(default, int) else plain_float,
             default=default,
             metavar="N" if isinstance(default, int) else "X",
             help=f"{text} (default: %(default)s)",
@@ -385,7 +385,7 @@ def state_of(option: str, text: str | None) -> tuple[float, ...] | None:
     if text is None:
         return None
     try:
-        found = tuple(float(part) for part in text.split(","))
+        found = tuple(plain_float(part) for part in text.split(","))
     except ValueError:
         found = ()
     if len(found) != 4:
@@ -455,6 +455,32 @@ def check_over(over: str, arguments: argparse.Namespace) -> None:
 # -- numbers --------------------------------------------------------------------------------------
 
 
+def check_digits(text: str) -> None:
+    """See that a text has plain digits alone: Python takes those of any script, and ``1_000``.
+
+    Raises
+    ------
+    ValueError
+    """
+    if not text.isascii() or "_" in text:
+        raise ValueError(text)
+
+
+def plain_float(text: str) -> float:
+    """A number as everyone writes it."""
+    check_digits(text)
+    return float(text)
+
+
+def plain_int(text: str) -> int:
+    """A whole number as everyone writes it."""
+    check_digits(text)
+    return int(text)
+
+
+plain_float.__name__, plain_int.__name__ = "float", "int"  # what argparse calls them in its errors
+
+
 def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, ...], bool]:
     """Numbers of ``FIRST:LAST:STEP`` or ``A,B,...``, and whether they are a range.
 
@@ -472,8 +498,9 @@ def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, 
     """
     is_range = ":" in text
     try:
+        check_digits(text)
         numbers = [Decimal(part.strip()) for part in text.split(":" if is_range else ",")]
-    except InvalidOperation:
+    except (InvalidOperation, ValueError):
         raise InputError(f"{option} {text}: not numbers; {RANGE}") from None
     finite = all(number.is_finite() for number in numbers)
     if not finite or (is_range and len(numbers) != 3) or min(numbers) < 0:
@@ -525,7 +552,7 @@ def number_of(option: str, text: str) -> float:
     InputError
     """
     try:
-        found = float(text)
+        found = plain_float(text)
     except ValueError:
         found = math.nan
     if not (math.isfinite(found) and found > 0.0):
@@ -541,7 +568,7 @@ def ends_of(option: str, text: str) -> tuple[float, float]:
     InputError
     """
     try:
-        first, last = (float(part) for part in text.split(":"))
+        first, last = (plain_float(part) for part in text.split(":"))
     except ValueError:
         raise InputError(
             f"{option} {text}: expected FIRST:LAST, two numbers such as 1.2:1.65"

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from .options import plain_int
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,7 +71,7 @@ def add_running(
     option("--force", action="store_true", help="compute anew what is there already")
     stale = "take results that older code or another FMU has made"
     option("--keep-stale", action="store_true", help=stale)
-    option("--jobs", type=int, metavar="N", help="processes at once (default: all cores)")
+    option("--jobs", type=plain_int, metavar="N", help="processes at once (default: all cores)")
     cluster = "compute on the workers of a Dask scheduler, such as tcp://host:8786"
     option("--cluster", metavar="ADDRESS", help=cluster)
     own = "own FMU (default: the one of the present sources)"

@@ -250,6 +250,8 @@ class Course(Schedule):
             if not line.strip() or line.lstrip().startswith("#"):
                 continue
             try:
+                if not line.isascii() or "_" in line:  # Python takes digits of any script
+                    raise ValueError(line)
                 time, voltage = (float(part) for part in line.split(","))
             except ValueError:
                 if rows or line.lstrip()[0].isdigit():

@@ -1,0 +1,158 @@
+"""A command in a hostile place: outputs that are closed, full or not read, few files, signals."""
+
+from __future__ import annotations
+
+import io
+import os
+import random
+import signal
+import sys
+import time
+
+import pytest
+
+from orchestrate.cli import main
+from orchestrate.cli.options import plain_float, plain_int
+from orchestrate.cli.process import Unfailing
+from tests.faults import Surroundings
+
+from .commands import ROOT, all_end, below, end, wait_for
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full, limits, /proc")
+ASKED = ("sweep", "--eta", "1.2", "--transient", "5", "--samples", "2", "--plot", "none")
+LONG = ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "20000", "--jobs", "2")
+
+
+def ask(folder, **where):
+    """A short command, and its result's name where there is one."""
+    command = [sys.executable, "-m", "orchestrate", *ASKED, "--output", "results"]
+    done = Surroundings(**where).run(command, folder, PYTHONPATH=str(ROOT))
+    assert "Traceback" not in done.stderr, done.stderr
+    assert "Broken pipe" not in done.stderr
+    return done, [path.suffix for path in (folder / "results").glob("*")]
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize(
+    "where",
+    [
+        {"stderr": "closed"},
+        pytest.param({"stderr": "/dev/full"}, marks=pytest.mark.slow),
+        pytest.param({"stdout": "closed"}, marks=pytest.mark.slow),
+        pytest.param({"stdout": "closed", "stderr": "closed"}, marks=pytest.mark.slow),
+        pytest.param({"open_files": 12}, marks=pytest.mark.slow),
+    ],
+)
+def test_the_run_goes_on(tmp_path, where):
+    done, results = ask(tmp_path, **where)
+    assert done.returncode == 0, done.stderr
+    assert results == [".nc"]
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("exported")
+def test_a_full_output_is_told_and_the_result_kept(tmp_path):
+    done, results = ask(tmp_path, stdout="/dev/full")
+    assert done.returncode == 1
+    assert "standard output: No space left on device" in done.stderr
+    assert results == [".nc"]
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize("open_files", [5, 6, 7, 8])
+def test_too_few_files_are_told(tmp_path, open_files):
+    done, _ = ask(tmp_path, open_files=open_files)
+    assert done.returncode in (0, 1)
+    assert "another process" not in done.stderr
+
+
+class Broken(io.StringIO):
+    """A stream that nobody reads any more."""
+
+    def write(self, text: str) -> int:
+        raise BrokenPipeError
+
+
+def test_an_output_that_nobody_reads_ends_nothing(monkeypatch):
+    monkeypatch.setattr(sys, "stdout", Broken())
+    monkeypatch.setattr(sys, "stderr", Broken())
+    with pytest.raises(SystemExit) as ended:
+        main(["--help"])
+    assert ended.value.code == 0
+    assert main(["sweep", "--eta", "nothing"]) == 2
+
+
+def test_what_is_lost_is_known():
+    stream = Unfailing(Broken())
+    stream.write("told")
+    assert stream.complaint() == ""
+    closed = io.StringIO()
+    closed.close()
+    stream = Unfailing(closed)
+    assert stream.write("told") == 4
+    assert "closed file" in stream.complaint()
+
+
+@pytest.mark.parametrize("error", [MemoryError, ImportError("libx.so: cannot map\nmore")])
+def test_too_little_memory_is_a_line(monkeypatch, capsys, error):
+    def fail(_):
+        raise error
+
+    monkeypatch.setattr("orchestrate.cli.sweep.run", fail)
+    assert main(["sweep"]) == 1
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "expected more memory" in told
+
+
+@pytest.mark.parametrize("text", ["１.２", "1_0", "٣"])
+def test_digits_of_other_scripts_are_none(text, capsys):
+    assert main(["sweep", "--eta", text]) == 2
+    assert main(["sweep", "--set", f"e={text}"]) == 2
+    assert "Traceback" not in capsys.readouterr().err
+    for number in (plain_float, plain_int):
+        with pytest.raises(ValueError, match=text):
+            number(text)
+
+
+@pytest.mark.slow
+def test_sigterm_at_random_moments_leaves_nothing(commands):
+    """No temporary folder, no worker, and no word of a resource tracker."""
+    chance = random.Random(1)
+    for _ in range(4):
+        process = commands.start(*LONG)
+        wait_for(lambda pid=process.pid: len(list(below(pid))) >= 2, process, "workers were there")
+        time.sleep(chance.uniform(0.0, 3.0))
+        workers = list(below(process.pid))
+        os.kill(process.pid, signal.SIGTERM)
+        done = end(process)
+        assert done.code == 143
+        assert [line for line in done.complaints if "resource_tracker" in line] == []
+        assert all_end(workers)
+        assert list(commands.temporary.iterdir()) == []
+
+
+@pytest.mark.slow
+def test_no_worker_is_orphaned(commands):
+    chance = random.Random(2)
+    for _ in range(20):
+        process = commands.start(*LONG)
+        time.sleep(chance.uniform(1.0, 6.0))
+        started = list(below(process.pid))
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        assert all_end(started)
+
+
+@pytest.mark.slow
+def test_paper_ends_on_ctrl_c(commands):
+    chance = random.Random(3)
+    for _ in range(12):
+        process = commands.start("paper", "--quick", "--figures", "maps", "--jobs", "2")
+        time.sleep(chance.uniform(1.0, 12.0))
+        started = list(below(process.pid))
+        os.killpg(process.pid, signal.SIGINT)
+        process.communicate(timeout=40.0)
+        assert all_end(started)
+        assert list(commands.temporary.iterdir()) == []
