@@ -37,9 +37,11 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
                 error = float(at.standard_error)
                 text = f"{structure}: {end:.4f} V"
                 text += f" ± {error:.1g}" if np.isfinite(error) else ""
-                far = int(np.nanargmax(np.where(np.isfinite(at.voltage), lag, np.nan)))
+                there = np.isfinite(at.voltage.values)
+                order = np.argsort(lag[there])
+                through = np.append(end, at.voltage.values[there][order])
                 line: Any = {"color": colour, "linewidth": 1.0, "label": text}
-                panel.plot([0.0, lag[far]], [end, float(at.voltage[far])], "-", **line)
+                panel.plot(np.append(0.0, lag[there][order]), through, "-", **line)
                 panel.errorbar(0.0, end, np.nan_to_num(error), fmt="s", color=colour, capsize=3)
         if panel.get_legend_handles_labels()[0]:
             panel.legend(loc="best", title="at rate 0")

@@ -95,14 +95,14 @@ def told(data: xr.Dataset) -> str:
 
 
 def repeats_after(data: xr.Dataset) -> int:
-    """Revolutions after which the largest displacements of the revolutions repeat best."""
+    """Revolutions after which what is lost in impacts in each repeats best; 1 without impacts."""
     angle = np.maximum.accumulate(np.abs(data.angle.values))
     turns = ((angle - angle[0]) // TURN).astype(int)
     first = np.unique(turns, return_index=True)[1]
-    peaks = np.maximum.reduceat(data.x1.values, first)[:-1]  # the last one is not complete
-    if len(peaks) < 4 * MOST:
+    lost = np.diff(data.impact_loss.values[first])
+    if len(lost) < 4 * MOST or not lost.any():
         return 1
-    changes = [np.sort(np.abs(peaks[lag:] - peaks[:-lag])) for lag in range(1, MOST + 1)]
+    changes = [np.sort(np.abs(lost[lag:] - lost[:-lag])) for lag in range(1, MOST + 1)]
     sizes = np.array([change[: int(CALM * len(change))].mean() for change in changes])
     return 1 + int(np.flatnonzero(sizes <= 2.0 * sizes.min())[0])
 
