@@ -41,9 +41,10 @@ def hexadecimal(values: Sequence[float]) -> Bits:
 
 def by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
     """Outputs at the end, by an FMU."""
+    values = {**drawn.values, "bonded": bool(drawn.values.get("bonded"))}
     with Instance(fmu) as instance:
         try:
-            instance.initialize(drawn.start_time, **drawn.values)
+            instance.initialize(drawn.start_time, **values)
             time = drawn.start_time
             for target in grid:
                 instance.step(time, target)

@@ -109,8 +109,8 @@ class Impacts(Campaign):
         "The time of an impact is right. The flights of *Missed roots* again, each one's end "
         "compared with the root of the gap in 50 digits (mpmath, Newton's law, no formula of the "
         "kernel). The bound that the tests state: 1e-15 (1 + t) + 1e-14 S/|v|, where S is the sum "
-        "of the gap's terms and v the closing speed: what rounding of the terms allows. For a "
-        "flight without an impact the gap at its end is positive."
+        "of the terms of both displacements and v the closing speed: what rounding of the terms "
+        "allows. For a flight without an impact the gap at its end is positive."
     )
     unit, target, batch = "flights", 100_000, 500
     measures = "deviation in parts of the bound"
@@ -149,7 +149,7 @@ def deviation(flight: Flight) -> float:
         first, second = truth.apart(values, state, mp.mpf(values["phase_start"]))
         gap = second - first
         speed = gap.derivative()
-        terms = size(gap, end)
+        terms = size(first, end) + size(second, end)
         if not flight.impact:
             return 0.0 if gap(end) > -1e-14 * terms else float("inf")
         root = mp.mpf(end)
@@ -159,10 +159,10 @@ def deviation(flight: Flight) -> float:
         return float(abs(root - end) / allowed)
 
 
-def size(gap: Any, t: float) -> float:
+def size(signal: Any, t: float) -> float:
     """The sum of a signal's terms, which rounding is a part of."""
-    size, power = sum(abs(complex(c)) for c, _ in gap.terms), 1.0
-    for k, part in enumerate(gap.polynomial):
+    size, power = sum(abs(complex(c)) for c, _ in signal.terms), 1.0
+    for k, part in enumerate(signal.polynomial):
         size += abs(float(part)) * power
         power *= t / (k + 1.0)
     return size
