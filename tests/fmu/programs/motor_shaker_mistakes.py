@@ -15,7 +15,7 @@ MISTAKES = [
     ),
     (
         lambda f: f.start(armature_inductance=1e-9, voltage=5.0).step(1.0),
-        ["armature_inductance = 1e-09 H", "expected 0 H", "reached only"],
+        ["armature_inductance = 1e-09 H", "expected 0 H", "cannot finish", "reached 0.0 s"],
     ),
     (
         lambda f: f.start().step(math.nan),
