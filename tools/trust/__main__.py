@@ -39,7 +39,7 @@ def run(
         size=campaign.batch,
         sources=sources(),
     )
-    place = store / f"{campaign.name}-{seed}-{budget}.nc"
+    place = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
     found = answer(job, {"store": place, **running}, finder(running))
     return records.record_of(campaign.name, seed, budget, found)
 

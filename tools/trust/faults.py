@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import random
 import resource
@@ -142,7 +143,7 @@ def interrupted(trial: Trial) -> str:
     trial.wait_a_moment()
     child.send(signal.SIGINT)
     ended = child.wait()
-    if ended.code not in (0, 130, -signal.SIGINT) or len(ended.lines) > 1:
+    if ended.code not in (0, 130, -signal.SIGINT) or (ended.code == 130 and len(ended.lines) > 1):
         return told(ended)
     return trial.goes_on()
 
@@ -183,11 +184,15 @@ def read_only(trial: Trial) -> str:
 
 
 def as_nobody() -> None:
-    """Root may write everywhere; somebody else may not."""
-    Path(os.environ["TMPDIR"]).chmod(0o777)
-    if os.geteuid() == 0:
-        os.environ["HOME"] = os.environ["TMPDIR"]
-        os.setuid(65534)
+    """Root may write everywhere: give up that right (Linux's capabilities 1 and 2)."""
+    if os.geteuid() != 0:
+        return
+    libc = ctypes.CDLL(None, use_errno=True)
+    header = (ctypes.c_uint32 * 2)(0x20080522, 0)
+    held = (ctypes.c_uint32 * 6)()
+    if libc.capget(header, held) == 0:
+        held[0] &= ~0b110
+        libc.capset(header, held)
 
 
 def twice(trial: Trial) -> str:

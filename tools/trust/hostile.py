@@ -127,8 +127,8 @@ def verdict(ended: Ended, strays: list[str]) -> str:
     if ended.code == 0:
         return ""
     errors = [line for line in ended.lines if line.startswith("error: ")]
-    if len(errors) != 1 or len(ended.lines) != 1:
+    if len(errors) != 1:  # beside it may stand what the command has to say of itself
         return f"{len(ended.lines)} lines: {' / '.join(ended.lines)[:300]}"
-    if len(ended.lines[0]) > LONG or not ended.lines[0].isprintable():
-        return f"not a line that people read: {ended.lines[0][:200]!r}"
+    if len(errors[0]) > LONG or not errors[0].isprintable():
+        return f"not a line that people read: {errors[0][:200]!r}"
     return ""
