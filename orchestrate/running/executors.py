@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import logging
 import os
 import signal
 import sys
@@ -26,6 +27,7 @@ from ..errors import InputError, WorkerError
 from .identity import changed, code_of
 from .job import Job, Table, last_entries
 
+DASK = logging.getLogger("distributed.client")
 IDLE = 30  # s that processes wait for another question
 CONNECT = "5s"
 RETRIES = 3  # a chunk whose worker is lost is computed by others
@@ -204,6 +206,11 @@ def attend(parent: int) -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
+def said_by_us(record: logging.LogRecord) -> bool:
+    """Nothing of what Dask's client has to say: a lost connection is an exception of ours."""
+    return False
+
+
 class Cluster:
     """Workers of a Dask scheduler."""
 
@@ -231,6 +238,7 @@ class Cluster:
                 f"`dask worker {address} --nthreads 1` starts one"
             )
         self.executor: Executor = self._client.get_executor(pure=False, retries=RETRIES)
+        DASK.addFilter(said_by_us)
 
     def room(self) -> int:
         """Two chunks for each core; workers may come and go."""
@@ -240,6 +248,7 @@ class Cluster:
         """Leave the scheduler; what it still computes for us is cancelled."""
         self.executor.shutdown(wait=not in_haste)
         self._client.close()
+        DASK.removeFilter(said_by_us)
 
 
 @contextmanager

@@ -66,8 +66,8 @@ class Campaign(ABC):
     measures : str
         What ``worst`` is; empty where nothing is measured.
     package : bool
-        Whether the package is under test: its version then names what was tested, else the FMU's
-        GUID.
+        Whether the package is under test: a digest of its sources then names what was tested, else
+        the FMU's GUID.
     """
 
     name: ClassVar[str]

@@ -18,7 +18,7 @@ HEAD = f"""\
 What is promised is attacked: by campaigns that draw their attacks from a seed and say what they
 found. This page is made from their records, [`trust.jsonl`]({REPOSITORY}/docs/trust.jsonl), by
 `python -m tools.trust page`; a test keeps both together. A campaign's figures are the sum of its
-runs on the FMU (or, where the package is attacked, the version) that was attacked last. Each run is
+runs on the FMU (or, where the package is attacked, its sources) that was attacked last. Each run is
 repeated by its command, in a clone; `python -m tools.trust list` names the campaigns.
 
 What a campaign finds becomes a test, then is mended. A short form of each campaign is among the
@@ -30,13 +30,15 @@ TABLE = ["| campaign | target | reached | findings |", "|---|---|---|---|"]
 
 
 def together(records: Sequence[Record], campaign: Campaign) -> list[Record]:
-    """A campaign's runs on what it attacked last."""
+    """A campaign's runs on what it attacked last; of one seed the longest, which has the others."""
     own = [record for record in records if record.campaign == campaign.name]
 
     def subject(record: Record) -> str:
-        return record.version if campaign.package else record.fmu
+        return record.package if campaign.package else record.fmu
 
-    return [record for record in own if subject(record) == subject(own[-1])]
+    last = [record for record in own if subject(record) == subject(own[-1])]
+    longest = {r.seed: r for r in sorted(last, key=lambda record: record.budget)}
+    return [record for record in last if record is longest[record.seed]]
 
 
 def number(value: float) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import platform
@@ -16,6 +17,7 @@ import xarray as xr
 
 from orchestrate.version import __version__
 
+PACKAGE = Path(__file__).resolve().parents[2] / "orchestrate"
 RECORDS = Path(__file__).resolve().parents[2] / "docs" / "trust.jsonl"
 
 
@@ -38,8 +40,8 @@ class Record:
         Of findings.
     seconds : float
         Of the processor.
-    date, version, fmu, machine : str
-        ``fmu`` is the GUID of the FMU.
+    date, version, fmu, package, machine : str
+        ``fmu`` is the GUID of the FMU, ``package`` a digest of the sources of ``orchestrate``.
     """
 
     campaign: str
@@ -55,6 +57,7 @@ class Record:
     date: str
     version: str
     fmu: str
+    package: str
     machine: str
 
     def command(self) -> str:
@@ -65,7 +68,7 @@ class Record:
 
     def is_again(self, other: Record) -> bool:
         """Whether another record is of the same run: then it says nothing new."""
-        names = ("campaign", "seed", "budget", "fmu", "version")
+        names = ("campaign", "seed", "budget", "fmu", "package")
         return all(getattr(self, name) == getattr(other, name) for name in names)
 
 
@@ -89,8 +92,17 @@ def record_of(campaign: str, seed: int, budget: int, found: xr.Dataset) -> Recor
         date=time.strftime("%Y-%m-%d", time.gmtime()),
         version=__version__,
         fmu=str(found.attrs["fmu_guid"]),
+        package=package(),
         machine=machine(),
     )
+
+
+def package() -> str:
+    """A digest of the package's sources."""
+    digest = hashlib.sha256()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def machine() -> str:

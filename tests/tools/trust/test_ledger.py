@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 
 import pytest
@@ -62,6 +63,16 @@ def test_the_page_says_what_is_missing(counting, tmp_path):
     assert "What is missing would take" in text
     assert "Worst remainder: 5, in batch" in text
     assert "`python -m tools.trust run count --seed 3 --budget 25`" in text
+
+
+def test_no_batch_counts_twice(counting, tmp_path):
+    few, many, other = (
+        ledger.run(Count(), seed, budget, tmp_path, jobs=1, progress=False)
+        for seed, budget in ((3, 10), (3, 25), (4, 10))
+    )
+    assert page.together([few, many, other], Count()) == [many, other]
+    before = dataclasses.replace(many, fmu="{another}")
+    assert page.together([before, few, other], Count()) == [few, other]
 
 
 def test_seeds_of_batches_have_nothing_in_common():
