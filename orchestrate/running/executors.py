@@ -27,7 +27,7 @@ from ..errors import InputError, WorkerError
 from .identity import changed, code_of
 from .job import Job, Table, last_entries
 
-DASK = logging.getLogger("distributed.client")
+DASK = ("distributed.client", "distributed.core", "distributed.utils", "tornado.application")
 IDLE = 30  # s that processes wait for another question
 CONNECT = "5s"
 RETRIES = 3  # a chunk whose worker is lost is computed by others
@@ -206,9 +206,11 @@ def attend(parent: int) -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
-def said_by_us(record: logging.LogRecord) -> bool:
-    """Nothing of what Dask's client has to say: a lost connection is an exception of ours."""
-    return False
+def is_no_lost_connection(record: logging.LogRecord) -> bool:
+    """Whether a line of Dask's log stays: a lost connection is an exception of ours already."""
+    kind = record.exc_info[0] if record.exc_info else None
+    closed = kind is not None and issubclass(kind, OSError)  # Dask's CommClosedError is one
+    return not closed and "CommClosedError" not in record.getMessage()
 
 
 class Cluster:
@@ -238,7 +240,8 @@ class Cluster:
                 f"`dask worker {address} --nthreads 1` starts one"
             )
         self.executor: Executor = self._client.get_executor(pure=False, retries=RETRIES)
-        DASK.addFilter(said_by_us)
+        for name in DASK:
+            logging.getLogger(name).addFilter(is_no_lost_connection)
 
     def room(self) -> int:
         """Two chunks for each core; workers may come and go."""
@@ -248,7 +251,6 @@ class Cluster:
         """Leave the scheduler; what it still computes for us is cancelled."""
         self.executor.shutdown(wait=not in_haste)
         self._client.close()
-        DASK.removeFilter(said_by_us)
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError, WorkerError
 from orchestrate.running import runner
-from orchestrate.running.executors import compute
+from orchestrate.running.executors import compute, is_no_lost_connection
 from orchestrate.running.journal import Journal, Lock, journal_path
 from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
@@ -195,6 +196,17 @@ def test_a_worker_with_other_sources_computes_nothing():
     with pytest.raises(WorkerError, match=r"other sources \(orchestrate/version\.py\)"):
         compute(Squares("squares"), {}, [1], None, (), {"orchestrate.version": "other"})
     assert compute(Squares("squares"), {}, [3], None, (), {})[1]["square"] == [9.0]
+
+
+def test_of_dasks_log_only_a_lost_connection_is_left_out():
+    def record(text, error=None):
+        told = (type(error), error, None) if error else None
+        return logging.LogRecord("tornado", logging.ERROR, "", 1, text, (), told)
+
+    assert is_no_lost_connection(record("slow"))
+    assert is_no_lost_connection(record("wrong", ValueError("5")))
+    assert not is_no_lost_connection(record("", ConnectionRefusedError(111, "refused")))
+    assert not is_no_lost_connection(record("exception=CommClosedError('in <TCP>')"))
 
 
 def test_a_worker_that_dies_is_told(find, monkeypatch):
