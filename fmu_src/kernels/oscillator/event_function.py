@@ -7,8 +7,11 @@ form for all later times.
 """
 
 from . import memory as at
-from .nodes import branch_a, derivatives, phasors_at, put, start_nodes
+from .nodes import LONGEST, branch_a, derivatives, phasors_at, put, start_nodes
 from .series import gap_at
+
+# difference of the oscillators' constants below which their gap is bounded by its own oscillator
+ALIKE = 1e-4
 
 
 def set_gap(m):
@@ -95,22 +98,52 @@ def set_values(m, slot, node, tau):
 
 
 def set_remainder(m):
-    """What the quintic between two nodes may miss from the node to the left on."""
+    """What the quintic between two nodes may miss from the node to the left on, until the state is
+    written anew.
+    """
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     square = m[at.NODE_ETA] * m[at.NODE_ETA]
     bound = steady * (square * square * square)
     x, v = m[at.LEFT], m[at.LEFT + 1]
     if m[at.MODE] == at.FLIGHT:
-        bound += sixth_bound(m, at.BRANCH_2, m[at.LEFT + 2], m[at.LEFT + 3])
+        x_b, v_b = m[at.LEFT + 2], m[at.LEFT + 3]
+        apart = bound + sixth_bound(m, at.BRANCH_2, x_b, v_b) + sixth_bound(m, at.BRANCH_1, x, v)
+        if alike(m):
+            time = LONGEST * m[at.SPACING]
+            apart = min(apart, bound + difference_bound(m, 6, x, v, x_b, v_b, time))
+        bound = apart
     else:
         x, v = force_phasor(m, x, v)
-    m[at.REMAINDER] = (bound + sixth_bound(m, branch_a(m), x, v)) * m[at.HERMITE + 2]
+        bound += sixth_bound(m, at.BRANCH_3, x, v)
+    m[at.REMAINDER] = bound * m[at.HERMITE + 2]
 
 
 def sixth_bound(m, b, x, v):
     """Bound of the sixth derivative of a free part from now on."""
     sixth = b + at.SIXTH
     return envelope(m, b, m[sixth] * x + m[sixth + 1] * v, m[sixth + 2] * x + m[sixth + 3] * v)
+
+
+def alike(m):
+    """Whether the two oscillators are nearly equal."""
+    return abs(m[at.FORCE_V]) + abs(m[at.FORCE_X]) < ALIKE
+
+
+def difference_bound(m, order, x, v, x_b, v_b, time):
+    """Bound of a derivative of both free parts' difference, for a ``time`` from now on.
+
+    Each derivative of ``xi_2 - xi_1`` moves as oscillator 2, driven by what differs, ``2 (D_1 -
+    D_2) xi_1' + (omega_1^2 - omega_2^2) xi_1``; where both move nearly as one, the sum of both
+    bounds is far above it.
+    """
+    for _ in range(order):
+        x, v = v, acceleration(m, at.BRANCH_1, x, v)
+        x_b, v_b = v_b, acceleration(m, at.BRANCH_2, x_b, v_b)
+    size = envelope(m, at.BRANCH_1, x, v)
+    change = envelope(m, at.BRANCH_1, v, acceleration(m, at.BRANCH_1, x, v))
+    drive = abs(m[at.FORCE_V]) * change + abs(m[at.FORCE_X]) * size
+    own = envelope(m, at.BRANCH_2, x_b - x, v_b - v)
+    return own + m[at.BRANCH_2 + at.ENVELOPE_SINE] * time * drive + 4e-15 * size
 
 
 def values(m, x, v, x_b, v_b, cosine, sine, tau):
@@ -146,8 +179,8 @@ def free_part(m, b, x, v):
 
 
 def evaluate(m, tau):
-    """The event function at ``tau``: value, four derivatives, and a bound of the fifth from there
-    on.
+    """The event function at ``tau``: value, four derivatives, and a bound of the fifth over a
+    spacing from there on.
 
     Returns
     -------
@@ -163,6 +196,8 @@ def evaluate(m, tau):
         a0, a1, a2, a3, a4, bound_a = free_part(m, at.BRANCH_1, x, v)
         h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_2, x_b, v_b)
         h0, h1, h2, h3, h4, bound = h0 - a0, h1 - a1, h2 - a2, h3 - a3, h4 - a4, bound + bound_a
+        if alike(m):
+            bound = min(bound, difference_bound(m, 5, x, v, x_b, v_b, m[at.SPACING]))
     else:
         x, v = force_phasor(m, x, v)
         h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_3, x, v)

@@ -18,6 +18,8 @@ ANGLE = 1.25  # of the fastest oscillation over a spacing: half of it is for the
 STEEPEST = 0.65  # decay over half a spacing that small_decay serves
 NEAR = 0.00390625  # of a radian of the fastest change: six terms of a Taylor series are exact
 BLOCK = 32.0  # nodes from one renewal to the next
+# nodes after which a state is written anew: its angles and their rounding stay small
+LONGEST = 1024.0
 FASTEST_TAKEN = 1e100
 
 

@@ -19,7 +19,7 @@ from .hermite import (
     lowest_before,
     present_coefficients,
 )
-from .nodes import BLOCK, put, renewed, set_at_end, turned
+from .nodes import BLOCK, LONGEST, put, renewed, set_at_end, turned
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
@@ -29,9 +29,6 @@ CLOSE = (
     0.00390625  # relative change of the slope up to a root that two steps of Newton's method find
 )
 CONVERGED = 1e-8  # relative: the next step of Newton's method would be its square
-LONGEST = (
-    1024.0  # nodes after which a state is written anew: its angles and their rounding stay small
-)
 
 
 def parabola_root(h0, h1, h2):

@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from fmu_src.kernels.oscillator import event_function
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.motion import begin_common
+from fmu_src.kernels.oscillator.nodes import LONGEST
 
 from . import truth
-from .kernel import DEFAULTS, examples, started, structures
+from .kernel import DEFAULTS, examples, sizes, started, structures
 
 AGES = st.floats(0.0, 40.0)
 STATES = st.tuples(
@@ -78,6 +79,25 @@ def test_bounds_hold_for_all_later_times(make, values, state, age):
     rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest()) ** 5
     fifth = signal.derivative().derivative().derivative().derivative().derivative()
     assert np.abs(fifth.sample(later)).max() <= found[5] * (1 + 1e-9) + rounding
+
+
+@examples(30)
+@given(structures(), STATES, sizes(1e-16, 2e-5), sizes(1e-12, 0.1), AGES)
+def test_bounds_of_nearly_equal_oscillators_hold_as_long_as_they_are_used(
+    values, state, near, gap, age
+):
+    equal = {"k2": values["m2"] * (1.0 + near), "d2": values["d1"] * values["m2"] * (1.0 - near)}
+    x1, v1, rise, speed = state
+    m, signal = flight_and_gap({**values, **equal}, (x1, v1, x1 + gap * rise, v1 + gap * speed))
+    assert event_function.alike(m)
+    spacing = m[at.SPACING]
+    found = event_function.evaluate(m, age)[5]
+    for _ in range(5):
+        signal = signal.derivative()
+    assert all(abs(signal(age + part * spacing)) <= found for part in np.linspace(0.0, 1.0, 8))
+    sixth, found = signal.derivative(), m[at.REMAINDER] / m[at.HERMITE + 2]
+    later = spacing * np.concatenate([np.linspace(0.0, 8.0, 20), np.linspace(8.0, LONGEST, 20)])
+    assert all(abs(sixth(t)) <= found for t in later)
 
 
 @examples(60)

@@ -35,35 +35,14 @@ def test_sets_finish_with_the_same_bits_on_every_grid(entries):
 
 
 # of seed 1: each did not finish on all or some of its grids, or was refused on some
-@pytest.mark.parametrize("number", [62, 675, 732, 830, 877, 902, 1130, 2077, 4897, 5725, 8873])
+@pytest.mark.parametrize("number", [62, 675, 732, 804, 830, 877, 902, 1130, 2077, 4897, 5725, 8873])
 def test_sets_that_once_did_not(entries, number):
     assert complaints(entries, 1, number, number + 1) == {}
 
 
 @pytest.mark.slow
 def test_twenty_thousand_sets(entries):
-    found = complaints(entries, 2, 0, 20_000)
-    assert {key: text for key, text in found.items() if not nearly_equal(draw(2, key[0]))} == {}
-    assert len(found) < 20  # see below
-
-
-def nearly_equal(chosen):
-    """Whether the oscillators' natural frequencies and decays are the same in many digits."""
-    one, other = ({key: chosen.values[f"{key}{i}"] for key in "mkd"} for i in (1, 2))
-    stiffness = one["k"] / one["m"], other["k"] / other["m"]
-    damping = one["d"] / one["m"], other["d"] / other["m"]
-    return stiffness == pytest.approx(stiffness[::-1], rel=1e-4) and damping == pytest.approx(
-        damping[::-1], rel=1e-4, abs=1e-4
-    )
-
-
-@pytest.mark.xfail(
-    strict=True,
-    reason="the bound of nearly equal oscillators' gap is that of both apart: an interval takes "
-    "276 evaluations, and a step of 85,000 radians more than it may",
-)
-def test_a_long_step_of_nearly_equal_oscillators(entries):
-    assert complaints(entries, 1, 804, 805) == {}
+    assert complaints(entries, 2, 0, 20_000) == {}
 
 
 def test_what_is_wrong_is_said(entries):
