@@ -14,7 +14,17 @@ from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.motion import state_at
 
 from . import truth
-from .kernel import CHAOTIC, DEFAULTS, advanced, examples, pieces, set_inputs, started
+from .kernel import (
+    CHAOTIC,
+    DEFAULTS,
+    advanced,
+    examples,
+    pieces,
+    set_inputs,
+    sizes,
+    started,
+    structures,
+)
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 CUBIC = {"box_acceleration": 0.3, "box_jerk": -0.2, "box_snap": 0.15, "box_crackle": -0.1}
@@ -43,6 +53,9 @@ RUNS = [
         "e": 0.5,
     },
 ]
+STATES = st.tuples(
+    st.floats(-1.0, 0.0), st.floats(-1.0, 0.0), st.floats(0.01, 1.0), st.floats(0.0, 1.0)
+)
 
 
 def integrals(passed, functions):
@@ -112,6 +125,26 @@ def test_the_energy_balance_closes(values, more, stop):
     assert energy(m) - before == pytest.approx(
         work - lost - m[at.IMPACT_ENERGY], abs=1e-10 * (work_size + before)
     )
+
+
+@examples(30)
+@given(structures(damping=40.0), STATES, sizes(1e-8, 20.0))
+def test_energy_to_the_rounding_of_what_the_motion_is_made_of(values, state, stop):
+    """What a flight gains and loses is that of exact motion, to 1e-14 of the energy of forced
+    response and free parts: near rest under a drive these cancel.
+    """
+    values = {**DEFAULTS, **values, **dict.fromkeys(CUBIC, 0.0)}
+    names = ("x1_start", "v1_start", "x2_start", "v2_start")
+    m = advanced(started(**values, **dict(zip(names, state, strict=True))), stop)
+    if m[at.IMPACT_COUNT] > 0.0:
+        return
+    exact = terms = mp.mpf(0)
+    for i, motion in enumerate(truth.apart(values, state, mp.mpf(values["phase_start"])), 1):
+        mass, stiffness, speed = values[f"m{i}"], values[f"k{i}"], motion.derivative()
+        exact += (mass * speed(stop) ** 2 + stiffness * motion(stop) ** 2) / 2
+        size, fastest = (sum(abs(c) for c, _ in one.terms) for one in (motion, speed))
+        terms += (mass * fastest**2 + stiffness * size**2) / 2
+    assert abs(energy(m) - exact) <= 1e-14 * terms
 
 
 @pytest.mark.parametrize("values", RUNS)
