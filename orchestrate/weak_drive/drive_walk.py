@@ -26,6 +26,7 @@ ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN, HALVED)
 AWAY = 3e-3  # of the unit: how far from a doubling the motion of twice the period is begun
 ON_CIRCLE = 1e-3  # of a pair that has been located: how far its size may be from 1
 NEAR = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere
+SHORTEST = 1e-5  # of the longest step: round a fold whose radius is 1e-4 of the amplitude too
 
 
 class Motion(NamedTuple):
@@ -184,7 +185,7 @@ def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: P
     """Follow a branch until it leaves a range of speeds, over omega, or is lost."""
     leg = Leg([start])
     begin = clear_start(shooter, start)
-    walk = Walk(shooter, begin.root, pace.longest, pace.longest, shortest=1e-3 * pace.longest)
+    walk = Walk(shooter, begin.root, pace.longest, pace.longest, shortest=SHORTEST * pace.longest)
     halves = half_way(shooter, begin.root)
     while not leg.end:
         if len(leg.motions) >= pace.most:

@@ -77,8 +77,10 @@ def test_a_branch_turns_back_over_the_speed():
     found = drive_branch(*BEAM, speed=(1.24 * omega, 1.4 * omega), most=140, progress=False)
     below = found.sel(structure="delaminated", leg="from below").dropna("point")
     speed = below.speed.values / omega
-    assert speed.max() == pytest.approx(1.36829, abs=1e-4)
+    assert speed.max() == pytest.approx(1.36829, abs=1e-5)
     assert speed[-1] < 1.35
+    last = points(found, "delaminated", "fold") / BEAM.drive.volts(BEAM.structure)
+    assert np.abs(last - 1.37580).min() < 1e-5
 
 
 def test_an_orbit_and_its_multipliers_are_the_whole_systems():
