@@ -67,7 +67,8 @@ def picture_of(data: xr.Dataset, name: str) -> Any:
     """Speed over voltage and amplitude over speed."""
     from ..figures.weak_drive import draw_stationary
 
-    return draw_stationary(data, f"{name}: stationary motions of structure and motor")
+    volts = f"{float(data.voltage.min()):.4g} V to {float(data.voltage.max()):.4g} V"
+    return draw_stationary(data, f"{name}: stationary motions, held by {volts}")
 
 
 def report(data: xr.Dataset) -> None:

@@ -52,23 +52,26 @@ def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
     structure, drive = described(arguments)
     unit = drive.volts(structure) * structure.omega
+    ends = two_voltages(arguments, structure, drive)
     question = {
-        "voltage": two_voltages(arguments, structure, drive),
+        "voltage": ends,
         "rates": [rate * unit for rate in rates_of("--rate", arguments.rate or USUAL)],
         "back": not arguments.one_way,
         "settle": arguments.settle / structure.omega,
         "step": step_of(arguments, structure),
     }
-    draw = partial(picture_of, name=Path(arguments.drive).stem)
+    draw = partial(picture_of, name=Path(arguments.drive).stem, ends=ends)
     tell = partial(report, ways=("up",) if arguments.one_way else ("up", "down"))
     ask_once(arguments, structure, drive, question, draw, tell)
 
 
-def picture_of(data: xr.Dataset, name: str) -> Any:
+def picture_of(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
     """Voltages over the rate."""
     from ..figures.jump_voltages import draw
 
-    return draw(data, f"{name}: jumps of the speed on ramps, and at rate 0")
+    slowest, fastest = float(data.rate.min()), float(data.rate.max())
+    ramps = f"{ends[0]:.4g} V to {ends[1]:.4g} V, {slowest:.2g} V/s to {fastest:.2g} V/s"
+    return draw(data, f"{name}: {ramps}, and at rate 0")
 
 
 def report(data: xr.Dataset, ways: tuple[str, ...]) -> None:

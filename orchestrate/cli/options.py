@@ -168,9 +168,13 @@ def add_drive(parser: argparse.ArgumentParser) -> None:
     sheet = parser.add_argument_group(
         "a motor by its datasheet", "in place of motor_constant and armature_resistance: all three"
     )
-    sheet.add_argument("--rated-voltage", type=float, metavar="V", help="of the motor, V")
-    sheet.add_argument("--no-load-rpm", type=float, metavar="RPM", help="its speed without load")
-    sheet.add_argument("--stall-torque", type=float, metavar="N.M", help="its torque at rest, N m")
+    sheet.add_argument("--rated-voltage", type=plain_float, metavar="V", help="of the motor, V")
+    sheet.add_argument(
+        "--no-load-rpm", type=plain_float, metavar="RPM", help="its speed without load"
+    )
+    sheet.add_argument(
+        "--stall-torque", type=plain_float, metavar="N.M", help="its torque at rest, N m"
+    )
 
 
 def described(arguments: argparse.Namespace) -> tuple[Structure, Drive]:

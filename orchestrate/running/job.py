@@ -94,6 +94,12 @@ class Job(ABC):
         dict of ndarray
         """
 
+    def aside(self, first: int) -> str:
+        """What the chunk that begins at an item does, where it is other work than the rest: for
+        the progress bar, which stands still meanwhile.
+        """
+        return ""
+
     def seam(self, table: Table) -> bytes:
         """What a chunk starts from, of a sequential job with a ``lead``: by the last entries of
         the one before.

@@ -34,6 +34,7 @@ log = logging.getLogger(__name__)
 Find = Callable[[str], Fmu]  # from a model's name to its FMU
 WORTH = 2.0  # s of work left from which processes are worth their start
 POLL = 0.5  # s
+SEEN = 1.0  # s after which there is a bar to be seen
 
 
 def answer(job: Job, running: Mapping[str, object], find: Find) -> xr.Dataset:
@@ -166,21 +167,30 @@ class Runner:
         return tqdm(
             total=total,
             initial=self.done(),
-            desc=single.name if single else f"{len(self.jobs)} results",
+            desc=self.title(),
             unit=single.item if single else "item",
             disable=not self.options.progress,
-            delay=1.0,
+            delay=SEEN,
             dynamic_ncols=True,
             smoothing=0.1,
             unit_scale=total > 100_000,
         )
+
+    def title(self) -> str:
+        """What the progress bar is about."""
+        return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"
+
+    def describe(self, bar: Any, aside: str) -> None:
+        """Say at the bar what is done aside, where the bar can be seen already."""
+        if time.perf_counter() - self.clock > SEEN:
+            bar.set_description(f"{self.title()}, {aside}" if aside else self.title())
 
     def work(self, workers: Workers, bar: Any, go_on: Callable[[], bool]) -> None:
         """Hand out chunks and take results until all is done, or ``go_on`` says no."""
         fmus = {model: self.delivery(fmu, workers.remote) for model, fmu in self.fmus.items()}
         while not self.finished() and (go_on() or self.futures):
             if go_on():
-                self.hand_out(workers, fmus)
+                self.hand_out(workers, fmus, bar)
             if not self.futures:
                 assert self.finished() or not go_on(), "nothing is under way, nothing is ready"
                 continue
@@ -196,7 +206,7 @@ class Runner:
         """An FMU as it travels."""
         return fmu.path.read_bytes() if remote else fmu.path.resolve()
 
-    def hand_out(self, workers: Workers, fmus: Mapping[str, Path | bytes]) -> None:
+    def hand_out(self, workers: Workers, fmus: Mapping[str, Path | bytes], bar: Any) -> None:
         """Submit chunks until the workers have enough."""
         for state in self.states.values():
             while len(self.futures) < workers.room() and self.ready(state):
@@ -205,6 +215,7 @@ class Runner:
                     break
                 chosen = {model: fmus[model] for model in state.job.models}
                 state.under_way.add(task.chunk.index)
+                self.describe(bar, state.job.aside(task.chunk.first))
                 code = state.identity["code"] if workers.remote else None
                 future = workers.executor.submit(
                     compute, state.job, chosen, task.items, task.carry, task.lead, code

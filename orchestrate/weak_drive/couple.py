@@ -131,6 +131,10 @@ class CoupleJob(Job):
             finally:
                 run.master.close()
 
+    def aside(self, first: int) -> str:
+        """The look at the jumps is no step, and may take as long as many."""
+        return "voltages held where a jump is in doubt" if first == self.steps() else ""
+
     def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> np.ndarray:
         """What held voltages tell of both ways, shape (2, 3); asked where the record does not tell.
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from orchestrate import Drive, Structure, couple
 from orchestrate.cli import drive_branch, jump_voltages
 
 from .test_results import shows_something
@@ -98,6 +99,21 @@ def test_a_motor_of_one_s_own(ask, folder, motor):
     assert any(abs(float(data.voltage[-1]) - 6.0) < 1e-9 for data in found.values())
 
 
+def test_a_motor_by_its_datasheet(ask, folder):
+    """The torque line through no-load speed and stall torque, in place of the set's constants."""
+    sheet = ("--rated-voltage", "2", "--no-load-rpm", "16", "--stall-torque", "60")
+    constant = ("--voltage", "2", "--duration", "60", "--only", "bonded", "--plot", "none")
+    ask("couple", *sheet, *constant).success()
+    (data,) = results(folder).values()
+    speed = 2.0 * np.pi * 16.0 / 60.0
+    line = {"motor_constant": 2.0 / speed, "armature_resistance": (2.0 / speed) * 2.0 / 60.0}
+    drive, structure = Drive.from_file("quick").replace(**line), Structure.from_file("quick")
+    expected = couple(
+        structure.as_bonded(), drive, voltage=2.0, duration=60.0, store=None, progress=False
+    )
+    assert np.array_equal(data.speed, expected.speed) and data.sizes["revolution"] > 10
+
+
 def test_capture(ask, folder):
     quick = ("--count", "2", "--tolerance", "0.05", "--time", "350", "--step", "0.2")
     done = ask("capture", "--eta0", "1.5:1.6", *quick, "--only", "delaminated").success()
@@ -167,6 +183,30 @@ def test_stationary_motions_are_told_with_what_they_mean(capsys):
     assert change.startswith("  stability changes near 0.8 rad/s too, not located")
 
 
+def test_titles_name_set_volts_and_rates():
+    """Made-up answers; what a picture's title says of them."""
+    each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
+    rates = np.array([2.5e-5, 1e-4])
+    at_rates = np.array([1.59, 1.61])[:, None, None] * np.ones((1, 2, 2))
+    made = {
+        "voltage": (("rate", *each), at_rates),
+        "jumps": (tuple(each), np.full((2, 2), 1.58)),
+        "standard_error": (tuple(each), np.full((2, 2), np.nan)),
+    }
+    ramps = xr.Dataset(made, {"rate": rates, **each})
+    figure = jump_voltages.picture_of(ramps, "quick", (1.2, 1.65))
+    title = "quick: 1.2 V to 1.65 V, 2.5e-05 V/s to 0.0001 V/s, and at rate 0"
+    assert figure.get_suptitle() == title
+    along = {"structure": ["bonded"], "leg": ["from below"]}
+    names = ("speed", "voltage", "amplitude")
+    motions = {name: ((*along, "point"), np.array([[[1.1, 1.3, 1.2]]])) for name in names}
+    motions["stable"] = ((*along, "point"), np.ones((1, 1, 3), dtype=bool))
+    for name in ("structure", "kind", "voltage", "speed", "amplitude"):
+        motions[f"bifurcation_{name}"] = ("bifurcation", np.zeros(0))
+    figure = drive_branch.picture_of(xr.Dataset(motions, along), "beam")
+    assert figure.get_suptitle() == "beam: stationary motions, held by 1.1 V to 1.3 V"
+
+
 def test_the_weak_drive_as_a_package(ask, tmp_path):
     path = tmp_path / "weak_drive.ssp"
     assert ask("couple", "--ssp", path).code == 0
@@ -183,6 +223,18 @@ OF_ALL = [
     (["--jobs", "0"], ["jobs = 0"]),
     (["--format", "doc"], ["--format doc", "xlsx"]),
     (["--plot", "gif"], ["--plot gif", "png"]),
+]
+SHEET = ("--rated-voltage", "12", "--no-load-rpm", "3000")
+DATASHEETS = [
+    (SHEET[:2], ["--rated-voltage 12", "without --no-load-rpm", "--stall-torque together"]),
+    (SHEET, ["--rated-voltage 12", "without --stall-torque", "expected"]),
+    ([*SHEET, "--stall-torque", "0"], ["--stall-torque 0", "expected a number > 0"]),
+    ([*SHEET, "--stall-torque", "nan"], ["--stall-torque nan", "expected a number > 0"]),
+    ([*SHEET, "--stall-torque", "inf"], ["--stall-torque inf", "expected a number > 0"]),
+    (
+        [*SHEET, "--stall-torque", "1", "--set", "motor_constant=2"],
+        ["--set motor_constant=2", "beside --rated-voltage", "one of them"],
+    ),
 ]
 VOLTAGES = [
     (["--eta0", "x:2"], ["--eta0 x:2", "FIRST:LAST"]),
@@ -218,7 +270,7 @@ CONTROLS = [
 ]
 CASES = {
     "couple": [
-        *(*OF_ALL, *SCHEDULES, *CONTROLS),
+        *(*OF_ALL, *DATASHEETS, *SCHEDULES, *CONTROLS),
         (["--algorithm", "euler"], ["algorithm", "euler", "jacobi", "rollback"]),
         (["--tolerance", "-1"], ["tolerance", ">= 0"]),
     ],
@@ -246,7 +298,7 @@ CASES = {
         (["--settle", "-1"], ["settle = -1.0 s", "0 <= settle"]),
     ],
     "drive-branch": [
-        *OF_ALL,
+        *(*OF_ALL, *DATASHEETS[1:3]),
         (["--speed", "1"], ["--speed 1", "FIRST:LAST"]),
         (["--speed", "2:1"], ["speed = (2.0, 1.0)", "first < last"]),
         (["--longest", "0"], ["longest = 0.0", "<= longest <="]),

@@ -69,6 +69,15 @@ def test_jobs_side_by_side_come_in_their_order(find):
     assert (first.sizes["number"], second.sizes["number"]) == (10, 3)
 
 
+def test_the_bar_says_what_is_done_aside(find, monkeypatch, capfd):
+    """While its last chunk is at work the bar stands still: what it does is said before."""
+    monkeypatch.setattr(runner, "SEEN", 0.0)
+    monkeypatch.setattr(Sums, "aside", lambda self, first: "counting again" if first == 8 else "")
+    answer(Sums("sums"), {"jobs": 1}, find)
+    shown = capfd.readouterr().err
+    assert "sums, counting again:" in shown and "sums:" in shown
+
+
 def test_an_interrupted_job_goes_on(find, tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     whole, broken = tmp_path / "whole.nc", tmp_path / "broken.nc"
