@@ -225,6 +225,8 @@ class Cluster:
             raise InputError(
                 'cluster: needs Dask; pip install "vibroimpact[cluster]" brings it'
             ) from None
+        for name in DASK:
+            logging.getLogger(name).addFilter(is_no_lost_connection)
         connect: Any = Client
         try:
             self._client = connect(address, timeout=CONNECT, set_as_default=False)
@@ -240,8 +242,6 @@ class Cluster:
                 f"`dask worker {address} --nthreads 1` starts one"
             )
         self.executor: Executor = self._client.get_executor(pure=False, retries=RETRIES)
-        for name in DASK:
-            logging.getLogger(name).addFilter(is_no_lost_connection)
 
     def room(self) -> int:
         """Two chunks for each core; workers may come and go."""

@@ -32,13 +32,15 @@ TABLE = ["| campaign | target | reached | findings |", "|---|---|---|---|"]
 def together(records: Sequence[Record], campaign: Campaign) -> list[Record]:
     """A campaign's runs on what it attacked last; of one seed the longest, which has the others."""
     own = [record for record in records if record.campaign == campaign.name]
-
-    def subject(record: Record) -> str:
-        return record.package if campaign.package else record.fmu
-
-    last = [record for record in own if subject(record) == subject(own[-1])]
+    last = [record for record in own if same(record, own[-1])]
     longest = {r.seed: r for r in sorted(last, key=lambda record: record.budget)}
     return [record for record in last if record is longest[record.seed]]
+
+
+def same(one: Record, other: Record) -> bool:
+    """Whether two runs attacked the same."""
+    package = CAMPAIGNS[one.campaign].package
+    return one.package == other.package if package else one.fmu == other.fmu
 
 
 def number(value: float) -> str:
@@ -58,7 +60,7 @@ def summary(records: Sequence[Record]) -> list[str]:
     return lines
 
 
-def reached(campaign: Campaign, runs: Sequence[Record]) -> list[str]:
+def reached(campaign: Campaign, runs: Sequence[Record], before: Sequence[Record]) -> list[str]:
     """How much was done, what was found, and how long what is missing would take."""
     done, seconds = sum(r.done for r in runs), sum(r.seconds for r in runs)
     found = sum(r.findings for r in runs)
@@ -70,6 +72,12 @@ def reached(campaign: Campaign, runs: Sequence[Record]) -> list[str]:
     if done < campaign.target:
         hours = (campaign.target - done) / done * seconds / 3600.0
         lines.append(f"What is missing would take {hours:.1f} hours of one core at this rate.")
+    if before:
+        found = sum(record.findings for record in before)
+        lines.append(
+            f"Before, on other sources: {number(sum(r.done for r in before))} {campaign.unit}, "
+            f"{number(found)} findings."
+        )
     if campaign.measures:
         worst = max(runs, key=lambda record: record.worst)
         lines.append(f"Worst {campaign.measures}: {worst.worst:.3g}, in batch {worst.worst_seed}.")
@@ -82,12 +90,12 @@ def reached(campaign: Campaign, runs: Sequence[Record]) -> list[str]:
     return lines
 
 
-def section(campaign: Campaign, runs: Sequence[Record]) -> list[str]:
+def section(campaign: Campaign, runs: Sequence[Record], before: Sequence[Record]) -> list[str]:
     """One campaign."""
     lines = [f"(trust-{campaign.name})=", f"## {campaign.title}", "", campaign.asks, ""]
     if not runs:
         return [*lines, "Not run yet.", ""]
-    lines += [*reached(campaign, runs), ""]
+    lines += [*reached(campaign, runs, before), ""]
     lines += [f"- {note}" for record in runs for note in record.notes]
     if lines[-1]:
         lines.append("")
@@ -112,5 +120,8 @@ def text(records: Sequence[Record]) -> str:
     """The whole page."""
     lines = [*summary(records), ""]
     for campaign in CAMPAIGNS.values():
-        lines += section(campaign, together(records, campaign))
+        runs = together(records, campaign)
+        own = [record for record in records if record.campaign == campaign.name]
+        before = [record for record in own if not same(record, runs[-1])]
+        lines += section(campaign, runs, before)
     return HEAD + "\n".join([*lines, *about(records)])
