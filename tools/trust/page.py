@@ -30,17 +30,27 @@ TABLE = ["| campaign | target | reached | findings |", "|---|---|---|---|"]
 
 
 def together(records: Sequence[Record], campaign: Campaign) -> list[Record]:
-    """A campaign's runs on what it attacked last; of one seed the longest, which has the others."""
+    """A campaign's runs on what it attacked last."""
     own = [record for record in records if record.campaign == campaign.name]
-    last = [record for record in own if same(record, own[-1])]
-    longest = {r.seed: r for r in sorted(last, key=lambda record: record.budget)}
-    return [record for record in last if record is longest[record.seed]]
+    return longest([record for record in own if same(record, own[-1])])
+
+
+def longest(records: Sequence[Record]) -> list[Record]:
+    """Of each seed, on what was attacked, the run that has the batches of the others."""
+    found = {
+        (r.campaign, r.seed, subject(r)): r for r in sorted(records, key=lambda one: one.budget)
+    }
+    return [record for record in records if any(record is other for other in found.values())]
 
 
 def same(one: Record, other: Record) -> bool:
     """Whether two runs attacked the same."""
-    package = CAMPAIGNS[one.campaign].package
-    return one.package == other.package if package else one.fmu == other.fmu
+    return subject(one) == subject(other)
+
+
+def subject(record: Record) -> str:
+    """What a run attacked."""
+    return record.package if CAMPAIGNS[record.campaign].package else record.fmu
 
 
 def number(value: float) -> str:
@@ -122,6 +132,6 @@ def text(records: Sequence[Record]) -> str:
     for campaign in CAMPAIGNS.values():
         runs = together(records, campaign)
         own = [record for record in records if record.campaign == campaign.name]
-        before = [record for record in own if not same(record, runs[-1])]
+        before = longest([record for record in own if not same(record, runs[-1])])
         lines += section(campaign, runs, before)
     return HEAD + "\n".join([*lines, *about(records)])
