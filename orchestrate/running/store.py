@@ -149,6 +149,7 @@ class Disk(Store):
                 identity = read_identity(path)
                 self._found = load(path)  # first of all, or damage is taken for another question
                 self.check(identity, path)
+                discard(journal_path(path))  # where the process was killed before it did so
             else:
                 self._journal = self.open_journal()
                 self.begun = self._journal.begun

@@ -107,6 +107,15 @@ def test_a_finished_result_is_read_not_computed(find, tmp_path, monkeypatch):
     assert answer(Squares("squares"), {"store": path}, find).identical(first)
 
 
+def test_a_journal_that_a_killed_process_left_beside_its_result_goes(find, tmp_path):
+    path = tmp_path / "squares.nc"
+    answer(Squares("squares"), {"store": path}, find)
+    for ending in ("", "-wal", "-shm"):
+        Path(f"{journal_path(path)}{ending}").write_bytes(b"left")
+    answer(Squares("squares"), {"store": path}, find)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
+
+
 def test_another_question_is_refused_and_nothing_is_lost(find, tmp_path):
     path = tmp_path / "squares.nc"
     answer(Squares("squares"), {"store": path}, find)
