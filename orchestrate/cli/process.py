@@ -107,11 +107,23 @@ def signals() -> Iterator[None]:
     ]
     for number in taken:
         signal.signal(number, end_soon)
+    before = sys.unraisablehook
+    sys.unraisablehook = send_again
     try:
         yield
     finally:
+        sys.unraisablehook = before
         for number in taken:
             signal.signal(number, usual[number])
+
+
+def send_again(lost: sys.UnraisableHookArgs) -> None:
+    """A signal that came in a callback, where Python drops its exception, comes once more."""
+    if issubclass(lost.exc_type, KeyboardInterrupt):
+        number = signal.SIGTERM if issubclass(lost.exc_type, Terminated) else signal.SIGINT
+        threading.Timer(0.05, os.kill, (os.getpid(), number)).start()
+    else:
+        sys.__unraisablehook__(lost)
 
 
 def end_soon(number: int, _: FrameType | None) -> None:

@@ -259,6 +259,8 @@ def load(path: Path) -> xr.Dataset:
         told = data.attrs.pop(ATTRIBUTE, None)
         fits = told is None or told == checksum(data)
     except Exception as error:
+        if path.is_file() and not is_netcdf(path):
+            raise StoreError(f"{path}: not readable; expected a NetCDF file") from error
         raise StoreError(f"{path}: damaged ({first_line(error)}); {ANEW}") from error
     if not fits:
         raise StoreError(
@@ -266,6 +268,12 @@ def load(path: Path) -> xr.Dataset:
             f"or delete its attribute {ATTRIBUTE} to take it as it is"
         )
     return data
+
+
+def is_netcdf(path: Path) -> bool:
+    """Whether a file begins as NetCDF does, version 4 or an older one."""
+    with path.open("rb") as file:
+        return file.read(4).startswith((b"\x89HDF", b"CDF"))
 
 
 def first_line(error: BaseException) -> str:

@@ -303,14 +303,21 @@ def netcdf_of_others(path):
         data.title = "of others"
 
 
-@pytest.mark.parametrize("make", [not_netcdf, netcdf_of_others, lambda path: path.mkdir()])
-def test_something_else_in_the_place_of_the_result(ask, tmp_path, make):
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (not_netcdf, "not a result of this project"),
+        (netcdf_of_others, "not a result of this project"),
+        (lambda path: path.mkdir(), "a folder; expected a place for a file"),
+    ],
+)
+def test_something_else_in_the_place_of_the_result(ask, tmp_path, make, words):
     result = tmp_path / "results" / "mine.nc"
     result.parent.mkdir()
     make(result)
     before = result.read_bytes() if result.is_file() else b""
     done = ask("sweep", "--eta", "1", *QUICK, "--store", result)
-    done.complaint(result, "not a result of this project", code=done.code)
+    done.complaint(result, words, code=done.code)
     assert done.code in (1, 2)
     assert [path.name for path in result.parent.iterdir()] == [result.name]
     assert (result.read_bytes() if result.is_file() else b"") == before
@@ -324,6 +331,7 @@ def test_a_stale_result_is_refused_with_what_has_changed(ask, tmp_path):
         identity = json.loads(data.identity)
         identity["code"]["orchestrate.response.respond"] = "older"
         data.identity = json.dumps(identity)
+        del data.content_sha256
     before = result.read_bytes()
     words = "stale", "response/respond.py", "--force", "--keep-stale"
     ask(*asked).complaint(*words)

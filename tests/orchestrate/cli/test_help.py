@@ -104,6 +104,9 @@ def test_build(capsys, tmp_path, monkeypatch):
     (tmp_path / "folder").write_text("mine")
     code = cli.main(["build", "--folder", str(tmp_path / "folder")])
     assert code == 2 and "expected a folder that can be written" in capsys.readouterr().err
-    monkeypatch.setattr("orchestrate.access.build", lambda folder, *_, **__: [tmp_path / "folder"])
+    for made in ("build", "build_libraries"):
+        monkeypatch.setattr(
+            f"orchestrate.access.{made}", lambda folder, *_, **__: [tmp_path / "folder"]
+        )
     assert cli.main(["build"]) == 0
-    assert capsys.readouterr().out == f"{tmp_path / 'folder'}  0 kB\n"
+    assert capsys.readouterr().out == f"{tmp_path / 'folder'}  0 kB\n" * 2
