@@ -20,7 +20,7 @@ from typing import Any, NoReturn
 from .compiled import load_compiled
 from .table import BOOLEAN, INTEGER, REAL, Model, Variable, explain
 
-INSTANTIATED, INITIALIZING, STEPPING, TERMINATED = 0.0, 1.0, 2.0, 3.0
+PHASES = INSTANTIATED, INITIALIZING, STEPPING, TERMINATED = 0.0, 1.0, 2.0, 3.0
 STATE_MAGIC = b"vibroimpact state "
 STATE_HEAD, CHECKSUM = 64, 8  # bytes
 
@@ -49,6 +49,15 @@ class Logger(ctypes.Structure):
 def keep(thing: Any) -> None:
     """Take one more reference to an object that pythonfmu is going to release once too often."""
     ctypes.pythonapi.Py_IncRef(ctypes.py_object(thing))
+
+
+def state_problem(variable: Variable, value: float) -> str:
+    """Why a variable cannot have a value in a saved state; an empty string where it can."""
+    problem = variable.problem(value)
+    if problem or variable.type == REAL:
+        return problem
+    fits = value in (0.0, 1.0) if variable.type == BOOLEAN else value == int(value)
+    return "" if fits else f"{variable.name} = {value!r}: expected {variable.range_text()}"
 
 
 class Slave:
@@ -327,8 +336,30 @@ class Slave:
             text = f"FMU state: expected a state saved by this FMU ({self.model.name}, "
             self.refuse(f"{text}{self.fingerprint}), and undamaged")
         numbers = struct.unpack(f"<{3 + len(self._memory)}d", state[STATE_HEAD:])
-        self._phase, self._start_time, self._stale = numbers[0], numbers[1], numbers[2] != 0.0
-        self._memory = self._array(*numbers[3:])
+        memory = self._array(*numbers[3:])
+        problem = self._state_problem(numbers[:3], memory)
+        if problem:
+            self.refuse(f"FMU state: {problem}")
+        self._phase, self._start_time = numbers[:2]
+        self._stale = numbers[2] != 0.0 or self._phase < STEPPING  # or calculated once more
+        self._memory = memory
+
+    def _state_problem(self, head: Sequence[float], memory: Any) -> str:
+        """Why a saved state cannot be one that this FMU had; an empty string where it can.
+
+        What follows from other numbers in it is computed anew.
+        """
+        phase, start_time, stale = head
+        if phase not in PHASES or stale not in (0.0, 1.0) or start_time - start_time != 0.0:
+            return f"phase {phase!r}, start time {start_time!r} s: expected a saved state's"
+        for variable in self.model.variables:
+            problem = state_problem(variable, memory[variable.slot])
+            if problem:
+                return f"a saved state that this FMU never had: {problem}"
+        if phase == STEPPING:
+            code = self._entries["restore"](memory, start_time)
+            return explain(self.model, memory, code) if code else ""
+        return ""
 
     # the bytes are looked at when they are set: an exception here would corrupt the instance
     _fmu_state_to_bytes = _fmu_state_from_bytes = staticmethod(lambda state: state)

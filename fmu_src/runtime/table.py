@@ -216,6 +216,9 @@ class Model:
     differentiate : callable
         Another one: rates of change of the outputs at the point reached, the inputs as they are,
         into ``rates``.
+    restore : callable
+        Another one, with the start time: checks a memory that came from outside and computes anew
+        all that follows from other numbers.
     rates : int
         Slot of the first output's rate; those of the others follow as the outputs do.
     refresh : callable or None
@@ -248,6 +251,7 @@ class Model:
     initialize: Entry
     advance: Entry
     differentiate: Entry
+    restore: Entry
     rates: int
     messages: Mapping[int, str]
     stop_time: float
@@ -273,6 +277,7 @@ class Model:
             "initialize": self.initialize,
             "advance": self.advance,
             "differentiate": self.differentiate,
+            "restore": self.restore,
             "refresh": self.refresh,
             "coast": self.coast,
         }

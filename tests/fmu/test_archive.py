@@ -240,4 +240,5 @@ def test_compiled_kernel_stands_alone(tmp_path):
         "advance",
         "coast",
         "differentiate",
+        "restore",
     }

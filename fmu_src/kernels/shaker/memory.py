@@ -78,3 +78,5 @@ SIZE = slot.used
 
 # -- return codes of the entry points --------------------------------------------------------------
 OK, UNFINISHED, NOT_FINITE, INERTIA = 0, 1, 2, 3
+FORGED = 100  # a saved state that this model never had; which slot, and why:
+NOT_A_NUMBER, NO_PHASE, NO_TIME = 0, 1, 2

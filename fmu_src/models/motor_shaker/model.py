@@ -1,7 +1,7 @@
 """``MotorShaker`` as the exporters see it. Standard library only: it travels inside the FMU."""
 
 from ...kernels.shaker import memory as at
-from ...kernels.shaker import rates, stepper
+from ...kernels.shaker import rates, restore, stepper
 from ...runtime.table import Model, Terminal
 from ...version import VERSION
 from .messages import MESSAGES
@@ -22,6 +22,7 @@ MODEL = Model(
     initialize=stepper.initialize,
     advance=stepper.advance,
     differentiate=rates.differentiate,
+    restore=restore.restore,
     rates=at.OUTPUT_RATES,
     refresh=stepper.refresh,
     messages=MESSAGES,

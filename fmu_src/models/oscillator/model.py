@@ -4,7 +4,7 @@ Standard library only: it travels inside the FMU.
 """
 
 from ...kernels.oscillator import memory as at
-from ...kernels.oscillator import rates, stepper
+from ...kernels.oscillator import rates, restore, stepper
 from ...runtime.table import Array, Clock, Model, Terminal
 from ...version import VERSION
 from .messages import MESSAGES
@@ -26,6 +26,7 @@ MODEL = Model(
     advance=stepper.advance,
     coast=stepper.coast,
     differentiate=rates.differentiate,
+    restore=restore.restore,
     rates=at.RATES,
     messages=MESSAGES,
     stop_time=157.0,

@@ -300,7 +300,8 @@ void state_to_bytes(const State *state, char *bytes) {
     memcpy(bytes + STATE_BYTES - sizeof hash, &hash, sizeof hash);
 }
 
-bool state_from_bytes(State *state, const char *bytes, size_t size) {
+/* Undamaged bytes of this model's state, without a look at its numbers. */
+static bool unpack(State *state, const char *bytes, size_t size) {
     char header[STATE_HEADER] = STATE_MAGIC;
     double head[3];
     uint64_t hash;
@@ -311,11 +312,42 @@ bool state_from_bytes(State *state, const char *bytes, size_t size) {
     memcpy(state->memory, bytes + STATE_HEADER + sizeof head, sizeof state->memory);
     state->phase = 0;
     for (int phase = 1; phase <= TERMINATED; phase *= 2) if (head[0] == phase) state->phase = phase;
-    bool fits = state->phase && isfinite(head[1]) && isfinite(state->memory[TIME_SLOT]) && (head[2] == 0 || head[2] == 1 || head[2] == 2 || head[2] == 3);
-    for (unsigned i = 0; i < VARIABLE_COUNT; i++) fits = fits && (VARIABLES[i].calculated || in_range(&VARIABLES[i], state->memory[i]));
-    if (!fits) return false;
+    if (!state->phase || !isfinite(head[1]) || !(head[2] == 0 || head[2] == 1 || head[2] == 2 || head[2] == 3)) return false;
     state->start_time = head[1];
     state->stale = head[2] == 1 || head[2] == 3;
     state->clock = head[2] >= 2;
     return true;
+}
+
+/* Whether a variable may have a value at all, whoever set or calculated it. */
+static bool is_value(const Variable *variable, double value) {
+    if (variable->type == BOOLEAN) return value == 0 || value == 1;
+    return in_range(variable, value) && (variable->type == REAL || value == floor(value));
+}
+
+static Status restored(Instance *instance, const char *call, State *state) {
+    char text[TEXT] = "a saved state that this FMU never had: ";
+    for (unsigned i = 0; i < VARIABLE_COUNT; i++) {
+        if (is_value(&VARIABLES[i], state->memory[i])) continue;
+        append(text, VARIABLES[i].name);
+        append(text, " = ");
+        append_number(text, state->memory[i]);
+        append(text, ": expected ");
+        append(text, VARIABLES[i].range);
+        return refuse(instance, call, text);
+    }
+    if (state->phase & (INSTANTIATED | INITIALIZING)) {  /* nothing is calculated yet, or it is once more */
+        for (unsigned i = 0; i < MEMORY_SIZE; i++) if (i >= VARIABLE_COUNT || VARIABLES[i].calculated) state->memory[i] = 0;
+        state->stale = state->stale || state->phase == INSTANTIATED || kernel_initialize(state->memory, state->start_time);
+        return OK;
+    }
+    int code = kernel_restore(state->memory, state->start_time);
+    if (!code) return OK;
+    explain(text, state->memory, code);
+    return refuse(instance, call, text);
+}
+
+Status state_from_bytes(Instance *instance, const char *call, State *state, const char *bytes, size_t size) {
+    if (!unpack(state, bytes, size)) return refuse(instance, call, "expected a state saved by this FMU (" STATE_MAGIC ")");
+    return restored(instance, call, state);
 }

@@ -1,4 +1,5 @@
 /* FMI 2.0 for co-simulation onto core.h. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -173,7 +174,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     if (!c) return fmi2Error;
     if (!bytes || !to) return refuse2(c, "fmi2DeSerializeFMUstate", "a null pointer");
     State read;
-    if (!state_from_bytes(&read, bytes, size)) return refuse2(c, "fmi2DeSerializeFMUstate", "expected a state saved by this FMU (" STATE_MAGIC ")");
+    if (state_from_bytes(c, "fmi2DeSerializeFMUstate", &read, bytes, size) != OK) return fmi2Error;
     if (!*to) *to = malloc(sizeof(State));
     if (!*to) return refuse2(c, "fmi2DeSerializeFMUstate", "out of memory");
     if (read.phase == EVENT) read.phase = STEPPING;  /* saved by an FMI 3.0 FMU: there is no event mode here */
@@ -224,7 +225,10 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     }
     double memory[MEMORY_SIZE];
     differentiate(instance, memory);
-    for (size_t i = 0; i < count; i++) values[i] = memory[VARIABLES[refs[i]].rate];
+    for (size_t i = 0; i < count; i++) {
+        values[i] = memory[VARIABLES[refs[i]].rate];
+        if (!isfinite(values[i])) return refuse2(instance, call, "a rate of change leaves the range of floating-point numbers");
+    }
     return fmi2OK;
 }
 

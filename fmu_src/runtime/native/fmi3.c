@@ -1,4 +1,5 @@
 /* FMI 3.0 for co-simulation onto core.h: arrays, event mode, and a clock that ticks at each impact. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -236,7 +237,7 @@ fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte by
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *to) {
     if (!c || !bytes || !to) return refuse3(c, "fmi3DeserializeFMUState", "a null pointer");
     State read;
-    if (!state_from_bytes(&read, (const char *)bytes, size)) return refuse3(c, "fmi3DeserializeFMUState", "expected a state saved by this FMU (" STATE_MAGIC ")");
+    if (state_from_bytes(c, "fmi3DeserializeFMUState", &read, (const char *)bytes, size) != OK) return fmi3Error;
     if (!*to) *to = malloc(sizeof(State));
     if (!*to) return refuse3(c, "fmi3DeserializeFMUState", "out of memory");
     memcpy(*to, &read, sizeof read);
@@ -259,6 +260,7 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference ref
             if (!size) return fmi3Error;
             for (size_t k = first; k < first + size; k++, place++) {
                 if (k == TIME_SLOT) return refuse3(instance, call, "time: expected order 1 of a continuous output");
+                if (write && !isfinite(memory[VARIABLES[k].rate])) return refuse3(instance, call, "a rate of change leaves the range of floating-point numbers");
                 if (write) values[place] = memory[VARIABLES[k].rate];
                 else if (!has_rate(instance, call, &VARIABLES[k], orders[i])) return fmi3Error;
             }

@@ -1,0 +1,104 @@
+"""A state that is restored goes on with the bits it would have had; most of it is made anew."""
+
+import random
+import struct
+
+import pytest
+
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator import restore, stepper
+
+from .kernel import started
+
+NOT_KEPT = {at.TARGET, at.REPORT, at.STOPPED, at.STOP_AT_IMPACT, at.WORK, at.WORK_LIMIT}
+SCRATCH = [(at.POINT, 6), (at.RATES, at.SIZE - at.RATES), (at.SERIES_X, at.STEP - at.SERIES_X)]
+
+
+def bits(values):
+    return struct.pack(f"<{len(values)}d", *values)
+
+
+def drawn(draw):
+    """A structure in motion, and its start time."""
+    values = {
+        "e": draw.choice([0.0, 0.3, 0.7, 0.95, 1.0]),
+        "gamma": draw.choice([1e-7, 1e-4, 1e-2]),
+        "k2": draw.uniform(0.3, 4.0),
+        "m2": draw.choice([0.2, 1.0, 5.0]),
+        "d1": draw.choice([0.0, 0.01, 3.0]),
+        "d2": draw.choice([0.0, 0.1, 3.0]),
+        "box_frequency": draw.choice([0.0, 0.4, 1.9, 6.1]),
+        "box_amplitude": draw.choice([0.0, 1.0, 1e-6]),
+        "phase_start": draw.uniform(-5.0, 5.0),
+        "bonded": draw.random() < 0.2,
+        "x_rel_max_on": draw.random() < 0.5,
+    }
+    if not values["bonded"] and draw.random() < 0.4:
+        values |= {"x2_start": draw.uniform(0.0, 2.0), "v2_start": draw.uniform(-2.0, 2.0)}
+    start = draw.choice([0.0, 3.3, -1e3])
+    return started(start, **values), start
+
+
+def change_inputs(draw, *memories):
+    """The same in each of the memories."""
+    changes = {
+        at.BOX_AMPLITUDE: draw.uniform(-1.0, 1.0),
+        at.BOX_FREQUENCY: draw.uniform(0.0, 3.0),
+        at.BOX_ACCELERATION: draw.uniform(-1.0, 1.0),
+        at.BOX_JERK: draw.choice([0.0, draw.uniform(-1.0, 1.0)]),
+    }
+    for slot, value in changes.items():
+        if draw.random() < 0.2:
+            for m in memories:
+                m[slot] = value
+
+
+def kept(m):
+    """Slots that are part of the state now."""
+    left_out = {*NOT_KEPT, *(first + i for first, count in SCRATCH for i in range(count))}
+    if m[at.CLEAR] == restore.INFINITE:  # nothing is looked for between nodes
+        left_out |= {*range(at.LEFT_VALUES, at.RIGHT_VALUES + 3)}
+    return [slot for slot in range(at.SIZE) if slot not in left_out]
+
+
+def check(seed, steps):
+    """A run, and one that is restored before each of its steps."""
+    draw = random.Random(seed)
+    m, start = drawn(draw)
+    time = start
+    for _ in range(steps):
+        other = list(m)
+        assert restore.restore(other, start) == at.OK, (seed, time, other[at.WORK])
+        if m[at.SERIES] == 0.0:
+            changed = [slot for slot in kept(m) if bits([m[slot]]) != bits([other[slot]])]
+            assert changed == [], (seed, time)
+        change_inputs(draw, m, other)
+        m[at.STOP_AT_IMPACT] = other[at.STOP_AT_IMPACT] = float(seed % 3 == 0)
+        time += draw.choice([0.05, 0.3, 2.0, 7.0])
+        code = stepper.advance(m, time)
+        assert stepper.advance(other, time) == code
+        if code != at.OK:
+            return
+        time = m[at.TIME]
+        assert bits(m[: at.TIME + 1]) == bits(other[: at.TIME + 1]), (seed, time)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_restored_run_has_the_same_bits(seed):
+    check(seed, 12)
+
+
+@pytest.mark.slow
+def test_many_restored_runs_have_the_same_bits():
+    for seed in range(300):
+        check(seed, 25)
+
+
+def test_what_is_derived_is_not_read():
+    m = started(0.0, e=0.5)
+    stepper.advance(m, 20.0)
+    spoilt = list(m)
+    for slot in (*range(at.OMEGA, at.SEGMENT_INPUTS), *range(at.CUBIC, at.SEGMENT_AGE)):
+        spoilt[slot] = float("nan")
+    assert restore.restore(spoilt, 0.0) == at.OK
+    assert bits(spoilt[at.OMEGA : at.END]) == bits(m[at.OMEGA : at.END])
