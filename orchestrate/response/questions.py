@@ -186,8 +186,10 @@ def point(structure: Structure, given: Mapping[str, Any]) -> Point:
     changes = {name: value for name, value in given.items() if name not in ASKED}
     changed = structure.replace(**changes) if changes else structure
     if "eta" in given:
-        return Point(changed, Excitation.nondimensional(given["eta"], changed))
-    excitation = Excitation(frequency=given["frequency"], amplitude=given["amplitude"])
+        excitation = Excitation.nondimensional(given["eta"], changed)
+    else:
+        excitation = Excitation(frequency=given["frequency"], amplitude=given["amplitude"])
+    excitation.check(changed)
     return Point(changed, excitation)
 
 
@@ -214,6 +216,18 @@ def one_point(
 
 
 # -- what was given, checked ----------------------------------------------------------------------
+
+
+def check_delaminated(series: Series) -> None:
+    """Whether each excitation can drive the delaminated structure too, where a bonded one is given.
+
+    Raises
+    ------
+    InputError
+        As in :meth:`.Excitation.check`.
+    """
+    for structure, excitation in series.points:
+        excitation.check(structure.as_delaminated())
 
 
 def checked_structure(structure: object) -> Structure:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from os import PathLike
 
+from ..errors import InputError
 from .ranges import EXCITATION, NUMBERS, made_of, recover
 from .structure import Structure
 
@@ -92,6 +94,40 @@ class Excitation:
         length = self.amplitude * (eta * eta)
         return 1.0 if math.isclose(length, 1.0, rel_tol=2e-15) else length
 
+    def check(self, structure: Structure, least: float = 1e-12) -> None:
+        """Whether the structure's closed form has digits to spare, as the FMU asks for.
+
+        Parameters
+        ----------
+        structure : Structure
+        least : float
+            Of the square of the relative detuning plus that of the damping over the critical one.
+
+        Raises
+        ------
+        InputError
+            Where the structure, or one of its masses alone, is driven on its natural frequency with
+            no damping, or next to none.
+
+        Examples
+        --------
+        >>> Excitation(frequency=1.0, amplitude=1.0).check(Structure.nondimensional(D=1e-3))
+        """
+        if self.amplitude == 0.0:
+            return
+        frequency = self.frequency
+        for name, stiffness, mass, dampers in oscillators(structure):
+            ratio = frequency * frequency * mass / stiffness
+            loss = sum(dampers.values()) * frequency / stiffness
+            if (1.0 - ratio) ** 2 + loss**2 <= 4.0 * least:
+                given = " and ".join(f"{damper} = {dampers[damper]!r} N s/m" for damper in dampers)
+                natural = math.sqrt(stiffness / mass)
+                raise InputError(
+                    f"frequency = {frequency!r} rad/s (eta = {self.eta(structure)!r}): the natural "
+                    f"frequency of {name}, {natural!r} rad/s, with {given}; expected "
+                    f"{' + '.join(dampers)} > 0, or a frequency further than 1e-6 of it away"
+                )
+
     def replace(self, **changes: float) -> Excitation:
         """An excitation that differs in some of its numbers."""
         return dataclasses.replace(self, **changes)
@@ -103,3 +139,12 @@ class Excitation:
             "box_frequency": self.frequency,
             "phase_start": self.phase,
         }
+
+
+def oscillators(structure: Structure) -> Iterator[tuple[str, float, float, dict[str, float]]]:
+    """Name, stiffness, mass and dampers of what moves by itself: each mass, and both together."""
+    s = structure
+    if not s.bonded:
+        yield "mass 1", s.k1, s.m1, {"d1": s.d1}
+        yield "mass 2", s.k2, s.m2, {"d2": s.d2}
+    yield "both masses together", s.k1 + s.k2, s.m1 + s.m2, {"d1": s.d1, "d2": s.d2}

@@ -358,8 +358,10 @@ def test_no_scheduler(ask, tmp_path, monkeypatch):
     assert list((tmp_path / "results").glob("*.nc")) == []
 
 
-def test_undamped_resonance_is_a_failure_not_a_mistake(ask):
-    ask("sweep", "--eta", "1", "--set", "D=0", *QUICK).complaint("natural frequency", code=1)
+@pytest.mark.parametrize("asked", [("--eta", "0.9,1"), ("--frequency", "1", "--amplitude", "1")])
+def test_undamped_resonance_is_seen_before_the_sweep(ask, tmp_path, asked):
+    ask("sweep", *asked, "--set", "D=0", *QUICK).complaint("frequency = 1.0 rad/s", "d1 = 0.0")
+    assert list(tmp_path.rglob("*.nc*")) == []
 
 
 def test_what_a_file_says_is_shown_in_one_line(ask, tmp_path):

@@ -9,8 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator import stepper
 from orchestrate.errors import InputError
 from orchestrate.structures import Excitation, Structure
+from tests.kernels.oscillator.kernel import unstarted
 
 from .strategies import EXCITATIONS, STRUCTURES
 
@@ -56,6 +59,25 @@ def test_frozen_and_replaced():
     with pytest.raises(dataclasses.FrozenInstanceError):
         excitation.phase = 1.0
     assert excitation.replace(phase=1.0) == Excitation(frequency=2.0, amplitude=1.0, phase=1.0)
+
+
+@pytest.mark.parametrize("natural", [1.0, math.sqrt(1.2), math.sqrt(1.1)])
+@pytest.mark.parametrize("detuning", [0.0, 0.9e-6, 1.1e-6])
+@pytest.mark.parametrize("damping", [0.0, 0.9e-6, 1.1e-6])
+def test_resonance_without_damping_is_refused_as_the_kernel_does(natural, detuning, damping):
+    structure = Structure.nondimensional(D=damping * natural)
+    excitation = Excitation(frequency=natural * (1.0 + detuning), amplitude=0.5)
+    numbers = {**structure.parameters(), **excitation.inputs()}
+    code = stepper.initialize(unstarted(**numbers), 0.0)
+    assert (code in (at.RESONANCE_1, at.RESONANCE_2, at.RESONANCE_3)) == (code != at.OK)
+    try:
+        excitation.check(structure)
+    except InputError as error:
+        assert code != at.OK
+        assert f"frequency = {excitation.frequency!r} rad/s" in str(error)
+    else:
+        assert code == at.OK
+    excitation.replace(amplitude=0.0).check(structure)
 
 
 @pytest.mark.parametrize(
