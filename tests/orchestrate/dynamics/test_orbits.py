@@ -221,7 +221,7 @@ def test_the_call_told_asks_it_again(guessed):
         ({"eta": 4.0, "period": 1, "guess": {"time": [1.0]}}, "guess"),
         ({"eta": 4.0, "guess": {"impact_time": [0.1, 9.0]}}, "impact_time"),
         ({"eta": 4.0, "guess": (0.0, -1.0, 0.0, 0.0)}, "guess"),
-        ({"eta": 1.0, "structure": PAPER.replace(D=0.0)}, "undamped resonance of mass 1"),
+        ({"eta": 1.0, "structure": PAPER.replace(D=0.0)}, "natural frequency of mass 1"),
         ({"eta": 1.0, "structure": PAPER.as_bonded()}, "bonded"),
         ({"eta": 1.0, "structure": 7}, "structure = 7"),
     ],
