@@ -40,7 +40,7 @@ typedef struct { const char *fixed; double value; const char *input; double bad,
 
 #ifdef MOTOR_SHAKER
 static const BadStart BAD_START = {"unbalance_mass", 1e3, 0.025, "rotor_inertia"};
-static const BadStep BAD_STEPS[] = {{"motor_constant", 0.06, "voltage", 1e30, 4.0, 1e30, "voltage = 1e+30 V", "expected"}};
+static const BadStep BAD_STEPS[] = {{"motor_constant", 0.06, "voltage", 1e30, 4.0, 1.0, "voltage = 1e+30 V", "expected"}};
 #else
 static const BadStart BAD_START = {"x1_start", 1.0, -1.0, "x2_start"}; /* beyond x2_start */
 static const BadStep BAD_STEPS[] = {
