@@ -49,9 +49,9 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
 DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them
     "fmpy": "orchestrate/access/",
-    "matplotlib": "orchestrate/figures/",
+    "matplotlib": ("orchestrate/figures/", "tools/trust/"),
     "loky": "orchestrate/running/",
-    "distributed": "orchestrate/running/",
+    "distributed": ("orchestrate/running/", "tools/trust/"),
     "sqlite3": "orchestrate/running/",
     "tqdm": "orchestrate/running/",
     "argparse": ("orchestrate/cli/", "tools/"),
