@@ -74,7 +74,7 @@ def process_folder() -> Path:
     pid = os.getpid()
     folder = _folders.get(pid)
     if folder is None or not folder.is_dir():
-        remove_leftovers(Path(tempfile.gettempdir()))
+        remove_leftovers()
         folder = _folders[pid] = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{pid}-"))
         atexit.register(remove, folder, pid)
     return folder
@@ -86,9 +86,9 @@ def remove(folder: Path, pid: int) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def remove_leftovers(parent: Path) -> None:
+def remove_leftovers() -> None:
     """Remove this user's folders whose processes are gone: killed ones do not clean up."""
-    for folder in parent.glob(f"{PREFIX}*"):
+    for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
         match = re.match(rf"{PREFIX}(\d+)-", folder.name)
         with contextlib.suppress(OSError):
             if match and is_mine(folder) and not alive(int(match[1])):

@@ -132,6 +132,9 @@ def carry_out(arguments: Sequence[str]) -> int:
         chosen.run(chosen)
         return SUCCESS
     except KeyboardInterrupt as ended:
+        from ..access.unpacked import remove_leftovers
+
+        remove_leftovers()  # of workers that were ended in the middle of a chunk
         terminated = isinstance(ended, Terminated)
         tell(f"{'terminated' if terminated else 'interrupted'}: {KEPT}")
         return TERMINATED if terminated else INTERRUPTED
