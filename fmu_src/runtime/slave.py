@@ -56,7 +56,10 @@ def state_problem(variable: Variable, value: float) -> str:
     problem = variable.problem(value)
     if problem or variable.type == REAL:
         return problem
-    fits = value in (0.0, 1.0) if variable.type == BOOLEAN else value == int(value)
+    if variable.type == BOOLEAN:
+        fits = value in (0.0, 1.0)
+    else:  # FMI's integers have 32 bits
+        fits = abs(value) < 2.0**31 and value == int(value)
     return "" if fits else f"{variable.name} = {value!r}: expected {variable.range_text()}"
 
 

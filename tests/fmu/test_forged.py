@@ -65,6 +65,7 @@ def test_every_slot_forged(form, model, tmp_path):
         (oscillator.K1, -1.0, "k1 = -1.0"),
         (oscillator.BONDED, 0.5, "bonded = 0.5"),
         (oscillator.IMPACT_COUNT, 0.5, "impact_count = 0.5"),
+        (oscillator.IMPACT_COUNT, 1e18, "impact_count = 1"),  # beyond FMI's integers
         (oscillator.X1, float("nan"), "x1 = nan"),
         (oscillator.MODE, 7.0, "7.0 in slot"),
         (oscillator.MODE, 7.0, "0 in flight, 1 in permanent contact, 2 where bonded"),

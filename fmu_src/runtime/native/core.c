@@ -322,7 +322,7 @@ static bool unpack(State *state, const char *bytes, size_t size) {
 /* Whether a variable may have a value at all, whoever set or calculated it. */
 static bool is_value(const Variable *variable, double value) {
     if (variable->type == BOOLEAN) return value == 0 || value == 1;
-    return in_range(variable, value) && (variable->type == REAL || value == floor(value));
+    return in_range(variable, value) && (variable->type == REAL || (value == floor(value) && fabs(value) < 2147483648.0));
 }
 
 static Status restored(Instance *instance, const char *call, State *state) {
