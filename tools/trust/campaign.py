@@ -7,6 +7,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import sys
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -137,7 +138,8 @@ class CampaignJob(Job):
         for seed, count in items:
             clock = processor_time()
             found = campaign.run(fmus[OSCILLATOR], seed, count)
-            told = json.dumps({"counts": dict(found.counts), "notes": found.notes[:TOLD]})
+            notes = [without_places(note) for note in found.notes[:TOLD]]
+            told = json.dumps({"counts": dict(found.counts), "notes": notes})
             seconds = processor_time() - clock
             rows.append((found.done, found.findings, found.worst, seconds, seed, told))
         names = ("done", "findings", "worst", "seconds", "seed", "told")
@@ -161,6 +163,13 @@ class CampaignJob(Job):
                 for name, (unit, text) in about.items()
             }
         )
+
+
+def without_places(note: str) -> str:
+    """A note for a record: where things lie on this machine is nobody else's matter."""
+    for folder in (HERE.parents[1], Path(sys.prefix), Path.home()):
+        note = note.replace(f"{folder}{os.sep}", "")
+    return note
 
 
 def processor_time() -> float:

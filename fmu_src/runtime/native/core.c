@@ -259,6 +259,11 @@ const Variable *find(Instance *instance, const char *call, unsigned reference, T
     return NULL;
 }
 
+/* Whether a number is one of FMI's integers, of 32 bits; without the mathematical library. */
+static bool is_whole(double value) {
+    return fabs(value) < 2147483648.0 && (double)(int32_t)value == value;
+}
+
 static bool in_range(const Variable *variable, double value) {
     return variable->type == BOOLEAN || (isfinite(value) && value >= variable->minimum && value <= variable->maximum);
 }
@@ -322,7 +327,7 @@ static bool unpack(State *state, const char *bytes, size_t size) {
 /* Whether a variable may have a value at all, whoever set or calculated it. */
 static bool is_value(const Variable *variable, double value) {
     if (variable->type == BOOLEAN) return value == 0 || value == 1;
-    return in_range(variable, value) && (variable->type == REAL || (value == floor(value) && fabs(value) < 2147483648.0));
+    return in_range(variable, value) && (variable->type == REAL || is_whole(value));
 }
 
 static Status restored(Instance *instance, const char *call, State *state) {

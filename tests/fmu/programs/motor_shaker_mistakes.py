@@ -23,7 +23,7 @@ MISTAKES = [
     ),
     (lambda f: f.start().step(-1.0), ["communicationStepSize = -1.0 s", "expected"]),
     (
-        lambda f: f.start(box_force=1e30, box_force_3=1e30).step(1e80),
+        lambda f: f.start(voltage=1e30).step(1.0),
         ["range of floating-point numbers"],
     ),
 ]
