@@ -13,6 +13,7 @@ module                idea
 :mod:`.begin`         how a motion begins, and its states at equal times
 :mod:`.channel`       fast calls on one instance, for co-simulation masters
 :mod:`.c_library`     C sources of the package compiled, and found
+:mod:`.webassembly`   the kernels for web pages: the same
 ====================  =============================================================================
 """
 
@@ -24,6 +25,7 @@ from .events import STATE, EventInstance, Impacts
 from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, up_to_date
 from .instance import Instance
 from .models import OSCILLATOR, SHAKER
+from .webassembly import build_web_kernels
 
 __all__ = [
     "FORMS",
@@ -41,6 +43,7 @@ __all__ = [
     "begin",
     "build",
     "build_libraries",
+    "build_web_kernels",
     "describe",
     "find",
     "finder",

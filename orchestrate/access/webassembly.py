@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -14,8 +15,9 @@ from fmu_src.export.sources import model_sources
 
 from ..errors import InputError
 from ..files import open_folder, write_whole
-from .exported import SHIPPED, check, default_folder, log
+from .exported import SHIPPED, check, default_folder
 
+log = logging.getLogger(__name__)
 FORM = "wasm"
 
 
@@ -75,7 +77,34 @@ def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKern
         module = path.read_bytes() if path.is_file() else b""
         if sources.guid_inside(module) == wanted:
             return WebKernel(module, *tables, wanted)
-    return WebKernel(compiled(model, places[0]), *tables, wanted)
+    try:
+        path = compiled(model, places[0])
+    except CannotExport as reason:
+        text = f"{model}.wasm: there is none of the present sources, and none can be made here"
+        raise InputError(f"{text}: {reason}") from None
+    return WebKernel(path.read_bytes(), *tables, wanted)
+
+
+def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
+    """Compile the kernels of all models for web pages; they are left out where they cannot be made.
+
+    Parameters
+    ----------
+    folder : path-like, optional
+        As of :func:`.exported.build`.
+
+    Returns
+    -------
+    list of Path
+        The modules written.
+    """
+    target, made = default_folder() if folder is None else Path(folder), []
+    for model in MODELS:
+        try:
+            made.append(compiled(model, target))
+        except CannotExport as reason:
+            log.warning("%s.wasm left out: %s", model, reason)
+    return made
 
 
 def kernel_digest(model: str) -> str:
@@ -90,14 +119,11 @@ def kernel_digest(model: str) -> str:
     return fingerprint({name: files[name] for name in files if name.startswith("kernels/")})
 
 
-def compiled(model: str, folder: Path) -> bytes:
-    """Compile a model's kernel and keep it in ``folder/wasm/NAME.wasm``."""
-    path = open_folder(folder / FORM) / f"{model}.wasm"
+def compiled(model: str, folder: Path) -> Path:
+    """Compile a model's kernel to ``folder/wasm/NAME.wasm``, whole or not at all."""
+    path = folder / FORM / f"{model}.wasm"
     log.info("compiling %s: takes up to a minute", path)
-    try:
-        module = sources.export(MODELS[model])
-    except CannotExport as reason:
-        text = f"{model}.wasm: there is none of the present sources, and none can be made here"
-        raise InputError(f"{text}: {reason}") from None
+    module = sources.export(MODELS[model])
+    open_folder(path.parent)
     write_whole(path, lambda place: place.write_bytes(module))
-    return module
+    return path

@@ -16,7 +16,10 @@ EXAMPLES = """  {program} build
 
 def add_parser(commands: Commands) -> None:
     """Declare the command."""
-    text = "export the FMUs, each form with the same variables and numbers, and compile the master"
+    text = (
+        "export the FMUs, each form with the same variables and numbers, and compile the master "
+        "and the explorer's kernels"
+    )
     parser = commands.add("build", run, text, EXAMPLES)
     parser.add_argument(
         "--folder",
@@ -40,7 +43,7 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
-    from ..access import FORMS, PLAIN_FORMS, build, build_libraries
+    from ..access import FORMS, PLAIN_FORMS, build, build_libraries, build_web_kernels
 
     if arguments.folder is not None:
         check_output(arguments.folder, "--folder")
@@ -49,5 +52,6 @@ def run(arguments: argparse.Namespace) -> None:
     made = build(arguments.folder, forms, platforms=platforms)
     if not arguments.plain:
         made += build_libraries(arguments.folder, platforms)
+        made += build_web_kernels(arguments.folder)
     for path in made:
         print(f"{path}  {path.stat().st_size / 1024:.0f} kB")

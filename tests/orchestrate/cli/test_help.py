@@ -104,9 +104,9 @@ def test_build(capsys, tmp_path, monkeypatch):
     (tmp_path / "folder").write_text("mine")
     code = cli.main(["build", "--folder", str(tmp_path / "folder")])
     assert code == 2 and "expected a folder that can be written" in capsys.readouterr().err
-    for made in ("build", "build_libraries"):
+    for made in ("build", "build_libraries", "build_web_kernels"):
         monkeypatch.setattr(
             f"orchestrate.access.{made}", lambda folder, *_, **__: [tmp_path / "folder"]
         )
     assert cli.main(["build"]) == 0
-    assert capsys.readouterr().out == f"{tmp_path / 'folder'}  0 kB\n" * 2
+    assert capsys.readouterr().out == f"{tmp_path / 'folder'}  0 kB\n" * 3
