@@ -5,13 +5,14 @@ What is computed is stored, so nothing that happens to the output may end a run.
 
 from __future__ import annotations
 
+import functools
 import io
 import os
 import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
@@ -108,7 +109,7 @@ def signals() -> Iterator[None]:
     for number in taken:
         signal.signal(number, end_soon)
     before = sys.unraisablehook
-    sys.unraisablehook = send_again
+    sys.unraisablehook = functools.partial(send_again, before)
     try:
         yield
     finally:
@@ -117,13 +118,20 @@ def signals() -> Iterator[None]:
             signal.signal(number, usual[number])
 
 
-def send_again(lost: sys.UnraisableHookArgs) -> None:
-    """A signal that came in a callback, where Python drops its exception, comes once more."""
+def send_again(otherwise: Callable[[Any], object], lost: sys.UnraisableHookArgs) -> None:
+    """A signal that came in a callback, where Python drops its exception, comes once more.
+
+    Parameters
+    ----------
+    otherwise : callable
+        The hook for all other exceptions.
+    lost : sys.UnraisableHookArgs
+    """
     if issubclass(lost.exc_type, KeyboardInterrupt):
         number = signal.SIGTERM if issubclass(lost.exc_type, Terminated) else signal.SIGINT
         threading.Timer(0.05, os.kill, (os.getpid(), number)).start()
     else:
-        sys.__unraisablehook__(lost)
+        otherwise(lost)
 
 
 def end_soon(number: int, _: FrameType | None) -> None:

@@ -6,12 +6,14 @@ import io
 import os
 import random
 import signal
+import subprocess
 import sys
 import time
+import weakref
 
 import pytest
 
-from orchestrate.cli import main
+from orchestrate.cli import main, process
 from orchestrate.cli.options import plain_float, plain_int
 from orchestrate.cli.process import Unfailing
 from tests.faults import Surroundings
@@ -156,3 +158,48 @@ def test_paper_ends_on_ctrl_c(commands):
         process.communicate(timeout=40.0)
         assert all_end(started)
         assert list(commands.temporary.iterdir()) == []
+
+
+IN_A_CALLBACK = """
+import signal, sys, time, weakref
+from orchestrate import cli
+
+class Thing:
+    pass
+
+def run(_):
+    thing = Thing()
+    kept = weakref.ref(thing, lambda _: signal.raise_signal(signal.{signal}))
+    del thing
+    time.sleep(10)
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background
+cli.sweep.run = run
+sys.exit(cli.main(["sweep"]))
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "word"), [("SIGINT", 130, "interrupted"), ("SIGTERM", 143, "terminated")]
+)
+def test_a_signal_in_a_callback_ends_the_command(name, code, word):
+    """There Python drops what a signal raises, and goes on."""
+    script = IN_A_CALLBACK.format(signal=name)
+    begun = time.monotonic()
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
+    assert time.monotonic() - begun < 9.0
+    assert (done.returncode, done.stdout) == (code, "")
+    assert done.stderr.startswith(f"{word}: ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_other_exceptions_of_callbacks_reach_the_hook_that_was_there(monkeypatch):
+    told = []
+    monkeypatch.setattr(sys, "unraisablehook", told.append)
+    with process.signals():
+        thing = {0}
+        kept = weakref.ref(thing, lambda _: 1 / 0)
+        del thing
+    assert [lost.exc_type for lost in told] == [ZeroDivisionError]
+    assert kept() is None
+    assert sys.unraisablehook == told.append
