@@ -24,6 +24,7 @@ from .response import displacement, set_free
 from .roots import INFINITE, accuracy, clear_from_node, step_from
 from .series import series_order, set_series, short_flight, taylor
 
+FAINTEST = 2e-292  # m, about 2 to the -969: the last digits of less are below the normal numbers
 
 def state_at(m, tau):
     """Displacements and velocities ``tau`` after the state's start, (10).
@@ -308,6 +309,8 @@ def end_state(m):
     """Carry out the end of the present state and begin the next one."""
     m[at.WORK] += 1.0
     x1, v1, x2, v2 = state_at_end(m)
+    if has_died_away(m, x1, v1, x2, v2):
+        x1 = v1 = x2 = v2 = 0.0
     move_to_end(m)
     event = m[at.END_KIND] == at.END_EVENT
     if event and m[at.MODE] == at.FLIGHT:
@@ -315,3 +318,14 @@ def end_state(m):
         begin(m, x, v1, x, v2, 0)
     else:
         begin(m, x1, v1, x2, v2, 1 if event else 0)
+
+
+def has_died_away(m, x1, v1, x2, v2):
+    """Whether a motion that nothing drives is too small for its digits: it is at rest then.
+
+    An undriven motion may decay for ever. Among the subnormal numbers no walk would end: what
+    rounding takes there is as large as the motion.
+    """
+    if m[at.FORCING] != 0.0 or m[at.CUBIC_PRESENT] != 0.0:
+        return False
+    return max(abs(x1), abs(v1)) < FAINTEST and max(abs(x2), abs(v2)) < FAINTEST

@@ -4,6 +4,7 @@ that always move together.
 
 import math
 from fractions import Fraction
+from unittest.mock import patch
 
 import mpmath as mp
 import numpy as np
@@ -12,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.motion import move_origin, state_at
+from fmu_src.kernels.oscillator import stepper
+from fmu_src.kernels.oscillator.motion import FAINTEST, move_origin, state_at
 
 from . import reference, truth
 from .kernel import DEFAULTS, advanced, examples, least_work, pieces, started
@@ -242,3 +244,25 @@ def test_oscillators_equal_up_to_rounding_move_together(m1, k1, factor):
     for i in range(1, 50):
         advanced(m, 2.0 * i)
         assert m[at.X_REL_MAX] == m[at.IMPACT_COUNT] == 0.0
+
+
+STEEP = {"m2": 1.3, "k2": 9.3, "d1": 0.0, "d2": 79.0, "e": 0.2, "gamma": 1e-6}
+
+
+def test_a_motion_that_decays_for_ever_comes_to_rest():
+    """Impacts take some of it in each period; nothing drives it, and its digits end."""
+    m = started(**STEEP, box_amplitude=0.0, x1_start=-0.3, v1_start=-0.3)
+    with patch.multiple(stepper, WORK_BASE=1e5, WORK_RATE=0.0):
+        advanced(m, 20_000.0)
+    assert [m[slot] for slot in (at.X1, at.V1, at.X2, at.V2, at.X_REL)] == [0.0] * 5
+    assert m[at.IMPACT_COUNT] > 1000.0
+
+
+@pytest.mark.parametrize("box_amplitude", [1e-280, 1.0])
+def test_a_driven_motion_never_does(box_amplitude):
+    """However small: the same motion as a large one's, but for its last digits."""
+    begun = {"x1_start": -0.3 * box_amplitude, "v1_start": -0.3 * box_amplitude}
+    m = advanced(started(box_amplitude=box_amplitude, d1=0.05, **begun), 300.0)
+    assert abs(m[at.X1]) > 1e-3 * box_amplitude
+    smallest = started(box_amplitude=FAINTEST / 1024.0, d1=0.05)
+    assert advanced(smallest, 300.0)[at.X1] != 0.0

@@ -148,7 +148,7 @@ def agree(found, expected, signal, horizon):
     slope = abs(float(signal.derivative()(expected)))
     return (
         found is not None
-        and abs(found - float(expected)) <= 1e-15 * (1.0 + found) + 1e-14 * terms / slope
+        and abs(found - float(expected)) <= 1e-15 * (1.0 + found) + truth.ROUNDING * terms / slope
     )
 
 

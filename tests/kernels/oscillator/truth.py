@@ -10,6 +10,11 @@ import numpy as np
 
 mp.mp.dps = 50
 
+# Of the sum of a motion's terms: what rounding may take in the kernel. A pair is rotated 32 times
+# at most before it is made anew, each time with two products, a sum and a constant that is rounded
+# itself; a few more for the sum.
+ROUNDING = 1.5e-14
+
 
 class Signal:
     """``Re sum c_k e^{s_k t} + sum p_k t^k / k!``."""
