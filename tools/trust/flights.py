@@ -108,7 +108,7 @@ class Impacts(Campaign):
     asks = (
         "The time of an impact is right. The flights of *Missed roots* again, each one's end "
         "compared with the root of the gap in 50 digits (mpmath, Newton's law, no formula of the "
-        "kernel). The bound: 1e-15 (1 + t) + 1.5e-14 S/|v|, where S is the sum of the terms of both "
+        "kernel). The bound: 1e-15 (1 + t) + 1.5e-14 S/|v|, S being the sum of the terms of both "
         "displacements and v the closing speed. That is what rounding allows: a free part is "
         "rotated 32 times at most before it is made anew, four roundings of 1.1e-16 each time. "
         "For a flight without an impact the gap at its end is positive."

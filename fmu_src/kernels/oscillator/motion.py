@@ -26,6 +26,7 @@ from .series import series_order, set_series, short_flight, taylor
 
 FAINTEST = 2e-292  # m, about 2 to the -969: the last digits of less are below the normal numbers
 
+
 def state_at(m, tau):
     """Displacements and velocities ``tau`` after the state's start, (10).
 

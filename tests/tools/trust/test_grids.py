@@ -35,7 +35,9 @@ def test_sets_finish_with_the_same_bits_on_every_grid(entries):
 
 
 # of seed 1: each did not finish on all or some of its grids, or was refused on some
-@pytest.mark.parametrize("number", [62, 675, 732, 804, 830, 877, 902, 1130, 2077, 4897, 5725, 7373, 8873])
+@pytest.mark.parametrize(
+    "number", [62, 675, 732, 804, 830, 877, 902, 1130, 2077, 4897, 5725, 7373, 8873]
+)
 def test_sets_that_once_did_not(entries, number):
     assert complaints(entries, 1, number, number + 1) == {}
 
