@@ -2,7 +2,8 @@
 
 A ramp's jump comes late, about as rate^(2/3): so it is where a fold is passed at a finite rate. The
 time that the speed then takes on its way makes a term that grows as the rate itself. Both are
-fitted to the voltages; at rate 0 is the voltage of the fold.
+fitted to the voltages; at rate 0 is the voltage of the fold. Of the bonded structure that is known,
+by the averaged theory: what its ramps miss, those of the delaminated one may miss as well.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
+from . import averaged
 from .couple import checked_motor, couple_job, schedule_of, scheme_of
 from .master import Scheme
 from .schedule import Ramp, Schedule
@@ -50,10 +52,11 @@ def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
     Returns
     -------
     voltage, error : float
-            NaN with fewer than two jumps; the error NaN with two, which a line in rate^(2/3) always
+        NaN with fewer than two jumps; the error NaN with two, which a line in rate^(2/3) always
         meets. From three on the term in the rate is fitted too. The error has two parts: what the
         scatter makes of it, from four jumps on, and half of what the term in the rate changes,
-        since that is not the last term of the law.
+        since that is not the last term of the law. (It may change nothing because the next one
+        cancels it at these rates: such an error is too small.)
 
     Examples
     --------
@@ -142,6 +145,7 @@ class JumpVoltagesJob(Job):
                 for kind in range(len(KINDS))
             ]
         )
+        ends[..., 1] = np.hypot(ends[..., 1], self.missed(ends[0, :, 0]))
         every, each = ("rate", "structure", "jump"), ("structure", "jump")
         late = "voltage at which the speed jumps on the ramp"
         before = "mean speed where it leaves its branch"
@@ -161,6 +165,18 @@ class JumpVoltagesJob(Job):
             "jump": ("jump", list(WAYS), {"long_name": "direction in which the speed jumps"}),
         }
         return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
+
+    def missed(self, bonded: np.ndarray) -> np.ndarray:
+        """How far jumps of the bonded structure at rate 0, up and down, are from their folds, V.
+
+        0 where there is no jump, or the averaged theory has no folds.
+        """
+        folds = averaged.folds(self.structure.as_bonded(), self.drive)
+        if not folds:
+            return np.zeros(len(WAYS))
+        volts = self.drive.volts(self.structure)
+        known = [volts * fold.eta0 for fold in (folds[0], folds[-1])]
+        return np.nan_to_num(np.abs(np.abs(bonded) - known))
 
 
 def jump_voltages(
@@ -205,6 +221,13 @@ def jump_voltages(
     ------
     InputError
         Where an argument is not what is expected.
+
+    Notes
+    -----
+    Voltages are fitted with a constant and terms in rate^(2/3) and in the rate. The error is made
+    of the scatter around the fit, half of what the last term changes, and how far the ramps of the
+    bonded structure end from the folds of the averaged theory: the delaminated one's lag nearly
+    as much. A slow loss of stability, which a ramp does not see, is not in it.
 
     Examples
     --------
