@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
 from ..structures import Excitation, Structure
 
 Floats = NDArray[np.float64]
@@ -73,8 +72,9 @@ class ClosedForm:
         Raises
         ------
         InputError
-            At an undamped resonance, where there is no steady motion.
+            On a natural frequency with no damping, or next to none, as the FMU.
         """
+        excitation.check(structure)
         omega, m1, m2 = structure.omega, structure.m1, structure.m2
         both, springs = m1 + m2, structure.k1 + structure.k2
         unit = omega * omega
@@ -87,11 +87,6 @@ class ClosedForm:
         stiffness[0] = 1.0
         detuning, loss = stiffness - eta * eta, 2.0 * damping * eta
         reach = detuning**2 + loss**2
-        if not reach.all():
-            which = ("mass 1", "mass 2", "both masses together")[int(reach.argmin())]
-            raise InputError(
-                f"eta = {eta!r}: the undamped resonance of {which}; expected damping or another eta"
-            )
         push = -box_acceleration / (excitation.amplitude * excitation.frequency**2)
         return cls(
             eta=eta,
