@@ -30,6 +30,13 @@ SETTINGS = {
     "NUMBA_CACHE_DIR": os.devnull,
 }
 SQRT = "declare double @llvm.sqrt.f64(double)"
+LLVM_OPTIONS = (
+    # two numbers side by side only where that saves much: LLVM does not count what moving them
+    # there and back costs
+    "-slp-threshold=24",
+    # a loop for each mode of the state, not a question in every turn of one
+    "-unswitch-threshold=200",
+)
 
 
 @functools.cache
@@ -97,7 +104,18 @@ def entry_ir(entry: Any, size: int) -> tuple[str, str]:
     double = numba.types.float64
     signature = numba.types.int32(numba.types.CPointer(double), double)
     compiled = numba.cfunc(signature, error_model="numpy")(c_entry)
-    return compiled.inspect_llvm(), compiled.native_name
+    return with_known_memory(compiled.inspect_llvm(), size), compiled.native_name
+
+
+def with_known_memory(ir: str, size: int) -> str:
+    """IR that says of every function's flat memory what Numba leaves out: all of it is there, and
+    nothing else the function is given lies in it.
+
+    So constants are read once before a loop, and a choice of two slots needs no branch.
+    """
+    known = f"noalias nonnull align 8 dereferenceable({8 * size}) "
+    parameter = re.compile(r"(?=%arg\.(?:m\.4|pointer)\b)")  # the data of the array m; a C entry's
+    return re.sub(r"^define .*$", lambda line: parameter.sub(known, line[0]), ir, flags=re.M)
 
 
 def with_intrinsic_sqrt(ir: str) -> str:
@@ -134,10 +152,20 @@ def link_ir(entries: Mapping[str, tuple[str, str]]) -> Any:
     return module
 
 
+@functools.cache
+def set_options() -> None:
+    """LLVM's own options, which a process can set once."""
+    import llvmlite.binding as llvm
+
+    for option in LLVM_OPTIONS:
+        llvm.set_option("vibroimpact", option)
+
+
 def optimised(text: str, platform: Platform) -> tuple[Any, Any]:
     """LLVM's target machine and the module optimised for its baseline processor."""
     import llvmlite.binding as llvm
 
+    set_options()
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     target = llvm.Target.from_triple(platform.triple)
