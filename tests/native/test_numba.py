@@ -54,6 +54,25 @@ def test_kernel_has_no_instruction_beyond_the_baseline(kernel_objects, tmp_path)
     assert {line.split()[-1] for line in symbols.splitlines() if "*UND*" in line} <= {"memset"}
 
 
+def test_every_function_is_told_of_its_memory():
+    """Where a new Numba names parameters otherwise, the kernel would be slower without a word."""
+    numba = pytest.importorskip("numba")
+
+    @numba.njit(error_model="numpy")
+    def below(m, i):  # calls itself, so that it stays a function
+        return m[0] if i < 1.0 else m[int(i)] + 0.5 * below(m, i - 1.0)
+
+    @numba.njit(error_model="numpy")
+    def entry(m, time):
+        m[1] = below(m, time)
+        return 0
+
+    ir, _ = compile_kernel.entry_ir(entry, 7)
+    told = {line for line in ir.splitlines() if "dereferenceable(56)" in line}
+    for name in ("c_entry", "below"):
+        assert [line for line in told if line.startswith("define") and name in line], name
+
+
 def test_a_kernel_that_needs_the_runtime_of_numba_is_refused():
     """What a new Numba would most likely do."""
     with pytest.raises(CannotExport, match="by this version of Numba needs NRT_MemInfo_alloc"):
