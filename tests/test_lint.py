@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from importlib import metadata
 
 import pytest
 
@@ -18,9 +17,8 @@ COMMANDS = {
 @pytest.mark.parametrize("name", COMMANDS)
 def test_finds_nothing(name, tmp_path):
     """Nothing is written into the tree, so that runs side by side do not meet."""
-    numpy = tuple(map(int, metadata.version("numpy").split(".")[:2]))
-    if name == "mypy" and numpy >= (2, 5):
-        pytest.skip("NumPy 2.5's annotations refuse max() and argmin() of arrays in 26 places")
+    if name == "mypy" and sys.version_info < (3, 11):
+        pytest.skip("the last NumPy for Python 3.10 has other types")
     cache = [str(tmp_path)] if name == "mypy" else []
     command = [sys.executable, "-m", *COMMANDS[name], *cache]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
