@@ -6,6 +6,7 @@ Processes are loky's: they start without running the caller's script again, so a
 
 from __future__ import annotations
 
+import asyncio
 import functools
 import hashlib
 import logging
@@ -18,16 +19,20 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from multiprocessing import resource_tracker
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 from ..errors import InputError, WorkerError
 from .identity import changed, code_of
 from .job import Job, Table, last_entries
 
-DASK = ("distributed.client", "distributed.core", "distributed.utils", "tornado.application")
+DASK = (
+    *("distributed.batched", "distributed.client", "distributed.comm.core", "distributed.comm.tcp"),
+    *("distributed.core", "distributed.utils", "distributed.utils_comm", "tornado.application"),
+)
+CONNECTION = (OSError, CancelledError, asyncio.CancelledError, asyncio.TimeoutError)
 IDLE = 30  # s that processes wait for another question
 CONNECT = "5s"
 RETRIES = 3  # a chunk whose worker is lost is computed by others
@@ -105,6 +110,10 @@ class Workers(Protocol):
     def remote(self) -> bool:
         """Whether they share no disk with this process."""
 
+    @property
+    def losses(self) -> Mapping[type[BaseException], str]:
+        """Exceptions by which it shows that they are lost, and what has happened then."""
+
     def room(self) -> int:
         """Chunks worth having under way."""
 
@@ -116,6 +125,7 @@ class Here(Executor):
     """A call is carried out by this process, when it is submitted."""
 
     remote = False
+    losses: ClassVar[Mapping[type[BaseException], str]] = {}
 
     @property
     def executor(self) -> Executor:
@@ -140,6 +150,9 @@ class Processes:
     """Processes of this machine."""
 
     remote = False
+    losses: ClassVar[Mapping[type[BaseException], str]] = {
+        BrokenProcessPool: "a worker process ended without a word (killed, or out of memory)"
+    }
 
     def __init__(self, count: int) -> None:
         import loky
@@ -209,69 +222,117 @@ def attend(parent: int) -> None:
 def is_no_lost_connection(record: logging.LogRecord) -> bool:
     """Whether a line of Dask's log stays: a lost connection is an exception of ours already."""
     kind = record.exc_info[0] if record.exc_info else None
-    closed = kind is not None and issubclass(kind, OSError)  # Dask's CommClosedError is one
-    return not closed and "CommClosedError" not in record.getMessage()
+    lost = kind is not None and issubclass(kind, CONNECTION)
+    told = record.getMessage()
+    return not lost and "CommClosedError" not in told and not told.startswith("Failed to reconnect")
 
 
 class Cluster:
-    """Workers of a Dask scheduler."""
+    """Workers of a Dask scheduler.
+
+    Parameters
+    ----------
+    address : str
+
+    Raises
+    ------
+    InputError
+        Where no scheduler answers there, or it has no workers.
+    WorkerError
+        Where it ends while it is asked.
+    """
 
     remote = True
 
     def __init__(self, address: str) -> None:
         try:
-            from distributed import Client
+            from distributed import Client, KilledWorker
         except ImportError:
             raise InputError(
                 'cluster: needs Dask; pip install "vibroimpact[cluster]" brings it'
             ) from None
+        self.losses: Mapping[type[BaseException], str] = {
+            CancelledError: "the scheduler of the cluster has ended",
+            KilledWorker: "workers of the cluster ended without a word (killed, or out of memory)",
+        }
         for name in DASK:
             logging.getLogger(name).addFilter(is_no_lost_connection)
         connect: Any = Client
         try:
             self._client = connect(address, timeout=CONNECT, set_as_default=False)
-        except (OSError, ValueError, TypeError) as error:
+        except Exception as error:  # of whatever answers there, and however
             raise InputError(
                 f"cluster {address}: no scheduler answers there ({error}); "
                 "`dask scheduler` starts one"
             ) from None
-        if not self._client.ncores():
-            self._client.close()
-            raise InputError(
-                f"cluster {address}: the scheduler has no workers; "
-                f"`dask worker {address} --nthreads 1` starts one"
-            )
-        self.executor: Executor = self._client.get_executor(pure=False, retries=RETRIES)
+        self.executor: Executor = Submitting(
+            self._client.get_executor(pure=False, retries=RETRIES), self._client
+        )
+        with ended_at_once(self):
+            if not self._cores():
+                raise InputError(
+                    f"cluster {address}: the scheduler has no workers; "
+                    f"`dask worker {address} --nthreads 1` starts one"
+                )
+
+    def _cores(self) -> int:
+        """Cores of all workers."""
+        try:
+            return int(sum(self._client.ncores().values()))
+        except Exception as error:  # one of many, where the connection is lost
+            raise CancelledError from error
 
     def room(self) -> int:
         """Two chunks for each core; workers may come and go."""
-        return 2 * max(1, int(sum(self._client.ncores().values())))
+        return 2 * max(1, self._cores())
 
     def close(self, in_haste: bool) -> None:
-        """Leave the scheduler; what it still computes for us is cancelled."""
-        self.executor.shutdown(wait=not in_haste)
-        self._client.close()
+        """Leave the scheduler, where it is there; what it still computes for us is cancelled."""
+        with suppress(Exception):
+            self.executor.shutdown(wait=not in_haste)
+        with suppress(Exception):
+            self._client.close()
+
+
+class Submitting(Executor):
+    """Dask's executor, where a call that finds no scheduler is one that is cancelled."""
+
+    def __init__(self, pool: Any, client: Any) -> None:
+        self._pool, self._client = pool, client
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Hand out a call."""
+        try:
+            future: Future[Any] = self._pool.submit(fn, *args, **kwargs)
+        except Exception as error:
+            if self._client.status == "running":
+                raise
+            raise CancelledError from error
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Wait for what is under way, or cancel it."""
+        self._pool.shutdown(wait=wait)
+
+
+@contextmanager
+def ended_at_once(workers: Workers) -> Iterator[None]:
+    """End workers where something is raised, and say so where they are lost."""
+    try:
+        yield
+    except BaseException as error:
+        workers.close(True)
+        for kind, what in workers.losses.items():
+            if isinstance(error, kind):
+                raise WorkerError(
+                    f"{what}; what was stored is kept, the same call goes on from there"
+                ) from None
+        raise
 
 
 @contextmanager
 def at_work(workers: Workers) -> Iterator[Workers]:
-    """Workers for a while; they are ended at once where something is raised."""
-    try:
+    """Workers for a while."""
+    with ended_at_once(workers):
         yield workers
-    except BrokenProcessPool:
-        workers.close(True)
-        raise WorkerError(
-            "a worker process ended without a word (killed, or out of memory); "
-            "what was stored is kept, the same call goes on from there"
-        ) from None
-    except CancelledError:
-        workers.close(True)
-        raise WorkerError(
-            "the scheduler of the cluster has ended; what was stored is kept, the same call goes "
-            "on from there"
-        ) from None
-    except BaseException:
-        workers.close(True)
-        raise
-    else:
-        workers.close(False)
+    workers.close(False)

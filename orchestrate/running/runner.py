@@ -184,6 +184,7 @@ class Runner:
     def describe(self, bar: Any, aside: str) -> None:
         """Say at the bar what is done aside, where the bar can be seen already."""
         if time.perf_counter() - self.clock > SEEN:
+            bar.delay = 0.0  # it is shown from now on, or tqdm would not end its line
             bar.set_description(f"{self.title()}, {aside}" if aside else self.title())
 
     def work(self, workers: Workers, bar: Any, go_on: Callable[[], bool]) -> None:

@@ -22,6 +22,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups"
 RUN = ("paper", "--quick", "--figures", "maps")
 PLACE = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory")
 Dask = tuple[subprocess.Popen[bytes], IO[str]]
+Nodes = tuple[str, list[Dask]]
 
 
 def start(folder: Path, name: str, *arguments: str) -> Dask:
@@ -45,8 +46,8 @@ def read(dask: Dask, pattern: str) -> str:
 
 
 @pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
-    """Address of a scheduler on loopback, and its two workers."""
+def cluster(tmp_path: Path) -> Iterator[Nodes]:
+    """Address of a scheduler on loopback; the scheduler and its two workers."""
     pytest.importorskip("distributed")
     options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard")
     started = [start(tmp_path, "scheduler", "scheduler", *options)]
@@ -56,7 +57,7 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]
             started.append(start(tmp_path, name, "worker", address, *PLACE, str(tmp_path)))
         for dask in started[1:]:
             read(dask, "Registered to")
-        yield address, [process for process, _ in started[1:]]
+        yield address, started
     finally:
         for process, log in started:
             if process.poll() is None:
@@ -66,15 +67,23 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]
 
 
 def test_a_lost_worker_loses_nothing(commands, cluster, tmp_path, monkeypatch):
-    address, workers = cluster
+    address, (_, *workers) = cluster
     process = commands.start(*RUN, "--cluster", address)
     wait_for(lambda: commands.chunks() >= 2, process, "two chunks were on disk")
-    os.kill(workers[0].pid, signal.SIGKILL)
+    os.kill(workers[0][0].pid, signal.SIGKILL)
     done = end(process)
     assert done.code == 0, done.err
-    assert workers[1].poll() is None
+    assert workers[1][0].poll() is None
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     monkeypatch.setattr("orchestrate.paper.reproduce.draw_all", lambda *_: {})
     assert main([*RUN, "--output", str(tmp_path / "here")]) == 0
     here = {path.name: path.read_bytes() for path in (tmp_path / "here").glob("*.nc")}
     assert commands.results() == here and len(here) == 3
+
+
+def test_a_scheduler_that_ends_is_told_in_one_line(commands, cluster):
+    address, (scheduler, *_) = cluster
+    process = commands.start(*RUN, "--cluster", address)
+    read(scheduler, "Receive client connection")
+    os.kill(scheduler[0].pid, signal.SIGKILL)
+    end(process).complaint("scheduler", "has ended", "the same call goes on", code=1)

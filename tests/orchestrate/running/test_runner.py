@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
+import functools
 import logging
 import os
+from concurrent.futures import Future
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +15,7 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError, WorkerError
 from orchestrate.running import runner
-from orchestrate.running.executors import compute, is_no_lost_connection
+from orchestrate.running.executors import Cluster, at_work, compute, is_no_lost_connection
 from orchestrate.running.journal import Journal, Lock, journal_path
 from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
@@ -47,6 +50,7 @@ def test_lanes_know_nothing_of_each_other(find):
 
 @pytest.mark.parametrize("job", [Squares("job", size=40), Sums("job", size=40)])
 def test_processes_give_what_this_process_gives(find, monkeypatch, job):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     alone = answer(job, {"jobs": 1}, find)
     monkeypatch.setattr(runner, "WORTH", 0.0)
     assert answer(job, {"jobs": 2}, find).identical(alone)
@@ -225,6 +229,96 @@ def test_of_dasks_log_only_a_lost_connection_is_left_out():
     assert is_no_lost_connection(record("wrong", ValueError("5")))
     assert not is_no_lost_connection(record("", ConnectionRefusedError(111, "refused")))
     assert not is_no_lost_connection(record("exception=CommClosedError('in <TCP>')"))
+    assert not is_no_lost_connection(record("", asyncio.CancelledError()))
+    assert not is_no_lost_connection(record("Failed to reconnect to scheduler after 5 seconds"))
+
+
+class Lost:
+    """A client of Dask whose scheduler has ended while it was asked for something."""
+
+    lasts = 2  # calls
+
+    def __init__(self, *_, when="", **__):
+        self.when, self.status, self.calls = when, "running", 0
+
+    def there(self, name):
+        self.calls += name == "ncores"
+        if name == self.when or self.calls > self.lasts or self.status != "running":
+            self.status = "connecting"
+            raise OSError(f"in <TCP (closed)> {name}")
+
+    def ncores(self):
+        self.there("ncores")
+        return {"one": 1}
+
+    def get_executor(self, **_):
+        return self
+
+    def submit(self, *_):
+        self.there("submit")
+        return Future()
+
+    def shutdown(self, wait):
+        self.there("shutdown")
+
+    def close(self):
+        self.there("close")
+
+
+@pytest.mark.parametrize("when", ["ncores", "submit", ""])
+def test_a_scheduler_that_ends_is_told(find, tmp_path, monkeypatch, when):
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(distributed, "Client", functools.partial(Lost, when=when))
+    with pytest.raises(WorkerError, match=r"has ended; .* the same call goes on from there"):
+        answer(Squares("squares"), {"cluster": "tcp://127.0.0.1:1"}, find)
+
+
+def test_what_has_been_computed_needs_no_scheduler_for_the_end(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(distributed, "Client", functools.partial(Lost, when="shutdown"))
+    with at_work(Cluster("tcp://127.0.0.1:1")) as workers:
+        assert workers.room() == 2
+
+
+def test_workers_of_a_cluster_that_die_are_told(find, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(distributed, "Client", Lost)
+    monkeypatch.setattr(Lost, "lasts", 99)
+    died = Future()
+    died.set_exception(distributed.KilledWorker("compute", None, 3))
+    monkeypatch.setattr(Lost, "submit", lambda *_: died)
+    with pytest.raises(WorkerError, match=r"workers of the cluster ended without a word"):
+        answer(Squares("squares"), {"cluster": "tcp://127.0.0.1:1"}, find)
+
+
+def test_something_else_than_a_scheduler_answers(find, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+
+    def answers(*_, **__):
+        raise MemoryError("an array of 3 EiB")  # a length, as Dask reads it
+
+    monkeypatch.setattr(distributed, "Client", answers)
+    with pytest.raises(InputError, match="no scheduler answers there"):
+        answer(Squares("squares"), {"cluster": "tcp://127.0.0.1:1"}, find)
+
+
+def test_a_bar_that_is_shown_early_ends_its_line(find, monkeypatch, capsys):
+    monkeypatch.setattr(runner.Runner, "describe", shown_early(runner.Runner.describe))
+    with pytest.raises(AssertionError, match="as it was told to"):
+        answer(Squares("squares", fail_at=0), {"progress": True, "jobs": 1}, find)
+    shown = capsys.readouterr().err
+    assert "0/10" in shown
+    assert shown.endswith("\n")
+
+
+def shown_early(describe):
+    """Describe a job that began long before its bar."""
+
+    def described(self, bar, aside):
+        self.clock -= 10.0
+        describe(self, bar, aside)
+
+    return described
 
 
 def test_a_worker_that_dies_is_told(find, monkeypatch):
