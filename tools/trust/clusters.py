@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+import functools
 import os
-import random
-import shutil
 import signal
-import tempfile
 import time
-from collections.abc import Callable, Coroutine
-from contextlib import suppress
+from collections.abc import Callable, Coroutine, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
-from .campaign import Campaign, Outcome
-from .children import Child, Ended, import_all
-from .faults import COMMANDS, in_a_line, results, told, undisturbed
+from .trials import Disturbances, Trial, in_a_line, told
 
-NAMES = ("sweep", "resonance", "map", "basin")
 START = 60.0  # s
+CONNECTING = 1.0  # s
 
 
 def forked(life: Callable[[], Coroutine[Any, Any, None]], log: Path) -> int:
@@ -51,13 +48,17 @@ class Nodes:
     def __init__(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.folder, self.pids = folder, []  # type: Path, list[int]
-        place = folder / "address"
+        self.start()
+
+    def start(self) -> None:
+        """Begin, at an address of their own."""
+        place = self.folder / "address"
         place.unlink(missing_ok=True)
-        self.scheduler = forked(lambda: schedule(place), folder / "log")
+        self.scheduler = forked(lambda: schedule(place), self.folder / "log")
         self.pids.append(self.scheduler)
         stop = time.monotonic() + START
         while not place.exists():
-            assert time.monotonic() < stop, (folder / "log").read_text()[-1000:]
+            assert time.monotonic() < stop, (self.folder / "log").read_text()[-1000:]
             time.sleep(0.01)
         self.address = place.read_text()
         self.workers = [self.start_worker() for _ in range(2)]
@@ -108,104 +109,80 @@ async def work(address: str, folder: str, version: str) -> None:
         await worker.finished()
 
 
-class Trial:
-    """One fault of a command on a cluster."""
+@dataclass
+class OnCluster(Trial):
+    """One fault of a command that computes on a cluster."""
 
-    def __init__(self, name: str, folder: Path, nodes: Nodes, chance: random.Random) -> None:
-        self.name, self.folder, self.nodes, self.chance = name, folder, nodes, chance
+    nodes: Nodes
 
-    def start(self) -> Child:
-        """The command under way."""
-        output = ["--output", str(self.folder / "results"), "--cluster", self.nodes.address]
-        return Child([*COMMANDS[self.name], *output], self.folder / "temporary")
+    def arguments(self) -> list[str]:
+        """The command."""
+        return [*super().arguments(), "--cluster", self.nodes.address]
 
-    def wait_a_moment(self, seconds: float) -> None:
-        """Any moment of the command."""
-        time.sleep(self.chance.uniform(0.0, seconds))
+    def wait_a_moment(self) -> None:
+        """Any moment of the command, which has to connect first."""
+        time.sleep(self.chance.uniform(0.0, self.seconds + CONNECTING))
 
 
-def worker_killed(trial: Trial, seconds: float) -> Ended:
+def worker_killed(trial: OnCluster) -> str:
     """One of two; another one comes later."""
     child = trial.start()
-    trial.wait_a_moment(seconds)
+    trial.wait_a_moment()
     trial.nodes.kill(trial.nodes.workers.pop(trial.chance.randrange(2)))
     trial.nodes.workers.append(trial.nodes.start_worker())
-    return child.wait()
+    ended = child.wait()
+    return told(ended) if ended.code else trial.verdict()
 
 
-def scheduler_killed(trial: Trial, seconds: float) -> Ended:
+def scheduler_killed(trial: OnCluster) -> str:
     """The command gives up in a line; another cluster, and the same command goes on."""
     child = trial.start()
-    trial.wait_a_moment(seconds)
+    trial.wait_a_moment()
     trial.nodes.kill(trial.nodes.scheduler)
     ended = child.wait()
     trial.nodes.close()
-    trial.nodes = Nodes(trial.nodes.folder)
-    if in_a_line(ended):
-        return ended
-    return trial.start().wait()
+    trial.nodes.start()
+    return in_a_line(ended) or trial.goes_on()
 
 
-def wrong_version(trial: Trial, seconds: float) -> Ended:
+def wrong_version(trial: OnCluster) -> str:
     """A worker with other sources joins: its chunks are refused, not mixed in."""
     pid = trial.nodes.start_worker("0.0.1")
     child = trial.start()
-    trial.wait_a_moment(seconds)
+    trial.wait_a_moment()
     ended = child.wait()
     trial.nodes.kill(pid)
-    if in_a_line(ended):
-        return ended
-    return trial.start().wait()
+    return in_a_line(ended) or trial.goes_on()
 
 
-FAULTS: dict[str, Callable[[Trial, float], Ended]] = {
-    "worker killed": worker_killed,
-    "scheduler killed": scheduler_killed,
-    "wrong version": wrong_version,
-}
-
-
-class Clusters(Campaign):
+class Clusters(Disturbances):
     """Dask under faults."""
 
     name = "cluster"
     title = "Dask"
+    commands = ("sweep", "resonance", "map", "basin")
     asks = (
         "A command computes on two workers of a Dask scheduler. A worker is killed with kill -9 "
         "and another one comes; the scheduler is killed; a worker joins whose sources are others. "
         "The command ends well, or gives up in one line and goes on where it was when it is asked "
         "again; its results have the bytes of those that are computed without a cluster. "
-        f"Commands: {', '.join(NAMES)}."
+        f"Commands: {', '.join(commands)}."
     )
-    unit, target, batch = "faults", 100, 12
-    package = True
+    target, batch = 100, 12
+    faults: ClassVar[Mapping[str, Callable[[Any], str]]] = {
+        "worker killed": worker_killed,
+        "scheduler killed": scheduler_killed,
+        "wrong version": wrong_version,
+    }
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """One fault after the other."""
-        import_all()
+    @contextmanager
+    def trials(self, holder: Path) -> Iterator[Callable[..., Trial]]:
+        """With a cluster around them."""
         import distributed
 
         assert distributed.Scheduler and distributed.Worker  # imported once, for all that is forked
-        chance, counts, notes = random.Random(seed), dict.fromkeys(FAULTS, 0), []
-        known: dict[str, tuple[dict[str, bytes], float]] = {}
-        with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder:
-            nodes = Nodes(Path(holder) / "nodes")
-            try:
-                for number in range(count):
-                    name, fault = chance.choice(NAMES), list(FAULTS)[number % len(FAULTS)]
-                    if name not in known:
-                        known[name] = undisturbed(name, Path(holder) / "undisturbed")
-                    trial = Trial(name, Path(holder) / "trial", nodes, chance)
-                    ended = FAULTS[fault](trial, known[name][1])
-                    nodes = trial.nodes
-                    wrong = told(ended) if ended.code else ""
-                    if not wrong and results(trial.folder / "results") != known[name][0]:
-                        wrong = "other bytes"
-                    counts[fault] += 1
-                    if wrong:
-                        notes.append(f"seed {seed}, fault {number} ({fault}, {name}): {wrong}")
-                    shutil.rmtree(trial.folder, ignore_errors=True)
-            finally:
-                nodes.close()
-        named = {f"{name}:": value for name, value in counts.items()}
-        return Outcome(count, len(notes), counts=named, notes=tuple(notes))
+        nodes = Nodes(holder / "nodes")
+        try:
+            yield functools.partial(OnCluster, nodes=nodes)
+        finally:
+            nodes.close()

@@ -6,114 +6,13 @@ import ctypes
 import os
 import random
 import resource
-import shutil
 import signal
-import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
-from .campaign import Campaign, Outcome
-from .children import Child, Ended, import_all
-
-PLAIN = ("--plot", "none", "--jobs", "1")
-ALONG = ("--eta", "1.1:1.16:0.002")
-COMMANDS: dict[str, tuple[str, ...]] = {
-    "sweep": ("sweep", *ALONG, "--transient", "200", "--samples", "8", *PLAIN),
-    "map": (
-        *("map", "--eta", "1.1,1.2", "--over", "e", "--values", "0.3,0.5,0.7"),
-        *("--transient", "100", *PLAIN),
-    ),
-    "resonance": ("resonance", *ALONG, "--transient", "100", "--samples", "8", *PLAIN),
-    "lyapunov": (
-        *("lyapunov", "--eta", "1.1:1.16:0.02", "--transient", "100"),
-        *("--periods", "200", *PLAIN),
-    ),
-    "attractors": (
-        *("attractors", "--eta", "1.1,1.2", "--starts", "5", "--transient", "100", *PLAIN),
-    ),
-    "basin": (
-        *("basin", "--eta", "1.2", "--x", "x_rel,0,1,6", "--y", "v_rel,-1,1,6"),
-        *("--transient", "60", *PLAIN),
-    ),
-    "spectra": (
-        *("spectra", "--eta", "1.1,1.2,1.3", "--transient", "300", "--periods", "8"),
-        *("--points", "128", *PLAIN),
-    ),
-    "branch": ("branch", "--eta", "2.5", "--limits", "2.45:2.55", *PLAIN),
-    "couple": (
-        *("couple", "--only", "delaminated", "--eta0", "1.4:1.404", "--rate", "2e-5"),
-        *("--one-way", *PLAIN),
-    ),
-}
-EXTRA = (".png", ".nc")
-
-
-@dataclass
-class Trial:
-    """One fault of one command.
-
-    Attributes
-    ----------
-    name : str
-        Of the command.
-    folder : Path
-        Its results are in ``results`` below it.
-    expected : dict of str to bytes
-        Results of the command where nothing happens.
-    seconds : float
-        That it takes then.
-    chance : random.Random
-    """
-
-    name: str
-    folder: Path
-    expected: dict[str, bytes]
-    seconds: float
-    chance: random.Random
-
-    @property
-    def output(self) -> Path:
-        """Where the results go."""
-        return self.folder / "results"
-
-    def start(self, prepare: Callable[[], object] | None = None) -> Child:
-        """The command under way."""
-        arguments = [*COMMANDS[self.name], "--output", str(self.output)]
-        return Child(arguments, self.folder / "temporary", prepare)
-
-    def wait_a_moment(self) -> None:
-        """Any moment of the command."""
-        time.sleep(self.chance.uniform(0.0, self.seconds))
-
-    def goes_on(self) -> str:
-        """See that the same command ends well with the same bytes; else what is wrong."""
-        ended = self.start().wait()
-        if ended.code:
-            return f"the same command again: {told(ended)}"
-        if results(self.output) != self.expected:
-            return "other bytes"
-        left = [p.name for p in self.output.iterdir() if not p.name.endswith(EXTRA)]
-        return f"left behind: {', '.join(left)}" if left else ""
-
-
-def told(ended: Ended) -> str:
-    """How a command ended, in a line."""
-    return f"exit code {ended.code}: {' / '.join(ended.lines)[:300]}"
-
-
-def results(folder: Path) -> dict[str, bytes]:
-    """Bytes of the NetCDF files by name."""
-    return {path.name: path.read_bytes() for path in sorted(folder.glob("*.nc"))}
-
-
-def in_a_line(ended: Ended) -> str:
-    """What is wrong with how a command gave up; empty where it did not, or in one line."""
-    if ended.code == 0 or (ended.code > 0 and len(ended.lines) == 1):
-        return ""
-    return told(ended)
-
+from .trials import COMMANDS, Disturbances, Trial, in_a_line, told
 
 # -- faults ---------------------------------------------------------------------------------------
 
@@ -121,28 +20,19 @@ def in_a_line(ended: Ended) -> str:
 def killed(trial: Trial) -> str:
     """kill -9 at any moment, up to three times."""
     for _ in range(trial.chance.randint(1, 3)):
-        child = trial.start()
-        trial.wait_a_moment()
-        child.send(signal.SIGKILL)
-        child.wait()
+        trial.struck(signal.SIGKILL)
     return trial.goes_on()
 
 
 def terminated(trial: Trial) -> str:
     """SIGTERM at any moment."""
-    child = trial.start()
-    trial.wait_a_moment()
-    child.send(signal.SIGTERM)
-    child.wait()
+    trial.struck(signal.SIGTERM)
     return trial.goes_on()
 
 
 def interrupted(trial: Trial) -> str:
     """Ctrl-C at any moment: a line, and exit code 130."""
-    child = trial.start()
-    trial.wait_a_moment()
-    child.send(signal.SIGINT)
-    ended = child.wait()
+    ended = trial.struck(signal.SIGINT)
     if ended.code not in (0, 130, -signal.SIGINT) or (ended.code == 130 and len(ended.lines) > 1):
         return told(ended)
     return trial.goes_on()
@@ -208,10 +98,7 @@ def twice(trial: Trial) -> str:
 
 def damaged_journal(trial: Trial) -> str:
     """Bytes of what was kept are changed: it is computed anew, or named with its remedy."""
-    child = trial.start()
-    trial.wait_a_moment()
-    child.send(signal.SIGKILL)
-    child.wait()
+    trial.struck(signal.SIGKILL)
     journals = sorted(trial.output.glob("*.journal*")) if trial.output.exists() else []
     for path in journals:
         spoil(path, trial.chance)
@@ -280,7 +167,7 @@ FAULTS: dict[str, Callable[[Trial], str]] = {
 }
 
 
-class Faults(Campaign):
+class Faults(Disturbances):
     """Everything that may happen to a command."""
 
     name = "faults"
@@ -288,40 +175,16 @@ class Faults(Campaign):
     asks = (
         "kill -9 (up to three times), SIGTERM, Ctrl-C at any moment, a disk that is full at any "
         "byte, a folder that cannot be written, the same command twice at once, journals and "
-        f"NetCDF files with bits flipped, cut off or overwritten; in turn for "
-        f"{', '.join(COMMANDS)}. The command ends, gives up in one line, or says what to remove; "
-        "and the same command then ends well, with the bytes of one that nothing happened to, and "
-        "leaves nothing else behind. A damaged NetCDF file is named, or its numbers are the same."
+        "NetCDF files with bits flipped, cut off or overwritten; in turn for "
+        f"{', '.join(COMMANDS)}, each at random and paper, which takes longest, less often. The "
+        "command ends, gives up in one line, or says what to remove; and the same command then "
+        "ends well, with the bytes of one that nothing happened to, and leaves nothing else "
+        "behind. A damaged NetCDF file is named, or its numbers are the same."
     )
-    unit, target, batch = "faults", 1000, 72
-    package = True
+    target, batch = 1000, 72
+    faults = FAULTS
+    commands = (*(name for name in COMMANDS for _ in range(3) if name != "paper"), "paper")
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """One fault after the other."""
-        import_all()
-        chance, counts, notes = random.Random(seed), dict.fromkeys(FAULTS, 0), []
-        known: dict[str, tuple[dict[str, bytes], float]] = {}
-        with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder:
-            for number in range(count):
-                name = chance.choice(list(COMMANDS))
-                fault = list(FAULTS)[number % len(FAULTS)]
-                folder = Path(holder) / "trial"
-                if name not in known:
-                    known[name] = undisturbed(name, Path(holder) / "undisturbed")
-                folder.mkdir()
-                wrong = FAULTS[fault](Trial(name, folder, *known[name], chance))
-                counts[fault] += 1
-                if wrong:
-                    notes.append(f"seed {seed}, fault {number} ({fault}, {name}): {wrong}")
-                shutil.rmtree(folder, ignore_errors=True)
-        named = {f"{name}:": value for name, value in counts.items()}
-        return Outcome(count, len(notes), counts=named, notes=tuple(notes))
-
-
-def undisturbed(name: str, folder: Path) -> tuple[dict[str, bytes], float]:
-    """Results of a command to which nothing happens, and how long it takes."""
-    ended = Trial(name, folder, {}, 0.0, random.Random()).start().wait(600.0)
-    found = results(folder / "results")
-    assert ended.code == 0 and found, f"{name}: {told(ended)}"
-    shutil.rmtree(folder)
-    return found, ended.seconds
+    def trials(self, holder: Path) -> AbstractContextManager[Callable[..., Trial]]:
+        """With nothing around them."""
+        return nullcontext(Trial)

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from orchestrate.access import OSCILLATOR, find
-from tools.trust import bits, faults, mutants, parameter_sets
+from tools.trust import bits, mutants, parameter_sets
 from tools.trust.bits import Grids
 from tools.trust.clusters import Clusters
 from tools.trust.faults import Faults
@@ -56,7 +56,7 @@ def test_memory_stays_flat(fmu, monkeypatch):
 
 
 def test_a_few_faults(fmu, monkeypatch):
-    monkeypatch.setattr(faults, "COMMANDS", {"sweep": faults.COMMANDS["sweep"]})
+    monkeypatch.setattr(Faults, "commands", ("sweep",))
     clean(Faults().run(fmu, 1, 3), 3)
 
 

@@ -1,0 +1,204 @@
+"""Commands to which something happens, and the campaigns that make it happen."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import tempfile
+import time
+from abc import abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+from .campaign import Campaign, Outcome
+from .children import Child, Ended, import_all
+
+PLAIN = ("--plot", "none", "--jobs", "1")
+ALONG = ("--eta", "1.1:1.16:0.002")
+GIVEN = "given.nc"  # beside the folder of a trial: what a command begins from
+COMMANDS: dict[str, tuple[str, ...]] = {
+    "sweep": ("sweep", *ALONG, "--transient", "200", "--samples", "8", *PLAIN),
+    "map": (
+        *("map", "--eta", "1.1,1.2", "--over", "e", "--values", "0.3,0.5,0.7"),
+        *("--transient", "100", *PLAIN),
+    ),
+    "resonance": ("resonance", *ALONG, "--transient", "100", "--samples", "8", *PLAIN),
+    "lyapunov": (
+        *("lyapunov", "--eta", "1.1:1.16:0.02", "--transient", "100"),
+        *("--periods", "200", *PLAIN),
+    ),
+    "attractors": (
+        *("attractors", "--eta", "1.1,1.2", "--starts", "5", "--transient", "100", *PLAIN),
+    ),
+    "basin": (
+        *("basin", "--eta", "1.2", "--x", "x_rel,0,1,6", "--y", "v_rel,-1,1,6"),
+        *("--transient", "60", *PLAIN),
+    ),
+    "spectra": (
+        *("spectra", "--eta", "1.1,1.2,1.3", "--transient", "300", "--periods", "8"),
+        *("--points", "128", *PLAIN),
+    ),
+    "branch": ("branch", "--eta", "2.5", "--limits", "2.45:2.55", *PLAIN),
+    "couple": (
+        *("couple", "--only", "delaminated", "--eta0", "1.4:1.404", "--rate", "2e-5"),
+        *("--one-way", *PLAIN),
+    ),
+    "border": (
+        *("border", "--start", GIVEN, "--limits", "2.4:2.9,0.65:0.75", "--most", "3", *PLAIN),
+    ),
+    "capture": (
+        *("capture", "--only", "delaminated", "--count", "3", "--time", "4"),
+        *("--tolerance", "0.1", *PLAIN),
+    ),
+    "passage": (
+        *("passage", "--only", "delaminated", "--eta0", "1.4:1.402", "--rate", "1e-4"),
+        *("--settle", "20", "--one-way", *PLAIN),
+    ),
+    "jump-voltages": (
+        *("jump-voltages", "--eta0", "1.4:1.402", "--rate", "2e-4,1e-4"),
+        *("--settle", "5", "--one-way", *PLAIN),
+    ),
+    "drive-branch": ("drive-branch", "--most", "2", "--steps", "16", "--settle", "2", *PLAIN),
+    "paper": ("paper", "--quick", "--figures", "6", "--jobs", "1"),
+}
+BEFORE = {"border": ("branch", "--eta", "2.6", "--limits", "2.6:2.7", *PLAIN)}
+
+
+@dataclass
+class Trial:
+    """One fault of one command.
+
+    Attributes
+    ----------
+    name : str
+        Of the command.
+    folder : Path
+        Its results are in ``results`` below it.
+    expected : dict of str to bytes
+        Results of the command where nothing happens.
+    seconds : float
+        That it takes then.
+    chance : random.Random
+    """
+
+    name: str
+    folder: Path
+    expected: dict[str, bytes]
+    seconds: float
+    chance: random.Random
+
+    @property
+    def output(self) -> Path:
+        """Where the results go."""
+        return self.folder / "results"
+
+    def arguments(self) -> list[str]:
+        """The command."""
+        given = str(self.folder.parent / GIVEN)
+        named = [given if text == GIVEN else text for text in COMMANDS[self.name]]
+        return [*named, "--output", str(self.output)]
+
+    def start(self, prepare: Callable[[], object] | None = None) -> Child:
+        """The command under way."""
+        return Child(self.arguments(), self.folder / "temporary", prepare)
+
+    def wait_a_moment(self) -> None:
+        """Any moment of the command."""
+        time.sleep(self.chance.uniform(0.0, self.seconds))
+
+    def struck(self, number: int) -> Ended:
+        """How the command ends at a signal that comes at any moment."""
+        child = self.start()
+        self.wait_a_moment()
+        child.send(number)
+        return child.wait()
+
+    def goes_on(self) -> str:
+        """See that the same command ends well with the same bytes; else what is wrong."""
+        ended = self.start().wait()
+        return f"the same command again: {told(ended)}" if ended.code else self.verdict()
+
+    def verdict(self) -> str:
+        """What is wrong with the results of a command that ended well."""
+        if results(self.output) != self.expected:
+            return "other bytes"
+        left = [p.name for p in self.output.iterdir() if p.suffix not in KINDS]
+        return f"left behind: {', '.join(left)}" if left else ""
+
+
+KINDS = (".nc", ".png", ".pdf", ".html")  # of files that a command leaves
+
+
+def told(ended: Ended) -> str:
+    """How a command ended, in a line."""
+    return f"exit code {ended.code}: {' / '.join(ended.lines)[:300]}"
+
+
+def results(folder: Path) -> dict[str, bytes]:
+    """Bytes of the NetCDF files by name."""
+    return {path.name: path.read_bytes() for path in sorted(folder.glob("*.nc"))}
+
+
+def in_a_line(ended: Ended) -> str:
+    """What is wrong with how a command gave up; empty where it did not, or in one line."""
+    if ended.code == 0 and "Traceback" not in ended.err:
+        return ""
+    return "" if ended.code > 0 and len(ended.lines) == 1 else told(ended)
+
+
+def undisturbed(name: str, holder: Path) -> tuple[dict[str, bytes], float]:
+    """Results of a command to which nothing happens, and how long it takes."""
+    folder = holder / "undisturbed"
+    if name in BEFORE:
+        before = [*BEFORE[name], "--store", str(holder / GIVEN), "--output", str(folder)]
+        ended = Child(before, folder).wait(600.0)
+        assert ended.code == 0, f"before {name}: {told(ended)}"
+    ended = Trial(name, folder, {}, 0.0, random.Random()).start().wait(600.0)
+    found = results(folder / "results")
+    assert ended.code == 0 and found, f"{name}: {told(ended)}"
+    shutil.rmtree(folder)
+    return found, ended.seconds
+
+
+class Disturbances(Campaign):
+    """A campaign of faults, each of one command.
+
+    Attributes
+    ----------
+    faults : mapping of str to callable
+        What happens, in turn; each gives what was wrong, an empty string where nothing was.
+    commands : sequence of str
+        To which it happens, drawn at random; who stands there twice is drawn twice as often.
+    """
+
+    faults: ClassVar[Mapping[str, Callable[[Any], str]]]
+    commands: ClassVar[Sequence[str]]
+    unit, package = "faults", True
+
+    @abstractmethod
+    def trials(self, holder: Path) -> AbstractContextManager[Callable[..., Trial]]:
+        """What makes a trial, with all it needs around it."""
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """One fault after the other."""
+        import_all()
+        chance, counts, notes = random.Random(seed), dict.fromkeys(self.faults, 0), []
+        known: dict[str, tuple[dict[str, bytes], float]] = {}
+        with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as place:
+            holder = Path(place)
+            with self.trials(holder) as trial:
+                for number in range(count):
+                    name = chance.choice(self.commands)
+                    fault = list(self.faults)[number % len(self.faults)]
+                    if name not in known:
+                        known[name] = undisturbed(name, holder)
+                    wrong = self.faults[fault](trial(name, holder / "trial", *known[name], chance))
+                    counts[fault] += 1
+                    if wrong:
+                        notes.append(f"seed {seed}, fault {number} ({fault}, {name}): {wrong}")
+                    shutil.rmtree(holder / "trial", ignore_errors=True)
+        named = {f"{name}:": value for name, value in counts.items()}
+        return Outcome(count, len(notes), counts=named, notes=tuple(notes))
