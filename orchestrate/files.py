@@ -10,6 +10,8 @@ from pathlib import Path
 
 from .errors import StoreError
 
+PROBE = ".writable"
+
 
 def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -> Path:
     """Write a file beside its place, then put it there.
@@ -85,9 +87,10 @@ def open_folder(folder: str | os.PathLike[str]) -> Path:
     StoreError
     """
     folder = Path(folder)
-    probe = folder / f".writable.{os.getpid()}"
+    probe = folder / f"{PROBE}.{os.getpid()}.tmp"
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        sweep_up(folder / PROBE)
         probe.write_bytes(b"")
         probe.unlink()
     except OSError as error:

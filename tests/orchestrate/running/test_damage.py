@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -115,6 +116,29 @@ def test_a_row_damaged_while_the_job_runs_makes_no_shorter_result(interrupted, f
 
 def test_a_seal_covers_where_parts_end():
     assert seal(b"ab", b"c") != seal(b"a", b"bc")
+
+
+@pytest.mark.parametrize("stop", range(4))
+def test_killed_while_it_is_finished_it_leaves_nothing_behind(
+    interrupted, find, tmp_path, monkeypatch, stop
+):
+    """Before any of the files goes that a finished result needs no more."""
+    unlink, journal, gone = Path.unlink, journal_path(interrupted), []
+
+    def killed(path, missing_ok=False):
+        if interrupted.exists() and path.name.startswith(journal.name):
+            gone.append(path)
+            if len(gone) > stop:
+                raise KeyboardInterrupt
+        unlink(path, missing_ok=missing_ok)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "unlink", killed)
+        with suppress(KeyboardInterrupt):
+            answer(JOB, {"store": interrupted, "jobs": 1}, find)
+    assert journal.exists() == (stop == 0)
+    assert answer(JOB, {"store": interrupted}, find).square.values.tolist() == SQUARES
+    assert {path.name for path in tmp_path.iterdir()} == {interrupted.name, "model.fmu"}
 
 
 def test_rows_of_an_earlier_version_are_not_taken(interrupted, find):
