@@ -16,7 +16,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FOLD = "fold"
-ENDS = {"limit": "it reaches the end of the range of speeds"}
+ENDS = {
+    "limit": "it reaches the end of the range of speeds",
+    "grazing of a flight": "it ends where the masses touch once more (grazing of a flight)",
+    "grazing of an impact": "it ends where an impact vanishes (grazing of an impact)",
+    "meets the motion of half its period": "it meets the motion of half its period",
+}
 EXAMPLES = """\
   {program} drive-branch                              quick, bonded and delaminated
   {program} drive-branch --drive beam --speed 92:110

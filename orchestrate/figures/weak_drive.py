@@ -23,7 +23,10 @@ WINDOW = 10  # revolutions that impacts are averaged over
 FEW = 2  # revolutions that powers are averaged over: a motion may repeat after two
 AROUND = 500.0  # time shown before and after a jump, in 1/omega
 THEORY = "averaged theory, bonded"
-MARKS = {"fold": "o", "Neimark-Sacker": "s", "period doubling": "^"}  # of bifurcations
+MARKS = {  # of bifurcations
+    **{"fold": "o", "Neimark-Sacker": "s", "period doubling": "^"},
+    **{"grazing of a flight": "x", "grazing of an impact": "+"},
+}
 HISTORIES = {"speed": "mean speed in rad/s", "amplitude": "amplitude of $x_1$ in m"}
 
 

@@ -43,6 +43,7 @@ from .drive_walk import (
     follow,
     motion_near,
 )
+from .grazing import FLIGHT, IMPACT
 from .schedule import check
 from .shooting import Shooter
 
@@ -55,7 +56,7 @@ if TYPE_CHECKING:
 KINDS = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
 REPEATS = 1e-6  # of the unit: change of a motion in a part of its period, after which it repeats
-EVENTS = tuple(TESTS)
+EVENTS = (*TESTS, FLIGHT, IMPACT)
 MULTIPLIERS = 4  # the largest ones, that are kept
 TOLD: dict[str, tuple[str, str]] = {  # of a motion, with units
     "speed": ("rad/s", "mean speed"),
@@ -299,11 +300,11 @@ def drive_branch(
         ``speed`` (rad/s), ``voltage`` (V), ``amplitude`` (m), ``impacts`` in a revolution and
         ``stable`` over ``structure``, ``leg`` and ``point``, NaN beyond the end of a leg, and
         ``end`` says why it ends; ``revolutions`` after which it repeats; real and imaginary part of
-        the largest Floquet multipliers. The
-        same of bifurcations over ``bifurcation``, with ``bifurcation_structure`` and
-        ``bifurcation_kind``: fold, period doubling, Neimark-Sacker. The leg from the lowest speed
-        goes up; where it does not arrive at the highest, another one goes down from there. Off the
-        first two period doublings go the branches of twice the period.
+        the largest Floquet multipliers. The same of bifurcations over ``bifurcation``, with
+        ``bifurcation_structure`` and ``bifurcation_kind``: fold, period doubling, Neimark-Sacker,
+        grazing of a flight (the masses touch once more) or of an impact (one vanishes). The leg
+        from the lowest speed goes up; where it does not arrive at the highest, another one goes
+        down from there. Off the first two period doublings go the branches of twice the period.
 
     Raises
     ------
@@ -315,7 +316,9 @@ def drive_branch(
     Voltage and speed are both unknowns of Newton's method, and Keller's pseudo-arclength equation
     is the one that is missing then. Bifurcations are roots on the branch, of the tangent's voltage
     (fold) and of products of the multipliers (the others), to 1e-3 of a step. The angle's own
-    multiplier, 1 for every motion, is not among those given.
+    multiplier, 1 for every motion, is not among those given. A branch ends where an impact or a
+    flight grazes; it is told by the smallest closing speed and the smallest gap of a turning, which
+    fall to 0 there, and is a bifurcation where less than 1e-4 is left of the way.
 
     Examples
     --------

@@ -2,6 +2,7 @@
 
 A fold is where the voltage turns back along the branch; elsewhere a multiplier leaves the unit
 circle at -1, or a pair of them does. Each is located on the branch itself, not between its points.
+Where an impact or a flight grazes the branch ends: see :mod:`.grazing`.
 """
 
 from __future__ import annotations
@@ -16,13 +17,15 @@ import numpy as np
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import NoConvergenceError, Root, Walk, corrected, held, null_vector
 from .averaged import FOLD, TORUS
-from .shooting import Period, Shooter
+from .grazing import FLIGHT, IMPACT, grazing_ahead
+from .shooting import COARSE, FINE, Period, Shooter
 
 FLIP = "period doubling"
 LIMIT, STUCK, LONG, NONE = "limit", "no convergence", "most points", "no motion at the start"
 NOT_BEGUN = "not begun: the other leg has gone all the way"
 HALVED = "meets the motion of half its period"
-ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN, HALVED)
+ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN, HALVED, FLIGHT, IMPACT)
+LOCATED = 1e-4  # of voltage over K omega and speed over omega: how near a grazing has been found
 AWAY = 3e-3  # of the unit: how far from a doubling the motion of twice the period is begun
 ON_CIRCLE = 1e-3  # of a pair that has been located: how far its size may be from 1
 NEAR = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere
@@ -192,10 +195,9 @@ def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: P
             leg.end = LONG
             break
         try:
-            root, length, arrived = walk.inside(shooter.size + 1, [speeds])
-            after = motion_at(shooter, root, walk.root.tangent)
+            after, length, arrived = next_motion(walk, speeds)
         except NoConvergenceError:
-            leg.end = STUCK
+            end_without_root(leg, shooter)
             break
         halves_before, halves = halves, half_way(shooter, after.root)
         if halves_before @ halves < 0.0:  # the same motion from here on, half a period later
@@ -210,6 +212,39 @@ def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: P
         if begin is not after:
             halves = half_way(shooter, begin.root)
     return leg
+
+
+def next_motion(walk: Walk[Shooter], speeds: tuple[float, float]) -> tuple[Motion, float, bool]:
+    """The next motion, the length of the step to it, and whether it lies on a limit.
+
+    Where there is none, the Jacobian is made by differences of the other size.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where there is none either.
+    """
+    shooter = walk.curve
+    for other in (FINE if shooter.change == COARSE else COARSE, 0.0):
+        try:
+            root, length, arrived = walk.inside(shooter.size + 1, [speeds])
+            return motion_at(shooter, root, walk.root.tangent), length, arrived
+        except NoConvergenceError:
+            if not other:
+                raise
+        shooter.change, walk.step = other, walk.longest
+        matrix = np.vstack([shooter.renew(walk.root.unknowns), walk.root.tangent])
+        walk.root = replace(walk.root, tangent=null_vector(matrix))
+    raise AssertionError("two ways")
+
+
+def end_without_root(leg: Leg, shooter: Shooter) -> None:
+    """Say why a branch ends where Newton's method finds no motion further on."""
+    seen = [(motion.root.unknowns, motion.angle) for motion in leg.motions]
+    kind, distance = grazing_ahead(shooter, seen)
+    leg.end = kind or STUCK
+    if kind and distance < LOCATED:
+        leg.bifurcations.append(Bifurcation(kind, leg.motions[-1]))
 
 
 def half_way(shooter: Shooter, root: Root) -> Floats:

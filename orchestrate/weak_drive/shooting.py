@@ -28,6 +28,7 @@ STARTS = {  # start values of the shaker and of the structure by the outputs tha
     **{name: f"{name}_start" for name in ("x1", "v1", "x2", "v2")},
     "motor_current": "current_start",
 }
+COARSE, FINE = 1e-5, 1e-7  # differences of the unknowns: see Shooter.change
 HEAVY = 1e6  # times its inertia, a rotor that keeps its speed
 
 
@@ -81,6 +82,10 @@ class Shooter:
         Of the motor at the start, rad.
     matrix : ndarray, shape (size + 1, size + 2)
         The residual's Jacobian.
+    change : float
+        Of the unknowns, for its differences: ``COARSE``, since an impact that passes from one step
+        to the next changes what the coupling leaves, or ``FINE`` near a grazing, where both states
+        are to have the same impacts.
     """
 
     def __init__(
@@ -94,7 +99,7 @@ class Shooter:
     ) -> None:
         self.fmus, self.structure, self.drive = fmus, structure, drive
         self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
-        self.used = False
+        self.used, self.change = False, COARSE
         omega = structure.omega
         masses = ("x1", "v1") if structure.bonded else ("x1", "v1", "x2", "v2")
         self.names = (*masses, "box_position", "box_velocity", "speed")
@@ -247,8 +252,9 @@ class Shooter:
         self._last = unknowns.copy(), found
         return self.matrix
 
-    def renew(self, unknowns: Floats, change: float = 1e-5, central: bool = False) -> Floats:
+    def renew(self, unknowns: Floats, central: bool = False) -> Floats:
         """The Jacobian by differences at a root or near one."""
+        change = self.change
         base = self.residual(unknowns)
         columns = []
         for i in range(len(unknowns)):

@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
-from orchestrate import InputError, drive_branch
+from orchestrate import Drive, InputError, Structure, drive_branch
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.drive_walk import motion_near
 from orchestrate.weak_drive.shooting import Shooter
 
-from .coupled import BEAM, QUICK
+from .coupled import BEAM, QUICK, System
 from .monolithic import Monolith
+from .validation import Whole, branch_of
 
 
 @pytest.fixture(scope="module")
@@ -138,3 +139,31 @@ def test_the_doubling_of_one_revolution_motions():
     doubled = found.sel(structure="delaminated", leg="first doubled").dropna("point")
     assert (doubled.revolutions == 2).all() and doubled.sizes["point"] > 10
     assert doubled.voltage.values[0] / volts == pytest.approx(1.51831, abs=2e-4)
+    assert found.end.sel(structure="delaminated", leg="first doubled") == "grazing of a flight"
+    at = points(found, "delaminated", "grazing of a flight") / volts
+    assert at == pytest.approx([1.3664], abs=1e-4)
+
+
+def test_a_branch_ends_where_the_masses_touch():
+    """In the monolithic solution too: they turn away from each other with next to no gap."""
+    legs, length = branch_of(QUICK, most=60, range_=(0.975, 1.05))
+    (leg,) = (one for one in legs if one.end == "grazing of a flight")
+    motion, omega = leg.bifurcations[-1].motion, QUICK.structure.omega
+    turns = motion.period.revolutions
+    whole = Whole(QUICK, turns, motion.angle, length)
+    unknowns = motion.root.unknowns
+    start = whole.full(unknowns[:-1]) * whole.units
+    times = np.linspace(0.0, turns * 2.0 * np.pi / (unknowns[-1] * omega), 8001)
+    rows, impacts = Monolith(*QUICK, float(unknowns[-2])).solve(start, times)
+    gap, slow = rows[:, 2] - rows[:, 0], np.abs(rows[:, 3] - rows[:, 1]) < 0.02 * length
+    assert impacts == motion.period.impacts == 2
+    assert gap[slow].min() < 1e-4 * length
+
+
+def test_a_branch_ends_where_an_impact_vanishes():
+    """Both parts of the branch of `rig` end there, one with an impact more than the other."""
+    rig = System(Structure.from_file("rig"), Drive.from_file("rig"))
+    legs, _ = branch_of(rig, most=120, range_=(0.99, 1.25))
+    places = np.array([leg.motions[-1].root.unknowns[-2:] for leg in legs[:2]])
+    assert [leg.end for leg in legs[:2]] == ["grazing of an impact", "grazing of a flight"]
+    assert places[0] == pytest.approx(places[1], abs=1e-4)

@@ -1,0 +1,115 @@
+"""How near a stationary motion is to grazing: the masses touch, with no closing speed.
+
+There the motion has an impact more or less, and with it a term that grows as the root of the
+distance: multipliers run away, and Newton's method ends.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..dynamics.bifurcations import GRAZING, KINDS, TOUCHING
+from ..dynamics.closed_form import Floats
+from ..structures.structure import Structure
+from .exchange import OscillatorOutputs
+from .shooting import Shooter
+
+IMPACT, FLIGHT = KINDS[GRAZING], KINDS[TOUCHING]
+REACH = 5e-3  # along the branch, voltage over K omega and speed over omega
+BACK = 3  # motions over which it is told how fast the margins fall
+
+
+class Margins(NamedTuple):
+    """What is 0 at a grazing, over the unit of length.
+
+    Attributes
+    ----------
+    flight : float
+        Smallest gap at which the masses turn away from each other without an impact.
+    impact : float
+        Smallest closing speed of an impact, over omega.
+    """
+
+    flight: float
+    impact: float
+
+
+def margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
+    """How near gaps and impacts of a motion's period are to grazing; infinite where it has none.
+
+    Parameters
+    ----------
+    shooter : Shooter
+    unknowns : ndarray
+        The motion.
+    angle : float
+        Of the motor where its period begins, rad.
+    """
+    shooter.angle = angle
+    master, voltage = shooter.begin(unknowns)
+    gaps, closing = [math.inf], [math.inf]
+    for _ in range(shooter.count):
+        before = master.motion
+        master.step(voltage)
+        if master.motion.impact_time != before.impact_time:
+            closing.append(float(shooter.fmus[0].get("impact_velocity")[0]))
+        elif before.v2 < before.v1 and master.motion.v2 >= master.motion.v1:
+            gaps.append(turning_gap(shooter.structure, before, master.motion, master.scheme.h))
+    master.close()
+    length = float(shooter.units[0])
+    return Margins(min(gaps) / length, min(closing) / length / shooter.structure.omega)
+
+
+def turning_gap(
+    structure: Structure, before: OscillatorOutputs, after: OscillatorOutputs, h: float
+) -> float:
+    """The smallest gap in a step without an impact, at whose ends it shrinks and grows, m.
+
+    By the quintic through gap, velocity and acceleration at both ends; the box's acceleration is
+    the same for both masses.
+    """
+    from scipy.interpolate import BPoly, PPoly
+
+    ends = []
+    for at in (before, after):
+        first = (structure.k1 * at.x1 + structure.d1 * at.v1) / structure.m1
+        second = (structure.k2 * at.x2 + structure.d2 * at.v2) / structure.m2
+        ends.append([at.x2 - at.x1, at.v2 - at.v1, first - second])
+    gap = PPoly.from_bernstein_basis(BPoly.from_derivatives([0.0, h], ends))
+    return float(gap(gap.derivative().roots(extrapolate=False)).min())
+
+
+def grazing_ahead(shooter: Shooter, motions: Sequence[tuple[Floats, float]]) -> tuple[str, float]:
+    """What grazes next on the way along motions, and how far on.
+
+    A margin is taken to fall as it did over the last motions. The very last ones may be beyond.
+
+    Parameters
+    ----------
+    shooter : Shooter
+    motions : sequence of (ndarray, float)
+        Unknowns, and the motor's angle where the period begins.
+
+    Returns
+    -------
+    kind : str
+        ``""`` where nothing is near.
+    distance : float
+        In voltage over K omega and speed over omega.
+    """
+    seen = motions[-2 * BACK :]
+    near = np.array([margins(shooter, *motion) for motion in seen])
+    places = np.array([unknowns[-2:] for unknowns, _ in seen])
+    nearest = "", math.inf
+    for first, last in zip(range(len(seen)), range(BACK, len(seen)), strict=False):
+        way = float(np.linalg.norm(places[last] - places[first]))
+        for i, kind in enumerate((FLIGHT, IMPACT)):
+            before, now = float(near[first, i]), float(near[last, i])
+            ahead = way * now / (before - now) if now < before < math.inf else math.inf
+            if ahead < min(nearest[1], REACH):
+                nearest = kind, ahead
+    return nearest
