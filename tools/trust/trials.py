@@ -195,10 +195,12 @@ class Disturbances(Campaign):
                     fault = list(self.faults)[number % len(self.faults)]
                     if name not in known:
                         known[name] = undisturbed(name, holder)
-                    wrong = self.faults[fault](trial(name, holder / "trial", *known[name], chance))
+                    folder = holder / "trial"
+                    folder.mkdir()
+                    wrong = self.faults[fault](trial(name, folder, *known[name], chance))
                     counts[fault] += 1
                     if wrong:
                         notes.append(f"seed {seed}, fault {number} ({fault}, {name}): {wrong}")
-                    shutil.rmtree(holder / "trial", ignore_errors=True)
+                    shutil.rmtree(folder, ignore_errors=True)
         named = {f"{name}:": value for name, value in counts.items()}
         return Outcome(count, len(notes), counts=named, notes=tuple(notes))
