@@ -1,8 +1,9 @@
 """A job of ``.github/workflows`` on this machine: its ``run:`` steps, one by one, in a clean clone.
 
-``python -m tools.workflow tests.yml lint``. Checkout is a clone of the last commit; setup-python
-an environment of the named version where there is one; artifacts are folders beside the clone. What
-needs GitHub (``gh``) or changes the machine (``sudo``) is named and left out.
+``python -m tools.workflow tests.yml lint``. Checkout is a clone of the last commit, the same for
+all jobs; setup-python an environment of the named version where there is one; artifacts are folders
+beside the clone. What needs GitHub (``gh``) or changes the machine (``sudo``) is named and left
+out.
 """
 
 from __future__ import annotations
@@ -38,11 +39,18 @@ def filled(text: str, matrix: dict[str, str]) -> str:
     return text
 
 
-def prepare(step: dict[str, Any], clone: Path, matrix: dict[str, str]) -> None:
+def last_commit() -> str:
+    """Of this tree."""
+    command = ["git", "-C", str(ROOT), "rev-parse", "HEAD"]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def prepare(step: dict[str, Any], clone: Path, matrix: dict[str, str], commit: str) -> None:
     """What an action of the marketplace does."""
     action, given = step["uses"].split("@")[0], step.get("with", {})
     if action == "actions/checkout":
         subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
+        subprocess.run(["git", "-C", str(clone), "checkout", "-q", commit], check=True)
     elif action == "actions/setup-python":
         version = filled(given["python-version"], matrix)
         subprocess.run([interpreter(version), "-m", "venv", str(clone / ".venv")], check=True)
@@ -52,13 +60,15 @@ def prepare(step: dict[str, Any], clone: Path, matrix: dict[str, str]) -> None:
         shutil.copytree(clone.parent / given["name"], clone / given["path"], dirs_exist_ok=True)
 
 
-def run_job(steps: list[dict[str, Any]], clone: Path, matrix: dict[str, str], tag: str) -> None:
+def run_job(
+    steps: list[dict[str, Any]], clone: Path, matrix: dict[str, str], commit: str, tag: str
+) -> None:
     """All steps; the first that fails ends it."""
     path = f"{clone / '.venv' / 'bin'}{os.pathsep}{os.environ['PATH']}"
     known = {"CI": "true", "GITHUB_REF_NAME": tag, "PATH": path}
     for step in steps:
         if "uses" in step:
-            prepare(step, clone, matrix)
+            prepare(step, clone, matrix, commit)
             continue
         command = filled(step["run"], matrix)
         print(f"$ {command.strip()}", flush=True)
@@ -79,12 +89,12 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, help="kept; else a temporary one")
     given = parser.parse_args()
     text = (ROOT / ".github" / "workflows" / given.workflow).read_text(encoding="utf-8")
-    jobs = yaml.safe_load(text)["jobs"]
+    jobs, commit = yaml.safe_load(text)["jobs"], last_commit()
     folder = given.folder or Path(tempfile.mkdtemp(prefix="workflow-"))
     for name in given.jobs:
         print(f"== {name}, in {folder / name}", flush=True)
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        run_job(jobs[name]["steps"], folder / name, {"python": given.python}, given.tag)
+        run_job(jobs[name]["steps"], folder / name, {"python": given.python}, commit, given.tag)
     print("all steps passed")
 
 
