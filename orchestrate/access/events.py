@@ -7,8 +7,8 @@ the last bit.
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Callable
+from ctypes import byref, c_bool, c_double
 from dataclasses import dataclass
 from os import PathLike
 
@@ -119,40 +119,36 @@ class EventInstance(Instance):
 
     def _stepper(self) -> Callable[[float, float], tuple[bool, float]]:
         """``fmi3DoStep``: time and length of a step to whether there was an event, and when."""
-        component, do_step = ctypes.c_void_p(self._fmu.component), self._fmu.dll["fmi3DoStep"]
-        event, last, yes = ctypes.c_bool(), ctypes.c_double(), ctypes.c_bool(True)
-        flags = [ctypes.c_bool() for _ in range(2)]
-        answers = [ctypes.byref(event), *map(ctypes.byref, flags), ctypes.byref(last)]
+        event, last = c_bool(), c_double()
+        answers = byref(event), byref(c_bool()), byref(c_bool()), byref(last)
+        do_step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *answers)
 
         def step(time: float, length: float) -> tuple[bool, float]:
-            self._messages.clear()
-            if do_step(component, ctypes.c_double(time), ctypes.c_double(length), yes, *answers):
-                raise self.failure("fmi3DoStep failed")
+            self._time.value, self._length.value = time, length
+            do_step()
             return event.value, last.value
 
         return step
 
     def _event_handler(self) -> Callable[[], None]:
         """:meth:`handle_event` without FMPy's part."""
-        component, library = ctypes.c_void_p(self._fmu.component), self._fmu.dll
-        enter, leave = library["fmi3EnterEventMode"], library["fmi3EnterStepMode"]
-        update = library["fmi3UpdateDiscreteStates"]
-        news = [ctypes.byref(ctypes.c_bool()) for _ in range(5)]
-        next_event = ctypes.byref(ctypes.c_double())
+        news = [*(byref(c_bool()) for _ in range(5)), byref(c_double())]
+        enter, leave = self.prepared("fmi3EnterEventMode"), self.prepared("fmi3EnterStepMode")
+        update = self.prepared("fmi3UpdateDiscreteStates", *news)
 
         def handle() -> None:
-            if enter(component) or update(component, *news, next_event) or leave(component):
-                raise self.failure("event mode failed")
+            enter()
+            update()
+            leave()
 
         return handle
 
     def flag(self, name: str) -> Callable[[], bool]:
         """A fast reader of one Boolean."""
-        reference = (ctypes.c_uint * 1)(self.variable(name).valueReference)
-        value = (ctypes.c_bool * 1)()
+        call, values, _ = self._transfer("Get", "Boolean", [(self.variable(name), 1)], [0])
 
         def read() -> bool:
-            self._fmu.fmi3GetBoolean(self._fmu.component, reference, 1, value, 1)
-            return value[0]
+            call()
+            return bool(values[0])
 
         return read

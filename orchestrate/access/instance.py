@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
-from ctypes import byref, c_bool, c_double, c_int, c_uint
+from ctypes import byref, c_bool, c_double, c_int, c_size_t, c_uint, c_void_p
+from functools import partial
 from os import PathLike
 from types import TracebackType
 from typing import Any, ClassVar, NamedTuple
@@ -19,25 +20,22 @@ from .library import loaded
 
 REAL = ("Real", "Float64")
 WHOLE = ("Integer", "Int32")
+Prepared = Callable[[], None]
 
 
 class Transfer(NamedTuple):
-    """One call that sets or reads some variables of a type, with arrays that are made once.
+    """One call that sets or reads some variables of a type.
 
     Attributes
     ----------
-    function : str
-        Of the FMU.
-    arguments : tuple
-        After the instance.
+    call : callable
     values : ctypes.Array
         Where they travel.
     places : list of int
         Of them among all that are set or read together.
     """
 
-    function: str
-    arguments: tuple[Any, ...]
+    call: Prepared
     values: Any
     places: list[int]
 
@@ -94,7 +92,10 @@ class Instance:
             reason = f"FMU {path}: cannot be loaded ({error})"
             raise InputError(f"{reason}; expected an FMU with a binary for this machine") from None
         self._open = True
-        self._step = self._stepper3() if self.is_fmi3 else self._stepper2()
+        self._start, self._time, self._length = c_double(), c_double(), c_double()
+        self._reset, self._initialize, self._step = (
+            self._calls3() if self.is_fmi3 else self._calls2()
+        )
 
     @property
     def is_fmi3(self) -> bool:
@@ -116,15 +117,27 @@ class Instance:
     def _make3(self) -> None:
         self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
 
-    def _stepper2(self) -> Callable[[float, float], None]:
-        """``fmi2DoStep``: time and length of a step."""
-        return lambda time, length: self.run("fmi2DoStep", time, length, True)
+    def _calls2(self) -> tuple[Prepared, list[Prepared], Prepared]:
+        """Reset, initialise and step, of FMI 2.0."""
+        no, zero = c_int(0), c_double()  # no tolerance, no end
+        initialize = [
+            self.prepared("fmi2SetupExperiment", no, zero, self._start, no, zero),
+            self.prepared("fmi2EnterInitializationMode"),
+            self.prepared("fmi2ExitInitializationMode"),
+        ]
+        step = self.prepared("fmi2DoStep", self._time, self._length, c_int(1))
+        return self.prepared("fmi2Reset"), initialize, step
 
-    def _stepper3(self) -> Callable[[float, float], None]:
-        """``fmi3DoStep``."""
-        flags, last = [c_bool() for _ in range(3)], c_double()
-        answers = [*map(byref, flags), byref(last)]
-        return lambda time, length: self.run("fmi3DoStep", time, length, True, *answers)
+    def _calls3(self) -> tuple[Prepared, list[Prepared], Prepared]:
+        """The same of FMI 3.0."""
+        no, zero = c_bool(False), c_double()
+        initialize = [
+            self.prepared("fmi3EnterInitializationMode", no, zero, self._start, no, zero),
+            self.prepared("fmi3ExitInitializationMode"),
+        ]
+        answers = [*(byref(c_bool()) for _ in range(3)), byref(c_double())]
+        step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *answers)
+        return self.prepared("fmi3Reset"), initialize, step
 
     def __enter__(self) -> Any:
         return self
@@ -162,12 +175,28 @@ class Instance:
         except Exception as error:
             raise self.failure(error) from None
 
-    def run(self, function: str, *arguments: Any) -> None:
-        """Call a function of the binary itself, past FMPy's wrapper, for what is called often."""
-        self._messages.clear()
-        status = getattr(self._fmu.dll, function)(self._fmu.component, *arguments)
-        if status:
-            raise self.failure(f"{function} failed with status {status}")
+    def prepared(self, function: str, *arguments: Any) -> Prepared:
+        """A call of the binary's function, for what is called often.
+
+        FMPy and ctypes take longer to convert arguments than the FMU to answer. Here they are made
+        once: C numbers, whose values may change from call to call, and arrays.
+
+        Parameters
+        ----------
+        function : str
+        *arguments
+            After the instance, of the types of C that the function expects: nothing is converted.
+        """
+        call = partial(self._fmu.dll[function], c_void_p(self._fmu.component), *arguments)
+        messages = self._messages
+
+        def run() -> None:
+            messages.clear()
+            status = call()
+            if status:
+                raise self.failure(f"{function} failed with status {status}")
+
+        return run
 
     def variable(self, name: str) -> Any:
         """FMPy's description of a variable."""
@@ -176,21 +205,20 @@ class Instance:
     def set(self, **values: float) -> None:
         """Set variables by name."""
         names = ("Set", *values)
-        transfers = self._transfers.get(names) or self._grouped(names)
         given = list(values.values())
-        for function, arguments, array, places in transfers:
+        for call, array, places in self._transfers.get(names) or self._grouped(names):
             try:
                 array[:] = [given[place] for place in places]
             except TypeError as error:
                 raise FmuError(str(error)) from None
-            self.run(function, *arguments)
+            call()
 
     def get(self, *names: str) -> list[Any]:
         """Values by name, as a list."""
         key = ("Get", *names)
         found: list[Any] = [None] * len(names)
-        for function, arguments, array, places in self._transfers.get(key) or self._grouped(key):
-            self.run(function, *arguments)
+        for call, array, places in self._transfers.get(key) or self._grouped(key):
+            call()
             for place, value in zip(places, array, strict=True):
                 found[place] = value
         return found
@@ -219,29 +247,26 @@ class Instance:
         values = (element * sum(length for _, length in variables))()
         count = len(variables)
         references = (c_uint * count)(*(variable.valueReference for variable, _ in variables))
-        sizes = (len(values),) if self.is_fmi3 else ()
+        sizes = (c_size_t(len(values)),) if self.is_fmi3 else ()
         function = f"fmi{3 if self.is_fmi3 else 2}{verb}{kind}"
-        return Transfer(function, (references, count, values, *sizes), values, places)
+        call = self.prepared(function, references, c_size_t(count), values, *sizes)
+        return Transfer(call, values, places)
 
     def initialize(self, start_time: float = 0.0, **values: float) -> None:
         """Set ``values`` and initialise."""
         self.set(**values)
-        start = (False, 0.0, start_time, False, 0.0)  # no tolerance, no end
-        if self.is_fmi3:
-            self.run("fmi3EnterInitializationMode", *start)
-            self.run("fmi3ExitInitializationMode")
-        else:
-            self.run("fmi2SetupExperiment", *start)
-            self.run("fmi2EnterInitializationMode")
-            self.run("fmi2ExitInitializationMode")
+        self._start.value = start_time
+        for call in self._initialize:
+            call()
 
     def reset(self) -> None:
         """Back to the state after instantiation."""
-        self.run("fmi3Reset" if self.is_fmi3 else "fmi2Reset")
+        self._reset()
 
     def step(self, time: float, target: float) -> None:
         """One communication step from ``time`` to ``target``, s."""
-        self._step(time, target - time)
+        self._time.value, self._length.value = time, target - time
+        self._step()
 
     def read(self, *names: str) -> NDArray[np.float64]:
         """Values of Real variables, in one call of the FMU.
@@ -258,7 +283,7 @@ class Instance:
             In the order of ``names``, valid until the next call with them.
         """
         transfer, values = self._reader(names)
-        self.run(transfer.function, *transfer.arguments)
+        transfer.call()
         return values
 
     def size(self, *names: str) -> int:
