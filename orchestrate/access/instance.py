@@ -207,8 +207,9 @@ class Instance:
         names = ("Set", *values)
         given = list(values.values())
         for call, array, places in self._transfers.get(names) or self._grouped(names):
+            own = given if len(places) == len(given) else [given[place] for place in places]
             try:
-                array[:] = [given[place] for place in places]
+                array[:] = own
             except TypeError as error:
                 raise FmuError(str(error)) from None
             call()
@@ -219,6 +220,8 @@ class Instance:
         found: list[Any] = [None] * len(names)
         for call, array, places in self._transfers.get(key) or self._grouped(key):
             call()
+            if len(places) == len(names):
+                return list(array[:])
             for place, value in zip(places, array, strict=True):
                 found[place] = value
         return found

@@ -36,10 +36,12 @@ def multiplicity(samples: ArrayLike, tolerance: float) -> int:
     limit = max(1, len(states) // 4)
     later = states[len(states) // 2 :].T  # a row a co-ordinate
     scale = np.abs(later).max(axis=1, keepdims=True)
-    scale[scale == 0.0] = 1.0
+    if not scale.all():
+        scale[scale == 0.0] = 1.0
     scaled = later / scale
-    first = np.abs(scaled[:, 1 : limit + 1] - scaled[:, :1])
-    for n in np.flatnonzero((first <= tolerance).all(axis=0)) + 1:
+    first = np.abs(scaled[:, 1 : limit + 1] - scaled[:, :1]).max(axis=0, initial=0.0)
+    candidates: list[int] = ((first <= tolerance).nonzero()[0] + 1).tolist()
+    for n in candidates:
         if np.abs(scaled[:, n:] - scaled[:, :-n]).max() <= tolerance:
-            return int(n)
+            return n
     return 0

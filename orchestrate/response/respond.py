@@ -118,7 +118,6 @@ def respond(
     if transient:
         instance.step(0.0, transient * period)
     impacts, contacts, touching = instance.get("impact_count", "contact_count", "in_contact")
-    instance.set(x_rel_max_on=True)
     states, peak = sample(instance, period, transient, samples)
     impacts_after, contacts_after = instance.get("impact_count", "contact_count")
     return Response(
@@ -146,7 +145,7 @@ def sample(
     for done in range(0, samples, room):
         count = min(room, samples - done)
         first = transient + done
-        instance.set(sample_count=count)
+        instance.set(x_rel_max_on=True, sample_count=count)
         instance.step(first * period, (first + count) * period)
         states[done : done + count] = last_samples(instance, count)
         peak = max(peak, *instance.get("x_rel_max"))
