@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import xarray as xr
-from scipy.constants import g
 
+GRAVITY = 9.80665  # m/s^2, by definition
 SYMBOLS = {
     "eta": r"$\eta$",
     "e": "$e$",
@@ -95,7 +95,7 @@ def excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
         level = (data.amplitude * data.frequency**2).values
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
             found["amplitude"] = (
-                rf"$a\,\Omega^2$ = {level.max():.4g} m/s$^2$ ({level.max() / g:.3g} g)"
+                rf"$a\,\Omega^2$ = {level.max():.4g} m/s$^2$ ({level.max() / GRAVITY:.3g} g)"
             )
     return found
 

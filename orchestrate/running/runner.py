@@ -134,8 +134,10 @@ class Runner:
                 with at_work(Here()) as workers:
                     self.work(workers, bar, self.little_left)
             if not self.finished():
-                threading.Thread(target=import_xarray, daemon=True).start()
                 with at_work(self.others()) as workers:
+                    fmus = self.deliveries(workers)
+                    self.hand_out(workers, fmus, bar)  # workers start while this process imports
+                    threading.Thread(target=import_xarray, daemon=True).start()
                     self.work(workers, bar, lambda: True)
 
     def others(self) -> Workers:
@@ -189,7 +191,7 @@ class Runner:
 
     def work(self, workers: Workers, bar: Any, go_on: Callable[[], bool]) -> None:
         """Hand out chunks and take results until all is done, or ``go_on`` says no."""
-        fmus = {model: self.delivery(fmu, workers.remote) for model, fmu in self.fmus.items()}
+        fmus = self.deliveries(workers)
         while not self.finished() and (go_on() or self.futures):
             if go_on():
                 self.hand_out(workers, fmus, bar)
@@ -203,10 +205,12 @@ class Runner:
                 self.fresh += len(task.items)
             bar.update(self.done() - bar.n)
 
-    @staticmethod
-    def delivery(fmu: Fmu, remote: bool) -> Path | bytes:
-        """An FMU as it travels."""
-        return fmu.path.read_bytes() if remote else fmu.path.resolve()
+    def deliveries(self, workers: Workers) -> dict[str, Path | bytes]:
+        """FMUs as they travel."""
+        return {
+            model: fmu.path.read_bytes() if workers.remote else fmu.path.resolve()
+            for model, fmu in self.fmus.items()
+        }
 
     def hand_out(self, workers: Workers, fmus: Mapping[str, Path | bytes], bar: Any) -> None:
         """Submit chunks until the workers have enough."""

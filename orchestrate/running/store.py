@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 COMPRESSED = 10_000  # values from which a variable is worth compressing
+LEVEL = 1  # of zlib: the last digits of numbers do not shrink, however long it tries
 
 
 def now() -> str:
@@ -308,7 +309,7 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
 
     dataset = dataset.assign_attrs({ATTRIBUTE: checksum(dataset)})
     large = [name for name, variable in dataset.data_vars.items() if variable.size > COMPRESSED]
-    encoding = {name: {"zlib": True, "complevel": 4} for name in large}
+    encoding = {name: {"zlib": True, "complevel": LEVEL} for name in large}
     make: Any = NetCDF4DataStore.open
 
     def write(place: Path) -> None:
