@@ -98,7 +98,8 @@ def picture_of(found: dict[str, xr.Dataset], name: str, asked: dict[str, Any]) -
 
     control = asked["control"]
     switched = f"controlled by {type(control).__name__}" if control else "switched on from rest"
-    return draw(found, f"{name}: {switched}")
+    first, last = asked["voltage"]
+    return draw(found, f"{name}: {switched}, {first:.4g} V to {last:.4g} V")
 
 
 def report(state: str, data: xr.Dataset) -> None:

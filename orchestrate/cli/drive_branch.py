@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -99,17 +100,25 @@ def report(data: xr.Dataset) -> None:
 
 def jump_at(branch: xr.Dataset, voltage: float, speed: float) -> str:
     """What a fold means on a slow ramp: a largest voltage is where the speed jumps up."""
+    import numpy as np
+
+    spans = {name: float(branch[name].max() - branch[name].min()) for name in ("voltage", "speed")}
+    nearest, around = math.inf, None
     for leg in branch.leg.values:
         at = branch.sel(leg=leg).dropna("point", subset=["voltage"])
         if at.sizes["point"] < 3:
             continue
-        distances = abs(at.speed.values - speed)
-        near = int(distances.argmin())
-        around = at.isel(point=slice(max(near - 1, 0), near + 2))
-        if set(around.stable.values.astype(int)) == {0, 1}:
-            way = "up" if float(around.voltage.mean()) < voltage else "down"
-            return f": the jump {way}, at rate 0"
-    return ""
+        apart = np.hypot(
+            (at.voltage.values - voltage) / spans["voltage"],
+            (at.speed.values - speed) / spans["speed"],
+        )
+        near = int(apart.argmin())
+        if apart[near] < nearest:
+            nearest, around = apart[near], at.isel(point=slice(max(near - 1, 0), near + 2))
+    if around is None or set(around.stable.values.astype(int)) != {0, 1}:
+        return ""
+    way = "up" if float(around.voltage.mean()) < voltage else "down"
+    return f": the jump {way}, at rate 0"
 
 
 def tell_unlocated(leg: xr.Dataset, speeds: np.ndarray) -> None:

@@ -90,7 +90,9 @@ def shaken_by_the_motor(arguments: argparse.Namespace) -> None:
     for kind in map(str, data.kind.values):
         part = data.sel(kind=kind, mass=1)
         heard(f"{kind} at {float(part.speed):.4f} rad/s", part.acceleration)
-    files.write(data, lambda: figure.draw(data))
+    words = str(data.attrs["title"])
+    title = f"{Path(arguments.drive).stem}: {words[0].lower()}{words[1:]}, mass 1 in space"
+    files.write(data, lambda: figure.draw(data, title=title))
 
 
 def shaken_harmonically(arguments: argparse.Namespace) -> None:

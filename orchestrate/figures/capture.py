@@ -35,6 +35,7 @@ def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
         else:
             draw_line(panel, data)
         panel.legend(loc="best")
+        panel.label_outer()
     if title:
         figure.suptitle(title)
     return figure

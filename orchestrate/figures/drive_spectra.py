@@ -12,7 +12,7 @@ FLOOR = 1e-6  # of the largest amplitude: the lower end of the axis
 
 
 @in_our_look
-def draw(data: xr.Dataset, mass: int = 1) -> Figure:
+def draw(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
     """Draw spectra one below the other.
 
     Parameters
@@ -21,6 +21,8 @@ def draw(data: xr.Dataset, mass: int = 1) -> Figure:
         Of :func:`orchestrate.weak_drive.drive_spectra.drive_spectra`.
     mass : int
         1 or 2.
+    title : str
+        What is shown: set and volts.
     """
     count = data.sizes["kind"]
     figure, axes = panels(count, 1, (10, 3.5 * count), sharex=True, sharey=True)
@@ -30,7 +32,9 @@ def draw(data: xr.Dataset, mass: int = 1) -> Figure:
         amplitude = shown.sel(kind=kind).clip(1e-3 * FLOOR * top)
         panel.semilogy(data.order, amplitude, color=COLOURS[kind], linewidth=0.7)
         speed = float(data.speed.sel(kind=kind))
-        panel.set(title=f"{kind}, $\\Omega$ = {speed:.4f} rad/s", ylabel="amplitude in m/s$^2$")
+        panel.set(title=f"{kind}, $\\Omega$ = {speed:.4f} rad/s", ylabel="acceleration in m/s$^2$")
         panel.set_ylim(FLOOR * top, 2.0 * top)
     axes[-1].set_xlabel(r"frequency over the motor's speed $\Omega$")
+    if title:
+        figure.suptitle(title)
     return figure

@@ -20,7 +20,7 @@ SINKS = {
     "impact_loss": "impacts",
 }
 WINDOW = 10  # revolutions that impacts are averaged over
-FEW = 2  # revolutions that powers are averaged over: a motion may repeat after two
+FEW = 2  # revolutions that powers are averaged over, twice: a motion may repeat after two
 AROUND = 500.0  # time shown before and after a jump, in 1/omega
 THEORY = "averaged theory, bonded"
 MARKS = {  # of bifurcations
@@ -212,17 +212,17 @@ def draw_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
         return
     time, ends = data.time.values[there], data.speed.values[there]
     span = time[FEW:] - time[:-FEW]
-    speed = mean_of(ends[1:], FEW)
+    speed = mean_of(mean_of(ends[1:], FEW), FEW)
 
     def power(account: str) -> np.ndarray:
         values = data[account].values[there]
-        return np.asarray((values[FEW:] - values[:-FEW]) / span)
+        return mean_of((values[FEW:] - values[:-FEW]) / span, FEW)
 
     axes.plot(speed, power("motor"), "k", linewidth=1.5, label="motor")
     for account, label in SINKS.items():
         axes.plot(speed, power(account), linewidth=1.0, label=label)
     axes.plot(speed, power("stored"), color="0.7", linewidth=0.8, label="stored")
-    axes.set_title(f"power, {name}, on the way there, means of {FEW} revolutions")
+    axes.set_title(f"power, {name}, on the way there, means of {FEW} revolutions, twice")
 
 
 def label_axes(axes: Sequence[Axes]) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
+SHARES = (0.6, 0.45, 0.3, 0.15)  # of the way from the jump down to the jump up: voltages tried
 
 
 @dataclass(frozen=True)
@@ -124,6 +125,12 @@ class DriveSpectraJob(Job):
         _, motion, shaking, _ = parts_of(kept.T)
         return np.array([motion.x1 + shaking.box_position, motion.x2 + shaking.box_position])
 
+    def hangs(self, fmus: Mapping[str, Path]) -> bool:
+        """Whether the delaminated structure, which jumps earlier, is still at the resonance."""
+        short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
+        divide = averaged.dividing_speed(structure, self.drive) * structure.omega
+        return short.record(fmus, structure)[1] < divide
+
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Amplitudes over the lines."""
         import xarray as xr
@@ -196,7 +203,8 @@ def drive_spectra(
         Whether it is bonded does not matter: both kinds are answered.
     drive : Drive
     voltage : float, optional
-        V; by default between the jumps of the averaged theory, see :func:`voltage_at_resonance`.
+        V; by default 0.6 of the way between the jumps of the averaged theory, see
+        :func:`voltage_at_resonance`, or less where the delaminated structure has jumped by then.
     begin : float, optional
         Voltage from which it is approached, V; 0.85 of it by default.
     rate : float, optional
@@ -239,8 +247,6 @@ def drive_spectra(
     (('kind', 'mass', 'order'), True)
     """
     omega, volts = structure.omega, drive.volts(structure)
-    target = voltage_at_resonance(structure, drive) if voltage is None else float(voltage)
-    first = 0.85 * target if begin is None else float(begin)
     speed = 1e-4 * volts * omega if rate is None else float(rate)
     hold = 800.0 / omega if hold is None else float(hold)
     check("hold", hold, "s", low=0.0)
@@ -249,8 +255,22 @@ def drive_spectra(
             raise InputError(f"{name} = {number}: expected a whole number >= {least}")
     if not 0.0 < highest <= points / 2:
         raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
-    approach = Ramp(first, target, speed, settle=300.0 / omega, back=False)
     step = scheme_of(structure, step, "rollback", 0.0).h
     record = (revolutions, points, float(highest))
-    job = DriveSpectraJob("drive_spectra", structure, drive, approach, hold, step, *record)
-    return answer(job, running, finder(running))
+    tried = (
+        [voltage_at_resonance(structure, drive, share) for share in SHARES]
+        if voltage is None
+        else [float(voltage)]
+    )
+    jobs = []
+    for target in tried:
+        first = 0.85 * target if begin is None else float(begin)
+        approach = Ramp(first, target, speed, settle=300.0 / omega, back=False)
+        jobs.append(
+            DriveSpectraJob("drive_spectra", structure, drive, approach, hold, step, *record)
+        )
+    found = finder(running)
+    if voltage is None:
+        fmus = {model: found(model).path for model in DriveSpectraJob.models}
+        jobs = [next((job for job in jobs if job.hangs(fmus)), jobs[-1])]
+    return answer(jobs[0], running, found)

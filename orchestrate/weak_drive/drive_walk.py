@@ -239,12 +239,24 @@ def next_motion(walk: Walk[Shooter], speeds: tuple[float, float]) -> tuple[Motio
 
 
 def end_without_root(leg: Leg, shooter: Shooter) -> None:
-    """Say why a branch ends where Newton's method finds no motion further on."""
+    """Say why a branch ends where Newton's method finds no motion further on.
+
+    So near a grazing multipliers are those of both sides, by chance: one motion stands for all.
+    """
     seen = [(motion.root.unknowns, motion.angle) for motion in leg.motions]
     kind, distance = grazing_ahead(shooter, seen)
     leg.end = kind or STUCK
     if kind and distance < LOCATED:
-        leg.bifurcations.append(Bifurcation(kind, leg.motions[-1]))
+        last = leg.motions.pop()
+        leg.motions = [one for one in leg.motions if apart(one, last) > LOCATED]
+        leg.motions.append(last)
+        leg.bifurcations = [one for one in leg.bifurcations if apart(one.motion, last) > LOCATED]
+        leg.bifurcations.append(Bifurcation(kind, last))
+
+
+def apart(one: Motion, other: Motion) -> float:
+    """How far apart motions are: voltage over K omega and speed over omega."""
+    return float(np.linalg.norm(one.root.unknowns[-2:] - other.root.unknowns[-2:]))
 
 
 def half_way(shooter: Shooter, root: Root) -> Floats:

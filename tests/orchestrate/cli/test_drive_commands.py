@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zipfile
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -209,8 +211,10 @@ def test_titles_name_set_volts_and_rates():
 
 def test_the_weak_drive_as_a_package(ask, tmp_path):
     path = tmp_path / "weak_drive.ssp"
-    assert ask("couple", "--ssp", path).code == 0
-    assert path.stat().st_size > 1000
+    for options, state in (((), "delaminated"), (("--only", "bonded"), "bonded")):
+        assert ask("couple", "--ssp", path, *options).code == 0
+        description = zipfile.ZipFile(path).read("SystemStructure.ssd").decode()
+        assert "with a bonded" in description if state == "bonded" else state in description
     ask("couple", "--ssp", "/nowhere/x.ssp").complaint("/nowhere/x.ssp", code=1)
 
 
