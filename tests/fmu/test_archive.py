@@ -81,7 +81,12 @@ def other_pythons():
     versions = [f"3.{minor}" for minor in range(10, 15) if f"3.{minor}" != ours]
     pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
     found = [[*pyenv.glob(f"{v}.*/bin/python"), shutil.which(f"python{v}")] for v in versions]
-    return [path for paths in found for path in paths if path]
+    return [path for paths in found for path in paths if path and runs(path)]
+
+
+def runs(python):
+    """Whether an interpreter is there: pyenv has names on the path for versions not chosen."""
+    return subprocess.run([python, "--version"], capture_output=True).returncode == 0
 
 
 def copy_sources(root):
