@@ -17,7 +17,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import CancelledError, Executor, Future
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from multiprocessing import resource_tracker
@@ -259,10 +259,12 @@ class Cluster:
             logging.getLogger(name).addFilter(is_no_lost_connection)
         connect: Any = Client
         try:
+            with ThreadPoolExecutor(1) as beside:  # a notebook has a loop in this thread
+                beside.submit(asyncio.run, greet(address)).result()
             self._client = connect(address, timeout=CONNECT, set_as_default=False)
         except Exception as error:  # of whatever answers there, and however
             raise InputError(
-                f"cluster {address}: no scheduler answers there ({error}); "
+                f"cluster {address}: no scheduler answers there ({str(error) or 'silence'}); "
                 "`dask scheduler` starts one"
             ) from None
         self.executor: Executor = Submitting(
@@ -292,6 +294,18 @@ class Cluster:
             self.executor.shutdown(wait=not in_haste)
         with suppress(Exception):
             self._client.close()
+
+
+async def greet(address: str) -> None:
+    """See whether Dask answers at an address; its client waits for ever for one that is silent."""
+    from dask.utils import parse_timedelta
+    from distributed.comm import connect
+    from distributed.security import Security
+
+    arguments = Security().get_connection_args("client")
+    limit = 1.0 + parse_timedelta(CONNECT)
+    reached = await asyncio.wait_for(connect(address, timeout=CONNECT, **arguments), limit)
+    reached.abort()
 
 
 class Submitting(Executor):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 
 import netCDF4
 import pytest
@@ -356,6 +357,14 @@ def test_no_scheduler(ask, tmp_path, monkeypatch):
     address = "tcp://127.0.0.1:1"
     ask("sweep", "--eta", "1", "--cluster", address).complaint(f"cluster {address}", "no scheduler")
     assert list((tmp_path / "results").glob("*.nc")) == []
+
+
+def test_no_scheduler_but_something_that_takes_calls_and_is_silent(ask, monkeypatch):
+    monkeypatch.setattr("orchestrate.running.executors.CONNECT", "1s")
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        asked = ask("sweep", "--eta", "1", "--cluster", address)
+    asked.complaint(f"cluster {address}", "no scheduler")
 
 
 @pytest.mark.parametrize("asked", [("--eta", "0.9,1"), ("--frequency", "1", "--amplitude", "1")])
