@@ -302,9 +302,10 @@ async def greet(address: str) -> None:
     from distributed.comm import connect
     from distributed.security import Security
 
-    arguments = Security().get_connection_args("client")
-    limit = 1.0 + parse_timedelta(CONNECT)
-    reached = await asyncio.wait_for(connect(address, timeout=CONNECT, **arguments), limit)
+    call: Any = connect
+    security: Any = Security
+    answer = call(address, timeout=CONNECT, **security().get_connection_args("client"))
+    reached = await asyncio.wait_for(answer, 1.0 + parse_timedelta(CONNECT))
     reached.abort()
 
 

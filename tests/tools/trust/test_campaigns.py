@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 import sys
 
@@ -27,6 +28,19 @@ def fmu(exported):
 
 def clean(found, count):
     assert found.done >= count and found.findings == 0, found.notes
+
+
+def test_a_point_that_no_step_size_hits_is_left_out():
+    """Set 247: from its middle the nearest step size ends one number beside the target."""
+    drawn = parameter_sets.draw(45094094863979, 247)
+    _, (middle, end), *_ = drawn.grids()
+    assert middle + (end - middle) != end
+    grids = [bits.reachable(drawn.start_time, grid) for grid in drawn.grids()]
+    assert [grid[-1] for grid in grids] == [end] * len(grids)
+    for grid in grids:
+        steps = itertools.pairwise([drawn.start_time, *grid])
+        assert all(time + (target - time) == target for time, target in steps)
+    assert len(grids[-1]) > 12
 
 
 def test_bits_of_a_few_sets(fmu):
