@@ -265,24 +265,33 @@ class Lost:
         self.there("close")
 
 
+def false_client(monkeypatch, client):
+    """Dask with another client, whose address is greeted by nobody."""
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(distributed, "Client", client)
+
+    async def greet(address):
+        pass
+
+    monkeypatch.setattr("orchestrate.running.executors.greet", greet)
+    return distributed
+
+
 @pytest.mark.parametrize("when", ["ncores", "submit", ""])
 def test_a_scheduler_that_ends_is_told(find, tmp_path, monkeypatch, when):
-    distributed = pytest.importorskip("distributed")
-    monkeypatch.setattr(distributed, "Client", functools.partial(Lost, when=when))
+    false_client(monkeypatch, functools.partial(Lost, when=when))
     with pytest.raises(WorkerError, match=r"has ended; .* the same call goes on from there"):
         answer(Squares("squares"), {"cluster": "tcp://127.0.0.1:1"}, find)
 
 
 def test_what_has_been_computed_needs_no_scheduler_for_the_end(monkeypatch):
-    distributed = pytest.importorskip("distributed")
-    monkeypatch.setattr(distributed, "Client", functools.partial(Lost, when="shutdown"))
+    false_client(monkeypatch, functools.partial(Lost, when="shutdown"))
     with at_work(Cluster("tcp://127.0.0.1:1")) as workers:
         assert workers.room() == 2
 
 
 def test_workers_of_a_cluster_that_die_are_told(find, monkeypatch):
-    distributed = pytest.importorskip("distributed")
-    monkeypatch.setattr(distributed, "Client", Lost)
+    distributed = false_client(monkeypatch, Lost)
     monkeypatch.setattr(Lost, "lasts", 99)
     died = Future()
     died.set_exception(distributed.KilledWorker("compute", None, 3))
@@ -292,12 +301,10 @@ def test_workers_of_a_cluster_that_die_are_told(find, monkeypatch):
 
 
 def test_something_else_than_a_scheduler_answers(find, monkeypatch):
-    distributed = pytest.importorskip("distributed")
-
     def answers(*_, **__):
         raise MemoryError("an array of 3 EiB")  # a length, as Dask reads it
 
-    monkeypatch.setattr(distributed, "Client", answers)
+    false_client(monkeypatch, answers)
     with pytest.raises(InputError, match="no scheduler answers there"):
         answer(Squares("squares"), {"cluster": "tcp://127.0.0.1:1"}, find)
 
