@@ -31,13 +31,23 @@ def overlay(found: xr.Dataset | None) -> dict[str, Any]:
     if found.attrs.get("over") != "eta":
         over = found.attrs.get("over", "nothing")
         raise InputError(f"branches over {over}: expected a result of orchestrate.branch over eta")
+    try:
+        return {"branches": lines(found), "bifurcations": bifurcations(found)}
+    except (AttributeError, KeyError, TypeError, ValueError) as error:  # of a file's contents
+        raise InputError(
+            f"branches: a part is missing or of another kind ({error}); "
+            "expected a result of orchestrate.branch over eta"
+        ) from None
+
+
+def lines(found: xr.Dataset) -> list[dict[str, Any]]:
+    """Parts of the branch of one stability, a line each, of every sample of an orbit."""
     stable = found.stable.values == 1
-    lines = [
+    return [
         {"x": along.tolist(), "y": gaps.tolist(), "stable": bool(flag)}
         for samples in found.xi_rel.transpose("sample", "point").values
         for along, gaps, flag in runs(found["eta"].values, samples, stable)
     ]
-    return {"branches": lines, "bifurcations": bifurcations(found)}
 
 
 def runs(
