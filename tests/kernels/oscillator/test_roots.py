@@ -5,13 +5,20 @@ precision finds too.
 import math
 
 import mpmath as mp
+import numpy as np
 import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.event_function import evaluate
-from fmu_src.kernels.oscillator.roots import clear_step, parabola_root, taylor_root, walk
+from fmu_src.kernels.oscillator.roots import (
+    clear_step,
+    lowest_curvature,
+    parabola_root,
+    taylor_root,
+    walk,
+)
 
 from . import truth
 from .kernel import CHAOTIC, DEFAULTS, advanced, examples, pieces, sizes, started, structures
@@ -120,6 +127,19 @@ def test_a_root_by_taylor_is_the_only_one_from_the_clear_step_on(h0, fall, h2, h
     if root > 0.0:
         for s in (step + (root - step) * i / 20 for i in range(21)):
             assert -fall + s * (h2 + s * (h3 / 2 + s * (h4 / 6 + s * bound / 24))) < 0.0
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-3, 1e-9])
+def test_the_parabola_is_below_the_quintic(scale):
+    """All along the step, however slightly the derivatives bend it."""
+    rng = np.random.default_rng(3)
+    part = np.linspace(0.0, 1.0, 201)
+    for _ in range(300):
+        h2, h3, h4 = scale * rng.uniform(-1.0, 1.0, 3) * (0.0, 1.0, 3.0)
+        bound, s = scale * rng.uniform(0.0, 1.0) * rng.integers(2), rng.uniform(0.1, 2.0)
+        t = s * part
+        least = (h2 + t * (h3 / 3.0 + t * (h4 / 12.0 - bound * t / 60.0))).min()
+        assert lowest_curvature(h2, h3, h4, bound, s) <= least + 1e-15 * scale
 
 
 def test_an_event_function_that_never_falls_has_no_root():
