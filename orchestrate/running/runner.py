@@ -132,13 +132,13 @@ class Runner:
         with self.bar() as bar:
             if not self.options.cluster:
                 with at_work(Here()) as workers:
-                    self.work(workers, bar, self.little_left)
+                    self.work(workers, self.deliveries(workers), bar, self.little_left)
             if not self.finished():
                 with at_work(self.others()) as workers:
                     fmus = self.deliveries(workers)
                     self.hand_out(workers, fmus, bar)  # workers start while this process imports
                     threading.Thread(target=import_xarray, daemon=True).start()
-                    self.work(workers, bar, lambda: True)
+                    self.work(workers, fmus, bar, lambda: True)
 
     def others(self) -> Workers:
         """Those who compute much."""
@@ -189,9 +189,14 @@ class Runner:
             bar.delay = 0.0  # it is shown from now on, or tqdm would not end its line
             bar.set_description(f"{self.title()}, {aside}" if aside else self.title())
 
-    def work(self, workers: Workers, bar: Any, go_on: Callable[[], bool]) -> None:
+    def work(
+        self,
+        workers: Workers,
+        fmus: Mapping[str, Path | bytes],
+        bar: Any,
+        go_on: Callable[[], bool],
+    ) -> None:
         """Hand out chunks and take results until all is done, or ``go_on`` says no."""
-        fmus = self.deliveries(workers)
         while not self.finished() and (go_on() or self.futures):
             if go_on():
                 self.hand_out(workers, fmus, bar)
