@@ -72,7 +72,7 @@ class ClosedForm:
         Raises
         ------
         InputError
-            On a natural frequency with no damping, or next to none, as the FMU.
+            On a natural frequency with no damping, or next to none: amplitudes grow there.
         """
         excitation.check(structure)
         omega, m1, m2 = structure.omega, structure.m1, structure.m2

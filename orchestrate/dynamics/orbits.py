@@ -313,6 +313,7 @@ def orbit(
     """
     given = one_point(structure, eta, frequency, amplitude)
     knocking(structure)
+    given.excitation.check(structure)
     count = whole("period", period, 1, MOST_PERIODS)
     job = OrbitJob(
         name=f"orbit_{structure.label()}_{count}T",

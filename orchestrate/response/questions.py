@@ -189,7 +189,6 @@ def point(structure: Structure, given: Mapping[str, Any]) -> Point:
         excitation = Excitation.nondimensional(given["eta"], changed)
     else:
         excitation = Excitation(frequency=given["frequency"], amplitude=given["amplitude"])
-    excitation.check(changed)
     return Point(changed, excitation)
 
 
@@ -216,18 +215,6 @@ def one_point(
 
 
 # -- what was given, checked ----------------------------------------------------------------------
-
-
-def check_delaminated(series: Series) -> None:
-    """Whether each excitation can drive the delaminated structure too, where a bonded one is given.
-
-    Raises
-    ------
-    InputError
-        As in :meth:`.Excitation.check`.
-    """
-    for structure, excitation in series.points:
-        excitation.check(structure.as_delaminated())
 
 
 def checked_structure(structure: object) -> Structure:

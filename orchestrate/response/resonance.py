@@ -16,7 +16,7 @@ from ..running.runner import answer
 from ..structures import Structure
 from .labels import Variable, variable, yes_or_no
 from .peaks import PEAKS
-from .questions import Point, asked_along, check_delaminated, positive, whole
+from .questions import Point, asked_along, positive, whole
 from .sweep import MULTIPLICITY, NUMBERS, Direction, SweepJob
 from .turns_and_jumps import jumps, maxima
 
@@ -50,7 +50,6 @@ class ResonanceJob(SweepJob):
         super().__post_init__()
         if self.direction == "given":
             raise InputError("direction = 'given': expected one of up, down, both")
-        check_delaminated(self.series)
 
     def lanes(self) -> int:
         """Each structure in each direction knows nothing of the others."""

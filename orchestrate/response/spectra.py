@@ -22,7 +22,7 @@ from ..running.runner import answer
 from ..structures import Structure
 from .equations import absolute_accelerations
 from .labels import variable
-from .questions import Point, SeriesQuestion, asked_along, check_delaminated, positive, whole
+from .questions import Point, SeriesQuestion, asked_along, positive, whole
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,7 +99,6 @@ class SpectraJob(SeriesQuestion):
             raise InputError(
                 f"highest = {self.highest:g}: expected at most points/2 = {self.points / 2:g}"
             )
-        check_delaminated(self.series)
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
         """Structure and excitation of each."""

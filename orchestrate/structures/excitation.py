@@ -95,7 +95,8 @@ class Excitation:
         return 1.0 if math.isclose(length, 1.0, rel_tol=2e-15) else length
 
     def check(self, structure: Structure, least: float = 1e-12) -> None:
-        """Whether the structure's closed form has digits to spare, as the FMU asks for.
+        """Whether the structure has a periodic response with digits to spare: none without damping
+        at a resonance, where amplitudes grow with time.
 
         Parameters
         ----------

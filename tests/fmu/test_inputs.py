@@ -149,6 +149,17 @@ def test_cubic_input_over_one_step_is_exact(fmu, tmp_path):
     assert (x2, v2) == (x1, v1)
 
 
+def test_a_resonance_without_damping_grows_with_time(fmu, tmp_path):
+    """x = (sin t - t cos t)/2: neither refused, nor lost in the difference of two large motions."""
+    times = [0.5, 1.0, 31.25, 32.0, 4000.0]
+    found = run("inputs.resonance_without_damping", fmu, times, cwd=tmp_path)
+    for t, (x1, v1, force) in zip(times, found, strict=True):
+        exact = 0.5 * (math.sin(t) - t * math.cos(t))
+        assert abs(x1 - exact) <= 1e-15 * (4.0 + t) ** 2
+        assert abs(v1 - 0.5 * t * math.sin(t)) <= 1e-15 * (4.0 + t) ** 2
+        assert force == pytest.approx(1.5 * x1, rel=1e-14)
+
+
 @pytest.mark.parametrize("name", ["box_acceleration", "box_jerk", "box_snap", "box_crackle"])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_each_derivative_moves_masses_from_rest(fmu, tmp_path, name, sign):

@@ -15,6 +15,7 @@ module                    the paper's equations
 `..numerics`              sine, cosine and exponential function, the same bits everywhere
 :mod:`.parameters`        m, k, d <-> mu, kappa, D, omega_i                            (2) (7) (8)
 :mod:`.excitation`        the box's motion over one step, right-hand side of            (6)
+:mod:`.secular`           amplitudes that grow, at a resonance without damping              (11)
 :mod:`.response`          closed-form oscillator                                   (9)-(11)
 :mod:`.nodes`             the same by phasors, from node to node of a grid                  (10)
 :mod:`.series`            short flights, relative to the gap itself                    (6)

@@ -7,11 +7,12 @@ form for all later times.
 """
 
 from . import memory as at
-from .nodes import LONGEST, branch_a, derivatives, phasors_at, put, start_nodes
+from .nodes import branch_a, derivatives, longest, phasors_at, put, start_nodes
+from .parameters import alike
+from .secular import driven_bound, event_bound, event_drive, event_drive_size, set_event_drive
 from .series import gap_at
 
-# difference of the oscillators' constants below which their gap is bounded by its own oscillator
-ALIKE = 1e-4
+AHEAD = 5.0  # spacings from an evaluation on for which its bound holds
 
 
 def set_gap(m):
@@ -23,6 +24,8 @@ def set_gap(m):
     if m[at.CUBIC_PRESENT] != 0.0:
         for i in range(4):
             m[at.EVENT_CUBIC + i] = m[at.CUBIC_B + i] - m[at.CUBIC_A + i]
+    if m[at.SECULAR] != 0.0:
+        set_event_drive(m)
 
 
 def set_contact_force(m):
@@ -42,6 +45,8 @@ def set_contact_force(m):
     m[at.EVENT_FREE_A + 1] = v
     m[at.EVENT_FREE_B] = 0.0
     m[at.EVENT_FREE_B + 1] = 0.0
+    if m[at.SECULAR] != 0.0:
+        set_event_drive(m)
 
 
 def force_phasor(m, x, v):
@@ -62,6 +67,8 @@ def bounds(m, order):
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     for _ in range(order):
         steady *= m[at.ETA]
+    if m[at.SECULAR] != 0.0:
+        steady += event_bound(m, order, longest(m) * m[at.SPACING])
     a = free_bound(m, branch_a(m), at.EVENT_FREE_A, order)
     b = free_bound(m, at.BRANCH_2, at.EVENT_FREE_B, order) if m[at.MODE] == at.FLIGHT else 0.0
     return steady, a, b
@@ -104,17 +111,19 @@ def set_remainder(m):
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     square = m[at.NODE_ETA] * m[at.NODE_ETA]
     bound = steady * (square * square * square)
+    time = longest(m) * m[at.SPACING]
+    driven = event_bound(m, 6, time) if m[at.SECULAR] != 0.0 else 0.0
     x, v = m[at.LEFT], m[at.LEFT + 1]
     if m[at.MODE] == at.FLIGHT:
         x_b, v_b = m[at.LEFT + 2], m[at.LEFT + 3]
         apart = bound + sixth_bound(m, at.BRANCH_2, x_b, v_b) + sixth_bound(m, at.BRANCH_1, x, v)
+        apart += driven
         if alike(m):
-            time = LONGEST * m[at.SPACING]
             apart = min(apart, bound + difference_bound(m, 6, x, v, x_b, v_b, time))
         bound = apart
     else:
         x, v = force_phasor(m, x, v)
-        bound += sixth_bound(m, at.BRANCH_3, x, v)
+        bound += sixth_bound(m, at.BRANCH_3, x, v) + driven
     m[at.REMAINDER] = bound * m[at.HERMITE + 2]
 
 
@@ -122,11 +131,6 @@ def sixth_bound(m, b, x, v):
     """Bound of the sixth derivative of a free part from now on."""
     sixth = b + at.SIXTH
     return envelope(m, b, m[sixth] * x + m[sixth + 1] * v, m[sixth + 2] * x + m[sixth + 3] * v)
-
-
-def alike(m):
-    """Whether the two oscillators are nearly equal."""
-    return abs(m[at.FORCE_V]) + abs(m[at.FORCE_X]) < ALIKE
 
 
 def difference_bound(m, order, x, v, x_b, v_b, time):
@@ -141,8 +145,14 @@ def difference_bound(m, order, x, v, x_b, v_b, time):
         x_b, v_b = v_b, acceleration(m, at.BRANCH_2, x_b, v_b)
     size = envelope(m, at.BRANCH_1, x, v)
     change = envelope(m, at.BRANCH_1, v, acceleration(m, at.BRANCH_1, x, v))
-    drive = abs(m[at.FORCE_V]) * change + abs(m[at.FORCE_X]) * size
     own = envelope(m, at.BRANCH_2, x_b - x, v_b - v)
+    if m[at.SECULAR] != 0.0:
+        size += driven_bound(m, at.BRANCH_1, order, time)
+        change += driven_bound(m, at.BRANCH_1, order + 1, time)
+        damped = m[at.BRANCH_2 + at.DAMPING] * event_drive_size(m, order)
+        sine = m[at.BRANCH_2 + at.ENVELOPE_SINE] * (event_drive_size(m, order + 1) + damped)
+        own += event_drive_size(m, order) + sine
+    drive = abs(m[at.FORCE_V]) * change + abs(m[at.FORCE_X]) * size
     return own + m[at.BRANCH_2 + at.ENVELOPE_SINE] * time * drive + 4e-15 * size
 
 
@@ -154,6 +164,9 @@ def values(m, x, v, x_b, v_b, cosine, sine, tau):
     else:
         h0, h1 = force_phasor(m, x, v)
         h2 = acceleration(m, at.BRANCH_3, h0, h1)
+    if m[at.SECULAR] != 0.0:
+        h1 += event_drive(m, 1, cosine, sine)
+        h2 += event_drive(m, 2, cosine, sine)
     eta = m[at.NODE_ETA]
     u = m[at.EVENT_HARMONIC] * cosine + m[at.EVENT_HARMONIC + 1] * sine
     h0 += u
@@ -179,8 +192,8 @@ def free_part(m, b, x, v):
 
 
 def evaluate(m, tau):
-    """The event function at ``tau``: value, four derivatives, and a bound of the fifth over a
-    spacing from there on.
+    """The event function at ``tau``: value, four derivatives, and a bound of the fifth from there
+    on, AHEAD spacings long.
 
     Returns
     -------
@@ -192,15 +205,24 @@ def evaluate(m, tau):
         return h0, h1, h2, h3, h4, m[at.SERIES_BOUND]
     x, x_b, v, v_b, cosine, sine = phasors_at(m, tau)
     put(m, at.POINT, x, x_b, v, v_b, cosine, sine)
+    time = AHEAD * m[at.SPACING]
+    driven = event_bound(m, 5, time) if m[at.SECULAR] != 0.0 else 0.0
     if m[at.MODE] == at.FLIGHT:
         a0, a1, a2, a3, a4, bound_a = free_part(m, at.BRANCH_1, x, v)
         h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_2, x_b, v_b)
         h0, h1, h2, h3, h4, bound = h0 - a0, h1 - a1, h2 - a2, h3 - a3, h4 - a4, bound + bound_a
+        bound += driven
         if alike(m):
-            bound = min(bound, difference_bound(m, 5, x, v, x_b, v_b, m[at.SPACING]))
+            bound = min(bound, difference_bound(m, 5, x, v, x_b, v_b, time))
     else:
         x, v = force_phasor(m, x, v)
         h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_3, x, v)
+        bound += driven
+    if m[at.SECULAR] != 0.0:
+        h1 += event_drive(m, 1, cosine, sine)
+        h2 += event_drive(m, 2, cosine, sine)
+        h3 += event_drive(m, 3, cosine, sine)
+        h4 += event_drive(m, 4, cosine, sine)
     if m[at.NODE_ETA] != 0.0:
         eta = m[at.NODE_ETA]
         square = eta * eta
@@ -222,6 +244,8 @@ def rounding(m, tau):
     size += free_bound(m, branch_a(m), at.EVENT_FREE_A, 0) + free_bound(
         m, at.BRANCH_2, at.EVENT_FREE_B, 0
     )
+    if m[at.SECULAR] != 0.0:
+        size += event_bound(m, 0, tau)
     if m[at.CUBIC_PRESENT] != 0.0:
         power = 1.0
         for i in range(4):

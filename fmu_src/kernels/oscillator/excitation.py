@@ -5,14 +5,10 @@ one communication step. Relative to the box a mass is driven by minus the box's 
 Omega^2 sin(phase)`` minus the cubic.
 """
 
-import math
-
 from ..numerics.elementary import TWO_PI
 from . import memory as at
 from .nodes import set_grid
-
-# detuning^2 + (damping over critical)^2 below which the closed form has no six digits to spare
-NEAR_RESONANCE = 1e-12
+from .secular import set_secular
 
 
 def inputs_changed(m):
@@ -26,14 +22,7 @@ def inputs_changed(m):
 
 
 def begin_segment(m):
-    """Take the present inputs over into the excitation constants.
-
-    Returns
-    -------
-    int
-        OK, or RESONANCE_i where branch i is driven within 1e-6 of its natural frequency, and damped
-        by less than 1e-6 of critical.
-    """
+    """Take the present inputs over into the excitation constants."""
     for i in range(6):
         m[at.SEGMENT_INPUTS + i] = m[at.BOX_AMPLITUDE + i]
     scale = 1.0 / m[at.OMEGA]
@@ -54,34 +43,24 @@ def begin_segment(m):
                 m[at.CUBIC_ON] = 1.0
     m[at.SEGMENT_AGE] = 0.0
     set_grid(m)
-    bonded = m[at.BONDED] != 0.0
-    if not bonded and set_harmonic(m, at.BRANCH_1, at.HARMONIC_1):
-        return at.RESONANCE_1
-    if not bonded and set_harmonic(m, at.BRANCH_2, at.HARMONIC_2):
-        return at.RESONANCE_2
-    if set_harmonic(m, at.BRANCH_3, at.HARMONIC_3):
-        return at.RESONANCE_3
-    return at.OK
+    set_secular(m)
+    set_harmonic(m, at.BRANCH_1, at.HARMONIC_1)
+    set_harmonic(m, at.BRANCH_2, at.HARMONIC_2)
+    set_harmonic(m, at.BRANCH_3, at.HARMONIC_3)
 
 
 def set_harmonic(m, b, harmonic):
-    """Forced amplitudes a_i, b_i of (11), times ``a eta^2``; True at a resonance with no damping or
-    next to none.
-    """
+    """Forced amplitudes a_i, b_i of (11), times ``a eta^2``; none where the amplitude grows."""
     forcing, eta = m[at.FORCING], m[at.ETA]
     m[harmonic] = 0.0
     m[harmonic + 1] = 0.0
-    if forcing == 0.0:
-        return False
+    if forcing == 0.0 or m[b + at.DRIVEN] != 0.0:
+        return
     detuning = m[b + at.OMEGA_SQUARED] - eta * eta
     twice = 2.0 * m[b + at.DAMPING] * eta
     square = detuning * detuning + twice * twice
-    if square <= 4.0 * NEAR_RESONANCE * m[b + at.OMEGA_SQUARED] * m[b + at.OMEGA_SQUARED]:
-        m[at.REPORT] = m[at.OMEGA] * math.sqrt(m[b + at.OMEGA_SQUARED])
-        return True
     m[harmonic] = -forcing * twice / square
     m[harmonic + 1] = forcing * detuning / square
-    return False
 
 
 def cubic_at(m, age):

@@ -4,7 +4,7 @@ From summit to summit, with the certified steps of the root finder.
 """
 
 from . import memory as at
-from .event_function import envelope, evaluate
+from .event_function import AHEAD, envelope, evaluate
 from .hermite import has_summit, interval_is_below
 from .roots import EPS, LEAST_BOUND, clear_from_node, clear_step, creep, glide, parabola_root
 from .series import taylor
@@ -99,7 +99,7 @@ def largest_gap(m, start, stop, highest):
     climbing, to the first root of the gap's slope.
     """
     tau = start
-    reach = 5.0 * m[at.SPACING]
+    reach = AHEAD * m[at.SPACING]
     least = SMALLEST * m[at.SPACING]
     summit = False
     while m[at.WORK] < m[at.WORK_LIMIT]:

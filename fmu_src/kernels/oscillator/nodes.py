@@ -13,6 +13,7 @@ import math
 from ..numerics.elementary import sincos_turns, small_decay, small_rotation
 from . import memory as at
 from .response import basis
+from .secular import LONGEST_DRIVEN, growth, pushed, risen
 
 ANGLE = 1.25  # of the fastest oscillation over a spacing: half of it is for the polynomials
 STEEPEST = 0.65  # decay over half a spacing that small_decay serves
@@ -86,6 +87,11 @@ def branch_a(m):
     return at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
 
 
+def longest(m):
+    """Nodes after which the present state is written anew."""
+    return LONGEST if m[at.SECULAR] == 0.0 else LONGEST_DRIVEN
+
+
 def start_nodes(m):
     """The first interval of a state that begins: phasors at its start and one spacing later."""
     m[at.NODE] = 0.0
@@ -119,6 +125,8 @@ def put(m, slot, p0, p1, p2, p3, cosine, sine):
 
 def turned(m, x, v, x_b, v_b, cosine, sine):
     """All phasors one spacing later."""
+    if m[at.SECULAR] != 0.0:
+        return driven_on(m, x, v, x_b, v_b, cosine, sine)
     a, b = branch_a(m) + at.STEP_ON, at.BRANCH_2 + at.STEP_ON
     return (
         x * m[a] + v * m[a + 2],
@@ -156,12 +164,13 @@ def renew_right(m, node):
 
 def renewed(m, age):
     """All phasors at an age from the closed form."""
-    x, v = turned_by(m, branch_a(m), m[at.FREE_A], m[at.FREE_A + 1], age)
-    x_b, v_b, cosine, sine = 0.0, 0.0, m[at.COSINE], m[at.SINE]
-    if m[at.MODE] == at.FLIGHT:
-        x_b, v_b = turned_by(m, at.BRANCH_2, m[at.FREE_B], m[at.FREE_B + 1], age)
+    cosine, sine, x_b, v_b = m[at.COSINE], m[at.SINE], 0.0, 0.0
     if m[at.NODE_ETA] != 0.0:
         sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
+    phases = m[at.COSINE], m[at.SINE], cosine, sine
+    x, v = driven_by(m, branch_a(m), m[at.FREE_A], m[at.FREE_A + 1], age, phases)
+    if m[at.MODE] == at.FLIGHT:
+        x_b, v_b = driven_by(m, at.BRANCH_2, m[at.FREE_B], m[at.FREE_B + 1], age, phases)
     return x, v, x_b, v_b, cosine, sine
 
 
@@ -169,6 +178,44 @@ def turned_by(m, b, x, v, t):
     """A free part a time ``t`` later, from the closed form."""
     xx, xv, vx, vv = turn_by(m, b, t)
     return x * xx + v * xv, x * vx + v * vv
+
+
+def driven_by(m, b, x, v, t, phases):
+    """:func:`turned_by`, driven on the way where the amplitude grows: ``phases`` are cosine and
+    sine of the excitation before and after.
+    """
+    if m[b + at.DRIVEN] == 0.0:
+        return turned_by(m, b, x, v, t)
+    old_cosine, old_sine, cosine, sine = phases
+    x, v = turned_by(m, b, x, v - pushed(m, b, old_cosine, old_sine), t)
+    h_cos, h_sin, d_cos, d_sin = growth(m, b, t)
+    x_driven, v_driven = risen(m, h_cos, h_sin, d_cos, d_sin, cosine, sine)
+    return x + x_driven, v + v_driven
+
+
+def driven_on(m, x, v, x_b, v_b, old_cosine, old_sine):
+    """All phasors one spacing later, where amplitudes grow."""
+    cosine = old_cosine * m[at.NODE_COSINE] - old_sine * m[at.NODE_SINE]
+    sine = old_sine * m[at.NODE_COSINE] + old_cosine * m[at.NODE_SINE]
+    phases = old_cosine, old_sine, cosine, sine
+    x, v = driven_part(m, branch_a(m), x, v, phases)
+    x_b, v_b = driven_part(m, at.BRANCH_2, x_b, v_b, phases)
+    return x, v, x_b, v_b, cosine, sine
+
+
+def driven_part(m, b, x, v, phases):
+    """A free part one spacing later, driven on the way where its amplitude grows."""
+    step = b + at.STEP_ON
+    if m[b + at.DRIVEN] == 0.0:
+        return x * m[step] + v * m[step + 2], x * m[step + 1] + v * m[step + 3]
+    old_cosine, old_sine, cosine, sine = phases
+    v -= pushed(m, b, old_cosine, old_sine)
+    g = b + at.STEP_GROWTH
+    x_driven, v_driven = risen(m, m[g], m[g + 1], m[g + 2], m[g + 3], cosine, sine)
+    return (
+        x * m[step] + v * m[step + 2] + x_driven,
+        x * m[step + 1] + v * m[step + 3] + v_driven,
+    )
 
 
 def seek(m, tau):
@@ -202,13 +249,16 @@ def phasors_at(m, tau):
     node, t = at.LEFT, tau - m[at.LEFT_AGE]
     if t > m[at.HALF_SPACING]:
         node, t = at.RIGHT, tau - m[at.RIGHT_AGE]
-    x_a, x_b, v_a, v_b = free_parts(m, node, t) if m[at.STEEP] == 0.0 else steep_parts(m, tau)
     cosine, sine = m[node + 4], m[node + 5]
     if m[at.NODE_ETA] != 0.0:
         angle = m[at.NODE_ETA] * t
         c, s = small_rotation(angle * angle)
         s *= angle
         cosine, sine = cosine * c - sine * s, sine * c + cosine * s
+    if m[at.STEEP] == 0.0 and m[at.SECULAR] == 0.0:
+        x_a, x_b, v_a, v_b = free_parts(m, node, t)
+    else:
+        x_a, x_b, v_a, v_b = parts_by_functions(m, tau, cosine, sine)
     return x_a, x_b, v_a, v_b, cosine, sine
 
 
@@ -216,7 +266,7 @@ def set_at_end(m, t):
     """Phasors at the state's end, where that is a short time ``t`` after the point evaluated last:
     by their Taylor series, of which six terms leave less than 1e-17.
     """
-    if t * m[at.RATE] > NEAR:
+    if t * m[at.RATE] > NEAR or m[at.SECULAR] != 0.0:
         return
     p = at.POINT
     x, v = advanced(m, branch_a(m), m[p], m[p + 2], t)
@@ -253,13 +303,16 @@ def advanced(m, b, x, v, t):
     return x, v
 
 
-def steep_parts(m, tau):
-    """Both free parts where one decays steeply: from the node before, by elementary functions."""
+def parts_by_functions(m, tau, cosine, sine):
+    """Both free parts where one decays steeply or grows: from the node before, by elementary
+    functions.
+    """
     t, p = tau - m[at.LEFT_AGE], at.LEFT
-    x_a, v_a = turned_by(m, branch_a(m), m[p], m[p + 1], t)
+    phases = m[p + 4], m[p + 5], cosine, sine
+    x_a, v_a = driven_by(m, branch_a(m), m[p], m[p + 1], t, phases)
     if m[at.MODE] != at.FLIGHT:
         return x_a, 0.0, v_a, 0.0
-    x_b, v_b = turned_by(m, at.BRANCH_2, m[p + 2], m[p + 3], t)
+    x_b, v_b = driven_by(m, at.BRANCH_2, m[p + 2], m[p + 3], t, phases)
     return x_a, x_b, v_a, v_b
 
 

@@ -7,6 +7,8 @@ from . import memory as at
 
 # relative difference below which two quotients of parameters are equal but for rounding
 SAME = 1e-15
+# difference of the oscillators' constants below which their gap is bounded by its own oscillator
+ALIKE = 1e-4
 
 
 def derive(m):
@@ -33,6 +35,11 @@ def derive(m):
     set_branch(m, at.BRANCH_3, damping_3, (1.0 + kappa) / (1.0 + mu))
     m[at.SPACING] = 0.0  # the nodes are to be set anew
     m[at.FASTEST] = max(1.0, math.sqrt(omega_2_squared))  # omega_3 lies between
+
+
+def alike(m):
+    """Whether the two oscillators are nearly equal."""
+    return abs(m[at.FORCE_V]) + abs(m[at.FORCE_X]) < ALIKE
 
 
 def set_branch(m, b, damping, omega_squared):

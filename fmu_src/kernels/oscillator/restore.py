@@ -16,6 +16,7 @@ from .motion import begin_common, begin_flight, set_turn
 from .nodes import BLOCK, LONGEST, seek
 from .parameters import derive
 from .roots import INFINITE
+from .secular import clear_secular
 from .series import set_series, short_flight
 
 SLACK = 1e-9  # relative: sums of many roundings are far smaller, another state is not
@@ -40,19 +41,18 @@ def restore(m, time):
     Returns
     -------
     int
-        OK, or FORGED with what is wrong in WORK, TARGET and REPORT, or a code of a segment that
-        cannot begin.
+        OK, or FORGED with what is wrong in WORK, TARGET and REPORT.
     """
     m[at.START_TIME] = time
     clear_scratch(m)
     for i in range(at.SIZE):
         if m[i] - m[i] != 0.0 and not may_be_infinite(m, i):
             return refused(m, i, at.NOT_A_NUMBER)
+    clear_secular(m)
     derive(m)
     code = restored_segment(m)
-    if code != at.OK:
-        return code
-    code = whole_numbers(m)
+    if code == at.OK:
+        code = whole_numbers(m)
     if code == at.OK:
         code = phase_fits(m)
     if code == at.OK:
@@ -103,10 +103,10 @@ def restored_segment(m):
     if age < 0.0 or age > (1.0 + SLACK) * m[at.ORIGIN]:
         return refused(m, at.SEGMENT_AGE, at.NO_AGE)
     inputs = swap_inputs(m, current_inputs(m))
-    code = begin_segment(m)
+    begin_segment(m)
     swap_inputs(m, inputs)
     m[at.SEGMENT_AGE] = age
-    return code
+    return at.OK
 
 
 def current_inputs(m):
@@ -139,7 +139,10 @@ def whole_numbers(m):
         return refused(m, at.SERIES, at.NO_SERIES)
     if not is_whole(m, at.ROTATIONS, BLOCK):
         return refused(m, at.ROTATIONS, at.NO_COUNT)
-    if not is_whole(m, at.NODE, LONGEST - 1.0):
+    most = (
+        MOST_WHOLE if m[at.CLEAR] == INFINITE else LONGEST - 1.0
+    )  # never written anew, or so late
+    if not is_whole(m, at.NODE, most):
         return refused(m, at.NODE, at.NO_COUNT)
     if m[at.AT_END_NODE] != 0.0 and m[at.AT_END_NODE] != m[at.NODE] + 1.0:
         return refused(m, at.AT_END_NODE, at.NO_COUNT)

@@ -19,7 +19,7 @@ from .hermite import (
     lowest_before,
     present_coefficients,
 )
-from .nodes import BLOCK, LONGEST, put, renewed, set_at_end, turned
+from .nodes import BLOCK, longest, put, renewed, set_at_end, turned
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
@@ -119,7 +119,7 @@ def glide(m, target, ceiling):
     r0, r1, r2 = m[at.RIGHT_VALUES], m[at.RIGHT_VALUES + 1], m[at.RIGHT_VALUES + 2]
     node, age, low, h = m[at.NODE], m[at.RIGHT_AGE], m[at.REMAINDER], m[at.SPACING]
     begun = node
-    last = min(node + (m[at.WORK_LIMIT] - m[at.WORK]), LONGEST - 1.0)
+    last = min(node + (m[at.WORK_LIMIT] - m[at.WORK]), longest(m) - 1.0)
     renewal = (math.floor((node + 1.0) * (1.0 / BLOCK)) + 1.0) * BLOCK
     floor, top = lowest_after(m, r0, r1, r2, low), lowest_after(m, -r0, -r1, -r2, low)
     clear, below = True, True

@@ -48,9 +48,7 @@ def initialize(m, time):
     ):
         return at.START_BONDED
     set_turn(m, m[at.PHASE_START] / TWO_PI)
-    code = begin_segment(m)
-    if code != at.OK:
-        return code
+    begin_segment(m)
     m[at.WORK_LIMIT] = WORK_BASE
     m[at.MODE] = at.GLUED if m[at.BONDED] != 0.0 else at.CONTACT
     begin(
@@ -95,9 +93,7 @@ def advance(m, time):
     )
     now = local_time(m, before)
     if inputs_changed(m):
-        code = renew_segment(m, now)
-        if code != at.OK:
-            return code
+        renew_segment(m, now)
         now = 0.0
         m[at.PHASE_COSINE] = m[at.COSINE]
         m[at.PHASE_SINE] = m[at.SINE]
@@ -193,16 +189,13 @@ def renew_segment(m, now):
     x1, v1, x2, v2 = state_at(m, now)
     goes_on = now > 0.0 and m[at.MODE] != at.GLUED and (x2 > x1 or inside(m, now))
     move_origin(m, now)
-    code = begin_segment(m)
-    if code != at.OK:
-        return code
+    begin_segment(m)
     if not goes_on:
         begin(m, x1, v1, x2, v2, 0)
     elif m[at.MODE] == at.FLIGHT:
         begin_flight(m, x1, v1, x2, v2)
     else:
         begin_common(m, at.CONTACT, x1, v1)
-    return code
 
 
 def inside(m, tau):

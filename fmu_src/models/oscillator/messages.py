@@ -17,19 +17,6 @@ EXPECTED = {  # of a saved state, by complaint
     at.NO_GAP: "x2 >= x1, and both masses together in contact",
     at.NO_EVENT: "the time of an impact or a release",
 }
-RESONANCE = (
-    "box_frequency = {BOX_FREQUENCY} rad/s is the natural frequency of MASS ({REPORT} rad/s) to "
-    "within 1e-6 of it, with VALUES: expected SUM > 0, by more than 1e-6 of the critical damping, "
-    "or a box_frequency that differs by more than 1e-6 of it"
-)
-
-
-def resonance(mass: str, *dampers: str) -> str:
-    """Text for a driven oscillator without damping, or with next to none."""
-    values = ", ".join(f"{name} = {{{name.upper()}}} N.s/m" for name in dampers)
-    text = RESONANCE.replace("MASS", mass).replace("VALUES", values)
-    return text.replace("SUM", " + ".join(dampers))
-
 
 MESSAGES = with_slots(
     {
@@ -37,9 +24,6 @@ MESSAGES = with_slots(
         "{WORK_LIMIT}) reached only {REPORT} s, in "
         "{MODE:flight|permanent contact|bonded motion} after {IMPACT_COUNT} impacts; "
         "e = {E} and gamma = {GAMMA} decide how many impacts chattering has",
-        at.RESONANCE_1: resonance("mass 1", "d1"),
-        at.RESONANCE_2: resonance("mass 2", "d2"),
-        at.RESONANCE_3: resonance("both masses together", "d1", "d2"),
         at.NOT_FINITE: "the motion leaves the range of floating-point numbers in the step to "
         "time = {TARGET} s: box_amplitude = {BOX_AMPLITUDE} m, "
         "box_frequency = {BOX_FREQUENCY} rad/s, box_acceleration = {BOX_ACCELERATION} m/s2; "

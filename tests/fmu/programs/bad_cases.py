@@ -111,36 +111,6 @@ CASES = {
         lambda f: f.call("exitInitializationMode"),
         ["bonded = true", "v2_start = 0.5 m/s", "v2_start = v1_start = 0.0 m/s"],
     ),
-    "resonance of undamped mass 1": (
-        in_mode(d1=0.0, box_frequency=1.0),
-        lambda f: f.call("exitInitializationMode"),
-        ["box_frequency = 1.0 rad/s", "mass 1", "d1 > 0"],
-    ),
-    "resonance of undamped mass 2": (
-        in_mode(d2=0.0, box_frequency=1.0954451150103321),
-        lambda f: f.call("exitInitializationMode"),
-        ["box_frequency = 1.0954451150103321 rad/s", "mass 2", "d2 > 0"],
-    ),
-    "resonance of both": (
-        in_mode(d1=0.0, d2=0.0, bonded=True, box_frequency=1.0488088481701516),
-        lambda f: f.call("exitInitializationMode"),
-        ["box_frequency = 1.0488088481701516 rad/s", "both masses", "d1 + d2 > 0"],
-    ),
-    "resonance of both apart": (
-        in_mode(d1=0.0, d2=0.0, box_frequency=1.0488088481701516),
-        lambda f: f.call("exitInitializationMode"),
-        ["box_frequency = 1.0488088481701516 rad/s", "d1 + d2 > 0"],
-    ),
-    "resonance with next to no damping": (
-        in_mode(d1=1e-6, box_frequency=1.0),
-        lambda f: f.call("exitInitializationMode"),
-        ["within 1e-6", "d1 = 1e-06 N.s/m", "more than 1e-6 of the critical damping"],
-    ),
-    "resonance by a later input": (
-        running(d1=0.0, then={"box_frequency": 1.0}),
-        lambda f: f.step(3.0),
-        ["box_frequency = 1.0 rad/s", "mass 1", "d1 > 0"],
-    ),
     "motion beyond floating point": (
         running(bonded=True, then={"box_crackle": 1e100}),
         lambda f: f.step(1e80),

@@ -134,6 +134,27 @@ def structures(draw, damping=2.0):
     values["phase_start"] = draw(rounded(0.0, 6.28))
     for name in ("acceleration", "jerk", "snap", "crackle"):
         values[f"box_{name}"] = draw(st.just(0.0) | rounded(-0.1, 0.1))
-    if stepper.initialize(unstarted(**values), 0.0) != at.OK:  # undamped resonance
+    m = unstarted(**values)
+    stepper.initialize(m, 0.0)
+    if m[at.SECULAR] != 0.0:  # see `resonances`
         values["d1"] = values["d2"] = 0.01
+    return values
+
+
+@st.composite
+def resonances(draw):
+    """The same, driven on a natural frequency or beside it, with no damping or next to none."""
+    values = draw(structures())
+    kind = draw(st.sampled_from(("1", "2", "3", "equal", "nearly equal")))
+    if "equal" in kind:
+        near = draw(sizes(1e-12, 3e-5)) if kind == "nearly equal" else 0.0
+        values["k2"] = values["m2"] * (1.0 + near)
+    total = (1.0 + values["k2"]) / (1.0 + values["m2"])
+    square = {"2": values["k2"] / values["m2"], "3": total}.get(kind, 1.0)
+    detuning = draw(st.just(0.0) | sizes(1e-14, 1e-4))
+    values["box_frequency"] = math.sqrt(square) * (1.0 + detuning * draw(st.sampled_from((-1, 1))))
+    values["d1"] = draw(st.just(0.0) | sizes(1e-14, 1e-5))
+    values["d2"] = values["m2"] * (
+        values["d1"] if "equal" in kind else draw(st.just(0.0) | sizes(1e-14, 1e-5))
+    )
     return values

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator import stepper
 from fmu_src.kernels.oscillator.excitation import cubic_at
 
 from .kernel import advanced, examples, set_inputs, started
@@ -85,10 +84,3 @@ def test_without_a_frequency_the_amplitude_is_nothing():
         still[i] for i in (at.X1, at.X2, at.V1, at.V2, at.PHASE)
     ]
     assert (m[at.XI1], m[at.XI2], m[at.XI_REL]) == (0.0, 0.0, 0.0)
-
-
-@pytest.mark.parametrize("detuning", [0.0, 1e-7, -1e-7])
-def test_an_undamped_resonance_is_refused_while_running(detuning):
-    m = advanced(started(d1=0.0, d2=0.0, box_frequency=0.4, **STARTS), 3.0)
-    set_inputs(m, box_frequency=1.0 + detuning)
-    assert stepper.advance(m, 4.0) == at.RESONANCE_1

@@ -1,5 +1,6 @@
 """A state that is restored goes on with the bits it would have had; most of it is made anew."""
 
+import math
 import random
 import struct
 
@@ -35,6 +36,12 @@ def drawn(draw):
     }
     if not values["bonded"] and draw.random() < 0.4:
         values |= {"x2_start": draw.uniform(0.0, 2.0), "v2_start": draw.uniform(-2.0, 2.0)}
+    if draw.random() < 0.2:  # a resonance without damping
+        square = values["k2"] / values["m2"] if draw.random() < 0.5 else 1.0
+        natural = math.sqrt(
+            (1.0 + values["k2"]) / (1.0 + values["m2"]) if values["bonded"] else square
+        )
+        values |= {"d1": 0.0, "d2": 0.0, "box_frequency": natural, "box_amplitude": 1.0}
     start = draw.choice([0.0, 3.3, -1e3])
     return started(start, **values), start
 
@@ -92,6 +99,20 @@ def test_a_restored_run_has_the_same_bits(seed):
 def test_many_restored_runs_have_the_same_bits():
     for seed in range(300):
         check(seed, 25)
+
+
+@pytest.mark.parametrize("values", [{"bonded": 1.0}, {"k2": 1.0, "d2": 0.01}])
+def test_a_state_that_nothing_ends_may_be_as_old_as_it_likes(values):
+    """Bonded, or pressed together for good: such a state is never written anew."""
+    m = started(0.0, **values)
+    for time in (2000.0, 1e7):
+        stepper.advance(m, time)
+        assert m[at.CLEAR] == restore.INFINITE and m[at.NODE] > 1024.0
+        other = list(m)
+        assert restore.restore(other, 0.0) == at.OK
+        assert stepper.advance(other, time + 3.3) == at.OK
+        assert stepper.advance(m, time + 3.3) == at.OK
+        assert bits(m[: at.TIME + 1]) == bits(other[: at.TIME + 1])
 
 
 def test_what_is_derived_is_not_read():

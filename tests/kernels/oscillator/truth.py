@@ -14,6 +14,8 @@ mp.mp.dps = 50
 # at most before it is made anew, each time with two products, a sum and a constant that is rounded
 # itself; a few more for the sum.
 ROUNDING = 1.5e-14
+LARGE = 1e5  # amplitudes that are the difference of others, at a resonance
+BESIDE = mp.mpf("1e-24")  # a drive is that far from any resonance: wrong by as much times the age
 
 
 class Signal:
@@ -46,8 +48,10 @@ class Signal:
         return mp.re(sum(c * mp.exp(s * t) for c, s in self.terms)) + taylor(self.polynomial, t)
 
     def sample(self, t):
-        """In double precision, on an array."""
+        """In double precision, on an array; in high precision where the terms cancel."""
         terms, polynomial = self._coarse
+        if max(abs(c) for c, _ in terms) > LARGE:
+            return np.array([float(self(x)) for x in t])
         return sum((c * np.exp(s * t)).real for c, s in terms) + taylor(polynomial, t)
 
     def fastest(self):
@@ -79,12 +83,17 @@ def box(values, phase):
     return Signal([(mp.mpc(0, 1) * a * frequency**2 * mp.expj(phase), mp.mpc(0, frequency))], cubic)
 
 
+def beside(s, damping, stiffness):
+    """An exponent, or one next to it where the oscillator has just this one."""
+    at_resonance = abs(s * s + damping * s + stiffness) < BESIDE * stiffness
+    return s * (1 + BESIDE) if at_resonance else s
+
+
 def oscillator(mass, damping, stiffness, x, v, acceleration):
     """Displacement relative to a box of given acceleration, from initial conditions at t = 0."""
     mass, damping, stiffness = mp.mpf(mass), mp.mpf(damping), mp.mpf(stiffness)
-    forced = [
-        (-c / (s * s + damping / mass * s + stiffness / mass), s) for c, s in acceleration.terms
-    ]
+    exponents = [(c, beside(s, damping / mass, stiffness / mass)) for c, s in acceleration.terms]
+    forced = [(-c / (s * s + damping / mass * s + stiffness / mass), s) for c, s in exponents]
     cubic = [mp.mpf(0)] * 4
     # mass q'' + damping q' + stiffness q = -mass p: exact after four rounds, p being a cubic
     for _ in range(4):

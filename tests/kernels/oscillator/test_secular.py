@@ -1,0 +1,233 @@
+"""Driven on a natural frequency with next to no damping: amplitudes grow with time, and everything
+that holds elsewhere holds.
+"""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from fmu_src.kernels.oscillator import event_function, secular, stepper
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator.motion import state_at
+from fmu_src.kernels.oscillator.nodes import phasors_at
+
+from . import reference, truth
+from .kernel import (
+    DEFAULTS,
+    advanced,
+    examples,
+    flight,
+    outputs,
+    resonances,
+    set_inputs,
+    sizes,
+    started,
+)
+from .test_event_function import MAKERS, STATES
+from .test_motion import STARTS, STATE, events
+
+AGES = st.floats(0.0, 40.0)
+
+
+def size(values, age):
+    """What the motion's terms may have grown to, from states of about 1."""
+    return 4.0 + values["box_frequency"] * (1.0 + age)
+
+
+def fastest(values):
+    """The fastest oscillation, over omega."""
+    return max(1.0, math.sqrt(values["k2"] / values["m2"]), values["box_frequency"])
+
+
+def test_without_damping_or_detuning_the_amplitude_grows_as_time():
+    """At rest before: xi = (sin tau - tau cos tau)/2."""
+    m = started(bonded=1.0, m2=0.5, k2=0.5, d1=0.0, d2=0.0, box_frequency=1.0)
+    for time in (0.3, 4.0, 77.0, 3000.0, 1e6):
+        advanced(m, time)
+        expected = 0.5 * (mp.sin(time) - time * mp.cos(time))
+        # the phase at a time is known to a rounding of the time
+        assert abs(m[at.X1] - expected) <= 2e-15 * (1.0 + time) + 2.3e-16 * time * time
+
+
+@examples(60)
+@given(
+    st.just(0.0) | sizes(1e-16, 1e-4),
+    st.just(0.0) | sizes(1e-16, 2e-4),
+    st.floats(0.0, 6.28),
+    sizes(0.1, 1e6),
+)
+def test_it_is_the_closed_form(damping, detuning, phase, time):
+    """In high precision: the growing part, and what it is of any age."""
+    values = {"d1": damping, "box_frequency": 1.0 + detuning, "m2": 1e-9, "k2": 1e-9, "d2": 0.0}
+    m = started(bonded=1.0, phase_start=phase, **values)
+    assert m[at.SECULAR] == 1.0
+    advanced(m, time)
+    both = truth.together({**DEFAULTS, **values}, 0.0, 0.0, mp.mpf(m[at.PHASE_START]))[0]
+    grown = min(time, 1.0 / max(detuning, damping, 1e-300))
+    assert abs(m[at.X1] - both(time)) <= 5e-15 * (2.0 + grown) * (1.0 + 0.1 * time)
+
+
+@MAKERS
+@examples(40)
+@given(resonances(), STATES, AGES)
+def test_value_and_derivatives_of_the_event_function(make, values, state, age):
+    m, signal = make(values, state)
+    found = event_function.evaluate(m, age)[:5]
+    assert m[at.SECULAR] == 1.0
+    rate = fastest(values)
+    for order, value in enumerate(found):
+        scale = size(values, age) * rate ** (order + 2) * (1.0 + age) ** 3
+        assert abs(value - float(signal(age))) <= 1e-13 * scale, order
+        signal = signal.derivative()
+
+
+@MAKERS
+@examples(40)
+@given(resonances(), STATES, AGES)
+def test_bounds_hold_as_long_as_they_are_used(make, values, state, age):
+    m, signal = make(values, state)
+    spacing = m[at.SPACING]
+    limits = {order: sum(event_function.bounds(m, order)) for order in (5, 6, 7, 8)}
+    sixth = m[at.REMAINDER] / m[at.HERMITE + 2]
+    fifth = event_function.evaluate(m, age)[5]
+    later = spacing * np.linspace(0.0, secular.LONGEST_DRIVEN, 24)
+    rounding = 1e-12 * size(values, age) * fastest(values) ** 8
+    for order in range(1, 9):
+        signal = signal.derivative()
+        if order == 5:
+            ahead = np.linspace(0.0, event_function.AHEAD, 8)
+            highest = max(abs(signal(age + part * spacing)) for part in ahead)
+            assert highest <= fifth * (1 + 1e-9) + rounding
+        if order == 6:
+            assert max(abs(signal(t)) for t in later) <= sixth * (1 + 1e-9) + rounding
+        if order in limits:
+            assert max(abs(signal(t)) for t in later) <= limits[order] * (1 + 1e-9) + rounding
+
+
+@examples(30)
+@given(STATES, sizes(1e-16, 2e-5), sizes(1e-12, 0.1), st.sampled_from((0.0, 1e-9, 1e-5)), AGES)
+def test_a_gap_of_nearly_equal_oscillators_is_bounded_by_its_own(state, near, gap, damping, age):
+    """Without what rounding takes from the displacements, and far below the sum of both."""
+    values = {"k2": 1.0 + near, "d1": damping, "d2": damping * (1.0 - near), "box_frequency": 1.0}
+    x1, v1, rise, speed = state
+    m = started(
+        x1_start=x1, v1_start=v1, x2_start=x1 + gap * rise, v2_start=v1 + gap * speed, **values
+    )
+    assert event_function.alike(m)
+    starts = (m[at.X1_START], m[at.V1_START], m[at.X2_START], m[at.V2_START])
+    first, second = truth.apart({**DEFAULTS, **values}, starts, mp.mpf(0))
+    signal = second - first
+    for _ in range(5):
+        signal = signal.derivative()
+    found, spacing = event_function.evaluate(m, age)[5], m[at.SPACING]
+    ahead = np.linspace(0.0, event_function.AHEAD, 8)
+    assert max(abs(signal(age + part * spacing)) for part in ahead) <= found
+    sixth, found = signal.derivative(), m[at.REMAINDER] / m[at.HERMITE + 2]
+    later = spacing * np.linspace(0.0, secular.LONGEST_DRIVEN, 30)
+    assert max(abs(sixth(t)) for t in later) <= found
+    assert found <= 1e3 * (gap + near * spacing * secular.LONGEST_DRIVEN + 1e-13)
+
+
+@examples(40)
+@given(resonances(), st.lists(st.floats(0.0, 50.0), min_size=2, max_size=8))
+def test_a_state_does_not_depend_on_the_way_to_it(values, ages):
+    m = flight(-0.9, 0.95, 0.7, 0.24, **values)
+    fresh = [phasors_at(list(m), age) for age in ages]
+    assert [phasors_at(m, age) for age in ages] == fresh
+    assert [phasors_at(m, age) for age in reversed(ages)] == fresh[::-1]
+
+
+@examples(40)
+@given(resonances(), STATES, AGES)
+def test_both_masses_move_by_newtons_law(values, state, age):
+    x1, v1, x2, v2 = state
+    m = flight(x1, v1, x2, v2, **values)
+    found = state_at(m, age)
+    first, second = truth.apart({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
+    assume(second(age) > first(age))  # beyond the flight's end both are put together
+    scale = size(values, age) * fastest(values) ** 2 * (1.0 + age) ** 3  # of the cubic
+    signals = first, first.derivative(), second, second.derivative()
+    for value, signal in zip(found, signals, strict=True):
+        assert abs(value - float(signal(age))) <= 1e-14 * scale
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"box_frequency": 1.0},  # of mass 1
+        {"k2": 1.5625, "box_frequency": 1.25, "e": 0.3},  # of mass 2
+        {"k2": 1.5625, "m2": 4.0, "box_frequency": 0.625, "gamma": 1e-2, "e": 0.2},  # of mass 2
+        {"k2": 2.125, "box_frequency": 1.25, "e": 0.1, "gamma": 1e-2},  # of both together
+        {"k2": 1.00003, "box_frequency": 1.0},  # nearly equal
+        {"d1": 1e-5, "d2": 2e-5, "box_frequency": 1.00001, "phase_start": 2.0},
+    ],
+)
+def test_event_by_event_in_high_precision(values):
+    values = {**DEFAULTS, "d1": 0.0, "d2": 0.0, **values}
+    stop = 30.0
+    expected, state = reference.event_by_event(values, STATE, stop)
+    m = started(**values, **STARTS)
+    assert m[at.SECULAR] == 1.0
+    found = events(m, stop)
+    assert len(found) == len(expected) >= 5
+    assert [mode == at.CONTACT for _, mode in found] == [kind == "release" for _, kind in expected]
+    assert [time for time, _ in found] == pytest.approx(
+        [float(time) for time, _ in expected], rel=1e-11
+    )
+    assert [m[i] for i in (at.X1, at.V1, at.X2, at.V2)] == pytest.approx(
+        [float(value) for value in state], abs=1e-9
+    )
+
+
+@pytest.mark.parametrize("natural", [1.0, math.sqrt(1.2), math.sqrt(1.1)])
+@pytest.mark.parametrize("detuning", [0.0, 1e-9, -1e-6])
+@pytest.mark.parametrize("damping", [0.0, 1e-7])
+def test_the_grid_changes_nothing(natural, detuning, damping):
+    values = {"d1": damping, "d2": damping, "box_frequency": natural * (1.0 + detuning)}
+    found = []
+    for count in (1, 7, 60):
+        m = started(**values)
+        found.append(outputs(advanced(m, *(240.0 * (i + 1) / count for i in range(count)))))
+    assert found[0] == found[1] == found[2]
+    assert m[at.IMPACT_COUNT] > 50.0
+
+
+@pytest.mark.parametrize("values", [{"k2": 1.2}, {"k2": 1.0}, {"k2": 1.2, "bonded": 1.0}])
+def test_a_drive_that_comes_to_a_resonance_while_running(values):
+    """What it was is the state it goes on from, there and away again."""
+    m = advanced(started(d1=0.0, d2=0.0, **{"box_frequency": 0.4, **values}), 3.0)
+    assert m[at.SECULAR] == 0.0
+    before = outputs(m)
+    set_inputs(m, box_frequency=math.sqrt(1.1) if "bonded" in values else 1.0)
+    assert stepper.advance(m, 3.0 + 1e-9) == at.OK
+    assert m[at.SECULAR] == 1.0
+    assert outputs(m)[:4] == pytest.approx(before[:4], abs=1e-8)
+    advanced(m, 40.0)
+    before = outputs(m)
+    set_inputs(m, box_frequency=0.4)
+    advanced(m, 40.0 + 1e-9)
+    assert m[at.SECULAR] == 0.0
+    assert outputs(m)[:4] == pytest.approx(before[:4], abs=1e-6)
+
+
+@pytest.mark.parametrize("beyond", [-0.01, 0.01])
+def test_where_the_closed_form_takes_over_both_agree(beyond):
+    """On both sides of the border the same, to what the difference of the drives makes."""
+    border = 1.0 + math.sqrt(secular.NEAR_RESONANCE) * (1.0 + beyond)
+    values = {"bonded": 1.0, "m2": 1e-9, "k2": 1e-9, "d1": 0.0, "d2": 0.0, "box_frequency": border}
+    m = advanced(started(**values), 1000.0)
+    assert (m[at.SECULAR] == 1.0) == (beyond < 0.0)
+    both = truth.together({**DEFAULTS, **values}, 0.0, 0.0, mp.mpf(0))[0]
+    assert m[at.X1] == pytest.approx(float(both(1000)), abs=2e-10)
+
+
+def test_a_resonance_takes_no_more_work_than_another_drive():
+    found = []
+    for frequency in (1.0, 1.001):
+        m = advanced(started(d1=0.0, d2=0.0, box_frequency=frequency), 2000.0)
+        found.append(m[at.WORK] / m[at.IMPACT_COUNT])
+    assert found[0] < 3.0 * found[1]
