@@ -113,9 +113,8 @@ def test_discarded_step_is_noticed(tmp_path):
     """
     times, done = run_with_output("traps.discarded_step_is_noticed", PYTHON, cwd=tmp_path)
     assert times[-1] < 10.0  # the trap
-    (line,) = [text for text in done.stderr.splitlines() if "box_frequency" in text]
-    assert "box_frequency = 1.0 rad/s is the natural frequency of mass 1" in line
-    assert "expected d1 > 0" in line
+    (line,) = [text for text in done.stderr.splitlines() if "cannot finish" in text]
+    assert "the step to time = " in line and "10000000" in line
 
 
 def test_log_category_that_the_description_offers(tmp_path):
@@ -129,8 +128,8 @@ def test_own_access_leaves_other_importers_their_messages(tmp_path):
     program = Path(__file__).with_name("programs") / "own_access.py"
     command = [sys.executable, str(program), str(PYTHON)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert done.stdout.count("natural frequency of mass 1") == 1  # raised, by the project
-    assert done.stderr.count("natural frequency of mass 1") == 1  # printed, for FMPy's loop
+    assert done.stdout.count("cannot finish") == 1  # raised, by the project
+    assert done.stderr.count("cannot finish") == 1  # printed, for FMPy's loop
 
 
 @pytest.mark.parametrize("place", ["a folder with spaces", "plain"])

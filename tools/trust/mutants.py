@@ -24,7 +24,7 @@ TESTS = {  # which fast tests know a module
         *(("series", "series"), ("motion", "motion"), ("response", "response")),
         *(("event_function", "event_function"), ("excitation", "excitation")),
         *(("maximum", "maximum"), ("stepper", "stepper"), ("outputs", "outputs")),
-        *(("nodes", "nodes"),),
+        *(("nodes", "nodes"), ("secular", "secular"), ("restore", "restore")),
     )
 } | {
     "fmu_src/kernels/numerics/elementary.py": "tests/kernels/numerics/test_elementary.py",

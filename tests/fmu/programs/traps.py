@@ -137,10 +137,9 @@ def discarded_step_is_noticed(path):
         path,
         stop_time=10.0,
         output_interval=1.0,
-        start_values={"d1": 0.0},
         output=["x1"],
         input=np.array(
-            [(0.0, 0.9), (4.5, 0.9), (4.5, 1.0), (10.0, 1.0)],
+            [(0.0, 0.9), (4.5, 0.9), (4.5, 1e9), (10.0, 1e9)],
             dtype=[("time", "f8"), ("box_frequency", "f8")],
         ),
     )

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fmu_src.kernels.oscillator import event_function, secular, stepper
+from fmu_src.kernels.oscillator import event_function, roots, secular, stepper
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.motion import state_at
 from fmu_src.kernels.oscillator.nodes import phasors_at
@@ -153,6 +153,23 @@ def test_both_masses_move_by_newtons_law(values, state, age):
     signals = first, first.derivative(), second, second.derivative()
     for value, signal in zip(found, signals, strict=True):
         assert abs(value - float(signal(age))) <= 1e-14 * scale
+
+
+@examples(25)
+@given(resonances(), STATES)
+def test_a_flight_ends_at_its_first_root(values, state):
+    """A scan in high precision, each dip of it to its bottom."""
+    x1, v1, x2, v2 = state
+    m = flight(x1, v1, x2, v2, **values)
+    roots.walk(m, 6.0)
+    first, second = truth.apart({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
+    end = m[at.END] if m[at.END_KIND] == at.END_EVENT else None
+    expected = truth.first_root(second - first, 6.0)
+    if end is None or end > 6.0:
+        assert expected is None
+    else:
+        closing = abs(float((second - first).derivative()(expected)))
+        assert abs(end - expected) <= 1e-15 + 2e-14 * size(values, 6.0) / closing
 
 
 @pytest.mark.parametrize(
