@@ -155,10 +155,8 @@ def test_both_masses_move_by_newtons_law(values, state, age):
         assert abs(value - float(signal(age))) <= 1e-14 * scale
 
 
-@examples(25)
-@given(resonances(), STATES)
-def test_a_flight_ends_at_its_first_root(values, state):
-    """A scan in high precision, each dip of it to its bottom."""
+def check_first_root(values, state):
+    """A flight's end by a scan in high precision, each dip of it to its bottom."""
     x1, v1, x2, v2 = state
     m = flight(x1, v1, x2, v2, **values)
     roots.walk(m, 6.0)
@@ -170,6 +168,19 @@ def test_a_flight_ends_at_its_first_root(values, state):
     else:
         closing = abs(float((second - first).derivative()(expected)))
         assert abs(end - expected) <= 1e-15 + 2e-14 * size(values, 6.0) / closing
+
+
+@examples(25)
+@given(resonances(), STATES)
+def test_a_flight_ends_at_its_first_root(values, state):
+    check_first_root(values, state)
+
+
+@pytest.mark.slow
+@examples(600)
+@given(resonances(), STATES)
+def test_many_flights_end_at_their_first_roots(values, state):
+    check_first_root(values, state)
 
 
 @pytest.mark.parametrize(
