@@ -224,6 +224,17 @@ def test_from_rest_nearly_equal_oscillators_part(kappa, frequency):
     assert m[at.X_REL] == pytest.approx(gap, abs=1e-15)
 
 
+@pytest.mark.parametrize("frequency", [0.15, 0.11, 1.3])
+def test_a_contact_of_a_trillionth_of_a_radian_from_rest_ends(frequency):
+    """Dampers that differ by 1e-13 press together what the springs part at once."""
+    values = {"m2": 7.75, "k2": 0.0814, "d1": 0.0, "d2": 4.4e-13, "box_frequency": frequency}
+    values["phase_start"] = 7e-14
+    m = advanced(started(**values), 1e-12, 5e-5, 0.5)
+    assert (m[at.MODE], m[at.WORK] < 10.0) == (at.FLIGHT, True)
+    first, second = truth.apart({**DEFAULTS, **values}, (0.0,) * 4, mp.mpf(7e-14))
+    assert m[at.X_REL] == pytest.approx(float(second(0.5) - first(0.5)), rel=1e-9)
+
+
 def test_from_rest_the_first_moments_are_not_lost_in_rounding():
     for frequency in (0.01, 0.4, 3.0):
         for kappa in (1 - 1e-3, 1 - 1e-4, 1 - 1e-5, 1 - 1e-6, 1 - 1e-7, 1 - 1e-8):

@@ -42,6 +42,10 @@ def test_sets_that_once_did_not(entries, number):
     assert complaints(entries, 1, number, number + 1) == {}
 
 
+def test_a_set_whose_contacts_last_a_trillionth_of_a_radian(entries):
+    assert complaints(entries, 2, 2322, 2323) == {}
+
+
 @pytest.mark.slow
 def test_twenty_thousand_sets(entries):
     assert complaints(entries, 2, 0, 20_000) == {}
