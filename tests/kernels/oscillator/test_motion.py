@@ -230,7 +230,7 @@ def test_a_contact_of_a_trillionth_of_a_radian_from_rest_ends(frequency):
     values = {"m2": 7.75, "k2": 0.0814, "d1": 0.0, "d2": 4.4e-13, "box_frequency": frequency}
     values["phase_start"] = 7e-14
     m = advanced(started(**values), 1e-12, 5e-5, 0.5)
-    assert (m[at.MODE], m[at.WORK] < 10.0) == (at.FLIGHT, True)
+    assert m[at.MODE] == at.FLIGHT and m[at.WORK] < 30.0
     first, second = truth.apart({**DEFAULTS, **values}, (0.0,) * 4, mp.mpf(7e-14))
     assert m[at.X_REL] == pytest.approx(float(second(0.5) - first(0.5)), rel=1e-9)
 
