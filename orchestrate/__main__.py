@@ -2,7 +2,17 @@
 
 import sys
 
-from .cli import main
+
+def run() -> int:
+    """The command's exit code; Ctrl-C may come while its modules are still read."""
+    try:
+        from .cli import main
+
+        return main()
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run())

@@ -115,13 +115,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         Exit code: 0 success, 1 a failure, 2 a user's mistake, 130 interrupted, 143 terminated.
     """
-    with outputs() as told, signals():
-        code = carry_out(sys.argv[1:] if arguments is None else arguments)
-        told.flush()
-        if told.complaint():
-            tell(f"error: standard output: {told.complaint()}; what was computed is stored")
-            return code or FAILURE
-        return code
+    try:
+        with outputs() as told, signals():
+            code = carry_out(sys.argv[1:] if arguments is None else arguments)
+            told.flush()
+            if told.complaint():
+                tell(f"error: standard output: {told.complaint()}; what was computed is stored")
+                return code or FAILURE
+            return code
+    except KeyboardInterrupt as ended:  # before the command has begun, or as it goes
+        return interrupted(ended)
 
 
 def carry_out(arguments: Sequence[str]) -> int:
@@ -132,12 +135,7 @@ def carry_out(arguments: Sequence[str]) -> int:
         chosen.run(chosen)
         return SUCCESS
     except KeyboardInterrupt as ended:
-        from ..access.unpacked import remove_leftovers
-
-        remove_leftovers()  # of workers that were ended in the middle of a chunk
-        terminated = isinstance(ended, Terminated)
-        tell(f"{'terminated' if terminated else 'interrupted'}: {KEPT}")
-        return TERMINATED if terminated else INTERRUPTED
+        return interrupted(ended)
     except (MemoryError, ImportError) as error:
         if chosen.debug:
             raise
@@ -150,6 +148,16 @@ def carry_out(arguments: Sequence[str]) -> int:
         hint = " (--force or --keep-stale)" if isinstance(error, StaleError) else ""
         tell(f"error: {error}{hint}")
         return MISTAKE if isinstance(error, InputError) else FAILURE
+
+
+def interrupted(ended: KeyboardInterrupt) -> int:
+    """Say that a signal has ended the command; returns the exit code."""
+    from ..access.unpacked import remove_leftovers
+
+    remove_leftovers()  # of workers that were ended in the middle of a chunk
+    terminated = isinstance(ended, Terminated)
+    tell(f"{'terminated' if terminated else 'interrupted'}: {KEPT}")
+    return TERMINATED if terminated else INTERRUPTED
 
 
 def tell(line: str) -> None:

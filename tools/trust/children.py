@@ -129,7 +129,6 @@ def live(
         sys.stdout, sys.stderr = (io.TextIOWrapper(io.FileIO(n, "w")) for n in (1, 2))
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
-        signal.signal(signal.SIGINT, signal.default_int_handler)
         os.environ.update({"TMPDIR": str(folder), "SOURCE_DATE_EPOCH": "0", **environment})
         tempfile.tempdir = None
         atexit._clear()  # type: ignore[attr-defined]
@@ -148,12 +147,15 @@ def call(arguments: list[str]) -> int:
     from orchestrate.cli import main
 
     try:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # not before its own life begins
         return main(arguments)
     except SystemExit as ended:
         return int(ended.code or 0)
     except BaseException:
         sys.excepthook(*sys.exc_info())  # type: ignore[arg-type]
         return 1
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def in_little_memory() -> None:

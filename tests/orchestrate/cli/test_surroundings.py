@@ -10,9 +10,12 @@ import subprocess
 import sys
 import time
 import weakref
+from unittest.mock import Mock
 
 import pytest
 
+from orchestrate import cli
+from orchestrate.__main__ import run
 from orchestrate.cli import main, process
 from orchestrate.cli.options import plain_float, plain_int
 from orchestrate.cli.process import Unfailing
@@ -191,6 +194,22 @@ def test_a_signal_in_a_callback_ends_the_command(name, code, word):
     assert (done.returncode, done.stdout) == (code, "")
     assert done.stderr.startswith(f"{word}: ")
     assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("place", ["make_parser", "signals", "set_up_logging"])
+def test_an_interrupt_before_the_command_has_begun(monkeypatch, capfd, place):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, place, interrupt)
+    assert cli.main(["sweep", "--eta", "1"]) == 130
+    assert capfd.readouterr().err.startswith("interrupted: ")
+
+
+def test_an_interrupt_while_modules_are_read(monkeypatch, capfd):
+    monkeypatch.setattr(sys.modules["orchestrate.cli"], "main", Mock(side_effect=KeyboardInterrupt))
+    assert run() == 130
+    assert capfd.readouterr().err == "interrupted\n"
 
 
 def test_other_exceptions_of_callbacks_reach_the_hook_that_was_there(monkeypatch):
