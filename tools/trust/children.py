@@ -13,10 +13,13 @@ import resource
 import signal
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+
+from tqdm import tqdm
 
 MEMORY = 2 << 30  # bytes that a command may ask for
 PATIENCE = 60.0  # s
@@ -131,6 +134,8 @@ def live(
             signal.signal(number, signal.SIG_DFL)
         os.environ.update({"TMPDIR": str(folder), "SOURCE_DATE_EPOCH": "0", **environment})
         tempfile.tempdir = None
+        # of its own: killed with the lock of all in hand it would stop every child after it
+        tqdm.set_lock(threading.RLock())
         atexit._clear()  # type: ignore[attr-defined]
         if prepare:
             prepare()

@@ -5,11 +5,12 @@ hold for all later times.
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import example, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import event_function
 from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator.contact import first_derivative
 from fmu_src.kernels.oscillator.motion import begin_common
 from fmu_src.kernels.oscillator.nodes import LONGEST
 
@@ -109,3 +110,17 @@ def test_bounds_of_higher_derivatives(values, state, order):
         signal = signal.derivative()
     highest = np.abs(signal.sample(np.linspace(0.0, 60.0, 3000))).max()
     assert highest <= sum(event_function.bounds(m, order)) * (1 + 1e-9) + rounding
+
+
+@examples(60)
+@given(structures(), STATES, st.integers(0, 3))
+def test_the_derivative_that_decides_on_the_boundary_is_newtons(values, state, lowest):
+    """Dampers, box and all, in each order: what comes after a release hangs on them."""
+    m, signal = contact_and_pull(values, state)
+    order, value = first_derivative(m, state[0], state[1], lowest)
+    assume(order >= 0)
+    rate = max(1.0, signal.fastest())
+    scale = (size(signal) + 1.0) * rate ** (order + 2)
+    for _ in range(order):
+        signal = signal.derivative()
+    assert abs(value + float(signal(0))) <= 1e-12 * scale
