@@ -53,7 +53,7 @@ ONLY_IN = {  # packages of others, and the one place of ours that may know them
     "loky": "orchestrate/running/",
     "distributed": ("orchestrate/running/", "tools/trust/"),
     "sqlite3": "orchestrate/running/",
-    "tqdm": "orchestrate/running/",
+    "tqdm": ("orchestrate/running/", "tools/trust/"),
     "argparse": ("orchestrate/cli/", "tools/"),
     "platformdirs": "orchestrate/access/",
     "pythonfmu": ("fmu_src/export/", "fmu_src/runtime/"),

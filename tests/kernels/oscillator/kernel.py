@@ -151,7 +151,7 @@ def resonances(draw):
         values["k2"] = values["m2"] * (1.0 + near)
     total = (1.0 + values["k2"]) / (1.0 + values["m2"])
     square = {"2": values["k2"] / values["m2"], "3": total}.get(kind, 1.0)
-    detuning = draw(st.just(0.0) | sizes(1e-14, 1e-4))
+    detuning = draw(st.just(0.0) | sizes(1e-14, 9e-5))
     values["box_frequency"] = math.sqrt(square) * (1.0 + detuning * draw(st.sampled_from((-1, 1))))
     values["d1"] = draw(st.just(0.0) | sizes(1e-14, 1e-5))
     values["d2"] = values["m2"] * (
