@@ -1,13 +1,27 @@
-"""After how many periods a response repeats."""
+"""After how many periods a response repeats, and how that was decided.
+
+A tolerance alone decides little: a transient that turns round, or that changes sides as next to a
+period doubling, comes back closer after some periods than after one; a torus comes back as close as
+one likes after enough of them; and a narrow period doubling stays within any tolerance. So
+:func:`decide` asks how deviations develop: those of a response that repeats have died, or die away.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 LEAST_GAP = 2.0**-20  # of the motion's size: smaller gaps are not compared with their own size
+ROUNDING = 1e-9  # of the motion's size: what is left of deviations that have died, with room
+IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
+DECIDED = {IRREGULAR: "irregular", REPEATED: "repeated", UNDECIDED: "undecided"}
+BLOCKS = 4  # parts of the later half from each of which to the next a dying deviation shrinks
+STEADY = 0.05  # logarithm of a ratio of deviations, of which chance makes as much
+SURE = 0.5  # ratio of deviations that shrink, beyond chance
+FEW = 1e-3  # of the tolerance: a deviation that counts as none where it is seen a few times only
 Floats = NDArray[np.float64]
 
 
@@ -25,6 +39,21 @@ class Repetition(NamedTuple):
 
     multiplicity: int
     deviation: float
+
+
+class Decision(NamedTuple):
+    """After how many periods a response repeats, and how it was decided.
+
+    Attributes
+    ----------
+    multiplicity : int
+        Where it is undecided, the best guess.
+    decided : int
+        Of ``DECIDED``.
+    """
+
+    multiplicity: int
+    decided: int
 
 
 def over_size(samples: ArrayLike, frequency: float = 1.0, gap: float | None = None) -> Floats:
@@ -75,14 +104,9 @@ def repetition(states: Floats, tolerance: float) -> Repetition:
     tolerance : float
         Largest deviation of a repeated state.
     """
-    limit = max(1, len(states) // 4)
-    later = np.ascontiguousarray(states[len(states) // 2 :].T)  # a row a co-ordinate
-    first = np.abs(later[:, 1 : limit + 1] - later[:, :1]).max(axis=0, initial=0.0)
-    candidates: list[int] = ((first <= tolerance).nonzero()[0] + 1).tolist()
-    for n in candidates:
-        deviation = float(np.abs(later[:, n:] - later[:, :-n]).max())
-        if deviation <= tolerance:
-            return Repetition(n, deviation)
+    later, limit = later_half(states)
+    for n in within(later, limit, tolerance):
+        return Repetition(n, float(deviations(later, n).max()))
     return Repetition(0, np.inf)
 
 
@@ -120,3 +144,119 @@ def multiplicity(
     2
     """
     return repetition(over_size(samples, frequency, gap), tolerance).multiplicity
+
+
+def decide(states: Floats, tolerance: float) -> Decision:
+    """The multiplicity of a response, and how it was decided.
+
+    Parameters
+    ----------
+    states : ndarray, shape (n_samples, n_co-ordinates)
+        Of :func:`over_size`.
+    tolerance : float
+        Largest deviation of a repeated state, and how far it may still go.
+
+    Returns
+    -------
+    Decision
+        *Repeated*: states n periods apart are within the tolerance; their deviation has died, or
+        dies so fast that what is left of it is within the tolerance too, and small against the
+        distance of states fewer periods apart. *Undecided*: states nearly repeat, but their
+        deviation stays, grows, or dies too slowly to tell n from its divisors (a response still
+        converging, next to a period doubling above all; a torus or a chaotic band narrower than the
+        tolerance; a response leaving an unstable orbit), or deviations are large but die.
+        *Irregular*: none of these.
+
+    Notes
+    -----
+    Deviations in the later half of the samples are compared, those early in it with those late.
+    Where n is above a quarter of them a state comes back too seldom for that: such a deviation
+    counts as none below a thousandth of the tolerance.
+    """
+    later, limit = later_half(states)
+    many = later.shape[1] // 4
+    nearly = drifting = 0
+    for n in within(later, limit, tolerance):
+        away = deviations(later, n)
+        if n > many:
+            if nearly or drifting:
+                break
+            sure = away.max() <= max(ROUNDING, FEW * tolerance)
+            return Decision(n, REPEATED if sure else UNDECIDED)
+        spread = spread_of(later, n)
+        if spread <= ROUNDING:
+            return Decision(n, REPEATED)
+        left = remaining(away, spread)
+        if left <= tolerance and distance_of_divisors(later, n) > 4.0 * left:
+            return Decision(n, REPEATED)
+        if spread <= tolerance or abs(np.log(growth(away))) > STEADY:
+            nearly = nearly or n
+        else:
+            drifting = n
+    guess = dying(later, nearly or many, np.exp(-STEADY) if nearly else SURE)
+    return Decision(guess or nearly, UNDECIDED if guess or nearly else IRREGULAR)
+
+
+def later_half(states: Floats) -> tuple[Floats, int]:
+    """The later half of the states, a row a co-ordinate, and the most periods compared."""
+    return np.ascontiguousarray(states[len(states) // 2 :].T), max(1, len(states) // 4)
+
+
+def within(later: Floats, limit: int, tolerance: float) -> Iterator[int]:
+    """Numbers of periods after which all states are within a tolerance, the least first."""
+    first = np.abs(later[:, 1 : limit + 1] - later[:, :1]).max(axis=0, initial=0.0)
+    for n in ((first <= tolerance).nonzero()[0] + 1).tolist():
+        if np.abs(later[:, n:] - later[:, :-n]).max() <= tolerance:
+            yield n
+
+
+def deviations(later: Floats, n: int) -> Floats:
+    """How far each state is from that n periods before."""
+    away: Floats = np.abs(later[:, n:] - later[:, :-n]).max(axis=0)
+    return away
+
+
+def growth(away: Floats) -> float:
+    """The largest of the later half of deviations over the largest of the earlier half."""
+    half = max(1, len(away) // 2)
+    early, late = float(away[:half].max()), float(away[-half:].max())
+    return late / early if early and late else 1.0
+
+
+def spread_of(later: Floats, n: int) -> float:
+    """The largest distance of states any multiple of n periods apart."""
+    spread = 0.0
+    for first in range(n):
+        part = later[:, first::n]
+        spread = max(spread, float((part.max(axis=1) - part.min(axis=1)).max()))
+    return spread
+
+
+def remaining(away: Floats, spread: float) -> float:
+    """How far states still go whose deviations die away; infinity where they do not.
+
+    Like a geometric series: what shrinks by q over the samples seen and has moved by ``spread``
+    still moves by ``spread q/(1 - q)``, less where it turns round.
+    """
+    blocks = [float(part.max()) for part in np.array_split(away, BLOCKS) if len(part)]
+    if len(blocks) < BLOCKS or (np.diff(blocks) >= 0.0).any():
+        return np.inf
+    q = growth(away) ** 2
+    return spread * q / (1.0 - q) if q < 1.0 else np.inf
+
+
+def distance_of_divisors(later: Floats, n: int) -> float:
+    """How far states fewer periods apart are from each other at the end; infinity for n = 1."""
+    last = later[:, -2 * n :]
+    parts = [part for part in range(1, n) if n % part == 0]
+    return min((float(deviations(last, part)[-n:].max()) for part in parts), default=np.inf)
+
+
+def dying(later: Floats, most: int, ratio: float) -> int:
+    """The least n, seen often, such that deviations after all its multiples die; 0 where none."""
+    count = later.shape[1]
+    for n in range(1, min(most, count // 12) + 1):
+        multiples = range(n, count // 4 + 1, n)
+        if all(growth(deviations(later, multiple)) < ratio for multiple in multiples):
+            return n
+    return 0

@@ -33,6 +33,31 @@ def maxima(curve: ArrayLike, prominence: float) -> Rows:
     return found
 
 
+def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
+    """Which values of a curve lie inside a range of irregular responses.
+
+    Parameters
+    ----------
+    irregular : array_like of bool, shape (n,)
+        Whether each response is.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        Of irregular responses, and of others whose neighbours on both sides are irregular: such a
+        window is too narrow to show a maximum of its own.
+
+    Examples
+    --------
+    >>> inside_irregular([False, True, False, True, False, False]).astype(int)
+    array([0, 1, 1, 1, 0, 0])
+    """
+    here = np.asarray(irregular, dtype=bool)
+    padded = np.pad(here, 1)
+    found: NDArray[np.bool_] = here | (padded[:-2] & padded[2:])
+    return found
+
+
 def jumps(curve: ArrayLike, least: float) -> Rows:
     """Indices of values from which a curve jumps to the next one.
 
