@@ -18,7 +18,7 @@ LEAST_GAP = 2.0**-20  # of the motion's size: smaller gaps are not compared with
 ROUNDING = 1e-9  # of the motion's size: what is left of deviations that have died, with room
 IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
 DECIDED = {IRREGULAR: "irregular", REPEATED: "repeated", UNDECIDED: "undecided"}
-BLOCKS = 4  # parts of the later half from each of which to the next a dying deviation shrinks
+BLOCKS = 5  # parts of the later half from each of which to the next a dying deviation shrinks
 STEADY = 0.05  # logarithm of a ratio of deviations, of which chance makes as much
 SURE = 0.5  # ratio of deviations that shrink, beyond chance
 FEW = 1e-3  # of the tolerance: a deviation that counts as none where it is seen a few times only
@@ -160,12 +160,12 @@ def decide(states: Floats, tolerance: float) -> Decision:
     -------
     Decision
         *Repeated*: states n periods apart are within the tolerance; their deviation has died, or
-        dies so fast that what is left of it is within the tolerance too, and small against the
-        distance of states fewer periods apart. *Undecided*: states nearly repeat, but their
-        deviation stays, grows, or dies too slowly to tell n from its divisors (a response still
-        converging, next to a period doubling above all; a torus or a chaotic band narrower than the
-        tolerance; a response leaving an unstable orbit), or deviations are large but die.
-        *Irregular*: none of these.
+        dies so fast that what is left of it is within the tolerance too; and states fewer periods
+        apart differ for good, which before the deviation has died must be by more than the
+        tolerance. *Undecided*: states nearly repeat, but their deviation stays, grows, or dies too
+        slowly to tell n from its divisors (a response still converging, next to a period doubling
+        above all; a torus or a chaotic band narrower than the tolerance; a response leaving an
+        unstable orbit), or deviations are large but die. *Irregular*: none of these.
 
     Notes
     -----
@@ -181,13 +181,12 @@ def decide(states: Floats, tolerance: float) -> Decision:
         if n > many:
             if nearly or drifting:
                 break
-            sure = away.max() <= max(ROUNDING, FEW * tolerance)
-            return Decision(n, REPEATED if sure else UNDECIDED)
+            return Decision(n, REPEATED if away.max() <= FEW * tolerance else UNDECIDED)
         spread = spread_of(later, n)
-        if spread <= ROUNDING:
-            return Decision(n, REPEATED)
-        left = remaining(away, spread)
-        if left <= tolerance and distance_of_divisors(later, n) > 4.0 * left:
+        died = spread <= ROUNDING
+        left = ROUNDING if died else remaining(away, spread)
+        least = 4.0 * left if died else max(4.0 * left, tolerance)
+        if left <= tolerance and differ_earlier(later, n, least):
             return Decision(n, REPEATED)
         if spread <= tolerance or abs(np.log(growth(away))) > STEADY:
             nearly = nearly or n
@@ -239,17 +238,21 @@ def remaining(away: Floats, spread: float) -> float:
     still moves by ``spread q/(1 - q)``, less where it turns round.
     """
     blocks = [float(part.max()) for part in np.array_split(away, BLOCKS) if len(part)]
-    if len(blocks) < BLOCKS or (np.diff(blocks) >= 0.0).any():
+    ratio = growth(away)
+    if len(blocks) < BLOCKS or (np.diff(blocks) >= 0.0).any() or np.log(ratio) > -STEADY:
         return np.inf
-    q = growth(away) ** 2
-    return spread * q / (1.0 - q) if q < 1.0 else np.inf
+    q = ratio**2  # over twice the time
+    return spread * q / (1.0 - q)
 
 
-def distance_of_divisors(later: Floats, n: int) -> float:
-    """How far states fewer periods apart are from each other at the end; infinity for n = 1."""
-    last = later[:, -2 * n :]
-    parts = [part for part in range(1, n) if n % part == 0]
-    return min((float(deviations(last, part)[-n:].max()) for part in parts), default=np.inf)
+def differ_earlier(later: Floats, n: int, least: float) -> bool:
+    """Whether states fewer periods apart differ for good: by more than ``least``, and steadily.
+
+    Next to a period doubling the deviation after half the periods dies slowly: while it does,
+    nothing tells the response from the doubled one.
+    """
+    parts = (deviations(later, part) for part in range(1, n) if n % part == 0)
+    return all(away[-n:].max() > least and abs(np.log(growth(away))) < STEADY for away in parts)
 
 
 def dying(later: Floats, most: int, ratio: float) -> int:

@@ -189,6 +189,13 @@ def impacts_since(instance: Instance, before: int, time: float, target: float) -
     return count - before
 
 
+def impacts_in(instance: Instance, point: Point, start: ArrayLike, periods: int) -> int:
+    """Impacts in some periods from a state at phase 0 on, in m and m/s."""
+    begin(instance, *point, start)
+    (before,) = instance.get("impact_count")
+    return impacts_since(instance, before, 0.0, periods * point.excitation.period)
+
+
 def follow(
     instance: Instance,
     points: Iterable[Point],
