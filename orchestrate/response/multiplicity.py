@@ -20,6 +20,7 @@ IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
 DECIDED = {IRREGULAR: "irregular", REPEATED: "repeated", UNDECIDED: "undecided"}
 BLOCKS = 5  # parts of the later half from each of which to the next a dying deviation shrinks
 STEADY = 0.05  # logarithm of a ratio of deviations, of which chance makes as much
+DYING = 0.8  # ratio of deviations late and early, below which they die
 SURE = 0.5  # ratio of deviations that shrink, beyond chance
 FEW = 1e-3  # of the tolerance: a deviation that counts as none where it is seen a few times only
 Floats = NDArray[np.float64]
@@ -179,12 +180,13 @@ def decide(states: Floats, tolerance: float) -> Decision:
     for n in within(later, limit, tolerance):
         away = deviations(later, n)
         if n > many:
-            if nearly or drifting:
-                break
-            return Decision(n, REPEATED if away.max() <= FEW * tolerance else UNDECIDED)
+            if not (nearly or drifting) and away.max() <= FEW * tolerance:
+                return Decision(n, REPEATED)
+            nearly = nearly or (0 if drifting else n)
+            break
         spread = spread_of(later, n)
         died = spread <= ROUNDING
-        left = ROUNDING if died else remaining(away, spread)
+        left = ROUNDING if died else remaining(later, n, spread)
         least = 4.0 * left if died else max(4.0 * left, tolerance)
         if left <= tolerance and differ_earlier(later, n, least):
             return Decision(n, REPEATED)
@@ -192,8 +194,10 @@ def decide(states: Floats, tolerance: float) -> Decision:
             nearly = nearly or n
         else:
             drifting = n
-    guess = dying(later, nearly or many, np.exp(-STEADY) if nearly else SURE)
-    return Decision(guess or nearly, UNDECIDED if guess or nearly else IRREGULAR)
+    ratio = DYING if nearly else SURE
+    shorter = range(1, min(nearly or many, many // 2) + 1)
+    guess = next((n for n in shorter if contraction(later, n) < ratio), nearly)
+    return Decision(guess, UNDECIDED if guess else IRREGULAR)
 
 
 def later_half(states: Floats) -> tuple[Floats, int]:
@@ -231,18 +235,31 @@ def spread_of(later: Floats, n: int) -> float:
     return spread
 
 
-def remaining(away: Floats, spread: float) -> float:
-    """How far states still go whose deviations die away; infinity where they do not.
+def remaining(later: Floats, n: int, spread: float) -> float:
+    """How far states n periods apart still go; infinity where their deviation does not die.
 
     Like a geometric series: what shrinks by q over the samples seen and has moved by ``spread``
     still moves by ``spread q/(1 - q)``, less where it turns round.
     """
-    blocks = [float(part.max()) for part in np.array_split(away, BLOCKS) if len(part)]
-    ratio = growth(away)
-    if len(blocks) < BLOCKS or (np.diff(blocks) >= 0.0).any() or np.log(ratio) > -STEADY:
-        return np.inf
+    ratio = contraction(later, n)
     q = ratio**2  # over twice the time
-    return spread * q / (1.0 - q)
+    return spread * q / (1.0 - q) if ratio < DYING else np.inf
+
+
+def contraction(later: Floats, n: int) -> float:
+    """Spread of states n periods apart late over that early; 1 where it cannot be told.
+
+    The spread over many periods sees a deviation that turns round, and that is small after one turn
+    of n periods by chance, at its full size.
+    """
+    half = later.shape[1] // 2
+    if 4 * n > half:  # seen too seldom: from the deviations themselves
+        away = deviations(later, n)
+        blocks = [float(part.max()) for part in np.array_split(away, BLOCKS) if len(part)]
+        steady = len(blocks) == BLOCKS and bool((np.diff(blocks) < 0.0).all())
+        return growth(away) if steady else 1.0
+    early, late = spread_of(later[:, :half], n), spread_of(later[:, -half:], n)
+    return late / early if early else 1.0
 
 
 def differ_earlier(later: Floats, n: int, least: float) -> bool:
@@ -253,13 +270,3 @@ def differ_earlier(later: Floats, n: int, least: float) -> bool:
     """
     parts = (deviations(later, part) for part in range(1, n) if n % part == 0)
     return all(away[-n:].max() > least and abs(np.log(growth(away))) < STEADY for away in parts)
-
-
-def dying(later: Floats, most: int, ratio: float) -> int:
-    """The least n, seen often, such that deviations after all its multiples die; 0 where none."""
-    count = later.shape[1]
-    for n in range(1, min(most, count // 12) + 1):
-        multiples = range(n, count // 4 + 1, n)
-        if all(growth(deviations(later, multiple)) < ratio for multiple in multiples):
-            return n
-    return 0

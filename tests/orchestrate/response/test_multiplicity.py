@@ -262,10 +262,10 @@ def test_what_leaves_an_unstable_orbit_is_undecided():
 
 
 def test_noise_narrower_than_the_tolerance_is_undecided_and_wider_irregular():
-    noise = np.random.default_rng(3).uniform(-1.0, 1.0, (100, 200))
+    noise = np.random.default_rng(3).uniform(-1.0, 1.0, (30, 200))
     narrow = [decide(states_of(lambda n, row=row: 1e-3 * row), TOLERANCE) for row in noise]
     assert {found.multiplicity for found in narrow} == {1}
-    assert sum(found.decided == UNDECIDED for found in narrow) >= 95  # chance may look like dying
+    assert sum(found.decided == UNDECIDED for found in narrow) >= 28  # chance may look like dying
     wide = {decide(states_of(lambda n, row=row: 0.2 * row), TOLERANCE) for row in noise}
     assert wide == {(0, IRREGULAR)}
 
