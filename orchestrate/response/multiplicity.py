@@ -21,6 +21,7 @@ DECIDED = {IRREGULAR: "irregular", REPEATED: "repeated", UNDECIDED: "undecided"}
 BLOCKS = 5  # parts of the later half from each of which to the next a dying deviation shrinks
 STEADY = 0.05  # logarithm of a ratio of deviations, of which chance makes as much
 DYING = 0.8  # ratio of deviations late and early, below which they die
+OFTEN = 5  # a quarter of the samples over it: periods after which states are seen often enough
 SURE = 0.5  # ratio of deviations that shrink, beyond chance
 FEW = 1e-3  # of the tolerance: a deviation that counts as none where it is seen a few times only
 Floats = NDArray[np.float64]
@@ -195,7 +196,7 @@ def decide(states: Floats, tolerance: float) -> Decision:
         else:
             drifting = n
     ratio = DYING if nearly else SURE
-    shorter = range(1, min(nearly or many, many // 2) + 1)
+    shorter = range(1, min(nearly or many, many // OFTEN) + 1)
     guess = next((n for n in shorter if contraction(later, n) < ratio), nearly)
     return Decision(guess, UNDECIDED if guess else IRREGULAR)
 

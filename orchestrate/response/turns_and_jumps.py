@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Rows = NDArray[np.intp]
+WINDOW = 3  # values that a window has at least to show a maximum of its own
 NEIGHBOURS, TIMES = 2, 3.0  # of the curve's own slope, which a jump must stand out from
 
 
@@ -44,17 +45,18 @@ def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
     Returns
     -------
     ndarray of bool, shape (n,)
-        Of irregular responses, and of others whose neighbours on both sides are irregular: such a
-        window is too narrow to show a maximum of its own.
+        Of irregular responses, and of up to two others between irregular ones: such a window is too
+        narrow to show a maximum of its own.
 
     Examples
     --------
-    >>> inside_irregular([False, True, False, True, False, False]).astype(int)
-    array([0, 1, 1, 1, 0, 0])
+    >>> inside_irregular([False, True, False, False, True, False, False]).astype(int)
+    array([0, 1, 1, 1, 1, 0, 0])
     """
-    here = np.asarray(irregular, dtype=bool)
-    padded = np.pad(here, 1)
-    found: NDArray[np.bool_] = here | (padded[:-2] & padded[2:])
+    from scipy.ndimage import binary_closing
+
+    padded = np.pad(np.asarray(irregular, dtype=bool), WINDOW)
+    found: NDArray[np.bool_] = binary_closing(padded, np.ones(WINDOW))[WINDOW:-WINDOW]
     return found
 
 
