@@ -20,6 +20,7 @@ IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
 DECIDED = {IRREGULAR: "irregular", REPEATED: "repeated", UNDECIDED: "undecided"}
 BLOCKS = 5  # parts of the later half from each of which to the next a dying deviation shrinks
 STEADY = 0.05  # logarithm of a ratio of deviations, of which chance makes as much
+STILL = 1e-4  # of a distance that stays: change over the samples seen, of one that dies it is more
 DYING = 0.8  # ratio of deviations late and early, below which they die
 OFTEN = 5  # a quarter of the samples over it: periods after which states are seen often enough
 SURE = 0.5  # ratio of deviations that shrink, beyond chance
@@ -163,11 +164,12 @@ def decide(states: Floats, tolerance: float) -> Decision:
     Decision
         *Repeated*: states n periods apart are within the tolerance; their deviation has died, or
         dies so fast that what is left of it is within the tolerance too; and states fewer periods
-        apart differ for good, which before the deviation has died must be by more than the
-        tolerance. *Undecided*: states nearly repeat, but their deviation stays, grows, or dies too
-        slowly to tell n from its divisors (a response still converging, next to a period doubling
-        above all; a torus or a chaotic band narrower than the tolerance; a response leaving an
-        unstable orbit), or deviations are large but die. *Irregular*: none of these.
+        apart differ for good: by ten thousand times what is left of the deviation where that has
+        died, else by more than the tolerance. *Undecided*: states nearly repeat, but their
+        deviation stays, grows, or dies too slowly to tell n from its divisors (a response still
+        converging, next to a period doubling above all; a torus or a chaotic band narrower than the
+        tolerance; a response leaving an unstable orbit), or deviations are large but die.
+        *Irregular*: none of these.
 
     Notes
     -----
@@ -188,7 +190,7 @@ def decide(states: Floats, tolerance: float) -> Decision:
         spread = spread_of(later, n)
         died = spread <= ROUNDING
         left = ROUNDING if died else remaining(later, n, spread)
-        least = 4.0 * left if died else max(4.0 * left, tolerance)
+        least = max(4.0 * left, spread / STILL if died else tolerance)
         if left <= tolerance and differ_earlier(later, n, least):
             return Decision(n, REPEATED)
         if spread <= tolerance or abs(np.log(growth(away))) > STEADY:

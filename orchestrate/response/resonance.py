@@ -122,7 +122,8 @@ class ResonanceJob(SweepJob):
         """Where the larger one of both displacements has its maxima."""
         rows, noise = [], []
         for curve in self.curves(data):
-            inside = inside_irregular(curve.multiplicity_decided.values == IRREGULAR)
+            parts = str(curve.structure.values) != KINDS[0]  # glued, no response is irregular
+            inside = inside_irregular(parts & (curve.multiplicity_decided.values == IRREGULAR))
             for index in maxima(reach(curve), self.prominence):
                 rows.append(curve.isel({self.series.name: index}))
                 noise.append(inside[index])
