@@ -90,15 +90,14 @@ def test_the_limit_of_permanent_contact_does_not_depend_on_gamma(exported):
 
 
 def test_impacts_of_a_settled_response_are_those_of_its_own_period(exported):
-    """Of 48 periods of this 5T, a mean of 1.7 impacts a period made "5T with 8 impacts"."""
-    numbers = {"mu": 3.0755, "kappa": 0.54559, "D1": 0.01281, "D2": 0.01196, "e": 0.30528}
-    structure, eta = Structure.nondimensional(**numbers), 2.67054
+    """The mean over 48 periods of this 11T with 32 impacts is that of 33 or 34."""
+    structure, eta = Structure.nondimensional(mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291), 3.0952
     found = ask(SettledJob(name="settled", structure=structure, eta=(eta,)))
     n = int(found.multiplicity[0])
     state = found.end_state.values[0]
     motion = simulate(structure, eta=eta, start=state, periods=n, points=1)
-    assert n == 5
-    assert float(found.impacts_per_period[0]) == motion.sizes["impact"] / n
+    assert (n, motion.sizes["impact"]) == (11, 32)
+    assert float(found.impacts_per_period[0]) == 32.0 / 11.0
 
 
 def test_impacts_in_a_response_of_a_sweep_are_counted_exactly(exported):
