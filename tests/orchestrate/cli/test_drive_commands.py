@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from orchestrate import Drive, Structure, couple
-from orchestrate.cli import drive_branch, jump_voltages
+from orchestrate.cli import capture, drive_branch, jump_voltages
 
 from .test_results import shows_something
 
@@ -117,7 +117,7 @@ def test_a_motor_by_its_datasheet(ask, folder):
 
 
 def test_capture(ask, folder):
-    quick = ("--count", "2", "--tolerance", "0.05", "--time", "350", "--step", "0.2")
+    quick = ("--count", "2", "--tolerance", "0.05", "--step", "0.2")
     done = ask("capture", "--eta0", "1.5:1.6", *quick, "--only", "delaminated").success()
     assert "delaminated: passes from 1.5" in done.out
     over = ("--over", "rotor_inertia", "--values", "800,1400", "--only", "bonded")
@@ -125,6 +125,40 @@ def test_capture(ask, folder):
     assert "bonded, rotor_inertia = 1400: passes from" in done.out
     assert len(results(folder)) == 2
     assert all(shows_something(picture) for picture in folder.glob("*.png"))
+
+
+def test_what_a_capture_does_not_know_is_said(ask, folder):
+    options = ("--count", "2", "--time", "100", "--step", "0.2", "--only", "bonded")
+    done = ask("capture", "--eta0", "1.5:1.6", *options).success()
+    assert "no border: of the voltages tried 0 pass, 0 are captured, 2 are undecided" in done.out
+    assert "  undecided at 1.5, 1.6 V: the speed had not settled; give a longer --time" in done.out
+    assert all(shows_something(picture) for picture in folder.glob("*.png"))
+
+
+def test_a_border_that_is_not_to_be_trusted(capsys):
+    """Made-up: an interval that undecided starts have left, above the fold."""
+    data = xr.Dataset(
+        {
+            "passes": ("voltage", [0, 0, 1]),
+            "decision": ("voltage", ["converged", "undecided", "converged"]),
+            "passage_time": ("voltage", [np.nan, np.nan, 5.0]),
+            "border": ((), 1.525, {"tolerance": 1e-4}),
+            **{"border_low": 1.49, "border_high": 1.56, "fold": 1.45, "above_fold": 1.0},
+        },
+        {"voltage": [1.4, 1.5, 1.6]},
+    )
+    capture.report("bonded", data)
+    border, undecided, warning = capsys.readouterr().out.splitlines()
+    assert border == (
+        "bonded: captured up to 1.49000 V, passes from 1.56000 V on, in at most 5 s as tried; "
+        "undecided between"
+    )
+    assert undecided.startswith("  undecided at 1.5 V")
+    assert "warning: that is above the fold at 1.45000 V" in warning
+    sure = data.assign(border_low=1.52496, border_high=1.52504, above_fold=0.0)
+    capture.report("bonded", sure.isel(voltage=[0, 2]))
+    (border,) = capsys.readouterr().out.splitlines()
+    assert border == "bonded: passes from 1.52500 V on (+- 4e-05 V), in at most 5 s as tried"
 
 
 def test_passage(ask, folder):
