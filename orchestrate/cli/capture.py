@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from ..structures import Drive, Structure
 
-UNDECIDED = "undecided"
+UNDECIDED, NEITHER = "undecided", "settled at the resonance"
 EXAMPLES = """\
   {program} capture                                       quick, bonded and delaminated
   {program} capture --drive beam --voltage 6.1:6.9
@@ -115,11 +115,15 @@ def report(state: str, data: xr.Dataset) -> None:
 
 def words(data: xr.Dataset) -> str:
     """What came out for one system, and what is not to be trusted."""
-    undecided = data.decision.values == UNDECIDED
     lines = [border_words(data) if math.isfinite(float(data.border)) else no_border_words(data)]
-    if undecided.any():
-        volts = ", ".join(f"{volt:.5g}" for volt in data.voltage.values[undecided])
-        lines.append(f"undecided at {volts} V: the speed had not settled; give a longer --time")
+    reasons = {
+        UNDECIDED: "undecided: the speed had not settled; give a longer --time",
+        NEITHER: "neither passed nor captured: the speed settles at the resonance",
+    }
+    for decision, reason in reasons.items():
+        volts = data.voltage.values[data.decision.values == decision]
+        if volts.size:
+            lines.append(f"at {', '.join(f'{volt:.5g}' for volt in volts)} V {reason}")
     if float(data.above_fold):
         lines.append(
             f"warning: that is above the fold at {float(data.fold):.5f} V, beyond which by the "
@@ -131,18 +135,21 @@ def words(data: xr.Dataset) -> str:
 def border_words(data: xr.Dataset) -> str:
     """The border, or the interval it lies in."""
     low, high = float(data.border_low), float(data.border_high)
-    times = data.passage_time.values
-    slowest = f"in at most {times[data.passes.values > 0].max():.4g} s as tried"
+    slowest = f"in at most {float(data.passage_time.max()):.4g} s as tried"
+    below, beyond = float(data.speed_low), float(data.speed_high)
+    speeds = "" if math.isnan(below) else f"{below:.4g} rad/s below, "
+    speeds = f"{speeds}{beyond:.4g} rad/s beyond"
     if high - low > float(data.border.attrs["tolerance"]):
-        between = f"captured up to {low:.5f} V, passes from {high:.5f} V on, {slowest}"
+        between = f"captured up to {low:.5f} V, passes from {high:.5f} V on, {slowest}; {speeds}"
         return f"{between}; undecided between"
-    return f"passes from {float(data.border):.5f} V on (+- {0.5 * (high - low):.1g} V), {slowest}"
+    error = f"(+- {0.5 * (high - low):.1g} V)"
+    return f"passes from {float(data.border):.5f} V on {error}, {slowest}; {speeds}"
 
 
 def no_border_words(data: xr.Dataset) -> str:
     """Why there is no border."""
     low, high = (float(end) for end in (data.voltage[0], data.voltage[-1]))
-    passes, undecided = data.passes.values > 0, data.decision.values == UNDECIDED
+    passes, undecided = data.passes.values > 0, data.decision.isin([UNDECIDED, NEITHER]).values
     if passes.all():
         return f"passes at all voltages tried, {low:.4g} V to {high:.4g} V"
     if not passes.any() and not undecided.any():

@@ -44,7 +44,8 @@ def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
 
 def kinds_of(data: xr.Dataset) -> dict[str, tuple[np.ndarray, dict[str, Any]]]:
     """Where starts pass, are captured or undecided, and their marks."""
-    passed, undecided = data.passes.values > 0, data.decision.values == "undecided"
+    passed = data.passes.values > 0
+    undecided = data.decision.isin(["undecided", "settled at the resonance"]).values
     kinds: dict[str, tuple[np.ndarray, dict[str, Any]]] = {
         "captured": (~passed & ~undecided, {"marker": "x", "color": GREY}),
         "passes": (passed, {"marker": "o", "color": PASSED}),

@@ -112,7 +112,8 @@ class CaptureJob(Job):
             start = partial(self.start, fmus, system)
             outcomes = [start(voltage) for voltage in self.voltages]
             rows.append(outcomes)
-            borders.append(border_between(self.voltages, outcomes, start, self.tolerance))
+            low, high = border_between(self.voltages, outcomes, start, self.tolerance)
+            borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
     def start(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
@@ -140,8 +141,8 @@ class CaptureJob(Job):
 
         kept = (slice(None),) if self.over else (0,)
         along = (self.over,) if self.over else ()
-        decisions, passes, times = np.moveaxis(table["outcomes"][kept], -1, 0)
-        low, high = np.moveaxis(table["borders"][kept], -1, 0)
+        decisions, passes, times, speeds = np.moveaxis(table["outcomes"][kept], -1, 0)
+        low, below, high, beyond = np.moveaxis(table["borders"][kept], -1, 0)
         over = (*along, "voltage")
         text = "time from which the speed stays beyond the resonance; NaN where it does not"
         how = "how the outcome was decided"
@@ -154,9 +155,12 @@ class CaptureJob(Job):
             "passes": yes_or_no(over, passes > 0, "whether the motor passes the resonance"),
             "decision": (over, np.vectorize(DECISIONS.get)(decisions), {"long_name": how}),
             "passage_time": variable(over, times, "s", text),
+            "speed": variable(over, speeds, "rad/s", "mean speed at which the motor has settled"),
             "border": variable(along, 0.5 * (low + high), "V", edge, tolerance=self.tolerance),
             "border_low": variable(along, low, "V", "highest voltage below it that is captured"),
             "border_high": variable(along, high, "V", "lowest voltage above it that passes"),
+            "speed_low": variable(along, below, "rad/s", "mean speed at border_low"),
+            "speed_high": variable(along, beyond, "rad/s", "mean speed at border_high"),
             "fold": variable(along, folds, "V", known),
             "above_fold": yes_or_no(along, above, "whether the border lies above that fold"),
         }
@@ -197,45 +201,52 @@ def run_until_settled(
     return Outcome(UNDECIDED)
 
 
+class End(NamedTuple):
+    """An end of the border's interval: a voltage, V, and the speed at which it settles, rad/s."""
+
+    voltage: float = math.nan
+    speed: float = math.nan
+
+
 def border_between(
     voltages: Sequence[float],
     outcomes: Sequence[Outcome],
     start: Callable[[float], Outcome],
     tolerance: float,
-) -> tuple[float, float]:
-    """The highest voltage that captures, and the lowest above it from which all tried pass, V.
+) -> tuple[End, End]:
+    """The highest voltage that captures, and the lowest above it from which all tried pass.
 
     Bisection brings them together to ``tolerance``. An undecided start is neither: the interval
     that is left then is wider than that, and both its sides are brought close to it.
 
     Returns
     -------
-    low, high : float
+    low, high : End
         NaN where the highest voltage does not pass, or none captures.
     """
-    captured = [found.decision != UNDECIDED and not found.passed for found in outcomes]
-    if not any(captured) or not outcomes[-1].passed:
-        return math.nan, math.nan
-    last = max(i for i, is_captured in enumerate(captured) if is_captured)
-    failed = [i for i, found in enumerate(outcomes) if not found.passed]
-    low, high = voltages[last], voltages[failed[-1] + 1]
-    doubtful = (voltages[last + 1], voltages[failed[-1]]) if failed[-1] > last else None
+    captured = [i for i, found in enumerate(outcomes) if found.captured]
+    if not captured or not outcomes[-1].passed:
+        return End(), End()
+    last = captured[-1]
+    first = 1 + max(i for i, found in enumerate(outcomes) if not found.passed)
+    low, high = (End(voltages[i], outcomes[i].speed) for i in (last, first))
+    doubtful = (voltages[last + 1], voltages[first - 1]) if first - last > 1 else None
     while True:
-        first, second = doubtful or (high, low)
-        if first - low > tolerance:
-            middle = 0.5 * (low + first)
-        elif doubtful and high - second > tolerance:
-            middle = 0.5 * (second + high)
+        begin, end = doubtful or (high.voltage, low.voltage)
+        if begin - low.voltage > tolerance:
+            middle = 0.5 * (low.voltage + begin)
+        elif doubtful and high.voltage - end > tolerance:
+            middle = 0.5 * (end + high.voltage)
         else:
             return low, high
         found = start(middle)
-        if found.decision != UNDECIDED and not found.passed:
-            low = middle
-            doubtful = None if middle > first else doubtful
-        elif found.passed and middle > second:
-            high = middle
+        if found.captured:
+            low = End(middle, found.speed)
+            doubtful = None if middle > begin else doubtful
+        elif found.passed and middle > end:
+            high = End(middle, found.speed)
         else:  # undecided, or passes below an undecided one
-            doubtful = (min(middle, first), max(middle, second)) if doubtful else (middle, middle)
+            doubtful = (min(middle, begin), max(middle, end)) if doubtful else (middle, middle)
 
 
 def with_value(system: System, over: str, value: float) -> System:
@@ -350,17 +361,20 @@ def capture(
     Returns
     -------
     xarray.Dataset
-        Over the parameter and ``voltage`` (V): ``passes`` (0 or 1), ``passage_time`` (s), and
-        ``decision``, how it was decided: the speed "converged", or stayed "bounded" as an irregular
-        or a swinging motion does, or the "no-load speed" lies below the resonance; "undecided"
-        (with ``passes`` 0) where it has not settled within ``time``. Over the parameter: ``border``
-        (V), half way between ``border_low``, the highest voltage below it that captures, and
-        ``border_high``, the lowest above it that passes. They are no further apart than
-        ``tolerance``, unless starts between them are undecided. NaN where none captures, or the
-        highest does not pass. With impacts there may be several borders: this is the highest.
-        ``fold`` (V), bonded and without a controller: by the averaged theory no motion below the
-        resonance exists above it, and ``above_fold`` says where the border lies higher all the
-        same, by more than the theory's error.
+        Over the parameter and ``voltage`` (V): ``passes`` (0 or 1), ``passage_time`` (s), ``speed``
+        (rad/s) where the motor has settled, and ``decision``, how it was decided: the speed
+        "converged", or stayed "bounded" as an irregular or a swinging motion does, or the
+        "no-load speed" lies below the resonance. Neither passed nor captured are "undecided" starts
+        (not settled within ``time``) and those "settled at the resonance"; ``passes`` is 0 then.
+
+        Over the parameter: ``border`` (V), half way between ``border_low``, the highest voltage
+        below it that captures, and ``border_high``, the lowest above it that passes. They are no
+        further apart than ``tolerance``, unless starts between them are neither. NaN where none
+        captures, or the highest does not pass. With impacts there may be several borders: this is
+        the highest. ``speed_low`` and ``speed_high`` (rad/s) are the speeds there: close to each
+        other where the speed passes without a gap. ``fold`` (V), bonded and without a controller:
+        by the averaged theory no motion below the resonance exists above it, and ``above_fold``
+        says where the border lies higher all the same, by more than the theory's error.
 
     Raises
     ------

@@ -21,12 +21,13 @@ from ..structures.structure import Structure
 from . import averaged
 from .jumps import running_mean
 
-UNDECIDED, CONVERGED, BOUNDED, NO_LOAD = range(4)
+UNDECIDED, CONVERGED, BOUNDED, NO_LOAD, NEITHER = range(5)
 DECISIONS = {
     UNDECIDED: "undecided",
     CONVERGED: "converged",
     BOUNDED: "bounded",
     NO_LOAD: "no-load speed",
+    NEITHER: "settled at the resonance",
 }
 MEAN = 60  # revolutions: means over them do not see motions that repeat after 2 to 6, 10 or 12
 QUOTIENT = 0.25  # an approach to a fold has no two successive quotients that are smaller
@@ -44,14 +45,40 @@ class Outcome(NamedTuple):
     decision : int
         Key of ``DECISIONS``: how it was decided.
     passed : bool
-        Whether the speed has settled beyond the resonance.
+        Whether the speed, as a mean over ``MEAN`` revolutions, has settled beyond the resonance.
     time : float
         From which it is beyond, s; NaN where it is not.
+    speed : float
+        The mean speed at last, rad/s; NaN where the motor was not simulated, or is undecided.
     """
 
     decision: int
     passed: bool = False
     time: float = math.nan
+    speed: float = math.nan
+
+    @property
+    def captured(self) -> bool:
+        """Whether the speed has settled below the resonance."""
+        return self.decision not in (UNDECIDED, NEITHER) and not self.passed
+
+
+class Settled(NamedTuple):
+    """The last stretch of a speed that has settled.
+
+    Attributes
+    ----------
+    decision : int
+        ``CONVERGED`` or ``BOUNDED``.
+    last : ndarray
+        Mean speeds over omega.
+    margin : float
+        What it may still change, over omega: it has a side where the threshold is further away.
+    """
+
+    decision: int
+    last: np.ndarray
+    margin: float
 
 
 @dataclass(frozen=True)
@@ -86,24 +113,27 @@ class SettlingTest:
         time, speed : ndarray, shape (n,)
             Ends of the revolutions, s, and their mean speeds, rad/s; from the start on.
         """
-        beyond = np.abs(speed) > self.threshold
-        crossings = np.flatnonzero(beyond[1:] != beyond[:-1])
-        since = int(crossings[-1]) + 1 if crossings.size else 0
-        if len(speed) - since < max(self.stay, MEAN):
+        if len(speed) < 2 * MEAN:
             return Outcome(UNDECIDED)
         means = running_mean(np.abs(speed) / self.omega, MEAN)
-        turn = float(np.median(np.diff(time[since:])))
-        if self.converged(means, turn):
-            decision = CONVERGED
-        elif since <= len(speed) // 2 and self.bounded(means, turn):
-            decision = BOUNDED
-        else:
+        turn = float(np.median(np.diff(time[-MEAN:])))
+        settled = self.converged(means, turn) or self.bounded(means, turn)
+        if settled is None:
             return Outcome(UNDECIDED)
-        passed = bool(beyond[-1])
-        return Outcome(decision, passed, float(time[since]) if passed else math.nan)
+        last = float(means[-1]) * self.omega
+        sides = settled.last - self.threshold / self.omega
+        if np.abs(sides).min() <= settled.margin or np.ptp(np.sign(sides)):
+            return Outcome(NEITHER, speed=last)
+        since = last_crossing(means > self.threshold / self.omega)
+        if len(means) - since < self.stay:
+            return Outcome(UNDECIDED)
+        if sides[-1] < 0.0:
+            return Outcome(settled.decision, speed=last)
+        near = np.abs(speed[since : since + MEAN]) > self.threshold
+        return Outcome(settled.decision, True, float(time[since + last_crossing(near)]), last)
 
-    def converged(self, means: np.ndarray, turn: float) -> bool:
-        """Whether the speed converges exponentially, to a limit that is not the threshold.
+    def converged(self, means: np.ndarray, turn: float) -> Settled | None:
+        """The end of a speed that converges exponentially; None where it does not.
 
         The ranges of four stretches that follow each other shrink by ``QUOTIENT`` or more each
         time, or are noise. No approach to a fold, and no passage by one, does: there
@@ -118,30 +148,32 @@ class SettlingTest:
             shrink = all(
                 after < max(NOISE, QUOTIENT * before) for before, after in pairwise(ranges)
             )
-            margin = abs(means[-1] - self.threshold / self.omega)
-            if shrink and ranges[-1] < CLOSE and margin > ranges[-1] + NOISE:
-                return True
-        return False
+            if shrink and ranges[-1] < CLOSE:
+                return Settled(CONVERGED, means[-width:], float(ranges[-1]) + NOISE)
+        return None
 
-    def bounded(self, means: np.ndarray, turn: float) -> bool:
-        """Whether the speed has long stayed within bounds, neither drifting nor calming down.
+    def bounded(self, means: np.ndarray, turn: float) -> Settled | None:
+        """The end of a speed that has long stayed within bounds, neither drifting nor calming down.
 
         The last quarter of the record is compared with the one before: its extremes, its mean and
-        its range. An irregular or a swinging motion is told so.
+        its range. An irregular or a swinging motion is told so. None where it has not.
         """
         quarter = len(means) // 4
         if quarter * turn < 25.0 * self.slow:
-            return False
+            return None
         early, late = means[-2 * quarter : -quarter], means[-quarter:]
-        size, margin = np.ptp(early), np.abs(late - self.threshold / self.omega).min()
+        size = float(np.ptp(early))
         grown = max(early.min() - late.min(), late.max() - early.max())
         drift = abs(late.mean() - early.mean())
-        return bool(
-            grown <= 0.2 * size
-            and drift <= 0.1 * size
-            and np.ptp(late) >= 0.5 * size
-            and margin > 0.2 * size
-        )
+        if grown > 0.2 * size or drift > 0.1 * size or np.ptp(late) < 0.5 * size:
+            return None
+        return Settled(BOUNDED, means[-2 * quarter :], 0.2 * size)
+
+
+def last_crossing(beyond: np.ndarray) -> int:
+    """The first place of the last stretch of equal values."""
+    changes = np.flatnonzero(beyond[1:] != beyond[:-1])
+    return int(changes[-1]) + 1 if changes.size else 0
 
 
 def settling_test(structure: Structure, drive: Drive, stay: int) -> SettlingTest:

@@ -131,7 +131,7 @@ def test_what_a_capture_does_not_know_is_said(ask, folder):
     options = ("--count", "2", "--time", "100", "--step", "0.2", "--only", "bonded")
     done = ask("capture", "--eta0", "1.5:1.6", *options).success()
     assert "no border: of the voltages tried 0 pass, 0 are captured, 2 are undecided" in done.out
-    assert "  undecided at 1.5, 1.6 V: the speed had not settled; give a longer --time" in done.out
+    assert "  at 1.5, 1.6 V undecided: the speed had not settled; give a longer --time" in done.out
     assert all(shows_something(picture) for picture in folder.glob("*.png"))
 
 
@@ -144,6 +144,7 @@ def test_a_border_that_is_not_to_be_trusted(capsys):
             "passage_time": ("voltage", [np.nan, np.nan, 5.0]),
             "border": ((), 1.525, {"tolerance": 1e-4}),
             **{"border_low": 1.49, "border_high": 1.56, "fold": 1.45, "above_fold": 1.0},
+            **{"speed_low": 1.25, "speed_high": 1.55},
         },
         {"voltage": [1.4, 1.5, 1.6]},
     )
@@ -151,14 +152,17 @@ def test_a_border_that_is_not_to_be_trusted(capsys):
     border, undecided, warning = capsys.readouterr().out.splitlines()
     assert border == (
         "bonded: captured up to 1.49000 V, passes from 1.56000 V on, in at most 5 s as tried; "
-        "undecided between"
+        "1.25 rad/s below, 1.55 rad/s beyond; undecided between"
     )
-    assert undecided.startswith("  undecided at 1.5 V")
+    assert undecided.startswith("  at 1.5 V undecided")
     assert "warning: that is above the fold at 1.45000 V" in warning
     sure = data.assign(border_low=1.52496, border_high=1.52504, above_fold=0.0)
     capture.report("bonded", sure.isel(voltage=[0, 2]))
     (border,) = capsys.readouterr().out.splitlines()
-    assert border == "bonded: passes from 1.52500 V on (+- 4e-05 V), in at most 5 s as tried"
+    text = (
+        "bonded: passes from 1.52500 V on (+- 4e-05 V), in at most 5 s as tried; 1.25 rad/s below"
+    )
+    assert border == f"{text}, 1.55 rad/s beyond"
 
 
 def test_passage(ask, folder):

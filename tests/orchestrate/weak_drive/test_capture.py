@@ -37,6 +37,8 @@ def test_the_border_is_that_of_the_whole_system():
     assert found.decision.values.tolist() == ["converged", "converged"]
     assert not passes(quick, border - 1e-4) and passes(quick, border + 1e-4)
     assert border == pytest.approx(1.54443, abs=1e-4)
+    below, beyond = (float(found[name]) for name in ("speed_low", "speed_high"))
+    assert below < 1.3 and beyond > 1.5 and found.speed[1] == pytest.approx(beyond, abs=1e-3)
 
 
 def test_no_border_above_the_fold():
@@ -96,7 +98,8 @@ def test_undecided_starts_widen_the_border(known):
             return Outcome(CONVERGED)
         return Outcome(CONVERGED, True, 1.0) if voltage > 1.47 else Outcome(UNDECIDED)
 
-    low, high = border_between(known, [start(voltage) for voltage in known], start, 0.01)
+    ends = border_between(known, [start(voltage) for voltage in known], start, 0.01)
+    low, high = (end.voltage for end in ends)
     assert 1.27 <= low < 1.28 and 1.47 < high <= 1.48
     assert len(asked) < 30
 
@@ -109,7 +112,8 @@ def test_of_several_borders_the_highest():
         return Outcome(CONVERGED) if captured else Outcome(CONVERGED, True, 1.0)
 
     known = (1.0, 1.15, 1.3, 1.5)
-    low, high = border_between(known, [start(voltage) for voltage in known], start, 0.01)
+    ends = border_between(known, [start(voltage) for voltage in known], start, 0.01)
+    low, high = (end.voltage for end in ends)
     assert low < 1.4 <= high and high - low <= 0.01
 
 
@@ -122,8 +126,9 @@ def test_a_border_above_the_fold_is_said_to_be(low, flag):
         *("capture", *QUICK.as_bonded(), "", (), (1.4, 1.6)),
         *(1e-4, 0.0, 100, Scheme("rollback", 0.4)),
     )
-    outcomes = np.array([[[CONVERGED, 0.0, np.nan], [CONVERGED, 1.0, 5.0]]])
-    found = job.dataset({"outcomes": outcomes, "borders": np.array([[low, low + 1e-4]])}, {})
+    outcomes = np.array([[Outcome(CONVERGED), Outcome(CONVERGED, True, 5.0, 1.6)]], dtype=float)
+    borders = np.array([[low, 1.25, low + 1e-4, 1.6]])
+    found = job.dataset({"outcomes": outcomes, "borders": borders}, {})
     assert float(found.fold) == pytest.approx(1.58306, abs=1e-5)
     assert float(found.above_fold) == flag
 

@@ -7,6 +7,7 @@ from orchestrate.weak_drive.averaged import dividing_speed, folds
 from orchestrate.weak_drive.settling import (
     BOUNDED,
     CONVERGED,
+    NEITHER,
     UNDECIDED,
     SettlingTest,
     slowest_time,
@@ -86,9 +87,16 @@ def test_an_irregular_motion_stays_within_bounds():
 
 
 def test_a_motion_that_swings_on_and_on():
-    swing = 0.03 * np.cos(0.02 * TIME)
+    swing = 0.03 * np.cos(0.004 * TIME)
     assert decided(1.45 + swing)[0][:2] == (BOUNDED, True)
-    assert decided(1.3 + swing)[0].decision == UNDECIDED  # now on this side, now on that
+    for middle in (1.3, 1.333):  # now on this side, now on that; or next to it
+        assert decided(middle + swing)[0].decision == NEITHER
+
+
+def test_a_speed_that_settles_at_the_resonance_has_no_side():
+    outcome, _ = decided(1.3 + 1e-6 + 0.1 * np.exp(-0.01 * TIME))
+    assert outcome.decision == NEITHER and not outcome.passed and not outcome.captured
+    assert outcome.speed == pytest.approx(1.3, abs=1e-4)
 
 
 def test_a_drift_is_not_settled():
