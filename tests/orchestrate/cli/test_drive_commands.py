@@ -187,7 +187,7 @@ def test_jump_voltages(ask, folder):
 def test_drive_branch(ask, folder):
     options = ("--speed", "1.29:1.32", "--longest", "0.3", "--jobs", "1")
     done = ask("drive-branch", *options).success()
-    assert "bonded: fold at 1.583" in done.out and "the jump up, at rate 0" in done.out
+    assert "bonded: fold at 1.583" in done.out and "the jump up of a slow ramp" in done.out
     assert shows_something(next(folder.glob("*.png")))
 
 
@@ -204,21 +204,37 @@ def test_a_jump_that_no_ramp_has_is_said_to_be_none(capsys):
     assert "none" not in capsys.readouterr().out
 
 
+def made_branch(motions, bifurcations):
+    """A branch of one leg, by voltage, speed and whether it is stable, and its bifurcations."""
+    along = {"structure": ["bonded"], "leg": ["from below"]}
+    names = ("voltage", "speed", "stable")
+    made = {
+        name: ((*along, "point"), np.array(column)[None, None])
+        for name, column in zip(names, zip(*motions, strict=True), strict=True)
+    }
+    made["revolutions"] = xr.ones_like(xr.DataArray(made["speed"][1], dims=(*along, "point")))
+    made["end"] = (tuple(along), [["limit"]])
+    columns = {
+        "structure": ["bonded"] * len(bifurcations),
+        "revolutions": [1.0] * len(bifurcations),
+    }
+    names = ("kind", "voltage", "speed")
+    columns |= dict(zip(names, map(list, zip(*bifurcations, strict=True)), strict=True))
+    made |= {f"bifurcation_{name}": ("bifurcation", column) for name, column in columns.items()}
+    return xr.Dataset(made, along)
+
+
 def test_stationary_motions_are_told_with_what_they_mean(capsys):
     """Made-up: a branch with two folds, and one change of stability that was not located."""
-    speed = np.array([0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4])
-    voltage = np.array([1.0, 1.2, 1.4, 1.3, 1.2, 1.35, 1.5])
-    along = {"structure": ["bonded"], "leg": ["from below"]}
-    values = {"speed": speed, "voltage": voltage, "stable": np.array([0, 1, 1, 0, 0, 1, 1])}
-    made = {name: ((*along, "point"), column[None, None]) for name, column in values.items()}
-    made["end"] = (tuple(along), [["limit"]])
-    folds = {"structure": ["bonded"] * 2, "kind": ["fold"] * 2}
-    folds |= {"voltage": [1.41, 1.19], "speed": [1.03, 1.22]}
-    made |= {f"bifurcation_{name}": ("bifurcation", column) for name, column in folds.items()}
-    drive_branch.report(xr.Dataset(made, along))
-    up, down, count, change = capsys.readouterr().out.splitlines()
-    assert up == "bonded: fold at 1.41000 V, 1.03 rad/s: the jump up, at rate 0"
-    assert down.endswith("the jump down, at rate 0")
+    motions = [(1.0, 0.8, 0), (1.2, 0.9, 1), (1.4, 1.0, 1), (1.3, 1.1, 0), (1.2, 1.2, 0)]
+    motions += [(1.35, 1.3, 1), (1.5, 1.4, 1)]
+    drive_branch.report(made_branch(motions, [("fold", 1.41, 1.03), ("fold", 1.19, 1.22)]))
+    up, down, end, count, change = capsys.readouterr().out.splitlines()
+    meaning = "the jump up of a slow ramp, at rate 0, to 1.34 rad/s"
+    assert up == f"bonded: fold at 1.41000 V, 1.03 rad/s: {meaning}"
+    assert down.endswith("1.22 rad/s: the jump down of a slow ramp, at rate 0")
+    nowhere = "these branches have no stable motion at 1.19000 V to jump to"
+    assert end == f"bonded, a slow ramp down: {nowhere}"
     assert "7 motions, 4 of them stable; it reaches the end of the range" in count
     assert change.startswith("  stability changes near 0.8 rad/s too, not located")
 
