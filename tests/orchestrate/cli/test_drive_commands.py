@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
 
 import numpy as np
@@ -10,6 +11,7 @@ import xarray as xr
 
 from orchestrate import Drive, Structure, couple
 from orchestrate.cli import capture, drive_branch, jump_voltages
+from orchestrate.cli import couple as couple_command
 
 from .test_results import shows_something
 
@@ -77,10 +79,38 @@ def test_another_question_has_another_file(ask, folder):
 
 
 def test_a_jump_is_told_with_its_lag(ask, folder):
+    """Bonded by the theory; delaminated with what the bonded one's lag may be off."""
     options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--one-way", "--plot", "none")
     done = ask("couple", *options, *SHORT).success()
-    lines = [line for line in done.out.splitlines() if "jump up at" in line]
-    assert len(lines) == 2 and all("late at this rate, about 1.5" in line for line in lines)
+    bonded, delaminated = (line for line in done.out.splitlines() if "jump up at" in line)
+    assert "late at this rate, about 1.583" in bonded and "+-" not in bonded
+    about = re.search(r"about (1\.5\d+) \+- (0\.\d+) V at rate 0", delaminated)
+    assert about is not None
+    value, error = map(float, about.groups())
+    assert abs(value - 1.5697) < error < 0.005  # its branch's fold
+
+
+def made_jump(voltage, fold=None):
+    """A made-up ramp's jump up: bonded with the theory's fold, of 1.3 rad/s before it."""
+    made = {"jumps": voltage, "held_jumps": np.nan, "jump_speed_before": 1.3}
+    made |= {"jump_lag": voltage - fold if fold else np.nan, "decided": "by the record"}
+    if fold:
+        made |= {"averaged_jumps": fold, "averaged_kind": "fold"}
+    speed = ("revolution", [1.0])
+    return xr.Dataset(made | {"speed": speed}, {"jump": "up", "Omega": speed})
+
+
+def test_a_jump_far_from_the_bonded_one_is_not_corrected_by_its_lag():
+    """As of a drive drawn at random, whose bonded one is at 1.4843 V, 0.0133 V late."""
+    bonded = made_jump(1.4843, fold=1.4710)
+    far = couple_command.told_jump(made_jump(1.3998), 1.0, bonded)
+    assert "late at this rate if as the bonded one, about 1.3865 +- 0.0066 V" in far  # at 1.3829
+    lost = couple_command.told_jump(made_jump(1.3800), 1.0, bonded)
+    assert "about" not in lost and "late by what jump-voltages tells" in lost
+    known = couple_command.told_jump(made_jump(1.3998), 1.0, bonded, fold=1.3829)
+    assert known.endswith("0.0169 V late at this rate, 1.3829 V at rate 0 by its branch")
+    alone = couple_command.told_jump(made_jump(1.3998), 1.0, None)
+    assert alone.endswith("late by what jump-voltages tells")
 
 
 def test_a_motor_of_one_s_own(ask, folder, motor):
