@@ -113,7 +113,7 @@ def run(arguments: argparse.Namespace) -> None:
     states = states_of(arguments, structure)
     results = {state: load(place) for state, place in zip(states, places, strict=True)}
     branches = branches_of(arguments, structure, drive)
-    tell(results, drive.volts(structure), folds_met(branches))
+    tell(results, drive.volts(structure), folds_met(branches, structure, drive))
     for data, place in zip(results.values(), places, strict=True):
         for path in (place, *exported(data, place, formats, fresh)):
             print(path)
@@ -191,19 +191,25 @@ def picture_of(
     return draw(results, theory, branches, title)
 
 
-def folds_met(branches: xr.Dataset | None) -> Folds:
-    """Voltages of the folds at which slow ramps jump, by structure and direction, V."""
+def folds_met(branches: xr.Dataset | None, structure: Structure, drive: Drive) -> Folds:
+    """Voltages of the folds at which slow ramps jump across the resonance, V.
+
+    A ramp may jump before to another motion on the same side: that fold is not meant.
+    """
+    from ..weak_drive import averaged
     from ..weak_drive.ramp_path import ramp_paths
 
+    found: Folds = {}
     if branches is None:
-        return {}
+        return found
     volts = branches.bifurcation_voltage.values
-    return {
-        (str(name), jump): float(volts[path.jumps[0]])
-        for name in branches.structure.values
-        for jump, path in ramp_paths(branches, str(name)).items()
-        if path.jumps
-    }
+    threshold = averaged.dividing_speed(structure, drive) * structure.omega
+    for name in map(str, branches.structure.values):
+        for jump, path in ramp_paths(branches, name).items():
+            for fold, landing in zip(path.jumps, path.landings, strict=False):
+                if (landing > threshold) == (jump == "up"):
+                    found.setdefault((name, jump), float(volts[fold]))
+    return found
 
 
 def tell(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = None) -> None:
