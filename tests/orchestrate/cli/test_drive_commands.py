@@ -116,9 +116,9 @@ def test_a_jump_far_from_the_bonded_one_is_not_corrected_by_its_lag():
 def test_the_fold_of_a_jump_is_the_one_that_crosses_the_resonance():
     """Made-up for ``quick``: a ramp jumps twice, first to a motion below the resonance."""
     system = Structure.from_file("quick"), Drive.from_file("quick")
-    motions = [(1.0, 1.0, 1), (1.4, 1.1, 1), (1.3, 1.15, 0), (1.2, 1.2, 0), (1.3, 1.24, 1)]
+    motions = [(1.0, 1.0, 1), (1.35, 1.1, 1), (1.3, 1.15, 0), (1.2, 1.2, 0), (1.3, 1.24, 1)]
     motions += [(1.6, 1.3, 1), (1.5, 1.34, 0), (1.4, 1.38, 0), (1.5, 1.45, 1), (1.7, 1.69, 1)]
-    folds = [("fold", 1.41, 1.12), ("fold", 1.19, 1.21), ("fold", 1.61, 1.31), ("fold", 1.39, 1.39)]
+    folds = [("fold", 1.36, 1.12), ("fold", 1.19, 1.21), ("fold", 1.61, 1.31), ("fold", 1.39, 1.39)]
     made = made_branch(motions, folds)
     assert couple_command.folds_met(made, *system) == {
         ("bonded", "up"): 1.61,
