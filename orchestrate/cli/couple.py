@@ -202,12 +202,13 @@ def folds_met(branches: xr.Dataset | None, structure: Structure, drive: Drive) -
     found: Folds = {}
     if branches is None:
         return found
-    volts = branches.bifurcation_voltage.values
+    volts, speeds = (branches[f"bifurcation_{of}"].values for of in ("voltage", "speed"))
     threshold = averaged.dividing_speed(structure, drive) * structure.omega
     for name in map(str, branches.structure.values):
         for jump, path in ramp_paths(branches, name).items():
             for fold, landing in zip(path.jumps, path.landings, strict=False):
-                if (landing > threshold) == (jump == "up"):
+                ends = (speeds[fold], landing) if jump == "up" else (landing, speeds[fold])
+                if ends[0] < threshold < ends[1]:
                     found.setdefault((name, jump), float(volts[fold]))
     return found
 

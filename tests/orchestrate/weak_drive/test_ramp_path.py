@@ -71,6 +71,12 @@ def test_several_motions_to_jump_to():
     assert up.jumps == [0] and not up.landings and "several stable motions at 1.41" in up.end
 
 
+def test_a_jump_up_does_not_land_at_a_lower_speed():
+    lower = [(1.39, 0.8, 1), (1.45, 0.85, 1)]
+    up = paths({"from below": S_CURVE, "second doubled": lower}, FOLDS)["up"]
+    assert up.landings == [pytest.approx(1.41)]
+
+
 def test_a_slow_loss_before_the_fold():
     """Down, a Neimark-Sacker point comes first; the ramp goes on to the fold."""
     motions = [*S_CURVE[:4], (1.2, 1.2, 0), (1.25, 1.27, 0), (1.3, 1.3, 1), (1.5, 1.5, 1)]

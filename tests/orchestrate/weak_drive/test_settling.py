@@ -63,6 +63,13 @@ def test_a_speed_that_creeps_past_a_fold(distance):
     assert when > outcome.time == TIME[np.flatnonzero(speed > 1.3)[0]]
 
 
+def test_a_speed_that_hardly_changes_by_a_fold_is_not_settled():
+    """It changes by less than what counts as close, and yet is on its way past the fold."""
+    speed = crept(1e-9, rate=0.3)[:6000]
+    assert np.ptp(speed[-len(speed) // 16 :]) < 1e-5
+    assert decided(speed)[0].decision == UNDECIDED
+
+
 @pytest.mark.parametrize("distance", [1e-4, 1e-5, 1e-6])
 def test_a_speed_that_stops_just_before_a_fold(distance):
     outcome, _ = decided(crept(-distance))
