@@ -71,7 +71,7 @@ def draw_map(axes: Axes, data: xr.Dataset, over: str) -> None:
         ends = data.border_low, data.border_high
         axes.fill_betweenx(data[over], *ends, label="undecided between", **interval)
     inside = (data.fold >= data.voltage.min()) & (data.fold <= data.voltage.max())
-    if inside.any():
+    if inside.sum() > 1:
         axes.plot(data.fold.where(inside), data[over], **FOLD)
     unit = str(data[over].attrs["units"])
     axes.set_ylabel(over.replace("_", " ") + ("" if unit == "1" else f" in {unit}"))
