@@ -5,7 +5,7 @@ from orchestrate import Drive, SpeedGradient, Structure, capture, couple
 beam = Structure.from_file("beam")
 weak = Drive.from_file("beam").replace(armature_resistance=120.0)  # Ohm
 
-tried = capture(beam, weak, voltage=(9.0, 9.4), count=2, tolerance=0.02, time=8.0)  # V, s
+tried = capture(beam, weak, voltage=(9.0, 9.4), count=2, tolerance=0.02)  # V
 print(f"switched on from rest it passes from {float(tried.border):.2f} V on")
 
 swing = SpeedGradient(filter_time=0.4, passed=101.0, low=0.6)  # s, rad/s

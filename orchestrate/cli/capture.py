@@ -29,13 +29,15 @@ if TYPE_CHECKING:
 
     from ..structures import Drive, Structure
 
+UNDECIDED, NEITHER = "undecided", "settled at the resonance"
 EXAMPLES = """\
   {program} capture                                       quick, bonded and delaminated
   {program} capture --drive beam --voltage 6.1:6.9
   {program} capture --over rotor_inertia --values 600:1600:200
   {program} capture --drive beam --set armature_resistance=120 --voltage 7:10 --speed-gradient
 {eta0}
-The motor is switched on at once. Interrupted, the same command goes on where it was."""
+The motor is switched on at once and followed until its speed has settled. Interrupted, the same
+command goes on where it was."""
 
 
 def add_parser(commands: Commands) -> None:
@@ -54,9 +56,8 @@ def add_parser(commands: Commands) -> None:
     )
     border = "of the border found by bisection, V (default: %(default)s)"
     option("--tolerance", type=plain_float, default=1e-4, help=border)
-    option(
-        "--time", type=plain_float, metavar="S", help="time given to pass, s (default: 1500/omega)"
-    )
+    text = "time after which a start that has not settled is undecided, s (default: many times the"
+    option("--time", type=plain_float, metavar="S", help=f"{text} slowest time constant)")
     add_step(group)
     add_control(parser)
     add_results(parser, store=False, several=True)
@@ -113,16 +114,47 @@ def report(state: str, data: xr.Dataset) -> None:
 
 
 def words(data: xr.Dataset) -> str:
-    """What came out for one system."""
-    border, passes = float(data.border), data.passes.values
-    if math.isfinite(border):
-        times = data.passage_time.values
-        slowest = f"{times[passes > 0].max():.4g}"
-        error = 0.5 * float(data.border.attrs["tolerance"])
-        return f"passes from {border:.5f} V on (+- {error:.1g} V), in at most {slowest} s as tried"
+    """What came out for one system, and what is not to be trusted."""
+    lines = [border_words(data) if math.isfinite(float(data.border)) else no_border_words(data)]
+    reasons = {
+        UNDECIDED: "undecided: the speed had not settled; give a longer --time",
+        NEITHER: "neither passed nor captured: the speed settles at the resonance",
+    }
+    for decision, reason in reasons.items():
+        volts = data.voltage.values[data.decision.values == decision]
+        if volts.size:
+            lines.append(f"at {', '.join(f'{volt:.5g}' for volt in volts)} V {reason}")
+    if float(data.above_fold):
+        lines.append(
+            f"warning: that is above the fold at {float(data.fold):.5f} V, beyond which by the "
+            "averaged theory no motion below the resonance is left"
+        )
+    return "\n  ".join(lines)
+
+
+def border_words(data: xr.Dataset) -> str:
+    """The border, or the interval it lies in."""
+    low, high = float(data.border_low), float(data.border_high)
+    slowest = f"in at most {float(data.passage_time.max()):.4g} s as tried"
+    below, beyond = float(data.speed_low), float(data.speed_high)
+    speeds = "" if math.isnan(below) else f"{below:.4g} rad/s below, "
+    speeds = f"{speeds}{beyond:.4g} rad/s beyond"
+    if high - low > float(data.border.attrs["tolerance"]):
+        between = f"captured up to {low:.5f} V, passes from {high:.5f} V on, {slowest}; {speeds}"
+        return f"{between}; undecided between"
+    error = f"(+- {0.5 * (high - low):.1g} V)"
+    return f"passes from {float(data.border):.5f} V on {error}, {slowest}; {speeds}"
+
+
+def no_border_words(data: xr.Dataset) -> str:
+    """Why there is no border."""
     low, high = (float(end) for end in (data.voltage[0], data.voltage[-1]))
+    passes, undecided = data.passes.values > 0, data.decision.isin([UNDECIDED, NEITHER]).values
     if passes.all():
         return f"passes at all voltages tried, {low:.4g} V to {high:.4g} V"
-    if not passes.any():
+    if not passes.any() and not undecided.any():
         return f"captured at all voltages tried, {low:.4g} V to {high:.4g} V"
+    if undecided.any():
+        counts = f"{passes.sum()} pass, {(~passes & ~undecided).sum()} are captured"
+        return f"no border: of the voltages tried {counts}, {undecided.sum()} are undecided"
     return f"captured at the highest voltage tried, {high:.4g} V, not at all lower ones"

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ..structures import Drive, Structure
     from ..weak_drive.couple import CoupleJob
 
+Folds = dict[tuple[str, str], float]  # by structure and direction, V
 LIMIT = 1e-6  # of the motor's work: where more is missed, a warning
 EXAMPLES = """\
   {program} couple                               quick: bonded, delaminated, up and down
@@ -111,14 +112,18 @@ def run(arguments: argparse.Namespace) -> None:
     answer_all(jobs, arguments.output, RunOptions.of(running), finder(running))
     states = states_of(arguments, structure)
     results = {state: load(place) for state, place in zip(states, places, strict=True)}
-    tell(results, drive.volts(structure))
+    branches = branches_of(arguments, structure, drive)
+    tell(results, drive.volts(structure), folds_met(branches, structure, drive))
     for data, place in zip(results.values(), places, strict=True):
         for path in (place, *exported(data, place, formats, fresh)):
             print(path)
     name = jobs[0].name.rpartition("_")[0] + (f"_{arguments.only}" if arguments.only else "")
     picture = arguments.output / f"{name}.nc"
     for path in drawn(
-        picture, plots, fresh, lambda: picture_of(arguments, results, structure, drive, jobs[0])
+        picture,
+        plots,
+        fresh,
+        lambda: picture_of(arguments, results, structure, drive, jobs[0], branches),
     ):
         print(path)
 
@@ -162,6 +167,7 @@ def picture_of(
     structure: Structure,
     drive: Drive,
     job: CoupleJob,
+    branches: xr.Dataset | None,
 ) -> Any:
     """All runs; of ramps the averaged theory too, and branches where they are wanted."""
     import numpy as np
@@ -182,10 +188,32 @@ def picture_of(
     amplitude = averaged.amplitude(structure, drive, Omega) * drive.length
     along = {"voltage": ("speed", volts), "amplitude": ("speed", amplitude)}
     theory = xr.Dataset(along, {"speed": Omega * structure.omega})
-    return draw(results, theory, branches_of(arguments, structure, drive), title)
+    return draw(results, theory, branches, title)
 
 
-def tell(results: dict[str, xr.Dataset], volts: float) -> None:
+def folds_met(branches: xr.Dataset | None, structure: Structure, drive: Drive) -> Folds:
+    """Voltages of the folds at which slow ramps jump across the resonance, V.
+
+    A ramp may jump before to another motion on the same side: that fold is not meant.
+    """
+    from ..weak_drive import averaged
+    from ..weak_drive.ramp_path import ramp_paths
+
+    found: Folds = {}
+    if branches is None:
+        return found
+    volts, speeds = (branches[f"bifurcation_{of}"].values for of in ("voltage", "speed"))
+    threshold = averaged.dividing_speed(structure, drive) * structure.omega
+    for name in map(str, branches.structure.values):
+        for jump, path in ramp_paths(branches, name).items():
+            for fold, landing in zip(path.jumps, path.landings, strict=False):
+                ends = (speeds[fold], landing) if jump == "up" else (landing, speeds[fold])
+                if ends[0] < threshold < ends[1]:
+                    found.setdefault((name, jump), float(volts[fold]))
+    return found
+
+
+def tell(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = None) -> None:
     """What was found, in a few lines.
 
     Parameters
@@ -194,10 +222,15 @@ def tell(results: dict[str, xr.Dataset], volts: float) -> None:
         By structure.
     volts : float
         Voltage at eta0 = 1.
+    folds : dict of float, optional
+        Voltages at which slow ramps jump, as :func:`folds_met` gives them, V.
     """
-    lags = results["bonded"].jump_lag.values if "bonded" in results else [math.nan, math.nan]
+    bonded = results.get("bonded")
     for name, data in results.items():
-        told = [told_jump(data.sel(jump=jump), volts, lags[i]) for i, jump in enumerate(data.jump)]
+        told = []
+        for jump in map(str, data.jump.values):
+            at, beside = data.sel(jump=jump), None if bonded is None else bonded.sel(jump=jump)
+            told.append(told_jump(at, volts, beside, (folds or {}).get((name, jump))))
         passed = float(data.passage_time)
         if not any("V" in text for text in told) and math.isfinite(passed):
             told.append(f"beyond the resonance from {passed:.4g} s on")
@@ -205,7 +238,9 @@ def tell(results: dict[str, xr.Dataset], volts: float) -> None:
         balance(data)
 
 
-def told_jump(at: xr.Dataset, volts: float, lag: float) -> str:
+def told_jump(
+    at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None = None
+) -> str:
     """A jump with its lag, or why there is none.
 
     Parameters
@@ -214,8 +249,10 @@ def told_jump(at: xr.Dataset, volts: float, lag: float) -> str:
         Of one direction.
     volts : float
         Voltage at eta0 = 1.
-    lag : float
-        Of the bonded structure, by the averaged theory, V; NaN where it is not known.
+    bonded : xarray.Dataset, optional
+        Of the bonded structure in that direction, whose lag the averaged theory gives.
+    fold : float, optional
+        Voltage at which a slow ramp jumps, by the branch of stationary motions, V.
     """
     voltage, jump = float(at.jumps), at.jump.item()
     if not math.isfinite(voltage):
@@ -224,12 +261,41 @@ def told_jump(at: xr.Dataset, volts: float, lag: float) -> str:
     held = float(at.held_jumps)
     if math.isfinite(held):
         return f"{text}, told by held voltages: the motion is lost at {held:.4f} V"
-    if math.isfinite(lag):
-        kind = str(at.averaged_kind.item()) if "averaged_kind" in at else ""
+    return f"{text}, {lag_words(at, volts, bonded, fold)}"
+
+
+def lag_words(at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None) -> str:
+    """How late a jump comes, and where it is at rate 0."""
+    voltage, unknown = float(at.jumps), "late by what jump-voltages tells"
+    if fold is not None:
+        late = f"{abs(voltage - fold):.4f} V late at this rate"
+        return f"{late}, {fold:.4f} V at rate 0 by its branch"
+    lag = math.nan if bonded is None else float(bonded.jump_lag)
+    if bonded is None or not math.isfinite(lag):
+        return unknown
+    if "averaged_jumps" in at:
+        kind = str(at.averaged_kind.item())
         by = f" ({kind})" if kind not in ("", "fold") else ""
-        about = f", about {voltage - lag:.4f} V at rate 0{by}"
-        return f"{text}, {abs(lag):.4f} V late at this rate{about}"
-    return f"{text}, late by what jump-voltages tells"
+        return f"{abs(lag):.4f} V late at this rate, about {voltage - lag:.4f} V at rate 0{by}"
+    error = lag_error(voltage, volts, bonded)
+    if error > 0.5 * abs(lag):
+        return f"{unknown}: far from the bonded one's, its lag is another"
+    late = f"{abs(lag):.4f} V late at this rate if as the bonded one"
+    return f"{late}, about {voltage - lag:.4f} +- {error:.4f} V at rate 0"
+
+
+def lag_error(voltage: float, volts: float, bonded: xr.Dataset) -> float:
+    """How far the lag of a delaminated structure's jump may be from the bonded one's, V.
+
+    It depends on the branch by the fold, which differs as the vibration's torque there does. The
+    slip tells that torque: a jump that is moved by a tenth of it is taken to be late by as much as
+    a tenth more or less, and by a fiftieth in any case.
+    """
+    speed = float(bonded.jump_speed_before) * volts
+    omega = float(bonded.speed[0] / bonded.Omega[0])
+    slip = abs(float(bonded.averaged_jumps) - speed / omega)
+    moved = abs(voltage - float(bonded.jumps)) / slip if slip else math.inf
+    return abs(float(bonded.jump_lag)) * max(moved, 0.02)
 
 
 def balance(data: xr.Dataset) -> None:

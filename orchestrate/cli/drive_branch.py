@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
 
+    from ..weak_drive.ramp_path import Path as RampPath
+
 FOLD = "fold"
+STARTS = {"up": "from the lowest speed", "down": "from the highest speed"}
 ENDS = {
     "limit": "it reaches the end of the range of speeds",
     "grazing of a flight": "it ends where the masses touch once more (grazing of a flight)",
@@ -78,13 +81,21 @@ def picture_of(data: xr.Dataset, name: str) -> Any:
 
 
 def report(data: xr.Dataset) -> None:
-    """Bifurcations, and how far the branches go."""
+    """Bifurcations, what slow ramps meet of them, and how far the branches go."""
+    from ..weak_drive.ramp_path import ramp_paths
+
+    paths = {str(name): ramp_paths(data, str(name)) for name in data.structure.values}
     names = ("structure", "kind", "voltage", "speed")
-    for structure, kind, voltage, speed in zip(
-        *(data[f"bifurcation_{name}"].values for name in names), strict=True
+    for i, (structure, kind, voltage, speed) in enumerate(
+        zip(*(data[f"bifurcation_{name}"].values for name in names), strict=True)
     ):
-        what = jump_at(data.sel(structure=structure), voltage, speed) if kind == FOLD else ""
+        way = jump_at(data.sel(structure=structure), voltage, speed) if kind == FOLD else ""
+        what = meaning(paths[structure], i, way)
         print(f"{structure}: {kind} at {voltage:.5f} V, {speed:.5g} rad/s{what}")
+    for structure, both in paths.items():
+        for way, path in both.items():
+            if path.end and len(path.landings) in (0, len(path.jumps) - 1):
+                print(f"{structure}, a slow ramp {way}: {path.end}")
     if not data.sizes["bifurcation"]:
         print("no bifurcations")
     for structure in data.structure.values:
@@ -98,8 +109,35 @@ def report(data: xr.Dataset) -> None:
                 tell_unlocated(at, data.bifurcation_speed.values)
 
 
+def meaning(paths: dict[str, RampPath], i: int, way: str) -> str:
+    """What a bifurcation means to slow ramps.
+
+    Parameters
+    ----------
+    paths : dict of Path
+        Of ramps ``"up"`` and ``"down"``.
+    i : int
+        The bifurcation's place.
+    way : str
+        Which way the speed jumps at this fold; empty where a stable motion does not end there.
+    """
+    for name, path in paths.items():
+        if i in path.slow_losses:
+            return f": a slow ramp {name} that nothing disturbs goes on to the fold"
+        if i in path.jumps:
+            turn = path.jumps.index(i)
+            next_one = "the next jump" if turn else "the jump"
+            landing = f", to {path.landings[turn]:.5g} rad/s" if turn < len(path.landings) else ""
+            return f": {next_one} {name} of a slow ramp, at rate 0{landing}"
+    if not way:
+        return ""
+    if paths[way].jumps:
+        return f": a jump {way} that a slow ramp {STARTS[way]} does not meet"
+    return f": a jump {way}; whether a slow ramp meets it these branches do not tell"
+
+
 def jump_at(branch: xr.Dataset, voltage: float, speed: float) -> str:
-    """What a fold means on a slow ramp: a largest voltage is where the speed jumps up."""
+    """Which way the speed jumps at a fold; empty where no stable motion ends there."""
     import numpy as np
 
     spans = {name: float(branch[name].max() - branch[name].min()) for name in ("voltage", "speed")}
@@ -117,8 +155,7 @@ def jump_at(branch: xr.Dataset, voltage: float, speed: float) -> str:
             nearest, around = apart[near], at.isel(point=slice(max(near - 1, 0), near + 2))
     if around is None or set(around.stable.values.astype(int)) != {0, 1}:
         return ""
-    way = "up" if float(around.voltage.mean()) < voltage else "down"
-    return f": the jump {way}, at rate 0"
+    return "up" if float(around.voltage.mean()) < voltage else "down"
 
 
 def tell_unlocated(leg: xr.Dataset, speeds: np.ndarray) -> None:

@@ -1,4 +1,4 @@
-"""The capture map: which voltages pass the resonance from rest, which are captured."""
+"""The capture map: voltages from rest that pass the resonance, are captured, or are undecided."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 
 from .style import BLACK, GREY, in_our_look, panels
 
-PASSED = "tab:green"
+PASSED, UNDECIDED = "tab:green", "tab:orange"
+FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, averaged theory"}
 
 
 @in_our_look
@@ -41,31 +42,57 @@ def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
     return figure
 
 
+def kinds_of(data: xr.Dataset) -> dict[str, tuple[np.ndarray, dict[str, Any]]]:
+    """Where starts pass, are captured or undecided, and their marks."""
+    passed = data.passes.values > 0
+    undecided = data.decision.isin(["undecided", "settled at the resonance"]).values
+    kinds: dict[str, tuple[np.ndarray, dict[str, Any]]] = {
+        "captured": (~passed & ~undecided, {"marker": "x", "color": GREY}),
+        "passes": (passed, {"marker": "o", "color": PASSED}),
+        "undecided": (undecided, {"marker": "D", "color": UNDECIDED}),
+    }
+    return {name: kind for name, kind in kinds.items() if kind[0].any()}
+
+
+def is_wide(data: xr.Dataset) -> bool:
+    """Whether undecided starts leave a border wider than it was to be."""
+    return bool((data.border_high - data.border_low > data.border.attrs["tolerance"]).any())
+
+
 def draw_map(axes: Axes, data: xr.Dataset, over: str) -> None:
-    """Passed and captured over voltage and parameter, and the border."""
+    """Passed, captured and undecided over voltage and parameter, the border, and the fold."""
+    data = data.transpose(over, "voltage")
     volts, values = np.meshgrid(data.voltage.values, data[over].values)
-    passed = data.passes.transpose(over, "voltage").values > 0
-    mark: Any = {"s": 22, "linewidths": 0.8}
-    captured = "captured"
-    axes.scatter(volts[~passed], values[~passed], marker="x", color=GREY, label=captured, **mark)
-    axes.scatter(volts[passed], values[passed], color=PASSED, label="passes", **mark)
+    for name, (chosen, mark) in kinds_of(data).items():
+        axes.scatter(volts[chosen], values[chosen], s=22, linewidths=0.8, label=name, **mark)
     axes.plot(data.border, data[over], "-", color=BLACK, linewidth=1.2, label="border")
+    if is_wide(data):
+        interval: Any = {"color": UNDECIDED, "alpha": 0.3, "linewidth": 0.0}
+        ends = data.border_low, data.border_high
+        axes.fill_betweenx(data[over], *ends, label="undecided between", **interval)
+    inside = (data.fold >= data.voltage.min()) & (data.fold <= data.voltage.max())
+    if inside.sum() > 1:
+        axes.plot(data.fold.where(inside), data[over], **FOLD)
     unit = str(data[over].attrs["units"])
     axes.set_ylabel(over.replace("_", " ") + ("" if unit == "1" else f" in {unit}"))
 
 
 def draw_line(axes: Axes, data: xr.Dataset) -> None:
     """Time of the passage over the voltage."""
-    passed = data.passes.values > 0
     volts = data.voltage.values
-    axes.plot(volts[passed], data.passage_time.values[passed], "o-", color=PASSED, label="passes")
-    low: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False}
-    captured = "captured"
-    axes.plot(
-        volts[~passed], np.full((~passed).sum(), 0.02), "x", color=GREY, label=captured, **low
-    )
+    low: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False, "linestyle": "none"}
+    for name, (chosen, mark) in kinds_of(data).items():
+        if name == "passes":
+            axes.plot(volts[chosen], data.passage_time.values[chosen], label=name, **mark)
+        else:
+            axes.plot(volts[chosen], np.full(chosen.sum(), 0.02), label=name, **mark, **low)
     border = float(data.border)
     if np.isfinite(border):
         axes.axvline(border, color=BLACK, linewidth=1.0, label=f"border, {border:.4f} V")
+    if is_wide(data):
+        ends = float(data.border_low), float(data.border_high)
+        axes.axvspan(*ends, color=UNDECIDED, alpha=0.3, linewidth=0.0, label="undecided between")
+    if volts[0] <= float(data.fold) <= volts[-1]:
+        axes.axvline(float(data.fold), **FOLD)
     axes.set_ylabel("time of the passage in s")
     axes.set_ylim(0.0, 1.2 * float(data.passage_time.max().fillna(1.0)))

@@ -1,16 +1,17 @@
 """Capture: whether a motor switched on from rest passes the resonance, or hangs at it.
 
-The voltage is switched on at once. Where it is low the speed stays below the resonance: the motor
+The voltage is switched on at once. Where it is low the speed settles below the resonance: the motor
 is captured, though at the same voltage it would stay beyond, once there. The border between is
-found by bisection.
+found by bisection. Each start is simulated until the speed has settled (:mod:`.settling`); where it
+has not after a generous time, the start is undecided, and the border's interval is the wider.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from itertools import pairwise
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -32,6 +33,14 @@ from .controllers import Controller
 from .couple import Run, checked_motor, couple_job, scheme_of
 from .master import Scheme
 from .schedule import Constant, check
+from .settling import (
+    DECISIONS,
+    NO_LOAD,
+    UNDECIDED,
+    Outcome,
+    settling_test,
+    usual_limit,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,6 +49,7 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 DRIVE_NAMES = tuple(field.name for field in fields(Drive))
+THEORY = 2e-4  # over K omega: the averaged theory's own error of a fold, with room
 
 
 class System(NamedTuple):
@@ -65,9 +75,9 @@ class CaptureJob(Job):
     tolerance : float
         Of the border, V.
     time : float
-        After which a motor that has not passed is captured, s.
+        After which a start that has not settled is undecided, s; 0: by the system's time constants.
     stay : int
-        Revolutions beyond the resonance after which it has passed.
+        Fewest revolutions on one side of the resonance before a speed counts as settled there.
     scheme : Scheme
     control : Controller, optional
     """
@@ -96,78 +106,147 @@ class CaptureJob(Job):
         return [with_value(system, self.over, value) for value in self.values] or [system]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[System], carry: Any) -> Table:
-        """Passage times at all voltages, and the border, of some values."""
+        """Outcomes at all voltages, and the border, of some values."""
         rows, borders = [], []
         for system in items:
-            times = [self.start(fmus, system, voltage) for voltage in self.voltages]
-            rows.append(times)
-            borders.append(self.border(fmus, system, times))
-        return {"passage_time": np.array(rows), "border": np.array(borders)}
+            start = partial(self.start, fmus, system)
+            outcomes = [start(voltage) for voltage in self.voltages]
+            rows.append(outcomes)
+            low, high = border_between(self.voltages, outcomes, start, self.tolerance)
+            borders.append([*low, *high])
+        return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
-    def border(self, fmus: Mapping[str, Path], system: System, times: Sequence[float]) -> float:
-        """The voltage above which the motor passes, from the highest that captures it, V."""
-        ends = [
-            pair
-            for pair, (before, after) in zip(pairwise(self.voltages), pairwise(times), strict=True)
-            if math.isnan(before) and not math.isnan(after)
-        ]
-        if not ends or math.isnan(times[-1]):
-            return math.nan
-        low, high = ends[-1]
-        while high - low > self.tolerance:
-            middle = 0.5 * (low + high)
-            if math.isnan(self.start(fmus, system, middle)):
-                low = middle
-            else:
-                high = middle
-        return 0.5 * (low + high)
-
-    def start(self, fmus: Mapping[str, Path], system: System, voltage: float) -> float:
-        """Time after which the motor has passed, s; NaN where it is captured."""
-        schedule = Constant(voltage, self.time)
+    def start(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
+        """Where a start from rest settles."""
+        test = settling_test(*system, self.stay)
+        if voltage <= system.drive.motor_constant * test.threshold:
+            return Outcome(NO_LOAD)
+        schedule = Constant(voltage, self.limit(system))
         job = couple_job(*system, schedule, self.scheme, 0.0, self.control)
-        divide = averaged.dividing_speed(*system) * system.structure.omega
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
             run = Run(job, oscillator, shaker)
             try:
-                return first_stay(run, range(job.steps()), divide, self.stay)
+                return run_until_settled(run, range(job.steps()), test.outcome)
             finally:
                 run.master.close()
 
+    def limit(self, system: System) -> float:
+        """After which a start that has not settled is undecided, s."""
+        distance = self.tolerance / system.drive.volts(system.structure)
+        return self.time or usual_limit(*system, distance)
+
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Passed or captured over voltage and parameter, and the border."""
+        """Passed, captured or undecided over voltage and parameter, and the border."""
         import xarray as xr
 
         kept = (slice(None),) if self.over else (0,)
         along = (self.over,) if self.over else ()
-        times, border = table["passage_time"][kept], table["border"][kept]
+        decisions, passes, times, speeds = np.moveaxis(table["outcomes"][kept], -1, 0)
+        low, below, high, beyond = np.moveaxis(table["borders"][kept], -1, 0)
         over = (*along, "voltage")
-        text = "time after which the motor has passed the resonance; NaN where it is captured"
+        text = "time from which the speed stays beyond the resonance; NaN where it does not"
+        how = "how the outcome was decided"
         edge = "voltage from which a motor switched on from rest passes the resonance"
+        folds = np.array([self.fold(system) for system in self.items(inputs)])[kept]
+        known = "voltage above which no motion below the resonance exists, by the averaged theory"
+        volts = np.array([drive.volts(structure) for structure, drive in self.items(inputs)])
+        above = low - folds > THEORY * volts[kept]
         variables = {
-            "passes": yes_or_no(over, np.isfinite(times), "whether the motor passes the resonance"),
+            "passes": yes_or_no(over, passes > 0, "whether the motor passes the resonance"),
+            "decision": (over, np.vectorize(DECISIONS.get)(decisions), {"long_name": how}),
             "passage_time": variable(over, times, "s", text),
-            "border": variable(along, border, "V", edge, tolerance=self.tolerance),
+            "speed": variable(over, speeds, "rad/s", "mean speed at which the motor has settled"),
+            "border": variable(along, 0.5 * (low + high), "V", edge, tolerance=self.tolerance),
+            "border_low": variable(along, low, "V", "highest voltage below it that is captured"),
+            "border_high": variable(along, high, "V", "lowest voltage above it that passes"),
+            "speed_low": variable(along, below, "rad/s", "mean speed at border_low"),
+            "speed_high": variable(along, beyond, "rad/s", "mean speed at border_high"),
+            "fold": variable(along, folds, "V", known),
+            "above_fold": yes_or_no(along, above, "whether the border lies above that fold"),
         }
-        volts = variable("voltage", np.array(self.voltages), "V", "voltage switched on from rest")
-        coordinates = {"voltage": volts}
+        tried = variable("voltage", np.array(self.voltages), "V", "voltage switched on from rest")
+        coordinates = {"voltage": tried}
         if self.over:
             coordinates[self.over] = axis(self.over, self.values)
         state = "bonded" if self.structure.bonded else "delaminated"
         title = f"Capture at the resonance from rest, {state} structure"
         return xr.Dataset(variables, coordinates, {"title": title})
 
+    def fold(self, system: System) -> float:
+        """The averaged theory's highest fold, V; NaN where it has none, or does not hold."""
+        structure, drive = system
+        if not structure.bonded or self.control is not None:
+            return math.nan
+        folds = averaged.folds(structure, drive)
+        return max((fold.eta0 for fold in folds), default=math.nan) * drive.volts(structure)
 
-def first_stay(run: Run, steps: range, divide: float, stay: int) -> float:
-    """Time at which the speed has been above ``divide`` for some revolutions, s; NaN: never."""
-    beyond, piece = 0, 200
-    for first in range(0, len(steps), piece):
-        rows = run.revolve(steps[first : first + piece])
-        for time, speed in zip(rows["time"], rows["speed"], strict=True):
-            beyond = beyond + 1 if abs(speed) > divide else 0
-            if beyond == stay:
-                return float(time)
-    return math.nan
+
+def run_until_settled(
+    run: Run, steps: range, outcome: Callable[[np.ndarray, np.ndarray], Outcome]
+) -> Outcome:
+    """Go on until ``outcome`` of times and speeds of the revolutions is decided, or to the end.
+
+    It is asked each time the run has become a fifth longer.
+    """
+    times, speeds = np.zeros(0), np.zeros(0)
+    first = 0
+    while first < len(steps):
+        piece = steps[first : first + max(500, first // 5)]
+        rows = run.revolve(piece)
+        times, speeds = np.append(times, rows["time"]), np.append(speeds, rows["speed"])
+        found = outcome(times, speeds)
+        if found.decision != UNDECIDED:
+            return found
+        first += len(piece)
+    return Outcome(UNDECIDED)
+
+
+class End(NamedTuple):
+    """An end of the border's interval: a voltage, V, and the speed at which it settles, rad/s."""
+
+    voltage: float = math.nan
+    speed: float = math.nan
+
+
+def border_between(
+    voltages: Sequence[float],
+    outcomes: Sequence[Outcome],
+    start: Callable[[float], Outcome],
+    tolerance: float,
+) -> tuple[End, End]:
+    """The highest voltage that captures, and the lowest above it from which all tried pass.
+
+    Bisection brings them together to ``tolerance``. An undecided start is neither: the interval
+    that is left then is wider than that, and both its sides are brought close to it.
+
+    Returns
+    -------
+    low, high : End
+        NaN where the highest voltage does not pass, or none captures.
+    """
+    captured = [i for i, found in enumerate(outcomes) if found.captured]
+    if not captured or not outcomes[-1].passed:
+        return End(), End()
+    last = captured[-1]
+    first = 1 + max(i for i, found in enumerate(outcomes) if not found.passed)
+    low, high = (End(voltages[i], outcomes[i].speed) for i in (last, first))
+    doubtful = (voltages[last + 1], voltages[first - 1]) if first - last > 1 else None
+    while True:
+        begin, end = doubtful or (high.voltage, low.voltage)
+        if begin - low.voltage > tolerance:
+            middle = 0.5 * (low.voltage + begin)
+        elif doubtful and high.voltage - end > tolerance:
+            middle = 0.5 * (end + high.voltage)
+        else:
+            return low, high
+        found = start(middle)
+        if found.captured:
+            low = End(middle, found.speed)
+            doubtful = None if middle > begin else doubtful
+        elif found.passed and middle > end:
+            high = End(middle, found.speed)
+        else:  # undecided, or passes below an undecided one
+            doubtful = (min(middle, begin), max(middle, end)) if doubtful else (middle, middle)
 
 
 def with_value(system: System, over: str, value: float) -> System:
@@ -243,7 +322,7 @@ def capture(
     count: int = 9,
     tolerance: float = 1e-4,
     time: float | None = None,
-    stay: int = 20,
+    stay: int = 100,
     control: Controller | None = None,
     step: float | None = None,
     **running: Unpack[Running],
@@ -265,9 +344,11 @@ def capture(
     tolerance : float
         Of the border, V.
     time : float, optional
-        After which a motor that has not passed is captured, s; 1500/omega by default.
+        After which a motor whose speed has not settled is undecided, s. By default 600 times the
+        slowest time constant of motor and dampers, and ten times what the speed takes to creep
+        past the fold, ``tolerance`` above it. A start ends as soon as it is decided.
     stay : int
-        Revolutions beyond the resonance after which it has passed.
+        Fewest revolutions on one side of the resonance before a speed counts as settled there.
     control : Controller, optional
         Takes a part of the voltage; see :mod:`orchestrate.weak_drive.controllers`.
     step : float, optional
@@ -280,10 +361,20 @@ def capture(
     Returns
     -------
     xarray.Dataset
-        ``passes`` (0 or 1) and ``passage_time`` (s) over the parameter and ``voltage`` (V), and
-        over the parameter ``border`` (V): half way between two voltages not further apart than
-        ``tolerance`` of which one captures and one passes. It is NaN where all voltages pass, or
-        the highest captures. With impacts there may be several borders: this is the highest.
+        Over the parameter and ``voltage`` (V): ``passes`` (0 or 1), ``passage_time`` (s), ``speed``
+        (rad/s) where the motor has settled, and ``decision``, how it was decided: the speed
+        "converged", or stayed "bounded" as an irregular or a swinging motion does, or the
+        "no-load speed" lies below the resonance. Neither passed nor captured are "undecided" starts
+        (not settled within ``time``) and those "settled at the resonance"; ``passes`` is 0 then.
+
+        Over the parameter: ``border`` (V), half way between ``border_low``, the highest voltage
+        below it that captures, and ``border_high``, the lowest above it that passes. They are no
+        further apart than ``tolerance``, unless starts between them are neither. NaN where none
+        captures, or the highest does not pass. With impacts there may be several borders: this is
+        the highest. ``speed_low`` and ``speed_high`` (rad/s) are the speeds there: close to each
+        other where the speed passes without a gap. ``fold`` (V), bonded and without a controller:
+        by the averaged theory no motion below the resonance exists above it, and ``above_fold``
+        says where the border lies higher all the same, by more than the theory's error.
 
     Raises
     ------
@@ -292,13 +383,15 @@ def capture(
 
     Notes
     -----
-    Beyond the resonance is half way between the speeds of the averaged theory's folds.
+    Beyond the resonance is half way between the speeds of the averaged theory's folds. A speed
+    that is there may swing back, and one that hardly changes may be creeping past a fold: what
+    counts as settled is told in :mod:`orchestrate.weak_drive.settling`.
 
     Examples
     --------
     >>> from orchestrate import Drive, Structure, capture
     >>> quick = Structure.from_file("quick").as_bonded(), Drive.from_file("quick")
-    >>> few = dict(count=2, tolerance=0.05, time=500.0, step=0.2, progress=False)
+    >>> few = dict(count=2, tolerance=0.05, step=0.2, progress=False)
     >>> found = capture(*quick, voltage=(1.5, 1.6), **few)
     >>> found.passes.values.tolist(), 1.5 < float(found.border) < 1.6
     ([0, 1], True)
@@ -308,15 +401,16 @@ def capture(
     found = values_of(over, values, system)
     voltages = voltages_of(voltage, count)
     check("tolerance", tolerance, "V", low=0.0, exclusive=True)
-    longest = 1500.0 / structure.omega if time is None else time
-    check("time", longest, "s", low=0.0, exclusive=True)
+    if time is not None:
+        check("time", time, "s", low=0.0, exclusive=True)
     if not isinstance(stay, int) or isinstance(stay, bool) or stay < 1:
         raise InputError(f"stay = {stay!r}: expected a whole number >= 1")
     scheme = scheme_of(structure, step, sampled=control is not None)
-    couple_job(structure, drive, Constant(voltages[-1], longest), scheme, 0.0, control)
     job = CaptureJob(
         "capture",
         *(structure, drive, over or "", found, voltages),
-        *(float(tolerance), float(longest), stay, scheme, control),
+        *(float(tolerance), float(time or 0.0), stay, scheme, control),
     )
+    for each in job.items({}):  # refused now, not amid the work
+        couple_job(*each, Constant(voltages[-1], job.limit(each)), scheme, 0.0, control)
     return answer(job, running, finder(running))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
 
 import numpy as np
@@ -9,7 +10,8 @@ import pytest
 import xarray as xr
 
 from orchestrate import Drive, Structure, couple
-from orchestrate.cli import drive_branch, jump_voltages
+from orchestrate.cli import capture, drive_branch, jump_voltages
+from orchestrate.cli import couple as couple_command
 
 from .test_results import shows_something
 
@@ -77,10 +79,54 @@ def test_another_question_has_another_file(ask, folder):
 
 
 def test_a_jump_is_told_with_its_lag(ask, folder):
+    """Bonded by the theory; delaminated with what the bonded one's lag may be off."""
     options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--one-way", "--plot", "none")
     done = ask("couple", *options, *SHORT).success()
-    lines = [line for line in done.out.splitlines() if "jump up at" in line]
-    assert len(lines) == 2 and all("late at this rate, about 1.5" in line for line in lines)
+    bonded, delaminated = (line for line in done.out.splitlines() if "jump up at" in line)
+    assert "late at this rate, about 1.583" in bonded and "+-" not in bonded
+    about = re.search(r"about (1\.5\d+) \+- (0\.\d+) V at rate 0", delaminated)
+    assert about is not None
+    value, error = map(float, about.groups())
+    assert abs(value - 1.5697) < error < 0.005  # its branch's fold
+
+
+def made_jump(voltage, fold=None):
+    """A made-up ramp's jump up: bonded with the theory's fold, of 1.3 rad/s before it."""
+    made = {"jumps": voltage, "held_jumps": np.nan, "jump_speed_before": 1.3}
+    made |= {"jump_lag": voltage - fold if fold else np.nan, "decided": "by the record"}
+    if fold:
+        made |= {"averaged_jumps": fold, "averaged_kind": "fold"}
+    speed = ("revolution", [1.0])
+    return xr.Dataset(made | {"speed": speed}, {"jump": "up", "Omega": speed})
+
+
+def test_a_jump_far_from_the_bonded_one_is_not_corrected_by_its_lag():
+    """As of a drive drawn at random, whose bonded one is at 1.4843 V, 0.0133 V late."""
+    bonded = made_jump(1.4843, fold=1.4710)
+    far = couple_command.told_jump(made_jump(1.3998), 1.0, bonded)
+    assert "late at this rate if as the bonded one, about 1.3865 +- 0.0066 V" in far  # at 1.3829
+    lost = couple_command.told_jump(made_jump(1.3800), 1.0, bonded)
+    assert "about" not in lost and "late by what jump-voltages tells" in lost
+    known = couple_command.told_jump(made_jump(1.3998), 1.0, bonded, fold=1.3829)
+    assert known.endswith("0.0169 V late at this rate, 1.3829 V at rate 0 by its branch")
+    alone = couple_command.told_jump(made_jump(1.3998), 1.0, None)
+    assert alone.endswith("late by what jump-voltages tells")
+
+
+def test_the_fold_of_a_jump_is_the_one_that_crosses_the_resonance():
+    """Made-up for ``quick``: a ramp jumps twice, first to a motion below the resonance."""
+    system = Structure.from_file("quick"), Drive.from_file("quick")
+    motions = [(1.0, 1.0, 1), (1.35, 1.1, 1), (1.3, 1.15, 0), (1.2, 1.2, 0), (1.3, 1.24, 1)]
+    motions += [(1.6, 1.3, 1), (1.5, 1.34, 0), (1.4, 1.38, 0), (1.5, 1.45, 1), (1.7, 1.69, 1)]
+    folds = [("fold", 1.36, 1.12), ("fold", 1.19, 1.21), ("fold", 1.61, 1.31), ("fold", 1.39, 1.39)]
+    made = made_branch(motions, folds)
+    assert couple_command.folds_met(made, *system) == {
+        ("bonded", "up"): 1.61,
+        ("bonded", "down"): 1.39,
+    }
+    low = made.isel(point=slice(6)).isel(bifurcation=slice(2))
+    assert couple_command.folds_met(low, *system) == {}
+    assert couple_command.folds_met(None, *system) == {}
 
 
 def test_a_motor_of_one_s_own(ask, folder, motor):
@@ -117,7 +163,7 @@ def test_a_motor_by_its_datasheet(ask, folder):
 
 
 def test_capture(ask, folder):
-    quick = ("--count", "2", "--tolerance", "0.05", "--time", "350", "--step", "0.2")
+    quick = ("--count", "2", "--tolerance", "0.05", "--step", "0.2")
     done = ask("capture", "--eta0", "1.5:1.6", *quick, "--only", "delaminated").success()
     assert "delaminated: passes from 1.5" in done.out
     over = ("--over", "rotor_inertia", "--values", "800,1400", "--only", "bonded")
@@ -125,6 +171,44 @@ def test_capture(ask, folder):
     assert "bonded, rotor_inertia = 1400: passes from" in done.out
     assert len(results(folder)) == 2
     assert all(shows_something(picture) for picture in folder.glob("*.png"))
+
+
+def test_what_a_capture_does_not_know_is_said(ask, folder):
+    options = ("--count", "2", "--time", "100", "--step", "0.2", "--only", "bonded")
+    done = ask("capture", "--eta0", "1.5:1.6", *options).success()
+    assert "no border: of the voltages tried 0 pass, 0 are captured, 2 are undecided" in done.out
+    assert "  at 1.5, 1.6 V undecided: the speed had not settled; give a longer --time" in done.out
+    assert all(shows_something(picture) for picture in folder.glob("*.png"))
+
+
+def test_a_border_that_is_not_to_be_trusted(capsys):
+    """Made-up: an interval that undecided starts have left, above the fold."""
+    data = xr.Dataset(
+        {
+            "passes": ("voltage", [0, 0, 1]),
+            "decision": ("voltage", ["converged", "undecided", "converged"]),
+            "passage_time": ("voltage", [np.nan, np.nan, 5.0]),
+            "border": ((), 1.525, {"tolerance": 1e-4}),
+            **{"border_low": 1.49, "border_high": 1.56, "fold": 1.45, "above_fold": 1.0},
+            **{"speed_low": 1.25, "speed_high": 1.55},
+        },
+        {"voltage": [1.4, 1.5, 1.6]},
+    )
+    capture.report("bonded", data)
+    border, undecided, warning = capsys.readouterr().out.splitlines()
+    assert border == (
+        "bonded: captured up to 1.49000 V, passes from 1.56000 V on, in at most 5 s as tried; "
+        "1.25 rad/s below, 1.55 rad/s beyond; undecided between"
+    )
+    assert undecided.startswith("  at 1.5 V undecided")
+    assert "warning: that is above the fold at 1.45000 V" in warning
+    sure = data.assign(border_low=1.52496, border_high=1.52504, above_fold=0.0)
+    capture.report("bonded", sure.isel(voltage=[0, 2]))
+    (border,) = capsys.readouterr().out.splitlines()
+    text = (
+        "bonded: passes from 1.52500 V on (+- 4e-05 V), in at most 5 s as tried; 1.25 rad/s below"
+    )
+    assert border == f"{text}, 1.55 rad/s beyond"
 
 
 def test_passage(ask, folder):
@@ -149,7 +233,7 @@ def test_jump_voltages(ask, folder):
 def test_drive_branch(ask, folder):
     options = ("--speed", "1.29:1.32", "--longest", "0.3", "--jobs", "1")
     done = ask("drive-branch", *options).success()
-    assert "bonded: fold at 1.583" in done.out and "the jump up, at rate 0" in done.out
+    assert "bonded: fold at 1.583" in done.out and "the jump up of a slow ramp" in done.out
     assert shows_something(next(folder.glob("*.png")))
 
 
@@ -166,21 +250,37 @@ def test_a_jump_that_no_ramp_has_is_said_to_be_none(capsys):
     assert "none" not in capsys.readouterr().out
 
 
+def made_branch(motions, bifurcations):
+    """A branch of one leg, by voltage, speed and whether it is stable, and its bifurcations."""
+    along = {"structure": ["bonded"], "leg": ["from below"]}
+    names = ("voltage", "speed", "stable")
+    made = {
+        name: ((*along, "point"), np.array(column)[None, None])
+        for name, column in zip(names, zip(*motions, strict=True), strict=True)
+    }
+    made["revolutions"] = xr.ones_like(xr.DataArray(made["speed"][1], dims=(*along, "point")))
+    made["end"] = (tuple(along), [["limit"]])
+    columns = {
+        "structure": ["bonded"] * len(bifurcations),
+        "revolutions": [1.0] * len(bifurcations),
+    }
+    names = ("kind", "voltage", "speed")
+    columns |= dict(zip(names, map(list, zip(*bifurcations, strict=True)), strict=True))
+    made |= {f"bifurcation_{name}": ("bifurcation", column) for name, column in columns.items()}
+    return xr.Dataset(made, along)
+
+
 def test_stationary_motions_are_told_with_what_they_mean(capsys):
     """Made-up: a branch with two folds, and one change of stability that was not located."""
-    speed = np.array([0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4])
-    voltage = np.array([1.0, 1.2, 1.4, 1.3, 1.2, 1.35, 1.5])
-    along = {"structure": ["bonded"], "leg": ["from below"]}
-    values = {"speed": speed, "voltage": voltage, "stable": np.array([0, 1, 1, 0, 0, 1, 1])}
-    made = {name: ((*along, "point"), column[None, None]) for name, column in values.items()}
-    made["end"] = (tuple(along), [["limit"]])
-    folds = {"structure": ["bonded"] * 2, "kind": ["fold"] * 2}
-    folds |= {"voltage": [1.41, 1.19], "speed": [1.03, 1.22]}
-    made |= {f"bifurcation_{name}": ("bifurcation", column) for name, column in folds.items()}
-    drive_branch.report(xr.Dataset(made, along))
-    up, down, count, change = capsys.readouterr().out.splitlines()
-    assert up == "bonded: fold at 1.41000 V, 1.03 rad/s: the jump up, at rate 0"
-    assert down.endswith("the jump down, at rate 0")
+    motions = [(1.0, 0.8, 0), (1.2, 0.9, 1), (1.4, 1.0, 1), (1.3, 1.1, 0), (1.2, 1.2, 0)]
+    motions += [(1.35, 1.3, 1), (1.5, 1.4, 1)]
+    drive_branch.report(made_branch(motions, [("fold", 1.41, 1.03), ("fold", 1.19, 1.22)]))
+    up, down, end, count, change = capsys.readouterr().out.splitlines()
+    meaning = "the jump up of a slow ramp, at rate 0, to 1.34 rad/s"
+    assert up == f"bonded: fold at 1.41000 V, 1.03 rad/s: {meaning}"
+    assert down.endswith("1.22 rad/s: the jump down of a slow ramp, at rate 0")
+    nowhere = "these branches have no stable motion at 1.19000 V to jump to"
+    assert end == f"bonded, a slow ramp down: {nowhere}"
     assert "7 motions, 4 of them stable; it reaches the end of the range" in count
     assert change.startswith("  stability changes near 0.8 rad/s too, not located")
 

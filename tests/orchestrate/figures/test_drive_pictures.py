@@ -96,21 +96,40 @@ def test_the_passage(exported):
     nothing_overlaps(figure)
 
 
-def test_capture_and_jump_voltages():
-    """Made-up results: points of both kinds, the border, the lines to rate 0."""
-    volts, inertia = [1.0, 1.1, 1.2], [1.0, 2.0]
-    passes = xr.DataArray([[0, 1, 1], [0, 0, 1]], dims=("rotor_inertia", "voltage"))
-    data = xr.Dataset({"passes": passes, "border": ("rotor_inertia", [1.05, 1.15])})
-    data["passage_time"] = xr.where(passes > 0, 5.0, np.nan)
-    data = data.assign_coords(voltage=volts, rotor_inertia=inertia)
+def test_capture():
+    """Made-up results: starts of all three kinds, the border, its interval, and the fold."""
+    along, over = ("rotor_inertia",), ("rotor_inertia", "voltage")
+    data = xr.Dataset(
+        {
+            "passes": (over, [[0, 1, 1, 1], [0, 0, 0, 1]]),
+            "decision": (over, [["converged"] * 4, ["converged", *["undecided"] * 2, "bounded"]]),
+            "border": (along, [1.05, 1.15], {"tolerance": 0.01}),
+            "border_low": (along, [1.047, 1.08]),
+            "border_high": (along, [1.053, 1.22]),
+            "fold": (along, [1.12, 1.5]),
+        },
+        {"voltage": [1.0, 1.1, 1.2, 1.3], "rotor_inertia": [1.0, 2.0]},
+    )
+    data["passage_time"] = xr.where(data.passes > 0, 5.0, np.nan)
     data.rotor_inertia.attrs["units"] = "kg.m2"
     figure = capture.draw({"bonded": data, "delaminated": data}, "set")
     assert [axes.get_ylabel() for axes in figure.axes] == ["rotor inertia in kg.m2", ""]
+    kinds = {"captured", "passes", "undecided", "border", "undecided between"}
+    assert kinds == {*texts(figure.axes[0])}
     nothing_overlaps(figure)
-    figure = capture.draw({"bonded": data.isel(rotor_inertia=0)}, "set")
+    decided, wide = (data.isel(rotor_inertia=i) for i in (0, 1))
+    figure = capture.draw({"bonded": decided, "delaminated": wide}, "set")
     assert "time" in figure.axes[0].get_ylabel()
-    assert "border, 1.0500 V" in texts(figure.axes[0])
+    shown, doubtful = (set(texts(panel)) for panel in figure.axes)
+    assert {"border, 1.0500 V", "fold, averaged theory"} < shown
+    assert {"undecided", "undecided between"}.isdisjoint(shown)
+    assert {"undecided", "undecided between", "border, 1.1500 V"} < doubtful
+    assert "fold, averaged theory" not in doubtful  # it lies outside of what was tried
     nothing_overlaps(figure)
+
+
+def test_jump_voltages():
+    """Made-up results: the lines to rate 0."""
     rates = np.array([1e-4, 2e-4])
     each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
     late = np.full((2, 2, 2), np.nan)

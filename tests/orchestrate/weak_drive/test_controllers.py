@@ -75,6 +75,17 @@ def test_speed_gradient():
     assert set(np.unique(found.voltage.values.round(9))) == {5.238, 8.73}
 
 
+def test_speed_control_may_hang_where_the_source_passes():
+    """Near the speed that is wanted it gives less than the source, and the rotor its momentum."""
+    quick, asked = QUICK.as_bonded(), {"voltage": 1.5465, "duration": 500.0, "progress": False}
+    control = SpeedControl(speed=1.5, gain=1.0, reset_time=50.0)
+    alone = couple(*quick, speed_start=0.0, **asked)
+    held = couple(*quick, control=control, **asked)
+    assert float(alone.passage_time) < 300.0 and alone.speed[-50:].mean() > 1.5
+    assert np.isnan(held.passage_time) and held.speed[-50:].mean() < 1.3
+    assert held.voltage[-50:].min() == 1.5465  # it gives all there is again: too late
+
+
 @pytest.mark.parametrize("kind", ["bonded", "delaminated"])
 def test_a_machine_that_is_captured_gets_across(kind):
     """Switched on at once or raised slowly the motor hangs at the resonance; swung, it passes."""

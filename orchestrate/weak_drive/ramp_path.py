@@ -1,0 +1,230 @@
+"""What a slow ramp of the voltage meets on the branches of stationary motions.
+
+Branches turn back at folds, and have more of them than a ramp takes. It follows the stable motion
+that it begins with, to the first fold; there the speed jumps to another motion at that voltage, and
+the ramp goes on from there. Where the branches do not tell how it goes on, the path says so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from .averaged import FOLD, TORUS
+from .drive_walk import FLIP, LIMIT
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FIRST_LEG = {True: "from below", False: "from above"}
+SAME = 5e-3  # of the range of speeds: stable motions at one voltage that are closer are the same
+MOST_EVENTS = 12
+
+
+@dataclass
+class Path:
+    """What a slow ramp meets, in one direction.
+
+    Attributes
+    ----------
+    jumps : list of int
+        Folds at which its speed jumps, in turn, by their places along ``bifurcation``.
+    landings : list of float
+        The speeds to which it jumps, rad/s; one fewer than jumps where that is not known.
+    slow_losses : list of int
+        Neimark-Sacker points before a fold: there the motion is lost slowly, and a ramp that
+        nothing disturbs goes on to the fold.
+    end : str
+        Why no more is known; empty where the ramp leaves the range of speeds.
+    """
+
+    jumps: list[int] = field(default_factory=list)
+    landings: list[float] = field(default_factory=list)
+    slow_losses: list[int] = field(default_factory=list)
+    end: str = ""
+
+
+class Motions(NamedTuple):
+    """A leg from where the ramp comes on it, in its direction: each shape (n,)."""
+
+    voltage: np.ndarray
+    speed: np.ndarray
+    stable: np.ndarray
+    revolutions: np.ndarray
+    end: str
+
+    def from_place(self, first: int, forward: bool) -> Motions:
+        """Those from a place on, one way or the other; backward to where its leg was begun."""
+        rows = slice(first, None) if forward else slice(first, None, -1)
+        end = self.end if forward else LIMIT
+        columns = (self.voltage, self.speed, self.stable, self.revolutions)
+        voltage, speed, stable, revolutions = (column[rows] for column in columns)
+        return Motions(voltage, speed, stable, revolutions, end)
+
+
+class Branches:
+    """The legs of one structure, and their bifurcations.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.drive_branch`.
+    structure : str
+    """
+
+    def __init__(self, data: xr.Dataset, structure: str) -> None:
+        branch = data.sel(structure=structure)
+        self.legs: dict[str, Motions] = {}
+        for leg in map(str, branch.leg.values):
+            at = branch.sel(leg=leg).dropna("point", subset=["voltage"])
+            if at.sizes["point"]:
+                self.legs[leg] = Motions(
+                    at.voltage.values,
+                    at.speed.values,
+                    at.stable.values.astype(bool),
+                    at.revolutions.values,
+                    at.end.item(),
+                )
+        self.own = np.flatnonzero(data.bifurcation_structure.values == structure)
+        self.kinds = data.bifurcation_kind.values
+        self.places = np.stack([data.bifurcation_voltage.values, data.bifurcation_speed.values], 1)
+        self.revolutions = data.bifurcation_revolutions.values
+        self.spans = np.array([self.span("voltage"), self.span("speed")])
+
+    def span(self, name: str) -> float:
+        """The range of a quantity over all legs; 1 where there is none."""
+        values = np.concatenate([getattr(leg, name) for leg in self.legs.values()] or [np.zeros(1)])
+        return float(np.ptp(values)) or 1.0
+
+    def nearest(self, motions: Motions, i: int, kind: str) -> int | None:
+        """The bifurcation of a kind between a motion and the next one; None without any."""
+        ends = np.stack([motions.voltage[i : i + 2], motions.speed[i : i + 2]], 1) / self.spans
+        own = [
+            k
+            for k in self.own
+            if self.kinds[k] == kind and self.revolutions[k] == motions.revolutions[i]
+        ]
+        if not own:
+            return None
+        away = np.linalg.norm(self.places[own] / self.spans - ends.mean(axis=0), axis=1)
+        step = float(np.linalg.norm(ends[1] - ends[0]))
+        return int(own[int(away.argmin())]) if away.min() <= max(step, 1e-3) else None
+
+    def path(self, up: bool) -> Path:
+        """What a slow ramp meets that goes up from the lowest speed, or down from the highest."""
+        path, sign = Path(), 1.0 if up else -1.0
+        motions = self.first(up, sign)
+        if motions is None:
+            path.end = "its branch begins with no stable motion"
+            return path
+        for _ in range(MOST_EVENTS):
+            motions = self.follow(motions, path, sign)
+            if motions is None:
+                return path
+        path.end = "more than it is worth to follow"
+        return path
+
+    def first(self, up: bool, sign: float) -> Motions | None:
+        """The leg that a ramp begins on, from its first stable motion before the voltage turns."""
+        leg, below = self.legs.get(FIRST_LEG[up]), self.legs.get(FIRST_LEG[True])
+        if leg is None and not up and below is not None and below.end == LIMIT:
+            leg = below.from_place(len(below.speed) - 1, forward=False)
+        if leg is None or not leg.stable.any():
+            return None
+        begin = int(np.argmax(leg.stable))
+        turned = (sign * np.diff(leg.voltage[: begin + 1]) < 0.0).any()
+        return None if turned else leg.from_place(begin, forward=True)
+
+    def follow(self, motions: Motions, path: Path, sign: float) -> Motions | None:
+        """Go on to where the ramp leaves its motions; those it goes on with, None at the end."""
+        lost = False  # slowly, at a Neimark-Sacker point: a ramp does not see it
+        for i in range(len(motions.speed) - 1):
+            turned = sign * (motions.voltage[i + 1] - motions.voltage[i]) < 0.0
+            if not turned and (lost or motions.stable[i + 1]):
+                continue
+            fold, torus, flip = (self.nearest(motions, i, kind) for kind in (FOLD, TORUS, FLIP))
+            if torus is not None and not lost:
+                path.slow_losses.append(torus)
+                lost = True
+            if fold is not None or turned:
+                return self.jump(fold, path, sign)
+            if not lost:
+                return self.double(flip, motions, i, path, sign)
+        if motions.end != LIMIT:
+            path.end = f"its motion ends at {motions.voltage[-1]:.5f} V: {motions.end}"
+        return None
+
+    def jump(self, fold: int | None, path: Path, sign: float) -> Motions | None:
+        """The motions that a ramp jumps to, from where it lands."""
+        if fold is None:
+            path.end = "its motion turns back at a fold that was not located"
+            return None
+        path.jumps.append(fold)
+        voltage, speed = self.places[fold]
+        landings = self.stable_at(voltage, speed, sign)
+        speeds = np.array([self.landing_speed(*landing, voltage) for landing in landings])
+        if not landings or np.ptp(speeds) > SAME * self.spans[1]:
+            count = "several stable motions" if landings else "no stable motion"
+            path.end = f"these branches have {count} at {voltage:.5f} V to jump to"
+            return None
+        path.landings.append(float(speeds[0]))
+        motions, i = landings[0]
+        forward = sign * (motions.voltage[i + 1] - motions.voltage[i]) > 0.0
+        return motions.from_place(i + 1 if forward else i, forward)
+
+    def stable_at(self, voltage: float, speed: float, sign: float) -> list[tuple[Motions, int]]:
+        """Legs with a stable motion at a voltage, beyond a speed, and the place before it."""
+        found = []
+        for motions in self.legs.values():
+            for i in range(len(motions.speed) - 1):
+                ends = motions.voltage[i : i + 2] - voltage
+                beyond = (sign * (motions.speed[i : i + 2] - speed) > 0.0).all()
+                if beyond and motions.stable[i : i + 2].all() and ends[0] * ends[1] <= 0.0:
+                    found.append((motions, i))
+        return found
+
+    @staticmethod
+    def landing_speed(motions: Motions, i: int, voltage: float) -> float:
+        """The speed at a voltage between two motions, rad/s."""
+        low, high = motions.voltage[i : i + 2]
+        part = (voltage - low) / (high - low) if high != low else 0.0
+        return float(motions.speed[i] + part * (motions.speed[i + 1] - motions.speed[i]))
+
+    def double(
+        self, flip: int | None, motions: Motions, i: int, path: Path, sign: float
+    ) -> Motions | None:
+        """The stable motions of twice the period that go on from a period doubling."""
+        voltage = float(motions.voltage[i])
+        if flip is not None:
+            voltage = float(self.places[flip][0])
+            for name in ("first doubled", "second doubled"):
+                leg = self.legs.get(name)
+                if leg is None or len(leg.speed) < 2:
+                    continue
+                start = np.array([leg.voltage[0], leg.speed[0]])
+                near = np.abs((start - self.places[flip]) / self.spans).max() < 0.02
+                if near and leg.stable[0] and sign * (leg.voltage[1] - leg.voltage[0]) > 0.0:
+                    return leg
+        what = "its period doubles" if flip is not None else "it loses its stability"
+        path.end = f"{what} at {voltage:.5f} V, and no stable motion was followed from there"
+        return None
+
+
+def ramp_paths(data: xr.Dataset, structure: str) -> dict[str, Path]:
+    """What slow ramps meet, ``"up"`` and ``"down"``.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.drive_branch`.
+    structure : str
+        ``"bonded"`` or ``"delaminated"``.
+
+    Returns
+    -------
+    dict of Path
+    """
+    branches = Branches(data, structure)
+    return {"up": branches.path(True), "down": branches.path(False)}

@@ -1,0 +1,250 @@
+"""Whether a motor at a constant voltage has settled, and on which side of the resonance.
+
+A speed that is beyond the resonance may swing back, and one that hardly changes may be creeping
+past a fold: neither the place nor the rate alone decides. The speed has settled where it converges
+to a limit exponentially, or where it has long stayed within the same bounds. By a fold the approach
+is algebraic, with changes that shrink less and less: it is told from exponential convergence by the
+quotients of successive changes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ..structures.drive import Drive
+from ..structures.structure import Structure
+from . import averaged
+from .jumps import running_mean
+
+UNDECIDED, CONVERGED, BOUNDED, NO_LOAD, NEITHER = range(5)
+DECISIONS = {
+    UNDECIDED: "undecided",
+    CONVERGED: "converged",
+    BOUNDED: "bounded",
+    NO_LOAD: "no-load speed",
+    NEITHER: "settled at the resonance",
+}
+MEAN = 60  # revolutions: means over them do not see motions that repeat after 2 to 6, 10 or 12
+QUOTIENT = 0.25  # an approach to a fold has no two successive quotients that are smaller
+CLOSE = 1e-5  # over omega, what a converging speed changes at last
+NOISE = 3e-6  # over omega: communication points cut revolutions, their speeds scatter by 1e-6
+LONGEST_MEMORY = 1000.0  # 1/omega, where next to nothing damps
+PATIENCE = 600.0  # slowest time constants in the default limit
+
+
+class Outcome(NamedTuple):
+    """Where the speed has settled.
+
+    Attributes
+    ----------
+    decision : int
+        Key of ``DECISIONS``: how it was decided.
+    passed : bool
+        Whether the speed, as a mean over ``MEAN`` revolutions, has settled beyond the resonance.
+    time : float
+        From which it is beyond, s; NaN where it is not.
+    speed : float
+        The mean speed at last, rad/s; NaN where the motor was not simulated, or is undecided.
+    """
+
+    decision: int
+    passed: bool = False
+    time: float = math.nan
+    speed: float = math.nan
+
+    @property
+    def captured(self) -> bool:
+        """Whether the speed has settled below the resonance."""
+        return self.decision not in (UNDECIDED, NEITHER) and not self.passed
+
+
+class Settled(NamedTuple):
+    """The last stretch of a speed that has settled.
+
+    Attributes
+    ----------
+    decision : int
+        ``CONVERGED`` or ``BOUNDED``.
+    last : ndarray
+        Mean speeds over omega.
+    margin : float
+        What it may still change, over omega: it has a side where the threshold is further away.
+    """
+
+    decision: int
+    last: np.ndarray
+    margin: float
+
+
+@dataclass(frozen=True)
+class SettlingTest:
+    """What counts as settled.
+
+    Attributes
+    ----------
+    threshold : float
+        Speed between motions below and beyond the resonance, rad/s.
+    omega : float
+        Unit of the speeds' changes, rad/s.
+    slow : float
+        Slowest time constant, s.
+    motor : float
+        Time constant of the motor, s.
+    stay : int
+        Fewest revolutions on one side.
+    """
+
+    threshold: float
+    omega: float
+    slow: float
+    motor: float
+    stay: int
+
+    def outcome(self, time: np.ndarray, speed: np.ndarray) -> Outcome:
+        """What a record tells.
+
+        Parameters
+        ----------
+        time, speed : ndarray, shape (n,)
+            Ends of the revolutions, s, and their mean speeds, rad/s; from the start on.
+        """
+        if len(speed) < 2 * MEAN:
+            return Outcome(UNDECIDED)
+        means = running_mean(np.abs(speed) / self.omega, MEAN)
+        turn = float(np.median(np.diff(time[-MEAN:])))
+        settled = self.converged(means, turn) or self.bounded(means, turn)
+        if settled is None:
+            return Outcome(UNDECIDED)
+        last = float(means[-1]) * self.omega
+        sides = settled.last - self.threshold / self.omega
+        if np.abs(sides).min() <= settled.margin or np.ptp(np.sign(sides)):
+            return Outcome(NEITHER, speed=last)
+        since = last_crossing(means > self.threshold / self.omega)
+        if len(means) - since < self.stay:
+            return Outcome(UNDECIDED)
+        if sides[-1] < 0.0:
+            return Outcome(settled.decision, speed=last)
+        near = np.abs(speed[since : since + MEAN]) > self.threshold
+        return Outcome(settled.decision, True, float(time[since + last_crossing(near)]), last)
+
+    def converged(self, means: np.ndarray, turn: float) -> Settled | None:
+        """The end of a speed that converges exponentially; None where it does not.
+
+        The ranges of four stretches that follow each other shrink by ``QUOTIENT`` or more each
+        time, or are noise. No approach to a fold, and no passage by one, does: there
+        x' = -a x^2, and of two successive quotients at least one is above 1/3.
+        """
+        shortest = max(MEAN, math.ceil(2.0 * self.motor / turn))
+        for part in (8, 16, 32):
+            width = len(means) // part
+            if width < shortest:
+                break
+            ranges = [np.ptp(means[-i * width :][:width]) for i in (4, 3, 2, 1)]
+            shrink = all(
+                after < max(NOISE, QUOTIENT * before) for before, after in pairwise(ranges)
+            )
+            if shrink and ranges[-1] < CLOSE:
+                return Settled(CONVERGED, means[-width:], float(ranges[-1]) + NOISE)
+        return None
+
+    def bounded(self, means: np.ndarray, turn: float) -> Settled | None:
+        """The end of a speed that has long stayed within bounds, neither drifting nor calming down.
+
+        The last quarter of the record is compared with the one before: its extremes, its mean and
+        its range. An irregular or a swinging motion is told so. None where it has not.
+        """
+        quarter = len(means) // 4
+        if quarter * turn < 25.0 * self.slow:
+            return None
+        early, late = means[-2 * quarter : -quarter], means[-quarter:]
+        size = float(np.ptp(early))
+        grown = max(early.min() - late.min(), late.max() - early.max())
+        drift = abs(late.mean() - early.mean())
+        if grown > 0.2 * size or drift > 0.1 * size or np.ptp(late) < 0.5 * size:
+            return None
+        return Settled(BOUNDED, means[-2 * quarter :], 0.2 * size)
+
+
+def last_crossing(beyond: np.ndarray) -> int:
+    """The first place of the last stretch of equal values."""
+    changes = np.flatnonzero(beyond[1:] != beyond[:-1])
+    return int(changes[-1]) + 1 if changes.size else 0
+
+
+def settling_test(structure: Structure, drive: Drive, stay: int) -> SettlingTest:
+    """The test for a system."""
+    omega = structure.omega
+    return SettlingTest(
+        threshold=averaged.dividing_speed(structure, drive) * omega,
+        omega=omega,
+        slow=slowest_time(structure, drive),
+        motor=motor_time(structure, drive),
+        stay=stay,
+    )
+
+
+def motor_time(structure: Structure, drive: Drive) -> float:
+    """The time in which the motor without a load settles, 1/b, or ``LONGEST_MEMORY``, s."""
+    return min(1.0 / drive.b(structure), LONGEST_MEMORY) / structure.omega
+
+
+def slowest_time(structure: Structure, drive: Drive) -> float:
+    """The longest of the system's time constants, s; at most ``LONGEST_MEMORY``.
+
+    The motor's is 1/b, those of vibrations are 1/D of each damper.
+    """
+    rates = (drive.b(structure), structure.D1, structure.D2, drive.D_b(structure))
+    return max(min(1.0 / rate if rate else math.inf, LONGEST_MEMORY) for rate in rates) / (
+        structure.omega
+    )
+
+
+def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> float:
+    """The time that the speed takes to creep past the fold up, s, by the averaged theory.
+
+    Near the fold the speed obeys x' = r (distance + q x^2 / 2): it takes pi/(r sqrt(q distance/2)).
+
+    Parameters
+    ----------
+    structure : Structure
+    drive : Drive
+    distance : float
+        Of the voltage from the fold's, over K omega.
+
+    Returns
+    -------
+    float
+        0 where there is no fold.
+    """
+    folds = averaged.folds(structure, drive)
+    if not folds:
+        return 0.0
+    top, small = folds[0], 1e-3
+    speeds = top.Omega + small * np.array([-1.5, -1.0, -0.5])
+    voltages = averaged.no_load_speed(structure, drive, speeds)
+    slope = float(voltages[2] - voltages[0]) / small
+    bend = 2.0 * (top.eta0 - float(voltages[1])) / small**2
+    growth = float(averaged.growth(structure, drive, float(speeds[1]))[0].real)
+    rate = -growth / slope
+    if not (rate > 0.0 and bend > 0.0):  # the motion is lost before its fold
+        return 0.0
+    return math.pi / (rate * math.sqrt(0.5 * bend * distance)) / structure.omega
+
+
+def usual_limit(structure: Structure, drive: Drive, distance: float) -> float:
+    """The time after which a motor that has not settled is undecided, s.
+
+    Parameters
+    ----------
+    structure : Structure
+    drive : Drive
+    distance : float
+        Of voltages from the fold's that are to be decided, over K omega.
+    """
+    creeping = time_past_the_fold(structure.as_bonded(), drive, distance)
+    return PATIENCE * slowest_time(structure, drive) + 10.0 * creeping
