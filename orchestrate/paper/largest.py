@@ -21,8 +21,10 @@ from ..dynamics.long_runs import (
     STEADY,
     UNDECIDED,
     WORDS,
+    LongRun,
     another_start,
     long_run,
+    wandering,
 )
 from ..response.labels import flags, variable
 from ..response.questions import Point
@@ -33,6 +35,8 @@ from .regions import COUNT, regions
 if TYPE_CHECKING:
     import xarray as xr
 
+LOST = 3
+OUTCOMES = {**WORDS, LOST: "steady, but no more what it was chosen for"}
 NUMBERS = {
     "eta": "frequency ratio Omega/omega of the candidate",
     "screened": "exponent by which it was chosen, one of many noisy ones",
@@ -96,7 +100,7 @@ class LargestJob(Job):
     periods: int = 10_000
     parts: int = 10
     runs: int = 3
-    candidates: int = 5
+    candidates: int = 10
     seed: int = 23
 
     def needs(self) -> tuple[str, ...]:
@@ -140,10 +144,20 @@ class LargestJob(Job):
                 other = another_start(point, start, [self.seed, number, place])
                 found = long_run(instance, point, other, self.periods, self.parts, self.runs)
                 eta = point.excitation.eta(point.structure)
-                rows[place] = [eta, screened, *found.exponent, found.outcome]
-                if found.outcome == STEADY:
+                outcome = self.judged(found, screened, eta)
+                rows[place] = [eta, screened, *found.exponent, outcome]
+                if outcome == STEADY:
                     break
         return {"rows": rows[np.newaxis]}
+
+    def judged(self, found: LongRun, screened: float, eta: float) -> int:
+        """The outcome of a run: ``LOST`` where less than half of the growth is left.
+
+        Chaos may have ended before the first part that counts, or the other start may lead to
+        another attractor.
+        """
+        lost = screened - found.exponent.value > max(0.5 * screened, wandering(self.periods, eta))
+        return LOST if found.outcome == STEADY and screened > 0.0 and lost else found.outcome
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Over region and candidate."""
@@ -152,7 +166,7 @@ class LargestJob(Job):
         dims = "region", "candidate"
         columns = np.moveaxis(table["rows"], -1, 0)
         variables = {
-            name: flags(dims, column, text, WORDS)
+            name: flags(dims, column, text, OUTCOMES)
             if name == "outcome"
             else variable(dims, column, "1", text)
             for (name, text), column in zip(NUMBERS.items(), columns, strict=True)
@@ -209,9 +223,11 @@ def largest_of(data: xr.Dataset, region: str) -> Largest:
         head = f"{float(one.screened):.4f} at {float(one.eta):.3f}"
         value = f"{float(one.exponent):.4f} ± {float(one.standard_error):.4f}"
         if one.outcome == ENDED:
-            others.append(f"{head} was a transient that ended, {value} after it")
+            others.append(f"{head}: the parts of its long run did not agree at first, {value} then")
+        elif one.outcome == LOST:
+            others.append(f"{head} did not last, {value} in its long run")
         elif one.outcome == UNDECIDED:
-            others.append(f"{head} is undecided: parts of the long run do not agree")
+            others.append(f"{head} is undecided: the parts of its long run do not agree")
     sure = tried.isel(candidate=tried.outcome.values != UNDECIDED)
     if not sure.sizes["candidate"]:
         return Largest(np.nan, np.nan, np.nan, tuple(others))

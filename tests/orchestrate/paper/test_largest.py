@@ -7,9 +7,10 @@ import pytest
 import xarray as xr
 
 from orchestrate.access import OSCILLATOR, REST, find
-from orchestrate.dynamics.long_runs import ENDED, NOT_RUN, STEADY, UNDECIDED
+from orchestrate.dynamics.long_runs import ENDED, NOT_RUN, STEADY, UNDECIDED, LongRun
+from orchestrate.dynamics.lyapunov import Exponent
 from orchestrate.paper.cases import CASES
-from orchestrate.paper.largest import Candidate, LargestJob, Searched, largest_of
+from orchestrate.paper.largest import LOST, Candidate, LargestJob, Searched, largest_of
 from orchestrate.paper.regions import COUNT, regions
 from orchestrate.response.questions import Point
 from orchestrate.structures import Excitation
@@ -88,7 +89,7 @@ def test_the_quoted_exponent_agrees_with_an_independent_long_run(exported):
 
 def found(*rows):
     """What the job gives of one region: eta, screened, exponent, error, outcome each."""
-    table = np.full((1, 5, 5), np.nan)
+    table = np.full((1, 10, 5), np.nan)
     table[..., -1] = NOT_RUN
     table[0, : len(rows)] = rows
     names = ("eta", "screened", "exponent", "standard_error", "outcome")
@@ -105,7 +106,26 @@ def test_what_is_quoted():
     assert quoted.text() == "0.1600 ± 0.0010 at 5.200"
     ended = largest_of(found((5.125, 0.1747, 0.008, 0.0005, ENDED), steady), name)
     assert ended[:3] == (0.16, 0.001, 5.2)
-    assert "0.1747 at 5.125 was a transient that ended, 0.0080 ± 0.0005 after it" in ended.text()
+    assert "0.1747 at 5.125: the parts of its long run did not agree" in ended.text()
+    lost = largest_of(found((3.11, 0.0824, -0.0095, 0.0001, LOST), steady), name)
+    assert lost[:3] == (0.16, 0.001, 5.2)
+    assert "0.0824 at 3.110 did not last, -0.0095 ± 0.0001 in its long run" in lost.text()
     undecided = largest_of(found((5.1, 0.2, 0.1, 0.05, UNDECIDED)), name)
     assert np.isnan(undecided.exponent) and undecided.text().startswith("undecided (0.2000 at")
     assert largest_of(found((5.1, 0.2, 0.3, 0.05, UNDECIDED), steady), name).eta == 5.2
+
+
+@pytest.mark.parametrize(
+    ("screened", "value", "outcome"),
+    [
+        (0.0824, -0.0095, LOST),  # chaos that has died out, or another attractor
+        (0.1747, 0.008, LOST),
+        (0.2777, 0.2581, STEADY),
+        (1e-5, -3e-5, STEADY),  # neutral: a deviation wanders
+        (-0.0004, -0.0009, STEADY),
+    ],
+)
+def test_a_response_that_is_not_what_it_was_chosen_for(screened, value, outcome):
+    run = LongRun(Exponent(value, 1e-4), STEADY, 110_000)
+    assert job().judged(run, screened, 3.11) == outcome
+    assert job().judged(run._replace(outcome=UNDECIDED), screened, 3.11) == UNDECIDED

@@ -32,6 +32,25 @@ def along_eta(etas, **columns):
     return xr.Dataset(variables, {"eta": np.asarray(etas, dtype=float)})
 
 
+WINDOWS = {  # exact limits of the elastic case, rounded
+    "T, contact": (0.40, 0.42),
+    "T/2": (0.89, 1.06),
+    "T/1": (1.30, 2.65),
+    "2T/1": (3.60, 4.75),
+    "3T/1": (5.70, 6.84),
+    "4T/1": (7.79, 8.94),
+}
+
+
+def limits():
+    """What the limits job gives, of the elastic case."""
+    low, high = np.transpose(list(WINDOWS.values()))
+    same = {"below": ["fold"], "above": ["fold"], "case": ["elastic"]}
+    columns = {"low": low, "high": high, "orbit": list(WINDOWS)}
+    columns |= {name: values * len(low) for name, values in same.items()}
+    return xr.Dataset({name: ("window", values) for name, values in columns.items()})
+
+
 # -- section 1: Figure 2(a) ------------------------------------------------------------------------
 
 
@@ -156,16 +175,25 @@ def test_what_becomes_of_responses_later():
     ]
 
 
-@pytest.mark.parametrize(("others", "verdict"), [(1, YES), (5, PARTLY), (20, NO)])
-def test_whether_500_periods_suffice(others, verdict):
-    same = swept([1] * 100, [1.0] * 100, [1.0] * 100)
-    late = swept([0] * others + [1] * (100 - others), [1.0] * 100, [1.0] * 100)
+@pytest.mark.parametrize(
+    ("below", "beyond", "verdict"), [(1, 1, YES), (1, 20, PARTLY), (20, 1, PARTLY), (20, 20, NO)]
+)
+def test_whether_500_periods_suffice(below, beyond, verdict):
+    """A hundred frequencies up to the end of the window T, at 2.65, and a hundred beyond it."""
+    etas = np.concatenate([np.linspace(1.0, 2.6, 100), np.linspace(2.7, 8.0, 100)])
+
+    def responses(first, second):
+        irregular = np.repeat([1, 0, 1, 0], [first, 100 - first, second, 100 - second])
+        found = swept(1 - irregular, np.ones(200), np.ones(200))
+        return found.assign_coords(eta=etas)
+
+    same, late = responses(0, 0), responses(below, beyond)
     data = {UP: same, "later_e0.7_D0.005_up": late, "latest_e0.7_D0.005_up": same}
-    found = section3.enough_periods(Results(data))
+    found = section3.enough_periods(Results({**data, "limits": limits()}))
     assert found.verdict == verdict
-    assert f"{others} periodic, later irregular" in found.value
-    data |= {"later_e0.7_D0.005_up": same, "latest_e0.7_D0.005_up": late}
-    assert section3.enough_periods(Results(data)).verdict == verdict
+    assert f"{below} of 100 frequencies from 1.000 to 2.650" in found.value
+    assert f"({beyond} periodic, later irregular)" in found.value
+    assert "after n = 50,000 0 of 200" in found.value
 
 
 @pytest.mark.parametrize(("own", "verdict"), [(5.0, NO), (1.0, YES)])
@@ -177,24 +205,6 @@ def test_the_most_unfavourable_detuning(own, verdict):
 
 
 # -- section 3.2 -----------------------------------------------------------------------------------
-
-WINDOWS = {  # exact limits of the elastic case, rounded
-    "T, contact": (0.40, 0.42),
-    "T/2": (0.89, 1.06),
-    "T/1": (1.30, 2.65),
-    "2T/1": (3.60, 4.75),
-    "3T/1": (5.70, 6.84),
-    "4T/1": (7.79, 8.94),
-}
-
-
-def limits():
-    """What the limits job gives, of the elastic case."""
-    low, high = np.transpose(list(WINDOWS.values()))
-    same = {"below": ["fold"], "above": ["fold"], "case": ["elastic"]}
-    columns = {"low": low, "high": high, "orbit": list(WINDOWS)}
-    columns |= {name: values * len(low) for name, values in same.items()}
-    return xr.Dataset({name: ("window", values) for name, values in columns.items()})
 
 
 def settled(irregular):
