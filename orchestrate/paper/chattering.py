@@ -45,7 +45,8 @@ class ChatteringJob(Job):
     eta : float
         So slow that the force which presses the masses together hardly changes meanwhile.
     kick : float
-        Parting velocity over omega a eta^2 and 1 - e: so that all sequences take about as long.
+        Parting velocity over omega a eta^2 and 1 - e, so that all sequences take about as long;
+        over omega a eta^2 alone where e is 1, and the sequence has no end.
     latest : int
         Ratios taken, of the latest times that rounding does not reach.
     """
@@ -97,7 +98,7 @@ class ChatteringJob(Job):
         crest = 0.5 * np.pi
         point = Point(structure, Excitation.nondimensional(self.eta, structure, crest))
         middle = point.length * (1.0 + structure.mu) / (1.0 + structure.kappa)  # (6) without rates
-        parting = self.kick * max(1.0 - structure.e, 0.001) * point.speed
+        parting = self.kick * ((1.0 - structure.e) or 1.0) * point.speed
         share = structure.mu / (1.0 + structure.mu)
         start = middle, middle, -share * parting, (1.0 - share) * parting
         begin(instance, *point, start)
