@@ -182,7 +182,7 @@ def two_impacts_from(results: Results) -> Finding:
         f"On the way down {lower_edge(down, kind(down, 1, 2), 1.0)[1]:.3f}, from rest "
         f"{from_rest:.2f}: initial "
         "conditions do not explain 0.85. The response nearly doubles its period there: its "
-        f"exponent rises to {float(top.exponent):.4f} at "
+        f"exponent rises to {float(top.exponent):.4f} ± {float(top.standard_error):.4f} at "
         f"{float(top.eta):.3f}, and at D = 0.005 it does so and turns chaotic."
     )
     edges = lower_edge(up, kind(up, 1, 2), 1.0)
