@@ -116,7 +116,7 @@ def many_loops(results: Results) -> Finding:
 
 
 def enough_periods(results: Results) -> Finding:
-    """Responses of the sweep after n = 500 that are others after n = 5,000 and 50,000."""
+    """Responses of the sweep after n = 500 that are others long after."""
     up, end = results.up("elastic"), results.ends("elastic", "T/1", 2.0).value
     later, latest = (results.of(name, "elastic", "_up") for name in ("later", "latest"))
     text, parts = [], []
@@ -125,14 +125,20 @@ def enough_periods(results: Results) -> Finding:
         text.append(f"{others} of {count} frequencies from {low:.3f} to {high:.3f}{which}")
         parts.append(others <= FEW * count)
     others, count, which = told_apart(up, latest)
-    late = f"after n = 50,000 {others} of {count} drawn by chance{which}"
+    late = f"after n = {first_sample(up, latest):,} {others} of {count} drawn by chance{which}"
     why = (
         "Each response was run on from where the sweep left it. A deviation decays as e^(-D tau), "
         f"and 500 periods are {500.0 * 2.0 * np.pi / end:.0f} of tau at {end:.2f}, but "
         f"{500.0 * 2.0 * np.pi / 8.0:.0f} at 8: there many a response nears its orbit still."
     )
-    value = f"after n = 5,000 others at {'; at '.join(text)}; {late}"
+    value = f"after n = {first_sample(up, later):,} others at {'; at '.join(text)}; {late}"
     return holds(parts, value, why if not all(parts) else "")
+
+
+def first_sample(up: xr.Dataset, later: xr.Dataset) -> int:
+    """The number n of the period at which a sweep's responses are looked at again."""
+    done = int(up.attrs["transient"]) + up.sizes["sample"]
+    return done + int(later.attrs["transient"]) + 1
 
 
 def told_apart(up: xr.Dataset, later: xr.Dataset) -> tuple[int, int, str]:

@@ -185,15 +185,16 @@ def test_whether_500_periods_suffice(below, beyond, verdict):
     def responses(first, second):
         irregular = np.repeat([1, 0, 1, 0], [first, 100 - first, second, 100 - second])
         found = swept(1 - irregular, np.ones(200), np.ones(200))
-        return found.assign_coords(eta=etas)
+        return found.assign_coords(eta=etas).assign_attrs(transient=499)
 
     same, late = responses(0, 0), responses(below, beyond)
-    data = {UP: same, "later_e0.7_D0.005_up": late, "latest_e0.7_D0.005_up": same}
+    later, latest = late.assign_attrs(transient=4299), same.assign_attrs(transient=49_299)
+    data = {UP: same, "later_e0.7_D0.005_up": later, "latest_e0.7_D0.005_up": latest}
     found = section3.enough_periods(Results({**data, "limits": limits()}))
     assert found.verdict == verdict
     assert f"{below} of 100 frequencies from 1.000 to 2.650" in found.value
     assert f"({beyond} periodic, later irregular)" in found.value
-    assert "after n = 50,000 0 of 200" in found.value
+    assert found.value.startswith("after n = 5,000 ") and "after n = 50,000 0 of 200" in found.value
 
 
 @pytest.mark.parametrize(("own", "verdict"), [(5.0, NO), (1.0, YES)])
