@@ -11,19 +11,15 @@ from orchestrate.access import OSCILLATOR, find, finder
 from orchestrate.dynamics.attractors import AttractorsJob
 from orchestrate.dynamics.basins import Side
 from orchestrate.dynamics.clusters import Telling
-from orchestrate.dynamics.lyapunov import CHAOTIC, PERIODIC, LyapunovJob
-from orchestrate.dynamics.parameter_map import MapJob
+from orchestrate.dynamics.lyapunov import LyapunovJob
 from orchestrate.paper.basin import EvenBasinJob
 from orchestrate.paper.cases import CASES
-from orchestrate.paper.chattering import ChatteringJob
 from orchestrate.paper.curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
 from orchestrate.paper.gamma import GammaJob
 from orchestrate.paper.limits import Followed, LimitsJob, windows_of
 from orchestrate.paper.low_speed import LowSpeedJob
-from orchestrate.paper.map_peaks import MapPeakJob
 from orchestrate.paper.settled import SettledJob
 from orchestrate.paper.spectra import PeakSpectraJob
-from orchestrate.paper.transients import LaterJob, changed
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.runner import gather
 from orchestrate.structures import Excitation
@@ -163,61 +159,3 @@ def test_basins_where_starts_are_shared(exported):
     assert found.x2.values.tolist() == pytest.approx(np.linspace(0.0, 3.0 * gap, 4))
     assert found.attractor_of.shape == (3, 4)
     assert replace(plane, low=1.3).frequency({"starts": ask(sweep, starts)}) == 1.315
-
-
-def test_chattering_shrinks_by_the_restitution_and_has_no_end(exported):
-    """Each factor of gamma gives as many impacts more as its logarithm over that of e says."""
-    gammas = (1e-4, 1e-6)
-    job = ChatteringJob(name="chattering", restitutions=(0.05, 0.8, 1.0), gammas=gammas)
-    found = ask(job)
-    assert found.sticks.values.tolist() == [[1.0, 1.0], [1.0, 1.0], [0.0, 0.0]]
-    assert found.ratio_error.sel(e=[0.05, 0.8], gamma=1e-6).max() < 1e-6
-    for e in (0.05, 0.8):
-        more = np.diff(found.impacts.sel(e=e).values)[0]
-        assert more == pytest.approx(np.log(1e-2) / np.log(e), abs=1.0)
-    assert found.shortest.sel(e=0.8, gamma=1e-6) < 1e-5 < found.shortest.sel(e=1.0, gamma=1e-6)
-
-
-def test_a_sweep_s_responses_later(exported):
-    """T/1 at D = 0.05 is unstable from 1.1154 on, which 500 periods from 1.115 do not see."""
-    sweep = SweepJob(
-        name="sweep", structure=DAMPED, eta=(1.09, 1.115, 1.116), transient=500, samples=40
-    )
-    later = LaterJob(
-        name="later",
-        structure=DAMPED,
-        eta=(1.09, 1.116),
-        follows="sweep",
-        transient=4000,
-        samples=40,
-    )
-    found = ask(sweep, later)
-    assert found.multiplicity.values.tolist() == [1.0, 2.0]
-    parts = changed(ask(sweep), found, 0.01)
-    which = "periodic, later with another period or other impacts"
-    assert {name: part.tolist() for name, part in parts.items() if part.any()} == {
-        which: [False, True]
-    }
-
-
-def test_the_largest_impulse_of_a_map_is_followed_longer(exported):
-    given = (("e", (0.7, 0.95)), ("eta", (1.04, 1.05)))
-    chart = MapJob(name="map_e", structure=PAPER, given=given, transient=50, settle=0.0, samples=20)
-    peak = MapPeakJob(
-        name="peak", map="map_e", parameter="e", structure=PAPER, transient=100, periods=600
-    )
-    found = ask(chart, peak)
-    assert found.eta.values.tolist() == [1.05]
-    assert found.verdict.values.tolist() == [CHAOTIC]
-    assert float(found.impulse_max[0]) > 50.0  # chaos, at e = 0.95
-    assert found.attrs["periods"] == 600
-    steady = MapJob(
-        name="map_D",
-        structure=PAPER,
-        given=(("D", (0.005, 0.05)), ("eta", (1.05,))),
-        transient=300,
-        samples=20,
-    )
-    low = ask(steady, replace(peak, map="map_D", parameter="D", transient=600))
-    assert low.verdict.values.tolist() == [PERIODIC]
-    assert float(low.impulse_max[0]) == pytest.approx(22.033, abs=0.01)
