@@ -52,11 +52,11 @@ class LaterJob(OnwardQuestion):
         """Some responses."""
         rows = []
         with Instance(fmus[OSCILLATOR]) as instance:
-            for point, start in items:
+            for item in items:
                 found = respond(
-                    instance, *point, start, self.transient, self.samples, self.tolerance
+                    instance, *item.point, item.start, self.transient, self.samples, self.tolerance
                 )
-                gap = found.x_rel_max / point.length
+                gap = found.x_rel_max / item.point.length
                 rows.append([found.multiplicity, found.impacts_per_period, gap])
         return {"rows": np.array(rows)}
 
