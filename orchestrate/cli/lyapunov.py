@@ -79,7 +79,8 @@ def report(data: xr.Dataset) -> None:
     top = data.isel(data.exponent.argmax(...))
     print(
         f"largest exponent {float(top.exponent):.5f} +- {float(top.standard_error):.5f} per tau "
-        f"at {place(name, float(top[name]))}"
+        f"at {place(name, float(top[name]))}; of {data.exponent.size} it is chosen for its error "
+        "too: ask for it alone, with more --periods and another --transient"
     )
     for verdict, word in WORDS.items():
         holds = ordered.verdict.values == verdict

@@ -6,6 +6,7 @@ module                     idea
 :mod:`.variational`        how a small deviation travels: flow and saltation matrices
 :mod:`.following`          settled responses followed impact by impact
 :mod:`.lyapunov`           the largest Lyapunov exponent, and the verdict it allows
+:mod:`.long_runs`          exponents over successive parts: steady, or a transient that ended
 :mod:`.impact_statistics`  what responses look like impact by impact
 :mod:`.clusters`           responses told apart
 :mod:`.attractors`         coexisting attractors, from random starts

@@ -90,7 +90,8 @@ CAPTIONS = {
         "Exact solutions of the variational equations between the impacts that the FMU reports, "
         "and saltation matrices at them; chattering's end projects the deviation on the common "
         "motion. Validated in the tests against differences of neighbouring runs of the FMU, and "
-        "against -D without impacts. The standard error is that of seven batches.",
+        "against -D without impacts. The standard error is that of seven batches; the largest of "
+        "many is chosen for its error too: those in the table come from runs of their own.",
     ),
     "attractors": Caption(
         "Coexisting attractors",

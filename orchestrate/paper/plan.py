@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,19 +17,26 @@ from ..dynamics.parameter_map import MapJob
 from ..errors import InputError
 from ..response.sweep import SweepJob
 from ..running.job import Job
-from ..structures import Excitation, Structure
+from ..structures import Drive, Excitation, Structure
+from ..weak_drive import averaged
+from ..weak_drive.couple import CoupleJob, couple_job, schedule_of, scheme_of
 from .basin import EvenBasinJob
-from .cases import CASES, MAP_ETAS, MAPS, map_values
+from .cases import CASES, MAP_ETAS, MAPS, RIG, map_values
+from .chattering import ChatteringJob
 from .curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
 from .gamma import GammaJob
+from .largest import LargestJob
 from .limits import LimitsJob
 from .low_speed import LowSpeedJob
+from .map_peaks import MapPeakJob
 from .pictures import ORBITS
 from .resolution import Resolution
 from .settled import SettledJob
 from .spectra import PeakSpectraJob
+from .transients import LaterJob
 
 FIRST_REGION = (0.45, 0.49, 0.59, 0.63, 0.70, 0.80, 0.88, 1.047, 1.08, 1.13, 1.24, 1.31)
+FEW = 100  # frequencies at which responses are run on for longest
 SECOND_REGION = (2.60, 2.65, 2.69, 2.737, 2.83, 2.92, 3.05, 3.17, 3.30, 3.49, 3.56, 3.70)
 
 
@@ -120,6 +127,66 @@ def exponent_job(settled: SettledJob, resolution: Resolution) -> LyapunovJob:
     )
 
 
+def own_runs(sweep: SweepJob, settled: Sequence[SettledJob], resolution: Resolution) -> list[Job]:
+    """Runs of their own of what is largest of many: exponents by region, impulses of the maps."""
+    found: list[Job] = [
+        LargestJob(
+            name=job.name.replace("settled", "largest").removesuffix("_up"),
+            case=case,
+            structure=job.structure,
+            exponents=exponent_job(job, resolution).name,
+            settled=job.name,
+            limits="limits",
+            periods=resolution.part,
+        )
+        for case, job in zip(CASES, settled, strict=True)
+    ]
+    found += [
+        MapPeakJob(
+            name=f"peak_{name}",
+            map=f"map_{name}",
+            parameter=name,
+            structure=sweep.structure,
+            periods=resolution.part,
+        )
+        for name in MAPS
+    ]
+    return found
+
+
+def later_jobs(sweep: SweepJob, resolution: Resolution) -> list[LaterJob]:
+    """A sweep's responses later: of all frequencies, and of a few drawn by chance later still."""
+    done = sweep.transient + sweep.samples
+    etas = np.array(resolution.etas())
+    few = np.sort(np.random.default_rng(500).choice(etas, FEW, replace=False))
+    asked = {"later": (etas, resolution.later), "latest": (few, resolution.latest)}
+    return [
+        LaterJob(
+            name=sweep.name.replace("orbit", name),
+            structure=sweep.structure,
+            eta=tuple(values.tolist()),
+            follows=sweep.name,
+            transient=first - 1 - done,
+            samples=sweep.samples,
+        )
+        for name, (values, first) in asked.items()
+    ]
+
+
+def ramp_jobs(resolution: Resolution) -> list[CoupleJob]:
+    """The set ``rig`` on a slow ramp up through its resonance, bonded and delaminated."""
+    structure, drive = Structure.from_file(RIG), Drive.from_file(RIG)
+    volts = drive.volts(structure)
+    ends = tuple(share * averaged.folds(structure, drive)[0].eta0 * volts for share in (0.55, 1.02))
+    rate = resolution.ramp_rate * volts * structure.omega
+    schedule = schedule_of(structure, drive, (ends[0], ends[1]), rate=rate, back=False)
+    kinds = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
+    return [
+        replace(couple_job(one, drive, schedule, scheme_of(one, None)), name=f"ramp_{kind}")
+        for kind, one in kinds.items()
+    ]
+
+
 def statistics_job(sweep: SweepJob, resolution: Resolution) -> ImpactStatisticsJob:
     """A sweep's responses, impact by impact."""
     return ImpactStatisticsJob(
@@ -206,6 +273,8 @@ def make(resolution: Resolution) -> Plan:
     curves = curve_jobs(ups, resolution)
     limits = LimitsJob(name="limits", sweeps=names_of(ups))
     own: list[Job] = [GammaJob(name="gamma"), limits, LowSpeedJob(name="low_speed")]
+    own += [ChatteringJob(name="chattering"), *later_jobs(ups[0], resolution)]
+    own += ramp_jobs(resolution)
     settled = [settled_job(sweep, resolution) for sweep in ups]
     further = further_jobs(ups, settled, resolution)
     shown: dict[str, list[Job]] = {
@@ -213,6 +282,7 @@ def make(resolution: Resolution) -> Plan:
         **{number: [job] for number, job in curves.items()},
     }
     beyond = [job for some in further.values() for job in some]
+    beyond += own_runs(ups[0], settled, resolution)
     evidence = [*ups, *downs, *statistics, *own, *settled, *beyond]
     evidence += [curves[number] for number in ("5", "7", "12")]
     parts = [Part("claims", "", names_of(evidence))]

@@ -24,6 +24,13 @@ class Resolution:
         Periods of the long runs that decide between regular and chaotic.
     longest : int
         Periods up to which a response is run on that does not repeat.
+    part : int
+        Periods of each part of the runs that give the largest exponents.
+    later, latest : int
+        Number n of the first sample at which the sweep's responses are looked at again: at all
+        frequencies, and at a few.
+    ramp_rate : float
+        Of the motor's no-load speed over omega, in a time 1/omega.
     attractor_step, fine_step : float
         Of eta, where coexisting attractors are looked for; the fine one where sweeps up and down
         differ.
@@ -46,7 +53,11 @@ class Resolution:
     skip: int = 2000
     keep: int = 500
     long_run: int = 2500
-    longest: int = 20_000
+    longest: int = 100_000
+    part: int = 10_000
+    later: int = 5000
+    latest: int = 50_000
+    ramp_rate: float = 2e-5
     attractor_step: float = 0.005
     fine_step: float = 0.002
     starts: int = 60
@@ -85,6 +96,10 @@ QUICK = Resolution(
     keep=100,
     long_run=400,
     longest=2000,
+    part=500,
+    later=500,
+    latest=2000,
+    ramp_rate=2e-4,
     attractor_step=0.02,
     fine_step=0.02,
     starts=16,

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import xarray as xr
 
+from ...dynamics.lyapunov import PERIODIC
 from ..cases import CASES, MAPS
 from .results import Region, Results, between, shares
 
@@ -29,16 +30,16 @@ def regions(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
 
 
 def told(results: Results, case: str, region: Region) -> dict[str, str]:
-    """One region; the largest exponent with one standard error."""
+    """One region; the largest exponent by a run of its own, with one standard error."""
     low, high, name = region
-    chaotic, neutral, top, error, eta = shares(results, case, low, high)
+    chaotic, neutral = shares(results, case, low, high)
     kinds = {"chaotic in part": chaotic, "neutral in part": neutral, "periodic": 1.0}
     return {
         "region": f"{low:.5f} to {high:.5f} ({name})",
         "chaotic": f"{100 * chaotic:.0f} %",
         "neutral": f"{100 * neutral:.0f} %",
         "count": str(between(results.exponent(case), low, high).sizes["eta"]),
-        "largest": f"{top:.4f} ± {error:.4f} at {eta:.3f}",
+        "largest": results.largest(case, region).text(),
         "verdict": next(word for word, share in kinds.items() if share > LEAST),
     }
 
@@ -52,25 +53,41 @@ def sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
         By name.
     """
     return [
-        *(strongest(datasets[f"map_{parameter}"], parameter) for parameter in MAPS),
+        *(
+            strongest(datasets[f"map_{parameter}"], datasets[f"peak_{parameter}"], parameter)
+            for parameter in MAPS
+        ),
         coexisting(datasets["basin"]),
         heard(datasets["spectra"]),
     ]
 
 
-def strongest(data: xr.Dataset, parameter: str) -> str:
-    """Where the largest impulse of a map is, and how far it stays within half of that."""
+def strongest(data: xr.Dataset, run_on: xr.Dataset, parameter: str) -> str:
+    """Where the largest impulse of a map is, how large it is in a longer run, and how wide.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        The map.
+    run_on : xarray.Dataset
+        Its largest response, followed longer.
+    parameter : str
+    """
     impulses = data.impulse_max
     best = impulses.where(impulses == impulses.max(), drop=True)
     near = impulses.max(parameter) > 0.5 * impulses.max()
     etas = data.eta.values[near.values]
     eta, value = float(best.eta[0]), float(best[parameter][0])
+    here, periods = float(run_on.impulse_max[0]), int(run_on.attrs["periods"])
+    kind = "periodic" if float(run_on.verdict[0]) == PERIODIC else "irregular"
+    extent = f"eta = {etas.min():.2f}"
+    if etas.max() > etas.min():
+        extent += f" to {etas.max():.2f}"
     return (
-        f"Over (eta, {parameter}) the largest impulse is {float(impulses.max()):.3g} m_1 omega a "
-        f"eta^2, at eta = {eta:.2f}, {parameter} = "
-        f"{value:.3g}; "
-        f"more than half of it is reached for some {parameter} from eta = {etas.min():.2f} to "
-        f"{etas.max():.2f}."
+        f"Over (eta, {parameter}) impulses are largest at eta = {eta:.2f}, {parameter} = "
+        f"{value:.3g}: {here:.3g} m_1 omega a eta^2 at most in {periods} periods of the {kind} "
+        f"response there ({float(impulses.max()):.3g} in those of the map); more than half of the "
+        f"map's largest is reached for some {parameter} at {extent}."
     )
 
 

@@ -16,8 +16,8 @@ WORDS = {
     UNDECIDED: "not decided at this resolution",
 }
 LIMIT = (
-    "half a unit of the last printed digit; the sweep's limit within one step, a response counts "
-    "as periodic within 1 %; the exact limit to eight digits"
+    "half a unit of the last printed digit; the sweep's limit is the middle of two frequencies, a "
+    "response counts as periodic within 1 %; the exact limit to eight digits"
 )
 NUMBER = "half a unit of the last printed digit"
 BOTH, SWEPT, EXACT, NEITHER = (
@@ -105,21 +105,27 @@ def rounds_to(value: float, printed: str) -> bool:
     return abs(value - float(printed)) <= half_unit(printed) + 1e-9
 
 
-def border(edges: Edges, limit: Limit, printed: str, why: str = "") -> Finding:
+def border(
+    edges: Edges, limit: Limit, printed: str, why: str = "", slack: float | None = None
+) -> Finding:
     """The finding for a limit: where the sweep passes it, and where it is.
 
     Parameters
     ----------
     edges : (float, float)
-        Neighbouring frequencies of the sweep, the paper's protocol, between which it lies.
+        Neighbouring frequencies of the sweep, the paper's protocol, between which it lies: it
+        counts as their middle, so that no end of theirs agrees by touching alone.
     limit : Limit
         Of stability.
     printed : str
     why : str
+    slack : float, optional
+        Within which it agrees; by default half a unit of the last printed digit.
     """
-    (low, high), slack = edges, half_unit(printed) + 1e-9
-    swept = low <= float(printed) + slack and high >= float(printed) - slack
-    exact = rounds_to(limit.value, printed)
+    low, high = edges
+    near = (half_unit(printed) if slack is None else slack) + 1e-9
+    swept = abs(0.5 * (low + high) - float(printed)) <= near
+    exact = abs(limit.value - float(printed)) <= near
     agrees = {(True, True): BOTH, (True, False): SWEPT, (False, True): EXACT}.get(
         (swept, exact), NEITHER
     )

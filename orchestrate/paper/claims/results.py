@@ -11,7 +11,8 @@ import xarray as xr
 from ...dynamics.lyapunov import CHAOTIC, NEUTRAL
 from ...dynamics.stable_windows import StableWindow
 from ..cases import CASES
-from ..limits import windows_of
+from ..largest import Largest, largest_of
+from ..regions import Region, nearest_window, regions
 from ..windows import runs
 
 Edges = tuple[float, float]  # two neighbouring frequencies
@@ -24,15 +25,10 @@ class Shares(NamedTuple):
     ----------
     chaotic, neutral : float
         Their shares.
-    exponent, error, eta : float
-        The largest exponent, its standard error, and where it is.
     """
 
     chaotic: float
     neutral: float
-    exponent: float
-    error: float
-    eta: float
 
 
 class Limit(NamedTuple):
@@ -57,21 +53,6 @@ class Limit(NamedTuple):
         return 6 if "contact" in self.kind else 8
 
 
-class Region(NamedTuple):
-    """Frequencies between two limits of one-impact windows.
-
-    Attributes
-    ----------
-    low, high : float
-    name : str
-        The window, or the two it lies between.
-    """
-
-    low: float
-    high: float
-    name: str
-
-
 class Results:
     """Computed datasets.
 
@@ -89,8 +70,7 @@ class Results:
 
     def window(self, case: str, orbit: str, inside: float) -> StableWindow:
         """The stable window of an orbit that holds a frequency, or is nearest to it."""
-        found = windows_of(self.get("limits"), case, orbit)
-        return min(found, key=lambda one: max(one.low - inside, inside - one.high, 0.0))
+        return nearest_window(self.get("limits"), case, orbit, inside)
 
     def begins(self, case: str, orbit: str, inside: float) -> Limit:
         """The lower limit of the window that holds a frequency."""
@@ -103,19 +83,13 @@ class Results:
         return Limit(found.high, found.above, orbit)
 
     def regions(self, case: str) -> list[Region]:
-        """From the loss of contact to 8: windows with two impacts and one, and what lies between.
-
-        Irregular regions of the paper are between the exact limits of two windows.
-        """
-        inside = {"T/2": 1.05, "T/1": 2.0, "2T/1": 4.2, "3T/1": 6.3, "4T/1": 8.0}
-        last, label = self.ends(case, "T, contact", 0.4).value, "contact"
-        found = []
-        for orbit, eta in inside.items():
-            window = self.window(case, orbit, eta)
-            found.append(Region(last, window.low, f"{label} to {orbit}"))
-            found.append(Region(window.low, min(window.high, 8.0), orbit))
-            last, label = window.high, orbit
+        """Those of :func:`..regions.regions` that hold frequencies of the sweep."""
+        found = regions(self.get("limits"), case)
         return [one for one in found if between(self.exponent(case), *one[:2]).sizes["eta"] > 1]
+
+    def largest(self, case: str, region: Region) -> Largest:
+        """The largest exponent of a region, by a run of its own."""
+        return largest_of(self.of("largest", case), region.name)
 
     def settled(self, case: str) -> xr.Dataset:
         """What the up-sweep's responses settle to."""
@@ -200,17 +174,14 @@ def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
 
 
 def shares(results: Results, case: str, low: float, high: float) -> Shares:
-    """Settled responses between two frequencies: chaotic, neutral, and the largest exponent.
+    """Shares of settled responses between two frequencies that are chaotic, and neutral.
 
     One whose state repeats is periodic, whatever the sign of its exponent in a finite time.
     """
     part = between(results.exponent(case), low, high)
     repeats = between(results.settled(case), low, high).multiplicity.values > 0
-    verdicts, top = part.verdict.values, int(part.exponent.values.argmax())
+    verdicts = part.verdict.values
     return Shares(
         chaotic=float(np.mean((verdicts == CHAOTIC) & ~repeats)),
         neutral=float(np.mean((verdicts == NEUTRAL) & ~repeats)),
-        exponent=float(part.exponent[top]),
-        error=float(part.standard_error[top]),
-        eta=float(part.eta[top]),
     )

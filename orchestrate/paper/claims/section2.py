@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...response.curves import CONTACT, FLIGHT
-from .claim import NO, YES, Claim, Finding
+from .claim import NO, PARTLY, YES, Claim, Finding
 from .results import Results
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 ETA, D, STIFFNESS, BEGAN = 1.3, 0.02, 1.2, 0.7  # of an oscillator (6), and its separation time
 START = (0.4, -0.3)
 TAUS = np.linspace(0.1, 9.0, 40)
 ROUNDING = 1e-6
+RATIO = 1e-6  # of successive times between impacts, against e
 
 
 def compared(what: str, printed: float, right: float, form: str) -> Finding:
@@ -88,6 +93,51 @@ def momentum(results: Results) -> Finding:
     return compared(what, change(mu), change(1.0), "(1 + e)/(1 + mu) in the second line")
 
 
+def chattering(results: Results) -> Finding:
+    """(16): whether impacts go on without end for each restitution, their times tending to zero."""
+    data = results.get("chattering")
+    every = data.e.values.tolist()
+    holding = [e for e in every if endless(data.sel(e=e), e)]
+    failing = [e for e in every if e not in holding]
+    gammas = sorted(data.gamma.values.tolist(), reverse=True)
+    away = data.ratio_error.sel(gamma=gammas[-1], e=holding).max().item() if holding else math.nan
+    counts = [
+        f"{data.impacts.sel(e=e, gamma=gammas).values.astype(int).tolist()} at e = {e:g}"
+        for e in (holding[:1] + holding[-1:])
+    ]
+    text = (
+        f"after one kick times between impacts shrink by e each, to {away:.0e}, for "
+        f"{len(holding)} of {len(every)} values of e: {', '.join(f'{e:g}' for e in holding)}; "
+        f"impacts before the masses stick, gamma = {', '.join(f'{g:g}' for g in gammas)}: "
+        f"{' and '.join(counts)}"
+    )
+    if failing:
+        text += f"; not for e = {', '.join(f'{e:g}' for e in failing)}"
+    why = (
+        "Counts grow as the logarithm of gamma over that of e, so without bound as gamma goes to "
+        "0. At e = 1, which does not vanish either, no velocity is lost: times do not tend to zero."
+    )
+    return Finding(text, PARTLY if holding and failing else YES if holding else NO, why)
+
+
+def endless(rows: xr.Dataset, e: float) -> bool:
+    """Whether impacts of one restitution go on as a geometric sequence, as far as gamma allows.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        Over gamma.
+    e : float
+    """
+    order = np.argsort(-rows.gamma.values)
+    gammas, counts = rows.gamma.values[order], rows.impacts.values[order]
+    with np.errstate(divide="ignore"):  # at e = 1 more impacts than any number
+        expected = np.diff(np.log(gammas)) / np.log(e)
+    grows = np.abs(np.diff(counts) - expected) <= 1.0 + 1e-9
+    near = float(rows.ratio_error.values[order][-1]) < RATIO
+    return bool(grows.all() and near and rows.sticks.values.all())
+
+
 def pulling(results: Results) -> Finding:
     """(17): slow impacts after which the masses would have to pull each other."""
     data = results.get("low_speed")
@@ -140,6 +190,15 @@ CLAIMS = (
     misprint("(10)", "cos kappa_i tau, e^(-D tau)", free_part),
     misprint("(12)", "xi_2 - xi_1 unequal 0", one_sided),
     misprint("(15)", "(1 + e) mu/(1 + mu) in the second line", momentum),
+    Claim(
+        "2",
+        "(16): for all non-vanishing restitution coefficients a sequence of infinitely many "
+        "impacts, with time intervals tending to zero",
+        "all e > 0",
+        "the FMU's impacts after one kick, for e from 0.01 to 1 and gamma from 1e-3 to 1e-9",
+        "ratios of times 1e-6; counts one impact",
+        chattering,
+    ),
     misprint("(17)", "contact follows by the velocity alone", pulling),
     misprint("(20)", "initial conditions of the (k+i)th state", next_state),
     misprint("(22)", "T = eta/2 pi", period),

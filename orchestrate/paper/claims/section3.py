@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ...response.curves import CONTACT, FLIGHT, SEQUENCE
 from ..cases import CASES
-from ..windows import relative_peak, window
+from ..transients import changed
+from ..windows import relative_peak, runs, window
 from .claim import LIMIT, NO, NUMBER, PARTLY, YES, Claim, Finding, border, holds, rounds_to
 from .results import Results, between, impacts_in_response, kind, lower_edge, upper_edge
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+NOTHING = 1e-6  # of the largest gap or velocity
+CHANGE = 0.01  # of the largest gap: what the paper's diagrams resolve
+FEW = 0.01  # share of the frequencies
 
 
 def detuning(results: Results) -> Finding:
@@ -40,6 +50,21 @@ def only_equal(results: Results) -> Finding:
     )
 
 
+def most_unfavourable(results: Results) -> Finding:
+    """Impulses over the detuning: whether those of the paper's are the least."""
+    largest = results.get("map_kappa").impulse_max.max("eta")
+    own = CASES["elastic"].kappa
+    here = float(largest.sel(kappa=own, method="nearest"))
+    least, place = float(largest.min()), float(largest.idxmin())
+    text = (
+        f"largest impulse over eta at k_2/k_1 = {own:g}: {here:.3g} m_1 omega a eta^2; the least "
+        f"of {float(largest.kappa.min()):.2f} to {float(largest.kappa.max()):.2f}: {least:.3g} at "
+        f"{place:.2f}"
+    )
+    why = "The more alike the halves are, the weaker their impacts: by (6) alike ones never part."
+    return Finding(text, YES if here <= 1.1 * least else NO, why if here > 1.1 * least else "")
+
+
 def three_states(results: Results) -> Finding:
     """Figure 5's three states."""
     kinds = results.get("figure5").kind.values
@@ -63,6 +88,64 @@ def two_loops(results: Results) -> Finding:
         "loop of each mass, the sentence holds."
     )
     return holds([closed, *(count == 1 for count in counts)], text, why)
+
+
+def many_loops(results: Results) -> Finding:
+    """Figure 5(b): loops of the relative motion, and where each begins and ends."""
+    data = results.get("figure5")
+    state, kinds, tau = data.state.values, data.kind.values, data.tau.values
+    gap, rate = state[:, 1] - state[:, 0], state[:, 3] - state[:, 2]
+    jumps = np.flatnonzero((np.diff(tau) == 0.0) & (np.diff(rate) > 0.0))
+    size, speed = np.abs(gap).max(), np.abs(rate).max()
+    at_zero = bool(np.abs(gap[np.concatenate([jumps, jumps + 1])]).max() < NOTHING * size)
+    in_contact = kinds == CONTACT
+    point = bool(
+        in_contact.any()
+        and np.abs(gap[in_contact]).max() < NOTHING * size
+        and np.abs(rate[in_contact][1:]).max(initial=0.0) < NOTHING * speed
+    )
+    released = len([run for run in runs(in_contact) if run[1] < len(kinds) - 1])
+    loops = len(jumps)  # each ends at an impact; after a contact one begins without
+    text = (
+        f"{loops} loops in T, each ends at an impact, a jump of the velocity alone: {at_zero}; "
+        f"{loops - released} begin at one, {released} at the end of contact; contact is a point at "
+        f"the origin: {point}"
+    )
+    why = "The loop that begins where contact ends begins without an impact and without a jump."
+    return holds([loops > 10, at_zero, point, released == 0], text, why if released else "")
+
+
+def enough_periods(results: Results) -> Finding:
+    """Responses of the sweep after n = 500 that are others long after."""
+    up, end = results.up("elastic"), results.ends("elastic", "T/1", 2.0).value
+    later, latest = (results.of(name, "elastic", "_up") for name in ("later", "latest"))
+    text, parts = [], []
+    for low, high in ((float(up.eta.min()), end), (end, float(up.eta.max()))):
+        others, count, which = told_apart(up, between(later, low, high))
+        text.append(f"{others} of {count} frequencies from {low:.3f} to {high:.3f}{which}")
+        parts.append(others <= FEW * count)
+    others, count, which = told_apart(up, latest)
+    late = f"after n = {first_sample(up, latest):,} {others} of {count} drawn by chance{which}"
+    why = (
+        "Each response was run on from where the sweep left it. A deviation decays as e^(-D tau), "
+        f"and 500 periods are {500.0 * 2.0 * np.pi / end:.0f} of tau at {end:.2f}, but "
+        f"{500.0 * 2.0 * np.pi / 8.0:.0f} at 8: there many a response nears its orbit still."
+    )
+    value = f"after n = {first_sample(up, later):,} others at {'; at '.join(text)}; {late}"
+    return holds(parts, value, why if not all(parts) else "")
+
+
+def first_sample(up: xr.Dataset, later: xr.Dataset) -> int:
+    """The number n of the period at which a sweep's responses are looked at again."""
+    done = int(up.attrs["transient"]) + up.sizes["sample"]
+    return done + int(later.attrs["transient"]) + 1
+
+
+def told_apart(up: xr.Dataset, later: xr.Dataset) -> tuple[int, int, str]:
+    """How many responses of a sweep are others later, of how many, and what they are."""
+    kinds = {what: int(part.sum()) for what, part in changed(up, later, CHANGE).items()}
+    named = ", ".join(f"{count} {what}" for what, count in kinds.items() if count)
+    return sum(kinds.values()), later.sizes["eta"], f" ({named})" if named else ""
 
 
 def crossings(x: np.ndarray, y: np.ndarray) -> int:
@@ -275,6 +358,14 @@ CLAIMS = (
     ),
     Claim(
         "3",
+        "natural frequencies that differ by about 10 % seem to be the most unfavourable situation",
+        "k_2/k_1 = 1.2",
+        "map over (eta, kappa): the largest impulse, which a test has to see",
+        "10 % of the least",
+        most_unfavourable,
+    ),
+    Claim(
+        "3",
         "eta = 0.4: separate motion, a sequence of impacts, permanent contact in each T",
         "three states",
         "Figure 5's data",
@@ -291,11 +382,30 @@ CLAIMS = (
     ),
     Claim(
         "3",
+        "Figure 5(b): many loops in one response period, each begins and ends at an impact; "
+        "contact is a point at the origin",
+        "many loops",
+        "Figure 5's data: jumps of the velocity, and the gap there",
+        "1e-6 of the largest gap and velocity",
+        many_loops,
+    ),
+    Claim(
+        "3",
         "transition to permanent contact at gamma = 1e-4 max xi'_Rel",
         "1e-4",
         "Figure 5's data; short sweeps with other gamma",
         "1 % of T; one step of the sweep",
         gamma_scale,
+    ),
+    Claim(
+        "3.1",
+        "n = 500 periods eliminate transient effects",
+        "500",
+        "the sweep's responses run on to n = 5,000, and to 50,000 at 100 frequencies drawn by "
+        "chance: multiplicity, impacts, largest gap",
+        "others at 1 % of the frequencies up to the end of the window T, and beyond it",
+        enough_periods,
+        full=True,
     ),
     Claim(
         "3.1",

@@ -58,7 +58,7 @@ def test_the_resolution_is_part_of_the_identity(exported):
             known[name] = identity_of(job, {model: find(model) for model in job.models}, known)
         questions.append(known)
     same = {name for name in questions[0] if questions[0][name] == questions[1][name]}
-    assert same == {"gamma", "low_speed"}
+    assert same == {"gamma", "low_speed", "chattering"}
 
 
 def test_the_full_resolution_decides():

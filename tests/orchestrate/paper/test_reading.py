@@ -77,7 +77,8 @@ def test_what_rounds_to_a_printed_number():
     ("edges", "exact", "printed", "verdict", "agrees"),
     [
         ((0.891, 0.892), 0.89135, "0.89", YES, BOTH),
-        ((1.224, 1.225), 1.22421, "1.23", PARTLY, SWEPT),
+        ((1.226, 1.227), 1.22421, "1.23", PARTLY, SWEPT),
+        ((1.224, 1.225), 1.22421, "1.23", NO, NEITHER),  # touches what rounds to 1.23, no more
         ((1.117, 1.118), 1.10659, "1.11", PARTLY, EXACT),
         ((0.417, 0.418), 0.41739, "0.43", NO, NEITHER),
         ((1.223, 1.224), 1.22421, "1.23", NO, NEITHER),

@@ -1,0 +1,180 @@
+"""Exponents over successive parts of a long run: steady, or a transient that ended, or neither.
+
+The standard error of one run knows how much the exponent scatters within the run. It knows nothing
+of a transient that ends later: chaos that dies out has an exponent of its own while it lasts. So a
+long run is cut into parts, and their exponents must agree within what the batches of each part say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import STATE, EventInstance
+from ..response.questions import Point
+from .following import State, impacts_of
+from .lyapunov import WANDER, Exponent, largest_exponent
+from .variational import period
+
+NOT_RUN, STEADY, ENDED, UNDECIDED = -1, 0, 1, 2
+WORDS = {
+    NOT_RUN: "not run",
+    STEADY: "steady",
+    ENDED: "steady after a transient",
+    UNDECIDED: "undecided",
+}
+BLOCKS, BATCHES = 400, 40  # of each part: its error must be known well enough to judge by it
+RARELY = 1e-3  # chance at which parts of a steady response are taken for unsteady ones
+
+
+class LongRun(NamedTuple):
+    """The largest Lyapunov exponent of a long run.
+
+    Attributes
+    ----------
+    exponent : Exponent
+        Of the last parts, per unit of tau: of all parts where the response was steady from the
+        beginning, of those after the transient where one ended.
+    outcome : int
+        Of ``WORDS``.
+    periods : int
+        Excitation periods followed in all.
+    """
+
+    exponent: Exponent
+    outcome: int
+    periods: int
+
+
+def agree(values: ArrayLike, errors: ArrayLike, floor: float, batches: int = BATCHES) -> bool:
+    """Whether the exponents of successive parts scatter no more than their own errors say.
+
+    Parameters
+    ----------
+    values, errors : array_like, shape (n,)
+        Exponent of each part, and its standard error from the batches within the part.
+    floor : float
+        Least error of a part: what the wandering of a deviation makes in its length.
+    batches : int
+        From which each error was estimated.
+
+    Returns
+    -------
+    bool
+        By an F test of the scatter of the parts against their errors, at the level ``RARELY``.
+
+    Examples
+    --------
+    >>> agree([0.25, 0.26, 0.24], [0.01, 0.01, 0.01], 0.0)
+    True
+    >>> agree([0.25, 0.26, 0.01], [0.01, 0.01, 0.01], 0.0)
+    False
+    """
+    from scipy.stats import f
+
+    means, own = np.asarray(values, dtype=float), np.asarray(errors, dtype=float)
+    if not (np.isfinite(means).all() and np.isfinite(own).all()):
+        return False
+    ratio = means.var(ddof=1) / max(float(np.mean(own**2)) + floor**2, 1e-300)
+    freedom = len(means) - 1, len(means) * max(batches - 2, 1)
+    return bool(f.sf(ratio, *freedom) > RARELY)
+
+
+def mean_of(parts: Sequence[Exponent]) -> Exponent:
+    """The mean over parts of equal length, with the standard error by their scatter."""
+    values = np.array([part.value for part in parts])
+    return Exponent(float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values))))
+
+
+def follow_parts(
+    instance: EventInstance, point: Point, start: State, periods: int, parts: int
+) -> tuple[list[Exponent], State]:
+    """Exponents of successive parts of a motion, and the state at its end.
+
+    Parameters
+    ----------
+    instance : EventInstance
+    point : Point
+    start : tuple of float
+        State at phase 0, m and m/s.
+    periods : int
+        Excitation periods of each part.
+    parts : int
+    """
+    eta, found = point.excitation.eta(point.structure), []
+    for _ in range(parts):
+        impacts = impacts_of(instance, point, start, periods)
+        start = tuple(instance.get(*STATE))
+        end = periods * period(eta)
+        found.append(largest_exponent(impacts, end, eta, point.structure, BLOCKS, BATCHES))
+    return found, start
+
+
+def wandering(periods: int, eta: float, wander: float = WANDER) -> float:
+    """Error that a deviation which wanders by a factor ``wander`` makes over some periods."""
+    floor: float = np.log(wander) / (periods * period(eta))
+    return floor
+
+
+def long_run(
+    instance: EventInstance,
+    point: Point,
+    start: State,
+    periods: int,
+    parts: int,
+    runs: int,
+) -> LongRun:
+    """The exponent of a response that is followed until successive parts agree.
+
+    Where the parts of a run do not agree, the motion is followed on for as many parts again, which
+    are then judged by themselves: a transient that ended is left behind.
+
+    Parameters
+    ----------
+    instance : EventInstance
+    point : Point
+    start : tuple of float
+        State at phase 0, m and m/s; a first part is dropped.
+    periods : int
+        Excitation periods of each part.
+    parts : int
+        Of each run.
+    runs : int
+        At most; after that the exponent is undecided.
+    """
+    floor = wandering(periods, point.excitation.eta(point.structure))
+    _, start = follow_parts(instance, point, start, periods, 1)
+    found: list[Exponent] = []
+    for run in range(runs):
+        found, start = follow_parts(instance, point, start, periods, parts)
+        values, errors = np.transpose(found)
+        if agree(values, errors, floor):
+            outcome = ENDED if run else STEADY
+            return LongRun(mean_of(found), outcome, periods * (1 + parts * (run + 1)))
+    return LongRun(mean_of(found), UNDECIDED, periods * (1 + parts * runs))
+
+
+def another_start(point: Point, start: State, seed: NDArray[np.int64] | Sequence[int]) -> State:
+    """A state near another one, from which a chaotic motion goes its own way.
+
+    Parameters
+    ----------
+    point : Point
+    start : tuple of float
+        State at phase 0, m and m/s.
+    seed : sequence of int
+        Of the random numbers.
+
+    Returns
+    -------
+    tuple of float
+        Both masses moved together, and the gap and the velocities changed, by 1 % at most; the
+        masses do not overlap.
+    """
+    x1, x2, v1, v2 = start
+    gap, moved, fast, slow = 0.01 * np.random.default_rng(seed).uniform(-1.0, 1.0, 4)
+    x1, x2 = x1 * (1.0 + moved), x1 * (1.0 + moved) + (x2 - x1) * (1.0 + gap)
+    return float(x1), float(x2), float(v1 * (1.0 + fast)), float(v2 * (1.0 + slow))

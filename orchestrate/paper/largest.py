@@ -1,0 +1,236 @@
+"""The largest exponent of each region, followed again: long, from another start, in parts.
+
+The largest of many estimates is chosen for its error too: its own standard error does not know of
+that. So the sweep's exponents only say where to look. What is quoted is a run of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..access import OSCILLATOR, EventInstance
+from ..dynamics.following import State
+from ..dynamics.long_runs import (
+    ENDED,
+    NOT_RUN,
+    STEADY,
+    UNDECIDED,
+    WORDS,
+    LongRun,
+    another_start,
+    long_run,
+    wandering,
+)
+from ..response.labels import flags, variable
+from ..response.questions import Point
+from ..running.job import Inputs, Job, Table
+from ..structures import Excitation, Structure
+from .regions import COUNT, regions
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+LOST = 3
+OUTCOMES = {**WORDS, LOST: "steady, but no more what it was chosen for"}
+NUMBERS = {
+    "eta": "frequency ratio Omega/omega of the candidate",
+    "screened": "exponent by which it was chosen, one of many noisy ones",
+    "exponent": "exponent of the long run from another start, per unit of tau",
+    "standard_error": "standard error of the exponent, by the scatter of the parts",
+    "outcome": "what the successive parts say",
+}
+
+
+class Candidate(NamedTuple):
+    """A response that may have the largest exponent of its region.
+
+    Attributes
+    ----------
+    point : Point
+    start : tuple of float
+        State at phase 0 on the settled response, m and m/s.
+    screened : float
+        The exponent it was chosen by.
+    """
+
+    point: Point
+    start: State
+    screened: float
+
+
+class Searched(NamedTuple):
+    """A region with its candidates, the largest exponent first."""
+
+    number: int
+    candidates: Sequence[Candidate]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LargestJob(Job):
+    """Largest exponents of the regions of one case, by runs of their own.
+
+    Attributes
+    ----------
+    case : str
+        Of :data:`.cases.CASES`.
+    structure : Structure
+    exponents, settled, limits : str
+        Names of the results that say where to look: exponents along the up-sweep, states on the
+        responses, and the limits of the regions.
+    periods : int
+        Excitation periods of each part.
+    parts, runs : int
+        Of each run, and how many runs until an exponent is undecided.
+    candidates : int
+        Frequencies tried in a region, the largest exponent first, until one is steady.
+    seed : int
+        Of the other starts.
+    """
+
+    case: str
+    structure: Structure
+    exponents: str
+    settled: str
+    limits: str
+    periods: int = 10_000
+    parts: int = 10
+    runs: int = 3
+    candidates: int = 10
+    seed: int = 23
+
+    def needs(self) -> tuple[str, ...]:
+        """All three."""
+        return self.exponents, self.settled, self.limits
+
+    def count(self) -> int:
+        """Number of regions."""
+        return COUNT
+
+    def items(self, inputs: Inputs) -> Sequence[Searched]:
+        """The regions, each with its candidates; none where it holds no frequency."""
+        exponents = inputs[self.exponents].sortby("eta")
+        ends = inputs[self.settled].sortby("eta").end_state
+        found = []
+        for number, region in enumerate(regions(inputs[self.limits], self.case)):
+            part = exponents.exponent.sel(eta=slice(region.low, region.high))
+            order = np.argsort(-part.values, kind="stable")[: self.candidates]
+            rows = part.isel(eta=order)
+            candidates = [
+                self.candidate(eta, ends.sel(eta=eta, method="nearest").values, value)
+                for eta, value in zip(rows.eta.values.tolist(), rows.values.tolist(), strict=True)
+            ]
+            found.append(Searched(number, candidates))
+        return found
+
+    def candidate(self, eta: float, end: np.ndarray, screened: float) -> Candidate:
+        """A candidate from a non-dimensional state on its response."""
+        point = Point(self.structure, Excitation.nondimensional(eta, self.structure))
+        return Candidate(point, tuple((end * point.scale).tolist()), screened)
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Searched], carry: Table | None
+    ) -> Table:
+        """One region: its candidates in turn, until one is steady."""
+        ((number, candidates),) = items
+        rows = np.full((self.candidates, len(NUMBERS)), np.nan)
+        rows[:, -1] = NOT_RUN
+        with EventInstance(fmus[OSCILLATOR]) as instance:
+            for place, (point, start, screened) in enumerate(candidates):
+                other = another_start(point, start, [self.seed, number, place])
+                found = long_run(instance, point, other, self.periods, self.parts, self.runs)
+                eta = point.excitation.eta(point.structure)
+                outcome = self.judged(found, screened, eta)
+                rows[place] = [eta, screened, *found.exponent, outcome]
+                if outcome == STEADY:
+                    break
+        return {"rows": rows[np.newaxis]}
+
+    def judged(self, found: LongRun, screened: float, eta: float) -> int:
+        """The outcome of a run: ``LOST`` where less than half of the growth is left.
+
+        Chaos may have ended before the first part that counts, or the other start may lead to
+        another attractor.
+        """
+        lost = screened - found.exponent.value > max(0.5 * screened, wandering(self.periods, eta))
+        return LOST if found.outcome == STEADY and screened > 0.0 and lost else found.outcome
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Over region and candidate."""
+        import xarray as xr
+
+        dims = "region", "candidate"
+        columns = np.moveaxis(table["rows"], -1, 0)
+        variables = {
+            name: flags(dims, column, text, OUTCOMES)
+            if name == "outcome"
+            else variable(dims, column, "1", text)
+            for (name, text), column in zip(NUMBERS.items(), columns, strict=True)
+        }
+        named = regions(inputs[self.limits], self.case)
+        variables["low"] = variable("region", [one.low for one in named], "1", "where it begins")
+        variables["high"] = variable("region", [one.high for one in named], "1", "where it ends")
+        text = "orbit of the window, or those of the windows around it"
+        coordinates = {"region": variable("region", [one.name for one in named], "1", text)}
+        title = f"Largest Lyapunov exponents by region: {self.structure.label()}"
+        return xr.Dataset(variables, coordinates, {"title": title})
+
+
+class Largest(NamedTuple):
+    """The largest exponent of a region, and what was tried for it.
+
+    Attributes
+    ----------
+    exponent, error, eta : float
+        NaN where none of the candidates was decided.
+    others : tuple of str
+        A phrase for each candidate whose response was not steady.
+    """
+
+    exponent: float
+    error: float
+    eta: float
+    others: tuple[str, ...]
+
+    def text(self) -> str:
+        """As it is printed, with what was not steady in brackets."""
+        if np.isnan(self.exponent):
+            value = "undecided"
+        else:
+            value = f"{self.exponent:.4f} ± {self.error:.4f} at {self.eta:.3f}"
+        return f"{value} ({'; '.join(self.others)})" if self.others else value
+
+
+def largest_of(data: xr.Dataset, region: str) -> Largest:
+    """The largest exponent of a region, of those that were decided.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :class:`LargestJob`.
+    region : str
+        Its name.
+    """
+    rows = data.sel(region=region)
+    tried = rows.isel(candidate=rows.outcome.values != NOT_RUN)
+    others = []
+    for k in range(tried.sizes["candidate"]):
+        one = tried.isel(candidate=k)
+        head = f"{float(one.screened):.4f} at {float(one.eta):.3f}"
+        value = f"{float(one.exponent):.4f} ± {float(one.standard_error):.4f}"
+        if one.outcome == ENDED:
+            others.append(f"{head}: the parts of its long run did not agree at first, {value} then")
+        elif one.outcome == LOST:
+            others.append(f"{head} did not last, {value} in its long run")
+        elif one.outcome == UNDECIDED:
+            others.append(f"{head} is undecided: the parts of its long run do not agree")
+    sure = tried.isel(candidate=tried.outcome.values != UNDECIDED)
+    if not sure.sizes["candidate"]:
+        return Largest(np.nan, np.nan, np.nan, tuple(others))
+    best = sure.isel(candidate=int(sure.exponent.values.argmax()))
+    numbers = float(best.exponent), float(best.standard_error), float(best.eta)
+    return Largest(*numbers, tuple(others))

@@ -1,0 +1,78 @@
+"""The response with a map's largest impulse, followed for longer than the map's few periods."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..dynamics.impact_statistics import ImpactStatisticsJob
+from ..dynamics.lyapunov import WANDER, WORDS, verdict
+from ..dynamics.variational import period
+from ..response.labels import flags, variable
+from ..running.job import Inputs, Table
+from ..structures import Structure
+from .derived import DerivedJob
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapPeakJob(DerivedJob):
+    """The response at the largest impulse of a map, impact by impact.
+
+    The largest impulse of an irregular response depends on how long it is followed; and of many
+    points with few periods each, that with the largest one is chosen for its chance too.
+
+    Attributes
+    ----------
+    map : str
+        Its name.
+    parameter : str
+        Of the structure, along the map's first side.
+    structure : Structure
+        With the map's other parameters.
+    transient, periods : int
+        Dropped from rest, and followed after them.
+    """
+
+    map: str
+    parameter: str
+    structure: Structure
+    transient: int = 3000
+    periods: int = 10_000
+
+    def needs(self) -> tuple[str, ...]:
+        """The map."""
+        return (self.map,)
+
+    def count(self) -> int:
+        """One response."""
+        return 1
+
+    def question(self, inputs: Inputs) -> ImpactStatisticsJob:
+        """Where the map's impulse is largest."""
+        impulses = inputs[self.map].impulse_max
+        best = impulses.where(impulses == impulses.max(), drop=True)
+        changed = self.structure.replace(**{self.parameter: float(best[self.parameter][0])})
+        return ImpactStatisticsJob(
+            name=self.name,
+            structure=changed,
+            eta=(float(best.eta[0]),),
+            transient=self.transient,
+            periods=self.periods,
+        )
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Its statistics, its largest impulse (15), and what its exponent says."""
+        structure = self.question(inputs).structure
+        found = super().dataset(table, inputs)
+        factor = (1.0 + structure.e) * structure.mu / (1.0 + structure.mu)
+        floor = np.log(WANDER) / (self.periods * period(float(found.eta[0])))
+        kind = verdict(found.exponent, found.standard_error, floor)
+        text = "largest impulse over m1 omega a eta^2"
+        found["impulse_max"] = variable("eta", factor * found.closing_max.values, "1", text)
+        found["verdict"] = flags("eta", kind, "what the exponent says of the response", WORDS)
+        return found

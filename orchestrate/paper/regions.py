@@ -1,0 +1,76 @@
+"""Frequencies between two exact limits: windows of one or two impacts, and what lies between."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from .limits import windows_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..dynamics.stable_windows import StableWindow
+
+CONTACT = ("T, contact", 0.4)
+WINDOWS = {"T/2": 1.05, "T/1": 2.0, "2T/1": 4.2, "3T/1": 6.3, "4T/1": 8.0}  # an eta inside
+LAST = 8.0  # of the paper's range
+COUNT = 2 * len(WINDOWS)
+
+
+class Region(NamedTuple):
+    """Frequencies between two limits of one-impact windows.
+
+    Attributes
+    ----------
+    low, high : float
+    name : str
+        The window, or the two it lies between.
+    """
+
+    low: float
+    high: float
+    name: str
+
+    @property
+    def is_window(self) -> bool:
+        """Whether one orbit is stable in all of it."""
+        return " to " not in self.name
+
+    @property
+    def adds_a_period(self) -> bool:
+        """Whether it lies between the windows nT and (n+1)T, each with one impact."""
+        before, _, after = self.name.partition(" to ")
+        return before.endswith("T/1") and after.endswith("T/1")
+
+
+def nearest_window(limits: xr.Dataset, case: str, orbit: str, inside: float) -> StableWindow:
+    """The stable window of an orbit that holds a frequency, or is nearest to it."""
+    found = windows_of(limits, case, orbit)
+    return min(found, key=lambda one: max(one.low - inside, inside - one.high, 0.0))
+
+
+def regions(limits: xr.Dataset, case: str) -> list[Region]:
+    """From the loss of contact to 8: windows with two impacts and one, and what lies between.
+
+    Irregular regions of the paper are between the exact limits of two windows.
+
+    Parameters
+    ----------
+    limits : xarray.Dataset
+        Of :class:`.limits.LimitsJob`.
+    case : str
+        Of :data:`.cases.CASES`.
+
+    Returns
+    -------
+    list of Region
+        ``COUNT`` of them, upwards, also those without any frequency of the sweeps.
+    """
+    last, label = nearest_window(limits, case, *CONTACT).high, "contact"
+    found = []
+    for orbit, eta in WINDOWS.items():
+        window = nearest_window(limits, case, orbit, eta)
+        found.append(Region(last, window.low, f"{label} to {orbit}"))
+        found.append(Region(window.low, min(window.high, LAST), orbit))
+        last, label = window.high, orbit
+    return found

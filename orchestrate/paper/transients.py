@@ -1,0 +1,104 @@
+"""Whether the paper's n = 500 periods suffice: its responses run on, to n = 5,000 and 50,000.
+
+Each frequency's response goes on from the state that the sweep has left it in, and is sampled and
+counted as in the sweep. So what differs is a transient that the sweep has not seen the end of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..access import OSCILLATOR, Instance
+from ..dynamics.following import Followed, OnwardQuestion
+from ..response.labels import variable
+from ..response.respond import respond
+from ..running.job import Inputs, Table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+NUMBERS = {
+    "multiplicity": "least n such that the state repeats after n periods; 0: none",
+    "impacts_per_period": "impacts per excitation period, mean over the samples",
+    "xi_rel_max": "largest gap over a eta^2",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class LaterJob(OnwardQuestion):
+    """A sweep's responses, some periods later.
+
+    Attributes
+    ----------
+    transient, samples : int
+        Periods dropped after the sweep's, and stroboscopic samples kept after them.
+    tolerance : float
+        Within which a state repeats, as in the sweep.
+    """
+
+    transient: int = 4300
+    samples: int = 201
+    tolerance: float = 1e-2
+    chunk: ClassVar[int] = 20
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
+    ) -> Table:
+        """Some responses."""
+        rows = []
+        with Instance(fmus[OSCILLATOR]) as instance:
+            for item in items:
+                found = respond(
+                    instance, *item.point, item.start, self.transient, self.samples, self.tolerance
+                )
+                gap = found.x_rel_max / item.point.length
+                rows.append([found.multiplicity, found.impacts_per_period, gap])
+        return {"rows": np.array(rows)}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """What they are then, over the parameter."""
+        import xarray as xr
+
+        along = self.series.name
+        variables = {
+            name: variable(along, column, "1", text)
+            for (name, text), column in zip(NUMBERS.items(), table["rows"].T, strict=True)
+        }
+        title = f"{self.transient} periods after the sweep: {self.structure.label()}"
+        return xr.Dataset(variables, self.series.coordinates(), {"title": title})
+
+
+def changed(swept: xr.Dataset, later: xr.Dataset, tolerance: float) -> dict[str, np.ndarray]:
+    """Which of a sweep's responses are others later, by what has become of them.
+
+    Parameters
+    ----------
+    swept, later : xarray.Dataset
+        Of a sweep, and of :class:`LaterJob`; frequencies of the second are among the first's.
+    tolerance : float
+        Relative change of a periodic response's largest gap that counts.
+
+    Returns
+    -------
+    dict of ndarray of bool
+        Over the frequencies of ``later``; a response is in one of them at most.
+    """
+    first = swept.sel(eta=later.eta.values, method="nearest")
+    before, after = first.multiplicity.values, later.multiplicity.values.astype(int)
+    counts = first.impacts_per_period.values, later.impacts_per_period.values
+    slack = 1.5 / swept.sizes["sample"]  # of a count over a span that is no multiple of the period
+    both = (before > 0) & (after > 0)
+    kind = both & ((before != after) | (np.abs(counts[0] - counts[1]) > 2.0 * slack))
+    gaps = first.xi_rel_max.values, later.xi_rel_max.values
+    moved = both & ~kind & (np.abs(gaps[1] / gaps[0] - 1.0) > tolerance)
+    return {
+        "irregular, later periodic": (before == 0) & (after > 0),
+        "periodic, later irregular": (before > 0) & (after == 0),
+        "periodic, later with another period or other impacts": kind,
+        "of another size later": moved,
+    }
