@@ -77,6 +77,11 @@ class Border:
         return cls(family, kind, place, extra)
 
     @property
+    def accuracy(self) -> float:
+        """What a root may leave of the orbit's equations, and of the bifurcation's."""
+        return self.family.accuracy
+
+    @property
     def parameters(self) -> int:
         """Number of the first parameter among the unknowns."""
         return self.family.size
@@ -124,7 +129,7 @@ class Border:
         orbit = self.family.residual(unknowns[: self.family.size + 2])
         return np.append(orbit, self.condition(unknowns))
 
-    def jacobian(self, unknowns: Floats) -> Floats:
+    def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Its derivative; that of the bifurcation's own equations by differences."""
         orbit = self.family.jacobian(unknowns[: self.family.size + 2])
         blank = np.zeros((len(orbit), len(self.extra)))

@@ -16,6 +16,7 @@ from .bifurcations import (
     KINDS,
     SIGNS,
     TOUCHING,
+    UNDECIDED,
     Look,
     Step,
 )
@@ -211,8 +212,10 @@ def resequenced(leg: Leg, walk: Walk[Family], look: Look, length: float) -> Look
     try:
         return chattering(look)
     except NoConvergenceError:  # too far on: look where the first impact comes or goes
-        kind = CONTACT_LOST if look.contact_test(CONTACT_LOST) <= 0.0 else CONTACT_BEGUN
-        place, first = Step(walk, leg.looks[-1], look, length).locate(kind, 0.0, length)
+        lost = look.contact_test(CONTACT_LOST) <= -UNDECIDED
+        kind = CONTACT_LOST if lost else CONTACT_BEGUN
+        step = Step(walk, leg.looks[-1], look, length)
+        place, first = step.locate(kind, 0.0, length, -UNDECIDED)
     try:
         found = chattering(rechattered(first))
     except NoConvergenceError:
