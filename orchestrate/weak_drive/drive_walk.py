@@ -18,7 +18,7 @@ from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import NoConvergenceError, Root, Walk, corrected, held, null_vector
 from .averaged import FOLD, TORUS
 from .grazing import FLIGHT, IMPACT, grazing_ahead
-from .shooting import COARSE, FINE, Period, Shooter
+from .shooting import Period, Shooter
 
 FLIP = "period doubling"
 LIMIT, STUCK, LONG, NONE = "limit", "no convergence", "most points", "no motion at the start"
@@ -27,8 +27,9 @@ HALVED = "meets the motion of half its period"
 ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN, HALVED, FLIGHT, IMPACT)
 LOCATED = 1e-4  # of voltage over K omega and speed over omega: how near a grazing has been found
 AWAY = 3e-3  # of the unit: how far from a doubling the motion of twice the period is begun
-ON_CIRCLE = 1e-3  # of a pair that has been located: how far its size may be from 1
+ON_CIRCLE = 1e-4  # of a pair that has been located: how far its size may be from 1
 NEAR = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere
+ACCURACY = 1e-6  # of a step: how exactly a bifurcation is located
 SHORTEST = 1e-5  # of the longest step: round a fold whose radius is 1e-4 of the amplitude too
 
 
@@ -128,13 +129,32 @@ def happens(kind: str, motion: Motion) -> bool:
 # -- along the branch ------------------------------------------------------------------------------
 
 
-def motion_at(shooter: Shooter, root: Root, ahead: Floats, central: bool = False) -> Motion:
-    """A root as a motion, with its own Jacobian; ``ahead`` is the side of its tangent."""
-    matrix = shooter.renew(root.unknowns, central=central)
-    tangent = null_vector(np.vstack([matrix, ahead]))
+class ShooterWalk(Walk[Shooter]):
+    """A walk whose every try begins with the Jacobian of the motion where it stands."""
+
+    matrix: Floats
+
+    def stand(self, motion: Motion) -> None:
+        """Go on from a motion."""
+        self.root, self.matrix = motion.root, motion.matrix
+
+    def at(self, length: float) -> Root:
+        """As :meth:`.Walk.at`."""
+        self.curve.restart(self.root.unknowns, self.matrix)
+        return super().at(length)
+
+    def land(self, unknown: int, value: float) -> Root:
+        """As :meth:`.Walk.land`."""
+        self.curve.restart(self.root.unknowns, self.matrix)
+        return super().land(unknown, value)
+
+
+def motion_at(shooter: Shooter, root: Root, ahead: Floats) -> Motion:
+    """A root that has just been found as a motion; ``ahead`` is the side of its tangent."""
+    tangent = root.tangent if root.tangent @ ahead > 0.0 else -root.tangent
     values = shooter.multipliers()
     period = shooter.look(root.unknowns)
-    return Motion(replace(root, tangent=tangent), matrix, values, period, shooter.angle)
+    return Motion(replace(root, tangent=tangent), shooter.matrix, values, period, shooter.angle)
 
 
 def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
@@ -177,9 +197,8 @@ def clear_start(shooter: Shooter, motion: Motion) -> Motion:
     root = motion.root
     unknowns = shooter.begin_later(root.unknowns, motion.period.clear)
     matrix = shooter.renew(unknowns)
-    tangent = null_vector(np.vstack([matrix, held(shooter, -2)]))
-    if tangent[-2:] @ root.tangent[-2:] < 0.0:  # voltage and speed are those of before
-        tangent = -tangent
+    ahead = np.append(np.zeros(shooter.size), root.tangent[-2:])  # as before: voltage and speed
+    tangent = null_vector(np.vstack([matrix, ahead]))
     moved = replace(root, unknowns=unknowns, tangent=tangent)
     return motion._replace(root=moved, matrix=matrix, angle=shooter.angle)
 
@@ -188,12 +207,14 @@ def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: P
     """Follow a branch until it leaves a range of speeds, over omega, or is lost."""
     leg = Leg([start])
     begin = clear_start(shooter, start)
-    walk = Walk(shooter, begin.root, pace.longest, pace.longest, shortest=SHORTEST * pace.longest)
+    shortest = SHORTEST * pace.longest
+    walk = ShooterWalk(shooter, begin.root, pace.longest, pace.longest, shortest=shortest)
     halves = half_way(shooter, begin.root)
     while not leg.end:
         if len(leg.motions) >= pace.most:
             leg.end = LONG
             break
+        walk.stand(begin)
         try:
             after, length, arrived = next_motion(walk, speeds)
         except NoConvergenceError:
@@ -203,39 +224,31 @@ def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: P
         if halves_before @ halves < 0.0:  # the same motion from here on, half a period later
             leg.end = HALVED
             break
-        leg.bifurcations += located(walk, leg.motions[-1], after, length)
+        leg.bifurcations += located(walk, begin, after, length)
         leg.motions.append(after)
         leg.end = LIMIT if arrived else ""
-        shooter.matrix = after.matrix
         begin = clear_start(shooter, after)
-        walk.root = begin.root
         if begin is not after:
             halves = half_way(shooter, begin.root)
     return leg
 
 
-def next_motion(walk: Walk[Shooter], speeds: tuple[float, float]) -> tuple[Motion, float, bool]:
+def next_motion(walk: ShooterWalk, speeds: tuple[float, float]) -> tuple[Motion, float, bool]:
     """The next motion, the length of the step to it, and whether it lies on a limit.
 
-    Where there is none, the Jacobian is made by differences of the other size.
+    It has the impacts of the one before: with others it lies beyond a grazing.
 
     Raises
     ------
     NoConvergenceError
-        Where there is none either.
+        Where there is none.
     """
     shooter = walk.curve
-    for other in (FINE if shooter.change == COARSE else COARSE, 0.0):
-        try:
-            root, length, arrived = walk.inside(shooter.size + 1, [speeds])
-            return motion_at(shooter, root, walk.root.tangent), length, arrived
-        except NoConvergenceError:
-            if not other:
-                raise
-        shooter.change, walk.step = other, walk.longest
-        matrix = np.vstack([shooter.renew(walk.root.unknowns), walk.root.tangent])
-        walk.root = replace(walk.root, tangent=null_vector(matrix))
-    raise AssertionError("two ways")
+    here = shooter.shoot(walk.root.unknowns)
+    root, length, arrived = walk.inside(
+        shooter.size + 1, [speeds], lambda root: shooter.shoot(root.unknowns).like(here)
+    )
+    return motion_at(shooter, root, walk.root.tangent), length, arrived
 
 
 def end_without_root(leg: Leg, shooter: Shooter) -> None:
@@ -266,33 +279,34 @@ def half_way(shooter: Shooter, root: Root) -> Floats:
     return shooter.change_in(root.unknowns, shooter.turns // 2)
 
 
-def located(walk: Walk[Shooter], before: Motion, after: Motion, length: float) -> list[Bifurcation]:
+def located(walk: ShooterWalk, before: Motion, after: Motion, length: float) -> list[Bifurcation]:
     """Bifurcations in a step, in order."""
     found = []
     for kind, test in TESTS.items():
         if test(before) * test(after) < 0.0:
-            there = locate(walk, test, length)
+            there = locate(walk, test, {0.0: before, length: after})
             if there is not None and happens(kind, there[1]):
                 found.append((there[0], Bifurcation(kind, there[1])))
     return [one for _, one in sorted(found, key=lambda each: each[0])]
 
 
 def locate(
-    walk: Walk[Shooter], test: Callable[[Motion], float], length: float, accuracy: float = 1e-3
+    walk: ShooterWalk, test: Callable[[Motion], float], ends: dict[float, Motion]
 ) -> tuple[float, Motion] | None:
-    """Where on the way a test is 0: length, to ``accuracy`` of the step, and the motion."""
+    """Where on the way a test is 0: length, and the motion; ``ends`` are those of the step."""
     from scipy.optimize import brentq
 
-    known: dict[float, Motion] = {}
-    shooter, ahead = walk.curve, walk.root.tangent
+    shooter, ahead, length = walk.curve, walk.root.tangent, max(ends)
+    known = dict(ends)
 
     def value(place: float) -> float:
-        root = walk.at(place) if place else walk.root
-        known[place] = motion_at(shooter, root, ahead, central=True)
+        if place not in known:
+            known[place] = motion_at(shooter, walk.at(place), ahead)
         return test(known[place])
 
     try:
-        place = brentq(value, 0.0, length, xtol=accuracy * length)
-    except (NoConvergenceError, ValueError):  # ValueError: no change of sign, looked at closely
+        place = brentq(value, 0.0, length, xtol=ACCURACY * length)
+        value(place)
+    except NoConvergenceError:
         return None
-    return place, known.get(place) or known[min(known, key=lambda other: abs(other - place))]
+    return place, known[place]
