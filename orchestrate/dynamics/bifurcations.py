@@ -86,8 +86,9 @@ class Look:
         Where (17) is all but met either will do: an orbit that has just got or lost an impact
         meets it to rounding, and rounding must not say how it goes on.
         """
-        tests = [self.contact_test(kind) for kind in CONTACT]
-        return self.ring.count > 0 and min(tests) <= -UNDECIDED
+        if not self.ring.count:
+            return False
+        return min(self.contact_test(kind) for kind in CONTACT) <= -UNDECIDED
 
     def test(self, kind: int) -> float:
         """The function whose sign changes at a bifurcation of a kind."""

@@ -114,7 +114,7 @@ def corrected(
     unknowns, scale = guess.copy(), curve.scale
     way, length = np.zeros_like(guess), np.inf
     for iteration in range(1, most + 1):
-        way, step = newton_step(curve, curve.jacobian(unknowns), guess, way, across)
+        way, step = newton_step(curve, guess, way, across)
         unknowns = guess + scale * way
         before, length = length, float(np.abs(step).max())
         if not length < np.inf or float(np.abs(way).max()) > furthest:
@@ -125,9 +125,11 @@ def corrected(
 
 
 def newton_step(
-    curve: Curve, jacobian: Floats, guess: Floats, way: Floats, across: Floats
+    curve: Curve, guess: Floats, way: Floats, across: Floats, jacobian: Floats | None = None
 ) -> tuple[Floats, Floats]:
     """One step of Newton's method: the way from the guess after it, and the step.
+
+    The derivative is the curve's own where none is given.
 
     Raises
     ------
@@ -136,7 +138,9 @@ def newton_step(
     """
     try:
         with np.errstate(over="ignore", invalid="ignore"):
-            left = np.append(curve.residual(guess + curve.scale * way), across @ way)
+            unknowns = guess + curve.scale * way
+            jacobian = curve.jacobian(unknowns) if jacobian is None else jacobian
+            left = np.append(curve.residual(unknowns), across @ way)
             step = solved(np.vstack([jacobian * curve.scale, across]), left)
     except (np.linalg.LinAlgError, InputError) as error:
         raise NoConvergenceError(str(error)) from None
@@ -154,7 +158,7 @@ def polished(curve: Curve, guess: Floats, way: Floats, across: Floats, iteration
     try:
         jacobian = curve.jacobian(guess + curve.scale * way, at_root=True)
         for _ in range(POLISHING):
-            way, _ = newton_step(curve, jacobian, guess, way, across)
+            way, _ = newton_step(curve, guess, way, across, jacobian)
         unknowns = guess + curve.scale * way
         left = float(np.abs(curve.residual(unknowns)).max(initial=0.0))
     except InputError as error:

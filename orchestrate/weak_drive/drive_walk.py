@@ -7,6 +7,7 @@ Where an impact or a flight grazes the branch ends: see :mod:`.grazing`.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import combinations
@@ -26,7 +27,7 @@ NOT_BEGUN = "not begun: the other leg has gone all the way"
 HALVED = "meets the motion of half its period"
 ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN, HALVED, FLIGHT, IMPACT)
 LOCATED = 1e-4  # of voltage over K omega and speed over omega: how near a grazing has been found
-AWAY = 3e-3  # of the unit: how far from a doubling the motion of twice the period is begun
+AWAY = (3e-3, 1e-3, 3e-4)  # of the unit: how far from a doubling twice the period is begun
 ON_CIRCLE = 1e-4  # of a pair that has been located: how far its size may be from 1
 NEAR = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere
 ACCURACY = 1e-6  # of a step: how exactly a bifurcation is located
@@ -180,14 +181,16 @@ def doubled(shooter: Shooter, flip: Motion) -> Motion:
     NoConvergenceError
         Where there is none.
     """
-    shooter.repeat_after(flip.period.revolutions)
-    shooter.angle, shooter.matrix = flip.angle, flip.matrix
-    away = np.append(shooter.alternating(), [0.0, 0.0])
-    guess = flip.root.unknowns + AWAY * away
-    shooter.repeat_after(2 * shooter.turns)
-    shooter.renew(guess)
-    root = corrected(shooter, guess, away, most=12)
-    return motion_at(shooter, root, away)
+    for distance in AWAY:
+        shooter.repeat_after(flip.period.revolutions)
+        shooter.angle, shooter.matrix = flip.angle, flip.matrix
+        away = np.append(shooter.alternating(), [0.0, 0.0])
+        guess = flip.root.unknowns + distance * away
+        shooter.repeat_after(2 * shooter.turns)
+        with contextlib.suppress(NoConvergenceError):
+            root = corrected(shooter, guess, away, most=12)
+            return motion_at(shooter, root, away)
+    raise NoConvergenceError("no motion of twice the period near a period doubling")
 
 
 def clear_start(shooter: Shooter, motion: Motion) -> Motion:
@@ -254,16 +257,15 @@ def next_motion(walk: ShooterWalk, speeds: tuple[float, float]) -> tuple[Motion,
 def end_without_root(leg: Leg, shooter: Shooter) -> None:
     """Say why a branch ends where Newton's method finds no motion further on.
 
-    So near a grazing multipliers are those of both sides, by chance: one motion stands for all.
+    Steps are short there: one motion stands for all that are nearer than can be told from a plot.
     """
     seen = [(motion.root.unknowns, motion.angle) for motion in leg.motions]
     kind, distance = grazing_ahead(shooter, seen)
     leg.end = kind or STUCK
+    last = leg.motions.pop()
+    leg.motions = [one for one in leg.motions if apart(one, last) > LOCATED]
+    leg.motions.append(last)
     if kind and distance < LOCATED:
-        last = leg.motions.pop()
-        leg.motions = [one for one in leg.motions if apart(one, last) > LOCATED]
-        leg.motions.append(last)
-        leg.bifurcations = [one for one in leg.bifurcations if apart(one.motion, last) > LOCATED]
         leg.bifurcations.append(Bifurcation(kind, last))
 
 
