@@ -21,7 +21,7 @@ from .bifurcations import (
     Step,
 )
 from .closed_form import Floats
-from .continuation import NoConvergenceError, Root, Walk, corrected, held
+from .continuation import NoConvergenceError, Root, Walk, corrected, held, oriented
 from .families import Family
 from .impact_sequence import CLOSING, IMPACT, PHASE, POSITION, RELEASE, STICK, TURN, Ring, Sequence
 from .orbit_search import solve
@@ -312,7 +312,8 @@ def leaving(kind: int, look: Look) -> Look:
 def doubled(look: Look) -> Look:
     """Twice the orbit, with the direction in which its second half differs from the first."""
     family, unknowns = look.family, look.root.unknowns
-    mode = np.linalg.svd(look.ring.jacobian(-1.0).real * family.scale[: family.size])[2][-1]
+    singular = look.ring.jacobian(-1.0).real * family.scale[: family.size]
+    mode = oriented(np.linalg.svd(singular)[2][-1])
     second = look.ring.nodes.copy()
     second[:, PHASE] += TURN * family.sequence.periods
     nodes = np.vstack([look.ring.nodes, second])

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import InputError
 from .closed_form import Floats
@@ -208,13 +209,14 @@ def null_vector(matrix: Floats) -> Floats:
 
 
 def oriented(vector: Floats) -> Floats:
-    """A vector or its opposite: linear algebra leaves it to the processor which one comes out.
+    """A vector or its opposite: linear algebra leaves it to the processor which one comes out."""
+    return vector if vector[oriented_by(vector)] > 0.0 else -vector
 
-    The first component that is about as large as the largest one is positive.
-    """
+
+def oriented_by(vector: NDArray[np.inexact]) -> int:
+    """The first component that is about as large as the largest one."""
     size = np.abs(vector)
-    first = int(np.argmax(size > LARGE * size.max()))
-    return vector if vector[first] > 0.0 else -vector
+    return int(np.argmax(size > LARGE * size.max()))
 
 
 def held(curve: Curve, unknown: int) -> Floats:
@@ -239,6 +241,8 @@ class Walk(Generic[Followed]):
         Steps allowed.
     sharpest : float
         Cosine of the largest angle between successive tangents.
+    tolerance : float
+        As :func:`corrected` has it.
     """
 
     curve: Followed
@@ -247,12 +251,13 @@ class Walk(Generic[Followed]):
     longest: float
     shortest: float = 1e-7
     sharpest: float = 0.97
+    tolerance: float = 1e-8
 
     def at(self, length: float) -> Root:
         """The root a length along the tangent from where the walk stands."""
         root = self.root
         guess = root.unknowns + length * root.tangent * self.curve.scale
-        return corrected(self.curve, guess, root.tangent)
+        return corrected(self.curve, guess, root.tangent, tolerance=self.tolerance)
 
     def ahead(self, acceptable: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
         """The next root, and the length of the step to it: straight and acceptable.
@@ -323,7 +328,8 @@ class Walk(Generic[Followed]):
         length = (value - self.root.unknowns[unknown]) / rate
         guess = self.root.unknowns + length * self.root.tangent * self.curve.scale
         guess[unknown] = value
-        found = corrected(self.curve, guess, held(self.curve, unknown))
+        across = held(self.curve, unknown)
+        found = corrected(self.curve, guess, across, tolerance=self.tolerance)
         if found.tangent @ self.root.tangent < 0.0:
             return Root(found.unknowns, -found.tangent, found.residual, found.iterations)
         return found

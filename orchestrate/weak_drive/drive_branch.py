@@ -57,6 +57,7 @@ KINDS = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
 REPEATS = 1e-6  # of the unit: change of a motion in a part of its period, after which it repeats
 EVENTS = (*TESTS, FLIGHT, IMPACT)
+KNOWN = 1e-7  # to which multipliers are known: on the unit circle no motion is called stable
 MULTIPLIERS = 4  # the largest ones, that are kept
 TOLD: dict[str, tuple[str, str]] = {  # of a motion, with units
     "speed": ("rad/s", "mean speed"),
@@ -210,7 +211,7 @@ class DriveBranchJob(Job):
         points = points[:, :, : max(1, int(np.isfinite(points[..., 0]).sum(axis=2).max()))]
         along = ("structure", "leg", "point")
         found = told(along, points)
-        stable = np.nan_to_num(np.abs(points[..., len(TOLD)]), nan=np.inf) < 1.0
+        stable = np.nan_to_num(np.abs(points[..., len(TOLD)]), nan=np.inf) < 1.0 - KNOWN
         found["stable"] = (along, stable, labels("1", "whether the motion is stable"))
         ends = np.array(ENDS)[table["ends"]]
         found["end"] = (along[:2], ends, labels("1", "why the branch ends"))

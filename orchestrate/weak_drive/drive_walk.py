@@ -30,6 +30,7 @@ LOCATED = 1e-4  # of voltage over K omega and speed over omega: how near a grazi
 AWAY = (3e-3, 1e-3, 3e-4)  # of the unit: how far from a doubling twice the period is begun
 ON_CIRCLE = 1e-4  # of a pair that has been located: how far its size may be from 1
 NEAR = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere
+CONVERGED = 1e-5  # a step by secants from which on the derivative at the root is worth its while
 ACCURACY = 1e-6  # of a step: how exactly a bifurcation is located
 SHORTEST = 1e-5  # of the longest step: round a fold whose radius is 1e-4 of the amplitude too
 
@@ -210,8 +211,14 @@ def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: P
     """Follow a branch until it leaves a range of speeds, over omega, or is lost."""
     leg = Leg([start])
     begin = clear_start(shooter, start)
-    shortest = SHORTEST * pace.longest
-    walk = ShooterWalk(shooter, begin.root, pace.longest, pace.longest, shortest=shortest)
+    walk = ShooterWalk(
+        shooter,
+        begin.root,
+        pace.longest,
+        pace.longest,
+        shortest=SHORTEST * pace.longest,
+        tolerance=CONVERGED,
+    )
     halves = half_way(shooter, begin.root)
     while not leg.end:
         if len(leg.motions) >= pace.most:
