@@ -211,9 +211,7 @@ class Step:
         )
         return float(found.x)
 
-    def locate(
-        self, kind: int, low: float, high: float, level: float = 0.0
-    ) -> tuple[float, Look]:
+    def locate(self, kind: int, low: float, high: float, level: float = 0.0) -> tuple[float, Look]:
         """Where a test is 0, or at a level, by Brent's method along the branch, and the orbit."""
         from scipy.optimize import brentq
 

@@ -36,7 +36,10 @@ class Curve(Protocol):
     """n equations in n + 1 unknowns."""
 
     scale: Floats  # sizes of the unknowns, shape (n + 1,)
-    accuracy: float  # largest residual of a root, in the units of the equations
+
+    @property
+    def accuracy(self) -> float:
+        """Largest residual of a root, in the units of the equations."""
 
     def residual(self, unknowns: Floats) -> Floats:
         """What is left of the equations, shape (n,)."""
@@ -112,11 +115,9 @@ def corrected(
     It is known to rounding, and so is its tangent: nothing that is decided by them depends on how
     another processor rounds.
     """
-    unknowns, scale = guess.copy(), curve.scale
     way, length = np.zeros_like(guess), np.inf
     for iteration in range(1, most + 1):
         way, step = newton_step(curve, guess, way, across)
-        unknowns = guess + scale * way
         before, length = length, float(np.abs(step).max())
         if not length < np.inf or float(np.abs(way).max()) > furthest:
             raise NoConvergenceError("Newton's method went too far")

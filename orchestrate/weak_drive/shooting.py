@@ -118,7 +118,7 @@ class Shooter:
         The residual's Jacobian.
     """
 
-    accuracy = RESIDUAL
+    accuracy: float = RESIDUAL
 
     def __init__(
         self,
@@ -318,8 +318,8 @@ class Shooter:
         Raises
         ------
         NoConvergenceError
-            Where a grazing is so near that no differences agree: from 2e-6 of the unit on, ten thousand
-        times what rounding does to them, so that all machines draw the same line.
+            Where a grazing is so near that no differences agree: some 2e-6 of the unit. Rounding
+            changes them by a thousandth of that at most, so all machines draw the same line.
         """
         known: dict[float, Shot] = {0.0: base}
 
