@@ -30,6 +30,7 @@ CONTACT = (CONTACT_LOST, CONTACT_BEGUN)
 ENDS = (GRAZING, TOUCHING, RELEASE)  # beyond them the sequence of impacts is another one
 SIGNS = (FOLD, FLIP, TORUS, GRAZING, TOUCHING, RELEASE)  # told by a sign on every branch
 ON_CIRCLE = 1e-6
+UNDECIDED = 1e-10  # of (17), over a eta^2: an impact that is so near to sticking may do either
 ACCURACY = 1e-14  # of a place along the branch, in unknowns over their scale
 
 
@@ -80,8 +81,14 @@ class Look:
 
     @property
     def wrong_contact(self) -> bool:
-        """Whether an impact sticks that should not, or the reverse, or a contact is over."""
-        return self.ring.count > 0 and min(self.contact_test(kind) for kind in CONTACT) <= 0.0
+        """Whether an impact sticks that should not, or the reverse, or a contact is over.
+
+        Where (17) is all but met either will do: an orbit that has just got or lost an impact
+        meets it to rounding, and rounding must not say how it goes on.
+        """
+        if not self.ring.count:
+            return False
+        return min(self.contact_test(kind) for kind in CONTACT) <= -UNDECIDED
 
     def test(self, kind: int) -> float:
         """The function whose sign changes at a bifurcation of a kind."""
@@ -204,9 +211,12 @@ class Step:
         )
         return float(found.x)
 
-    def locate(self, kind: int, low: float, high: float) -> tuple[float, Look]:
-        """Where a bifurcation lies, by Brent's method along the branch, and the orbit there."""
+    def locate(self, kind: int, low: float, high: float, level: float = 0.0) -> tuple[float, Look]:
+        """Where a test is 0, or at a level, by Brent's method along the branch, and the orbit."""
         from scipy.optimize import brentq
 
-        place = float(brentq(lambda at: self.test(at, kind), low, high, xtol=ACCURACY, rtol=1e-14))
+        def above(place: float) -> float:
+            return self.test(place, kind) - level
+
+        place = float(brentq(above, low, high, xtol=ACCURACY, rtol=1e-14))
         return place, self.look(place)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from .bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING, Look
 from .closed_form import Floats
+from .continuation import oriented_by
 from .families import Family, difference
 from .impact_sequence import CLOSING, Ring
 from .turning_points import GAP, measured, nearest, turning_points
@@ -77,6 +78,11 @@ class Border:
         return cls(family, kind, place, extra)
 
     @property
+    def accuracy(self) -> float:
+        """What a root may leave of the orbit's equations, and of the bifurcation's."""
+        return self.family.accuracy
+
+    @property
     def parameters(self) -> int:
         """Number of the first parameter among the unknowns."""
         return self.family.size
@@ -95,7 +101,7 @@ class Border:
         """Border the matrix with the vectors that it all but maps to zero here."""
         if self.kind in (*TURNS, TORUS):
             left, _, right = np.linalg.svd(self.matrix(unknowns))
-            self.columns, self.rows = left[:, -1].astype(complex), right[-1].conj().astype(complex)
+            self.columns, self.rows = in_phase(left[:, -1]), in_phase(right[-1].conj())
 
     def matrix(self, unknowns: Floats) -> NDArray[np.complex128]:
         """What is singular at the bifurcation."""
@@ -124,7 +130,7 @@ class Border:
         orbit = self.family.residual(unknowns[: self.family.size + 2])
         return np.append(orbit, self.condition(unknowns))
 
-    def jacobian(self, unknowns: Floats) -> Floats:
+    def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Its derivative; that of the bifurcation's own equations by differences."""
         orbit = self.family.jacobian(unknowns[: self.family.size + 2])
         blank = np.zeros((len(orbit), len(self.extra)))
@@ -151,3 +157,9 @@ class Border:
         if self.kind == TORUS and not 0.0 < unknowns[-1] < np.pi:
             return "a resonance 1:1 or 1:2"
         return ""
+
+
+def in_phase(vector: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """A singular vector with a large component real and positive, as on any other processor."""
+    first = vector[oriented_by(vector)]
+    return np.asarray(vector * (first.conjugate() / abs(first)), dtype=complex)

@@ -16,11 +16,12 @@ from .bifurcations import (
     KINDS,
     SIGNS,
     TOUCHING,
+    UNDECIDED,
     Look,
     Step,
 )
 from .closed_form import Floats
-from .continuation import NoConvergenceError, Root, Walk, corrected, held
+from .continuation import NoConvergenceError, Root, Walk, corrected, held, oriented
 from .families import Family
 from .impact_sequence import CLOSING, IMPACT, PHASE, POSITION, RELEASE, STICK, TURN, Ring, Sequence
 from .orbit_search import solve
@@ -211,8 +212,10 @@ def resequenced(leg: Leg, walk: Walk[Family], look: Look, length: float) -> Look
     try:
         return chattering(look)
     except NoConvergenceError:  # too far on: look where the first impact comes or goes
-        kind = CONTACT_LOST if look.contact_test(CONTACT_LOST) <= 0.0 else CONTACT_BEGUN
-        place, first = Step(walk, leg.looks[-1], look, length).locate(kind, 0.0, length)
+        lost = look.contact_test(CONTACT_LOST) <= -UNDECIDED
+        kind = CONTACT_LOST if lost else CONTACT_BEGUN
+        step = Step(walk, leg.looks[-1], look, length)
+        place, first = step.locate(kind, 0.0, length, -UNDECIDED)
     try:
         found = chattering(rechattered(first))
     except NoConvergenceError:
@@ -309,7 +312,8 @@ def leaving(kind: int, look: Look) -> Look:
 def doubled(look: Look) -> Look:
     """Twice the orbit, with the direction in which its second half differs from the first."""
     family, unknowns = look.family, look.root.unknowns
-    mode = np.linalg.svd(look.ring.jacobian(-1.0).real * family.scale[: family.size])[2][-1]
+    singular = look.ring.jacobian(-1.0).real * family.scale[: family.size]
+    mode = oriented(np.linalg.svd(singular)[2][-1])
     second = look.ring.nodes.copy()
     second[:, PHASE] += TURN * family.sequence.periods
     nodes = np.vstack([look.ring.nodes, second])

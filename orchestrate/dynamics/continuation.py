@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import InputError
 from .closed_form import Floats
@@ -22,6 +23,9 @@ from .closed_form import Floats
 DENSE = 40  # equations up to which they are solved as if no coefficient were zero
 NEARLY = 1e-6  # a step that shrinks no more from here on is rounding
 ROUNDED = 0.05
+POLISHING = 2  # Newton steps after convergence, with the derivative at the root itself
+ACROSS = 1e-6  # cosine below which a tangent lies across the direction that should orient it
+LARGE = 0.9  # of the largest component: the first one above it orients a vector
 
 
 class NoConvergenceError(Exception):
@@ -33,11 +37,21 @@ class Curve(Protocol):
 
     scale: Floats  # sizes of the unknowns, shape (n + 1,)
 
+    @property
+    def accuracy(self) -> float:
+        """Largest residual of a root, in the units of the equations."""
+
     def residual(self, unknowns: Floats) -> Floats:
         """What is left of the equations, shape (n,)."""
 
-    def jacobian(self, unknowns: Floats) -> Floats:
-        """Its derivative, shape (n, n + 1)."""
+    def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
+        """Its derivative, shape (n, n + 1): at a root exact, on the way to it perhaps an estimate.
+
+        Raises
+        ------
+        NoConvergenceError
+            Where there is no derivative.
+        """
 
 
 Followed = TypeVar("Followed", bound=Curve)
@@ -82,7 +96,7 @@ def corrected(
         Direction in unknowns over their scale; the root differs from the guess across it alone. A
         unit vector holds an unknown fixed.
     tolerance : float
-        Largest last step, in unknowns over their scale; the error after it is its square.
+        Largest last step before the root is polished, in unknowns over their scale.
     most : int
         Iterations.
     furthest : float
@@ -92,34 +106,69 @@ def corrected(
     ------
     NoConvergenceError
         Where there is none.
+
+    Notes
+    -----
+    A short step alone does not make a root: with a wrong derivative steps are short anywhere. So
+    the derivative is made anew where the steps have become short, two more steps are taken with
+    it, and the root is accepted by what is left of the equations then, ``curve.accuracy`` at most.
+    It is known to rounding, and so is its tangent: nothing that is decided by them depends on how
+    another processor rounds.
     """
-    unknowns, scale = guess.copy(), curve.scale
     way, length = np.zeros_like(guess), np.inf
     for iteration in range(1, most + 1):
-        try:
-            with np.errstate(over="ignore", invalid="ignore"):
-                matrix = np.vstack([curve.jacobian(unknowns) * scale, across])
-                left = np.append(curve.residual(unknowns), across @ way)
-                step = solved(matrix, left)
-        except (np.linalg.LinAlgError, InputError) as error:
-            raise NoConvergenceError(str(error)) from None
-        way = way - step
-        unknowns = guess + scale * way
+        way, step = newton_step(curve, guess, way, across)
         before, length = length, float(np.abs(step).max())
         if not length < np.inf or float(np.abs(way).max()) > furthest:
             raise NoConvergenceError("Newton's method went too far")
         if length <= tolerance or before * ROUNDED <= length <= before <= NEARLY:
-            return finished(curve, unknowns, matrix, iteration)
+            return polished(curve, guess, way, across, iteration)
     raise NoConvergenceError(f"no root after {most} iterations")
 
 
-def finished(curve: Curve, unknowns: Floats, matrix: Floats, iterations: int) -> Root:
-    """A root with its tangent, from the equations' last matrix."""
+def newton_step(
+    curve: Curve, guess: Floats, way: Floats, across: Floats, jacobian: Floats | None = None
+) -> tuple[Floats, Floats]:
+    """One step of Newton's method: the way from the guess after it, and the step.
+
+    The derivative is the curve's own where none is given.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where the equations are singular, or have no value.
+    """
     try:
+        with np.errstate(over="ignore", invalid="ignore"):
+            unknowns = guess + curve.scale * way
+            jacobian = curve.jacobian(unknowns) if jacobian is None else jacobian
+            left = np.append(curve.residual(unknowns), across @ way)
+            step = solved(np.vstack([jacobian * curve.scale, across]), left)
+    except (np.linalg.LinAlgError, InputError) as error:
+        raise NoConvergenceError(str(error)) from None
+    return way - step, step
+
+
+def polished(curve: Curve, guess: Floats, way: Floats, across: Floats, iterations: int) -> Root:
+    """The root that Newton's method has come near to, with its tangent.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where it is none.
+    """
+    try:
+        jacobian = curve.jacobian(guess + curve.scale * way, at_root=True)
+        for _ in range(POLISHING):
+            way, _ = newton_step(curve, guess, way, across, jacobian)
+        unknowns = guess + curve.scale * way
         left = float(np.abs(curve.residual(unknowns)).max(initial=0.0))
     except InputError as error:
         raise NoConvergenceError(str(error)) from None
-    return Root(unknowns, null_vector(matrix), left, iterations)
+    if not left <= curve.accuracy:
+        raise NoConvergenceError(f"no root: {left:.0e} is left of the equations")
+    tangent = null_vector(np.vstack([jacobian * curve.scale, across]))
+    return Root(unknowns, tangent, left, iterations)
 
 
 def solved(matrix: Floats, right: Floats) -> Floats:
@@ -145,15 +194,30 @@ def solved(matrix: Floats, right: Floats) -> Floats:
 
 
 def null_vector(matrix: Floats) -> Floats:
-    """The direction of length 1 that all rows but the last map to zero, on the side of the last."""
+    """The direction of length 1 that all rows but the last map to zero, on the side of the last.
+
+    Where it is across the last row, as at a fold of a parameter that was held, it has no side: a
+    component orients it.
+    """
     last = np.zeros(len(matrix))
     last[-1] = 1.0
     try:
         found = solved(matrix, last)
-    except np.linalg.LinAlgError:  # it is across the last row: a fold, where a parameter was held
+    except np.linalg.LinAlgError:
         found = np.linalg.svd(matrix[:-1])[2][-1]
     tangent: Floats = found / np.linalg.norm(found)
-    return tangent
+    return tangent if abs(float(matrix[-1] @ tangent)) > ACROSS else oriented(tangent)
+
+
+def oriented(vector: Floats) -> Floats:
+    """A vector or its opposite: linear algebra leaves it to the processor which one comes out."""
+    return vector if vector[oriented_by(vector)] > 0.0 else -vector
+
+
+def oriented_by(vector: NDArray[np.inexact]) -> int:
+    """The first component that is about as large as the largest one."""
+    size = np.abs(vector)
+    return int(np.argmax(size > LARGE * size.max()))
 
 
 def held(curve: Curve, unknown: int) -> Floats:
@@ -178,6 +242,8 @@ class Walk(Generic[Followed]):
         Steps allowed.
     sharpest : float
         Cosine of the largest angle between successive tangents.
+    tolerance : float
+        As :func:`corrected` has it.
     """
 
     curve: Followed
@@ -186,12 +252,13 @@ class Walk(Generic[Followed]):
     longest: float
     shortest: float = 1e-7
     sharpest: float = 0.97
+    tolerance: float = 1e-8
 
     def at(self, length: float) -> Root:
         """The root a length along the tangent from where the walk stands."""
         root = self.root
         guess = root.unknowns + length * root.tangent * self.curve.scale
-        return corrected(self.curve, guess, root.tangent)
+        return corrected(self.curve, guess, root.tangent, tolerance=self.tolerance)
 
     def ahead(self, acceptable: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
         """The next root, and the length of the step to it: straight and acceptable.
@@ -262,7 +329,8 @@ class Walk(Generic[Followed]):
         length = (value - self.root.unknowns[unknown]) / rate
         guess = self.root.unknowns + length * self.root.tangent * self.curve.scale
         guess[unknown] = value
-        found = corrected(self.curve, guess, held(self.curve, unknown))
+        across = held(self.curve, unknown)
+        found = corrected(self.curve, guess, across, tolerance=self.tolerance)
         if found.tangent @ self.root.tangent < 0.0:
             return Root(found.unknowns, -found.tangent, found.residual, found.iterations)
         return found

@@ -13,11 +13,12 @@ from ..response.questions import ASKED, Point, point
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import one_of
 from .closed_form import ClosedForm, Floats
-from .impact_sequence import Ring, Sequence
+from .impact_sequence import POSITION, Ring, Sequence
 
 ACCELERATION = "box_acceleration"
 SMALLEST = 1e-3  # scale of displacements and velocities over a eta^2
 RELATIVE_STEP = 1e-6  # of a parameter, for differences
+RESIDUAL = 1e-10  # of the motion's size: what a root may leave of the equations
 
 
 @dataclass(frozen=True)
@@ -134,6 +135,13 @@ class Family:
         """Number of the nodes' unknowns."""
         return 4 * len(self.sequence.kinds)
 
+    @property
+    def accuracy(self) -> float:
+        """What a root may leave of the equations: displacements and velocities as in the nodes."""
+        if not self.size:
+            return RESIDUAL
+        return RESIDUAL * float(self.scale[POSITION]) / np.sqrt(len(self.sequence.kinds))
+
     def ring(self, unknowns: Floats) -> Ring:
         """The orbit's nodes and equations."""
         nodes, values = unknowns[: self.size], unknowns[self.size :]
@@ -143,7 +151,7 @@ class Family:
         """What is left of the equations."""
         return self.ring(unknowns).residual()
 
-    def jacobian(self, unknowns: Floats) -> Floats:
+    def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Its derivative: exact by the nodes, by differences by the parameters."""
         columns = [
             difference(self.residual, unknowns, self.size + i, *limits)[:, None]

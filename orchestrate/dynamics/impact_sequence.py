@@ -21,6 +21,7 @@ from .closed_form import ClosedForm, Floats
 IMPACT, STICK, RELEASE = 0, 1, 2  # kinds of nodes; after STICK follows permanent contact
 PHASE, POSITION, VELOCITY, CLOSING = range(4)  # unknowns of a node
 TURN = 2.0 * np.pi
+ON_CIRCLE = 1e-7  # of a multiplier's size: nearer to the unit circle no orbit is called stable
 
 
 @dataclass(frozen=True)
@@ -256,6 +257,14 @@ class Ring:
         if self.contact.any():
             found[np.argsort(np.abs(found))[:2]] = 0.0
         return found[np.lexsort((found.imag, found.real.round(12), -np.abs(found).round(12)))]
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie in the unit circle, by more than they are known to.
+
+        At a bifurcation, where one lies on the circle, rounding would say so or not.
+        """
+        return bool(np.abs(self.multipliers()).max() < 1.0 - ON_CIRCLE)
 
     def dictated(self) -> float:
         """The multipliers' product, by Liouville's formula and e^2 for each impact."""

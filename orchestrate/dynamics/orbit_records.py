@@ -12,7 +12,7 @@ from ..response.labels import Variable, flags, nondimensional_state, parameter, 
 from ..running.job import Table
 from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
-from .impact_sequence import CLOSING, PHASE, POSITION, RELEASE, VELOCITY
+from .impact_sequence import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .orbit_search import Verdict
 from .turning_points import Amplitudes, in_order, nearest, phase_zero, turning_points
 
@@ -193,7 +193,7 @@ def stability(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
     return {
         "multipliers": variable(along, multipliers, "1", texts["multipliers"]),
         "multiplier_product": variable(row, product, "1", texts["multiplier_product"]),
-        "stable": yes_or_no(row, size[:, 0] < 1.0, texts["stable"]),
+        "stable": yes_or_no(row, size[:, 0] < 1.0 - ON_CIRCLE, texts["stable"]),
         "exponent": variable(row, exponent, "1", texts["exponent"]),
     }
 

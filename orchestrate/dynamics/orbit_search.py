@@ -129,7 +129,7 @@ def first_motion(
             continue
         ring = family.ring(root.unknowns)
         why = why_no_motion(ring) or why_shorter(ring, guess[0].periods)
-        if not why and (not stable or np.abs(ring.multipliers()).max(initial=0.0) < 1.0):
+        if not why and (not stable or ring.stable):
             return family, root
         unstable = unstable or (None if why else (family, root))
         reason = reason or why

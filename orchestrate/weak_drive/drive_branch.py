@@ -57,6 +57,7 @@ KINDS = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
 REPEATS = 1e-6  # of the unit: change of a motion in a part of its period, after which it repeats
 EVENTS = (*TESTS, FLIGHT, IMPACT)
+KNOWN = 1e-7  # to which multipliers are known: on the unit circle no motion is called stable
 MULTIPLIERS = 4  # the largest ones, that are kept
 TOLD: dict[str, tuple[str, str]] = {  # of a motion, with units
     "speed": ("rad/s", "mean speed"),
@@ -210,7 +211,7 @@ class DriveBranchJob(Job):
         points = points[:, :, : max(1, int(np.isfinite(points[..., 0]).sum(axis=2).max()))]
         along = ("structure", "leg", "point")
         found = told(along, points)
-        stable = np.nan_to_num(np.abs(points[..., len(TOLD)]), nan=np.inf) < 1.0
+        stable = np.nan_to_num(np.abs(points[..., len(TOLD)]), nan=np.inf) < 1.0 - KNOWN
         found["stable"] = (along, stable, labels("1", "whether the motion is stable"))
         ends = np.array(ENDS)[table["ends"]]
         found["end"] = (along[:2], ends, labels("1", "why the branch ends"))
@@ -315,10 +316,17 @@ def drive_branch(
     -----
     Voltage and speed are both unknowns of Newton's method, and Keller's pseudo-arclength equation
     is the one that is missing then. Bifurcations are roots on the branch, of the tangent's voltage
-    (fold) and of products of the multipliers (the others), to 1e-3 of a step. The angle's own
+    (fold) and of products of the multipliers (the others), to 1e-6 of a step. The angle's own
     multiplier, 1 for every motion, is not among those given. A branch ends where an impact or a
     flight grazes; it is told by the smallest closing speed and the smallest gap of a turning, which
-    fall to 0 there, and is a bifurcation where less than 1e-4 is left of the way.
+    fall to 0 there, and is a bifurcation where less than 1e-4 is left of the way. Of motions nearer
+    than that to the last one only that is kept.
+
+    A motion is accepted by what it leaves of the equations, 1e-9 of the amplitude at most (1e-13 is
+    usual), and by its impacts, which are those of the motion before. Derivatives are by differences
+    of two sizes that agree, on both sides of a motion or on the one where the same impacts occur;
+    where none agree, 2e-6 of the amplitude from where an impact vanishes, the branch is not
+    followed further. ``stable`` is false within 1e-7 of the unit circle.
 
     Examples
     --------

@@ -7,6 +7,7 @@ Where an impact or a flight grazes the branch ends: see :mod:`.grazing`.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import combinations
@@ -18,7 +19,7 @@ from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import NoConvergenceError, Root, Walk, corrected, held, null_vector
 from .averaged import FOLD, TORUS
 from .grazing import FLIGHT, IMPACT, grazing_ahead
-from .shooting import COARSE, FINE, Period, Shooter
+from .shooting import Period, Shooter
 
 FLIP = "period doubling"
 LIMIT, STUCK, LONG, NONE = "limit", "no convergence", "most points", "no motion at the start"
@@ -26,9 +27,11 @@ NOT_BEGUN = "not begun: the other leg has gone all the way"
 HALVED = "meets the motion of half its period"
 ENDS = (LIMIT, STUCK, LONG, NONE, NOT_BEGUN, HALVED, FLIGHT, IMPACT)
 LOCATED = 1e-4  # of voltage over K omega and speed over omega: how near a grazing has been found
-AWAY = 3e-3  # of the unit: how far from a doubling the motion of twice the period is begun
-ON_CIRCLE = 1e-3  # of a pair that has been located: how far its size may be from 1
+AWAY = (3e-3, 1e-3, 3e-4)  # of the unit: how far from a doubling twice the period is begun
+ON_CIRCLE = 1e-4  # of a pair that has been located: how far its size may be from 1
 NEAR = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere
+CONVERGED = 1e-5  # a step by secants from which on the derivative at the root is worth its while
+ACCURACY = 1e-6  # of a step: how exactly a bifurcation is located
 SHORTEST = 1e-5  # of the longest step: round a fold whose radius is 1e-4 of the amplitude too
 
 
@@ -128,13 +131,32 @@ def happens(kind: str, motion: Motion) -> bool:
 # -- along the branch ------------------------------------------------------------------------------
 
 
-def motion_at(shooter: Shooter, root: Root, ahead: Floats, central: bool = False) -> Motion:
-    """A root as a motion, with its own Jacobian; ``ahead`` is the side of its tangent."""
-    matrix = shooter.renew(root.unknowns, central=central)
-    tangent = null_vector(np.vstack([matrix, ahead]))
+class ShooterWalk(Walk[Shooter]):
+    """A walk whose every try begins with the Jacobian of the motion where it stands."""
+
+    matrix: Floats
+
+    def stand(self, motion: Motion) -> None:
+        """Go on from a motion."""
+        self.root, self.matrix = motion.root, motion.matrix
+
+    def at(self, length: float) -> Root:
+        """As :meth:`.Walk.at`."""
+        self.curve.restart(self.root.unknowns, self.matrix)
+        return super().at(length)
+
+    def land(self, unknown: int, value: float) -> Root:
+        """As :meth:`.Walk.land`."""
+        self.curve.restart(self.root.unknowns, self.matrix)
+        return super().land(unknown, value)
+
+
+def motion_at(shooter: Shooter, root: Root, ahead: Floats) -> Motion:
+    """A root that has just been found as a motion; ``ahead`` is the side of its tangent."""
+    tangent = root.tangent if root.tangent @ ahead > 0.0 else -root.tangent
     values = shooter.multipliers()
     period = shooter.look(root.unknowns)
-    return Motion(replace(root, tangent=tangent), matrix, values, period, shooter.angle)
+    return Motion(replace(root, tangent=tangent), shooter.matrix, values, period, shooter.angle)
 
 
 def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
@@ -160,14 +182,16 @@ def doubled(shooter: Shooter, flip: Motion) -> Motion:
     NoConvergenceError
         Where there is none.
     """
-    shooter.repeat_after(flip.period.revolutions)
-    shooter.angle, shooter.matrix = flip.angle, flip.matrix
-    away = np.append(shooter.alternating(), [0.0, 0.0])
-    guess = flip.root.unknowns + AWAY * away
-    shooter.repeat_after(2 * shooter.turns)
-    shooter.renew(guess)
-    root = corrected(shooter, guess, away, most=12)
-    return motion_at(shooter, root, away)
+    for distance in AWAY:
+        shooter.repeat_after(flip.period.revolutions)
+        shooter.angle, shooter.matrix = flip.angle, flip.matrix
+        away = np.append(shooter.alternating(), [0.0, 0.0])
+        guess = flip.root.unknowns + distance * away
+        shooter.repeat_after(2 * shooter.turns)
+        with contextlib.suppress(NoConvergenceError):
+            root = corrected(shooter, guess, away, most=12)
+            return motion_at(shooter, root, away)
+    raise NoConvergenceError("no motion of twice the period near a period doubling")
 
 
 def clear_start(shooter: Shooter, motion: Motion) -> Motion:
@@ -177,9 +201,8 @@ def clear_start(shooter: Shooter, motion: Motion) -> Motion:
     root = motion.root
     unknowns = shooter.begin_later(root.unknowns, motion.period.clear)
     matrix = shooter.renew(unknowns)
-    tangent = null_vector(np.vstack([matrix, held(shooter, -2)]))
-    if tangent[-2:] @ root.tangent[-2:] < 0.0:  # voltage and speed are those of before
-        tangent = -tangent
+    ahead = np.append(np.zeros(shooter.size), root.tangent[-2:])  # as before: voltage and speed
+    tangent = null_vector(np.vstack([matrix, ahead]))
     moved = replace(root, unknowns=unknowns, tangent=tangent)
     return motion._replace(root=moved, matrix=matrix, angle=shooter.angle)
 
@@ -188,12 +211,20 @@ def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: P
     """Follow a branch until it leaves a range of speeds, over omega, or is lost."""
     leg = Leg([start])
     begin = clear_start(shooter, start)
-    walk = Walk(shooter, begin.root, pace.longest, pace.longest, shortest=SHORTEST * pace.longest)
+    walk = ShooterWalk(
+        shooter,
+        begin.root,
+        pace.longest,
+        pace.longest,
+        shortest=SHORTEST * pace.longest,
+        tolerance=CONVERGED,
+    )
     halves = half_way(shooter, begin.root)
     while not leg.end:
         if len(leg.motions) >= pace.most:
             leg.end = LONG
             break
+        walk.stand(begin)
         try:
             after, length, arrived = next_motion(walk, speeds)
         except NoConvergenceError:
@@ -203,54 +234,45 @@ def follow(shooter: Shooter, start: Motion, speeds: tuple[float, float], pace: P
         if halves_before @ halves < 0.0:  # the same motion from here on, half a period later
             leg.end = HALVED
             break
-        leg.bifurcations += located(walk, leg.motions[-1], after, length)
+        leg.bifurcations += located(walk, begin, after, length)
         leg.motions.append(after)
         leg.end = LIMIT if arrived else ""
-        shooter.matrix = after.matrix
         begin = clear_start(shooter, after)
-        walk.root = begin.root
         if begin is not after:
             halves = half_way(shooter, begin.root)
     return leg
 
 
-def next_motion(walk: Walk[Shooter], speeds: tuple[float, float]) -> tuple[Motion, float, bool]:
+def next_motion(walk: ShooterWalk, speeds: tuple[float, float]) -> tuple[Motion, float, bool]:
     """The next motion, the length of the step to it, and whether it lies on a limit.
 
-    Where there is none, the Jacobian is made by differences of the other size.
+    It has the impacts of the one before: with others it lies beyond a grazing.
 
     Raises
     ------
     NoConvergenceError
-        Where there is none either.
+        Where there is none.
     """
     shooter = walk.curve
-    for other in (FINE if shooter.change == COARSE else COARSE, 0.0):
-        try:
-            root, length, arrived = walk.inside(shooter.size + 1, [speeds])
-            return motion_at(shooter, root, walk.root.tangent), length, arrived
-        except NoConvergenceError:
-            if not other:
-                raise
-        shooter.change, walk.step = other, walk.longest
-        matrix = np.vstack([shooter.renew(walk.root.unknowns), walk.root.tangent])
-        walk.root = replace(walk.root, tangent=null_vector(matrix))
-    raise AssertionError("two ways")
+    here = shooter.shoot(walk.root.unknowns)
+    root, length, arrived = walk.inside(
+        shooter.size + 1, [speeds], lambda root: shooter.shoot(root.unknowns).like(here)
+    )
+    return motion_at(shooter, root, walk.root.tangent), length, arrived
 
 
 def end_without_root(leg: Leg, shooter: Shooter) -> None:
     """Say why a branch ends where Newton's method finds no motion further on.
 
-    So near a grazing multipliers are those of both sides, by chance: one motion stands for all.
+    Steps are short there: one motion stands for all that are nearer than can be told from a plot.
     """
     seen = [(motion.root.unknowns, motion.angle) for motion in leg.motions]
     kind, distance = grazing_ahead(shooter, seen)
     leg.end = kind or STUCK
+    last = leg.motions.pop()
+    leg.motions = [one for one in leg.motions if apart(one, last) > LOCATED]
+    leg.motions.append(last)
     if kind and distance < LOCATED:
-        last = leg.motions.pop()
-        leg.motions = [one for one in leg.motions if apart(one, last) > LOCATED]
-        leg.motions.append(last)
-        leg.bifurcations = [one for one in leg.bifurcations if apart(one.motion, last) > LOCATED]
         leg.bifurcations.append(Bifurcation(kind, last))
 
 
@@ -266,33 +288,34 @@ def half_way(shooter: Shooter, root: Root) -> Floats:
     return shooter.change_in(root.unknowns, shooter.turns // 2)
 
 
-def located(walk: Walk[Shooter], before: Motion, after: Motion, length: float) -> list[Bifurcation]:
+def located(walk: ShooterWalk, before: Motion, after: Motion, length: float) -> list[Bifurcation]:
     """Bifurcations in a step, in order."""
     found = []
     for kind, test in TESTS.items():
         if test(before) * test(after) < 0.0:
-            there = locate(walk, test, length)
+            there = locate(walk, test, {0.0: before, length: after})
             if there is not None and happens(kind, there[1]):
                 found.append((there[0], Bifurcation(kind, there[1])))
     return [one for _, one in sorted(found, key=lambda each: each[0])]
 
 
 def locate(
-    walk: Walk[Shooter], test: Callable[[Motion], float], length: float, accuracy: float = 1e-3
+    walk: ShooterWalk, test: Callable[[Motion], float], ends: dict[float, Motion]
 ) -> tuple[float, Motion] | None:
-    """Where on the way a test is 0: length, to ``accuracy`` of the step, and the motion."""
+    """Where on the way a test is 0: length, and the motion; ``ends`` are those of the step."""
     from scipy.optimize import brentq
 
-    known: dict[float, Motion] = {}
-    shooter, ahead = walk.curve, walk.root.tangent
+    shooter, ahead, length = walk.curve, walk.root.tangent, max(ends)
+    known = dict(ends)
 
     def value(place: float) -> float:
-        root = walk.at(place) if place else walk.root
-        known[place] = motion_at(shooter, root, ahead, central=True)
+        if place not in known:
+            known[place] = motion_at(shooter, walk.at(place), ahead)
         return test(known[place])
 
     try:
-        place = brentq(value, 0.0, length, xtol=accuracy * length)
-    except (NoConvergenceError, ValueError):  # ValueError: no change of sign, looked at closely
+        place = brentq(value, 0.0, length, xtol=ACCURACY * length)
+        value(place)
+    except NoConvergenceError:
         return None
-    return place, known.get(place) or known[min(known, key=lambda other: abs(other - place))]
+    return place, known[place]

@@ -8,13 +8,14 @@ motions make a curve, which :mod:`orchestrate.dynamics.continuation` follows rou
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ..access.instance import Instance
 from ..dynamics.closed_form import Floats
-from ..dynamics.continuation import NoConvergenceError
+from ..dynamics.continuation import NoConvergenceError, oriented
 from ..errors import FmuError
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -28,7 +29,9 @@ STARTS = {  # start values of the shaker and of the structure by the outputs tha
     **{name: f"{name}_start" for name in ("x1", "v1", "x2", "v2")},
     "motor_current": "current_start",
 }
-COARSE, FINE = 1e-5, 1e-7  # differences of the unknowns: see Shooter.change
+CHANGES = (1e-6, 1e-7)  # of an unknown, for differences: the first that will do
+AGREEMENT = 1e-3  # of a derivative by differences with another: one of twice the change
+RESIDUAL = 1e-9  # of the unit: what a root may leave of the equations
 HEAVY = 1e6  # times its inertia, a rotor that keeps its speed
 
 
@@ -54,12 +57,43 @@ class Period(NamedTuple):
     share: float
 
 
+class Shot(NamedTuple):
+    """Both FMUs after a period.
+
+    Attributes
+    ----------
+    end : ndarray
+        The state, each quantity over its unit, and the angle beyond full turns.
+    impacts : int
+        On the way.
+    contact : bool
+        Whether the masses were in permanent contact at a communication point on the way.
+    """
+
+    end: Floats
+    impacts: int
+    contact: bool
+
+    def like(self, other: Shot) -> bool:
+        """Whether no grazing lies between two motions: the end is smooth between them.
+
+        In a chattering that ends in contact the last impacts come and go with next to no speed.
+        """
+        return self.impacts == other.impacts or (self.contact and other.contact)
+
+
 class Shooter:
     """Both FMUs as equations whose roots are periodic motions.
 
     Unknowns are the state where the angle has its value at the start, each quantity over its unit,
-    then the voltage over K omega and the mean speed over omega. The Jacobian is renewed where it is
-    asked for, and follows the residuals by Broyden's secants between.
+    then the voltage over K omega and the mean speed over omega. The Jacobian is made by differences
+    at a root, each checked: both sides, or the one that is taken, must have the impacts that the
+    root has, and two sizes of the change must agree. On the way to a root it follows the residuals
+    by Broyden's secants.
+
+    A root may leave 1e-9 of the unit, about the amplitude, of the equations. Rounding leaves 1e-15
+    to 1e-13, times the largest multiplier; the end of a period is continuous, also where an impact
+    passes from one communication step to the next.
 
     Parameters
     ----------
@@ -82,11 +116,9 @@ class Shooter:
         Of the motor at the start, rad.
     matrix : ndarray, shape (size + 1, size + 2)
         The residual's Jacobian.
-    change : float
-        Of the unknowns, for its differences: ``COARSE``, since an impact that passes from one step
-        to the next changes what the coupling leaves, or ``FINE`` near a grazing, where both states
-        are to have the same impacts.
     """
+
+    accuracy: float = RESIDUAL
 
     def __init__(
         self,
@@ -99,7 +131,7 @@ class Shooter:
     ) -> None:
         self.fmus, self.structure, self.drive = fmus, structure, drive
         self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
-        self.used, self.change = False, COARSE
+        self.used = False
         omega = structure.omega
         masses = ("x1", "v1") if structure.bonded else ("x1", "v1", "x2", "v2")
         self.names = (*masses, "box_position", "box_velocity", "speed")
@@ -123,7 +155,7 @@ class Shooter:
         turns, matrix, last = self.turns, self.matrix, self._last
         self.repeat_after(revolutions)
         try:
-            return self.after(unknowns)[: self.size] - unknowns[: self.size]
+            return self.shoot(unknowns).end[: self.size] - unknowns[: self.size]
         finally:
             self.repeat_after(turns)
             self.matrix, self._last = matrix, last
@@ -186,8 +218,8 @@ class Shooter:
     def _touching(self, master: Master) -> bool:
         return not self.structure.bonded and master.motion.x1 == master.motion.x2
 
-    def after(self, unknowns: Floats) -> Floats:
-        """State, and angle beyond full turns, a period later.
+    def shoot(self, unknowns: Floats) -> Shot:
+        """Run both FMUs over a period.
 
         Raises
         ------
@@ -196,13 +228,15 @@ class Shooter:
         """
         try:
             master, voltage = self.begin(unknowns)
-            master.run([voltage] * self.count)
+            kept = np.empty((self.count, len(master.memory())))
+            master.run([voltage] * self.count, kept=kept)
         except FmuError as error:
             raise NoConvergenceError(str(error)) from None
         turned = master.shaking.angle - self.angle - self.turns * TURN
-        found = np.append(self.state_of(master), turned)
+        end = np.append(self.state_of(master), turned)
         master.close()
-        return found
+        contact = bool((kept[:, PLACES["x1"]] == kept[:, PLACES["x2"]]).any())
+        return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
 
     def look(self, unknowns: Floats) -> Period:
         """What a motion does over a period."""
@@ -234,15 +268,21 @@ class Shooter:
         """What a period changes: of the state, and of the angle beyond full turns."""
         if self._last is not None and np.array_equal(self._last[0], unknowns):
             return self._last[1]
-        found = self.after(unknowns)
+        found = self.shoot(unknowns).end
         found[: self.size] -= unknowns[: self.size]
         return found
 
-    def jacobian(self, unknowns: Floats) -> Floats:
-        """The residual's derivative, by the secant from where it was last asked for."""
-        found = self.residual(unknowns)
-        if not self.matrix.size:
+    def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
+        """The residual's derivative: by differences, or by the secant from where it was asked last.
+
+        Raises
+        ------
+        NoConvergenceError
+            Where there is no derivative.
+        """
+        if at_root or not self.matrix.size:
             return self.renew(unknowns)
+        found = self.residual(unknowns)
         if self._last is not None:
             way = unknowns - self._last[0]
             length = float(way @ way)
@@ -252,23 +292,54 @@ class Shooter:
         self._last = unknowns.copy(), found
         return self.matrix
 
-    def renew(self, unknowns: Floats, central: bool = False) -> Floats:
-        """The Jacobian by differences at a root or near one."""
-        change = self.change
-        base = self.residual(unknowns)
-        columns = []
-        for i in range(len(unknowns)):
-            moved = unknowns.copy()
-            moved[i] += change
-            there = self.residual(moved)
-            if central:
-                moved[i] -= 2.0 * change
-                columns.append((there - self.residual(moved)) / (2.0 * change))
-            else:
-                columns.append((there - base) / change)
-        self.matrix = np.stack(columns, axis=1)
-        self._last = unknowns.copy(), base
+    def restart(self, root: Floats, matrix: Floats) -> None:
+        """Go on from a root with its Jacobian, whatever has been tried from there."""
+        self.matrix, self._last = matrix, (root, np.zeros(self.size + 1))
+
+    def renew(self, unknowns: Floats) -> Floats:
+        """The Jacobian by differences, at a root or near one.
+
+        Raises
+        ------
+        NoConvergenceError
+            Where there is none.
+        """
+        base = self.shoot(unknowns)
+        matrix = np.stack([self.column(unknowns, i, base) for i in range(len(unknowns))], axis=1)
+        matrix[: self.size, : self.size] -= np.eye(self.size)
+        self.matrix, residual = matrix, base.end.copy()
+        residual[: self.size] -= unknowns[: self.size]
+        self._last = unknowns.copy(), residual
         return self.matrix
+
+    def column(self, unknowns: Floats, which: int, base: Shot) -> Floats:
+        """The derivative of a period's end by one unknown.
+
+        Raises
+        ------
+        NoConvergenceError
+            Where a grazing is so near that no differences agree: some 2e-6 of the unit. Rounding
+            changes them by a thousandth of that at most, so all machines draw the same line.
+        """
+        known: dict[float, Shot] = {0.0: base}
+
+        def end(change: float) -> Floats | None:
+            """The end after a change, where no grazing lies between."""
+            if change not in known:
+                moved = unknowns.copy()
+                moved[which] += change
+                known[change] = self.shoot(moved)
+            return known[change].end if known[change].like(base) else None
+
+        for change in CHANGES:
+            for difference in (central, one_sided):
+                for size in (change,) if difference is central else (change, -change):
+                    fine, coarse = difference(end, size), difference(end, 2.0 * size)
+                    if fine is None or coarse is None:
+                        continue
+                    if np.abs(fine - coarse).max() <= AGREEMENT * max(1.0, np.abs(fine).max()):
+                        return (4.0 * fine - coarse) / 3.0  # Richardson
+        raise NoConvergenceError("a grazing is too near for a derivative")
 
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers by the Jacobian: of the map from the angle at the start to itself.
@@ -289,4 +360,21 @@ class Shooter:
         """The direction of length 1 of the state that the map turns round: multiplier -1."""
         values, vectors = np.linalg.eig(self.section())
         found = vectors[:, np.argmin(np.abs(values + 1.0))].real
-        return np.asarray(found / np.linalg.norm(found))
+        return oriented(np.asarray(found / np.linalg.norm(found)))
+
+
+Ends = Callable[[float], "Floats | None"]  # of a period, by a change of an unknown
+
+
+def central(end: Ends, change: float) -> Floats | None:
+    """A derivative by the ends on both sides; none where one of them is of another kind."""
+    after, before = end(change), end(-change)
+    return None if after is None or before is None else (after - before) / (2.0 * change)
+
+
+def one_sided(end: Ends, change: float) -> Floats | None:
+    """The same by one side alone, of the same order."""
+    here, near, far = end(0.0), end(change), end(2.0 * change)
+    if here is None or near is None or far is None:
+        return None
+    return (4.0 * near - far - 3.0 * here) / (2.0 * change)

@@ -10,6 +10,7 @@ import xarray as xr
 
 from orchestrate.access import OSCILLATOR, EventInstance, begin, find
 from orchestrate.dynamics.branches import branch
+from orchestrate.dynamics.continuation import NoConvergenceError, corrected, null_vector, oriented
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.structures import Excitation, Structure
@@ -288,3 +289,41 @@ def test_what_cannot_be_switched_to():
         branch(PAPER, start=windows(1), limits=(1.37, 9.5))
     with pytest.raises(InputError, match="switch = 99"):
         branch(PAPER, start=windows(1), switch=99, limits=(1.37, 9.5))
+
+
+def test_a_root_is_known_by_its_residual():
+    """Short steps alone do not make one: a wrong derivative makes them anywhere."""
+
+    class Steep:
+        """x = 1 with a derivative that is far too large; the second unknown is free."""
+
+        scale, accuracy = np.ones(2), 1e-9
+
+        def residual(self, unknowns):
+            return unknowns[:1] - 1.0
+
+        def jacobian(self, unknowns, at_root=False):
+            return np.array([[1e9, 0.0]])
+
+    with pytest.raises(NoConvergenceError, match="is left of the equations"):
+        corrected(Steep(), np.zeros(2), np.array([0.0, 1.0]))
+
+
+def test_directions_have_the_side_that_a_component_gives_them():
+    """Singular vectors come out with one sign or the other, as the processor has it."""
+    vector = np.array([0.1, -0.7, 0.7])
+    assert oriented(vector) == pytest.approx(-vector)
+    assert oriented(-vector) == pytest.approx(-vector)
+    fold = np.array([[0.0, 1.0], [0.0, 1.0]])  # the tangent is across the last row
+    assert null_vector(fold) == pytest.approx([1.0, 0.0])
+
+
+def test_at_a_bifurcation_no_orbit_is_called_stable():
+    """A multiplier is -1 to rounding there."""
+    window = branch(Structure.nondimensional(), eta=2.7, limits=(2.6, 2.8), progress=False)
+    flip = int(np.flatnonzero(window.bifurcation_kind.values == 1)[0])
+    doubled = branch(
+        Structure.nondimensional(), start=window, switch=flip, limits=(2.6, 2.8), progress=False
+    )
+    assert abs(doubled.multipliers.values[0]).max() > 1.0 - 1e-6
+    assert not bool(doubled.stable[0])

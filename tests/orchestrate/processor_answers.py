@@ -1,0 +1,82 @@
+"""What ``dynamics`` and ``weak_drive`` decide, as JSON: run with kernels of several processors.
+
+``python -m tests.orchestrate.processor_answers WHICH`` prints the kernels of the linear algebra in
+use, and the answers: numbers of points, ends, kinds and stability as they are, places as numbers.
+"""
+
+import json
+import sys
+
+import numpy as np
+import scipy.linalg  # noqa: F401  (SciPy has linear algebra of its own)
+import threadpoolctl
+
+from orchestrate import Drive, Structure, branch
+from orchestrate.weak_drive import averaged
+
+from .weak_drive.coupled import BEAM, QUICK, System
+from .weak_drive.validation import branch_of, random_sets
+
+RIG = System(Structure.from_file("rig"), Drive.from_file("rig"))
+SHORT = {"rig": (RIG, 60, (0.995, 1.018))}
+LONG = {
+    "quick": (QUICK, 60, (0.975, 1.05)),
+    "beam": (BEAM, 120, (0.95, 1.15)),
+    "rig": (RIG, 120, (0.99, 1.25)),
+    **{f"random {i}": (one, 120, (0.95, 1.15)) for i, one in enumerate(random_sets(2, seed=77))},
+}
+
+
+def kernels():
+    """Of NumPy's and SciPy's OpenBLAS."""
+    return [one.get("architecture") for one in threadpoolctl.threadpool_info()]
+
+
+def of_an_orbit_branch(limits):
+    """Chattering whose impacts come and go, up to where permanent contact is lost."""
+    structure = Structure.nondimensional(D=0.02, e=0.4)
+    found = branch(structure, eta=sum(limits) / 2.0, limits=limits, progress=False)
+    kinds = found.bifurcation_kind.values.tolist()
+    decided = [found.sizes["point"], found.first_end, found.last_end, kinds]
+    places = [*found.eta.values.tolist(), *found.bifurcation_value.values.tolist()]
+    return {"decided": [*decided, found.stable.values.astype(int).tolist()], "places": places}
+
+
+def of_a_drive(case):
+    """Branches of a drive."""
+    system, most, range_ = case
+    decided, places = [], []
+    for leg in branch_of(system, most=most, range_=range_)[0]:
+        stable = [int(abs(one.multipliers[0]) < 1.0) for one in leg.motions]
+        kinds = [event.kind for event in leg.bifurcations]
+        impacts = [one.period.impacts for one in leg.motions]
+        decided.append([leg.end, kinds, stable, impacts])
+        motions = [*leg.motions, *(event.motion for event in leg.bifurcations)]
+        places += [float(x) for one in motions for x in one.root.unknowns[-2:]]
+    return {"decided": decided, "places": places}
+
+
+def of_the_averaged_theory(count):
+    """Folds and Neimark-Sacker points of random drives."""
+    found = []
+    for system in random_sets(count, seed=5):
+        found += [averaged.folds(*system.as_bonded()), averaged.torus_points(*system.as_bonded())]
+    kinds = [[place.kind for place in places] for places in found]
+    return {"decided": kinds, "places": [place.eta0 for places in found for place in places]}
+
+
+def main():
+    """Print the answers."""
+    if sys.argv[1] == "short":
+        answers = {"branch": of_an_orbit_branch((0.79, 0.8))}
+        answers |= {name: of_a_drive(case) for name, case in SHORT.items()}
+        answers["averaged"] = of_the_averaged_theory(2)
+    else:
+        answers = {"branch": of_an_orbit_branch((0.3, 0.9))}
+        answers |= {name: of_a_drive(case) for name, case in LONG.items()}
+        answers["averaged"] = of_the_averaged_theory(40)
+    print(json.dumps({"kernels": kernels(), "answers": answers}, default=np.ndarray.tolist))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,63 @@
+"""The same decisions on every machine: linear algebra rounds otherwise on another processor.
+
+OpenBLAS, which NumPy and SciPy bring along, has kernels for many processors and takes the ones that
+``OPENBLAS_CORETYPE`` names. So another machine's roundings can be had here, in a process of their
+own.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PROCESSORS = ("Haswell", "SkylakeX", "Nehalem")
+AGREEMENT = 3e-6  # of places: a branch's last points lie where steps end, 1e-6 or so from there
+ROOT = Path(__file__).parents[2]
+
+
+def answers(which, processors=PROCESSORS):
+    """What is decided with the kernels of each processor.
+
+    Skips where this machine's libraries do not take them.
+    """
+    children = []
+    for processor in processors:
+        environment = {**os.environ, "OPENBLAS_CORETYPE": processor, "OPENBLAS_NUM_THREADS": "1"}
+        command = [sys.executable, "-m", "tests.orchestrate.processor_answers", which]
+        out = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+        children.append(subprocess.Popen(command, cwd=ROOT, env=environment, **out))
+    ends = [child.communicate(timeout=1800) for child in children]
+    for child, (_, errors) in zip(children, ends, strict=True):
+        assert child.returncode == 0, errors[-2000:]
+    found = [json.loads(text.splitlines()[-1]) for text, _ in ends]
+    for processor, one in zip(processors, found, strict=True):
+        if not one["kernels"] or set(one["kernels"]) != {processor}:
+            pytest.skip(f"with OPENBLAS_CORETYPE={processor} kernels are {one['kernels']}")
+    return [one["answers"] for one in found]
+
+
+def compare(found):
+    """All that is decided is equal, and places but for their last digits."""
+    first = found[0]
+    for other in found[1:]:
+        for name, answer in first.items():
+            assert other[name]["decided"] == answer["decided"], name
+            assert other[name]["places"] == pytest.approx(answer["places"], rel=AGREEMENT), name
+
+
+def test_decisions_do_not_depend_on_the_processor(exported):
+    """A chattering's impacts that come and go, a branch that grazes, folds in closed form."""
+    found = answers("short")
+    assert found[0]["branch"]["decided"][0] > 20
+    assert "grazing of an impact" in [leg[0] for leg in found[0]["rig"]["decided"]]
+    compare(found)
+
+
+@pytest.mark.slow
+def test_decisions_do_not_depend_on_the_processor_on_whole_branches(exported):
+    """Of three shipped drives and of two drawn at random, and the branch that had 263 points."""
+    found = answers("long", (*PROCESSORS, "Sandybridge"))
+    compare(found)
