@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import STATE, Instance, begin, last_samples, room_for_samples
 from ..structures import Excitation, Structure
-from .multiplicity import multiplicity
+from .multiplicity import Repetition, over_size, repetition
 from .questions import Point
 
 
@@ -32,6 +32,8 @@ class Response:
         Whether any occurred in them.
     multiplicity : int
         Least n such that the state repeats after n periods; 0: none.
+    frequency : float
+        Of the excitation, rad/s.
     """
 
     samples: NDArray[np.float64]
@@ -39,6 +41,11 @@ class Response:
     impacts_per_period: float
     permanent_contact: bool
     multiplicity: int
+    frequency: float = 1.0
+
+    def repetition(self, tolerance: float) -> Repetition:
+        """After how many periods states repeat within a tolerance, and how closely they do."""
+        return repetition(over_size(self.samples, self.frequency, self.x_rel_max), tolerance)
 
     @property
     def gap(self) -> NDArray[np.float64]:
@@ -107,7 +114,7 @@ def respond(
     transient, samples : int
         Periods dropped, and stroboscopic samples kept after them.
     tolerance : float
-        Of :func:`.multiplicity.multiplicity`.
+        Of a state that repeats, over the motion's size: see :mod:`.multiplicity`.
 
     Returns
     -------
@@ -120,12 +127,14 @@ def respond(
     impacts, contacts, touching = instance.get("impact_count", "contact_count", "in_contact")
     states, peak = sample(instance, period, transient, samples)
     impacts_after, contacts_after = instance.get("impact_count", "contact_count")
+    repeated = repetition(over_size(states, excitation.frequency, peak), tolerance)
     return Response(
         samples=states,
         x_rel_max=peak,
         impacts_per_period=(impacts_after - impacts) / samples,
         permanent_contact=bool(touching) or contacts_after > contacts,
-        multiplicity=multiplicity(states, tolerance),
+        multiplicity=repeated.multiplicity,
+        frequency=excitation.frequency,
     )
 
 
