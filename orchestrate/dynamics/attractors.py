@@ -251,7 +251,7 @@ class SettledRows:
 
     def add(self, motion: SettledMotion, state: NDArray[np.float64]) -> None:
         """One response, with a state of it at phase 0."""
-        self.features.append(motion.features())
+        self.features.append(motion.features)
         self.ends.append(state)
         self.decided.append(motion.decided)
 

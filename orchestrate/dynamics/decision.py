@@ -32,7 +32,6 @@ from .settled_motion import (
     UNDECIDED,
     Floats,
     SettledMotion,
-    nearest_of,
 )
 from .turning_points import in_order
 
@@ -116,11 +115,9 @@ class MotionDecider:
             if largest(ring) >= 1.0 - MARGIN:
                 unstable = True
                 continue
-            found = self.remembered(SettledMotion.from_orbit(self.point, ring, free_phase))
+            found = SettledMotion.from_orbit(self.point, ring, free_phase)
             if self.comes_to(response.end, found):
-                if found not in self.known:
-                    self.known.append(found)
-                return found, False
+                return self.remembered(found), False
         return None, unstable
 
     def possible_periods(self, response: Response) -> list[int]:
@@ -160,12 +157,20 @@ class MotionDecider:
                 return motion
         return None
 
-    def remembered(self, motion: SettledMotion) -> SettledMotion:
-        """A known motion in place of one that is the same orbit."""
+    def remembered(self, orbit: SettledMotion) -> SettledMotion:
+        """A stable orbit, or in its place the known one that is the same."""
         for known in self.known:
-            if known.is_orbit_of(motion):
+            if known.is_orbit_of(orbit):
                 return known
-        return motion
+        self.known.append(orbit)
+        return orbit
+
+    def orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
+        """The stable orbit near a state at phase 0 that repeats after some periods."""
+        ring, free_phase = self.orbit(state, periods)
+        if ring is None or largest(ring) >= 1.0 - MARGIN:
+            return None
+        return self.remembered(SettledMotion.from_orbit(self.point, ring, free_phase))
 
     def comes_to(self, state: ArrayLike, orbit: SettledMotion) -> bool:
         """Whether the response from a state at phase 0 is on a stable orbit: in its neighbourhood,
@@ -175,8 +180,8 @@ class MotionDecider:
         begin(self.plain, *self.point, state)
         if orbit.free_phase > 0.0:
             self.plain.step(0.0, orbit.free_phase / excitation.frequency)
-        there, states = np.array(self.plain.get(*STATE)), orbit.free_states()
-        before = nearest_of(states, there, excitation.frequency, orbit.gap)[1]
+        there, states = self.plain.get(*STATE), orbit.free_states
+        before = states.nearest(there)[1]
         if before < SAME or not before < NEAR:
             return before < SAME
         rate = max(orbit.multiplier, 1e-3)
@@ -185,7 +190,7 @@ class MotionDecider:
         shifted = excitation.replace(phase=orbit.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)
-        after = nearest_of(states, self.plain.get(*STATE), excitation.frequency, orbit.gap)[1]
+        after = states.nearest(self.plain.get(*STATE))[1]
         return after <= max(0.5 * (1.0 + rate**turns) * before, NOTHING)
 
     # -- orbits -----------------------------------------------------------------------------------
@@ -237,27 +242,19 @@ class MotionDecider:
         ring = self.solved((orbit.ring.sequence, orbit.ring.nodes))
         if ring is None or largest(ring) >= 1.0 - MARGIN:
             return None
-        found = self.remembered(
-            SettledMotion.from_orbit(self.point, ring, free_phase_of(ring))
-        )
-        if found not in self.known:
-            if not self.returns(found):
-                return None
-            self.known.append(found)
-        return found
+        found = SettledMotion.from_orbit(self.point, ring, free_phase_of(ring))
+        return self.remembered(found) if self.returns(found) else None
 
     def returns(self, orbit: SettledMotion) -> bool:
         """Whether the FMU that begins on an orbit stays there."""
         excitation = self.point.excitation
         shifted = excitation.replace(phase=orbit.free_phase % TURN)
-        states = orbit.free_states()
         try:
-            begin(self.plain, self.point.structure, shifted, states[0])
+            begin(self.plain, self.point.structure, shifted, orbit.free_states.states[0])
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
         self.plain.step(0.0, orbit.multiplicity * excitation.period)
-        end = self.plain.get(*STATE)
-        return nearest_of(states, end, excitation.frequency, orbit.gap)[1] < SAME
+        return orbit.free_states.nearest(self.plain.get(*STATE))[1] < SAME
 
 
 def largest(ring: Ring) -> float:

@@ -112,7 +112,7 @@ class Value:
         decider, n = self.decider, int(row[0])
         known = decider.known_at(state, n)
         if known is None and decided == ORBIT:
-            known, _ = decider.decide(state)
+            known = decider.orbit_at(state, n)
         if known is None:
             begin(decider.plain, *decider.point, state)
             states, _ = sample(decider.plain, decider.point.excitation.period, 0, n)
@@ -196,6 +196,7 @@ def continued(
     points: Sequence[Point],
     starts: Sequence[Starts],
     telling: Telling,
+    seeds: Sequence[Sequence[float]] = (),
 ) -> MatchedAttractors:
     """The attractors that random starts lead to, carried along a parameter and matched.
 
@@ -206,10 +207,14 @@ def continued(
         In the order of the parameter: neighbours are next to each other.
     starts : sequence of Starts
     telling : Telling
+    seeds : sequence of 4 floats
+        States on attractors that are known at the first value, at phase 0.
     """
     values = [Value(MotionDecider(*instances, point, telling)) for point in points]
     for value, some in zip(values, starts, strict=True):
         value.gather(some, telling)
+    for seed in seeds:
+        values[0].index(values[0].decider.decide(seed)[0])
     links = carried(values)
     numbers = matched(values, links)
     labels = [

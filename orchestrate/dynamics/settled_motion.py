@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +23,9 @@ DECIDED = {
     UNDECIDED: "undecided",
 }
 SAME = 1e-5  # distance over the motion's size within which a state lies on a known motion
+LENGTHS = np.array(  # displacements, velocities, the gap and its rate, from a state
+    [[1, 0, 0, 0, -1, 0], [0, 1, 0, 0, 1, 0], [0, 0, 1, 0, 0, -1], [0, 0, 0, 1, 0, 1]], dtype=float
+)
 ALIKE = 1e-6  # of the nodes of two orbits over their size, within which these are one orbit
 
 
@@ -79,6 +83,7 @@ class SettledMotion:
             free_phase=free_phase,
         )
 
+    @cached_property
     def features(self) -> list[float]:
         """Numbers that do not depend on the phase of the samples, by ``clusters.FEATURES``."""
         gaps = (self.states[:, 1] - self.states[:, 0]) / self.point.length
@@ -88,17 +93,22 @@ class SettledMotion:
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
         """The period whose first state is nearest to a state at phase 0, and its distance."""
-        return nearest_of(self.states, state, self.point.excitation.frequency, self.gap)
+        return self._known.nearest(state)
 
-    def free_states(self) -> Floats:
-        """States of an orbit at its free phase in successive periods, SI, shape (n, 4)."""
+    @cached_property
+    def _known(self) -> KnownStates:
+        return KnownStates.from_states(self.states, self.point.excitation.frequency, self.gap)
+
+    @cached_property
+    def free_states(self) -> KnownStates:
+        """States of an orbit at its free phase in successive periods."""
         assert self.ring is not None, "no orbit"
         wanted = self.free_phase + TURN * np.arange(self.multiplicity)
         begin = self.ring.begins[0]
         shifted = begin + np.mod(wanted - begin, TURN * self.multiplicity)
         segment = np.searchsorted(self.ring.begins, shifted, side="right") - 1
-        found: Floats = self.ring.states(segment, shifted) * self.point.scale
-        return found
+        found = self.ring.states(segment, shifted) * self.point.scale
+        return KnownStates.from_states(found, self.point.excitation.frequency, self.gap)
 
     def is_orbit_of(self, other: SettledMotion) -> bool:
         """Whether both are one orbit: the same nodes, begun in another period or not."""
@@ -107,38 +117,43 @@ class SettledMotion:
         return same_nodes(self.ring, other.ring)
 
 
-def nearest_of(
-    states: Floats, state: ArrayLike, frequency: float, gap: float
-) -> tuple[int, float]:
-    """The nearest of some states, and its distance over the motion's size.
+@dataclass(frozen=True)
+class KnownStates:
+    """States of a motion at one phase in successive periods, and what differences compare with.
 
     Displacements and velocities over the frequency are compared with the largest of them; the gap
     and its rate with the largest gap, as by :func:`orchestrate.response.multiplicity.over_size`.
 
-    Parameters
+    Attributes
     ----------
     states : ndarray, shape (n, 4)
-    state : array_like of 4 floats
-        At the same phase.
-    frequency : float
-        Of the excitation, rad/s.
-    gap : float
-        Largest gap of the motion, m.
+        SI.
+    scaled : ndarray, shape (n, 6)
+        Displacements, velocities, gap and its rate over their sizes.
+    matrix : ndarray, shape (4, 6)
+        From a state to these.
     """
-    known, away = lengths(states, frequency), lengths(states - np.asarray(state), frequency)
-    size = float(np.abs(known[:, :4]).max()) or 1.0
-    of_gap = max(gap, LEAST_GAP * size)
-    of_rate = max(of_gap, float(np.abs(known[:, 5]).max()))
-    sizes = np.array([size, size, size, size, of_gap, of_rate])
-    distances = np.abs(away / sizes).max(axis=1)
-    period = int(distances.argmin())
-    return period, float(distances[period])
 
+    states: Floats
+    scaled: Floats
+    matrix: Floats
 
-def lengths(states: Floats, frequency: float) -> Floats:
-    """Displacements, velocities over the frequency, gap and its rate, all in m, shape (n, 6)."""
-    found = states / (1.0, 1.0, frequency, frequency)
-    return np.column_stack([found, found[:, 1] - found[:, 0], found[:, 3] - found[:, 2]])
+    @classmethod
+    def from_states(cls, states: Floats, frequency: float, gap: float) -> KnownStates:
+        """Some states, SI, with the excitation's frequency in rad/s and the largest gap in m."""
+        matrix = LENGTHS / np.array([1.0, 1.0, frequency, frequency])[:, np.newaxis]
+        found = states @ matrix
+        size = float(np.abs(found[:, :4]).max()) or 1.0
+        of_gap = max(gap, LEAST_GAP * size)
+        of_rate = max(of_gap, float(np.abs(found[:, 5]).max()))
+        sizes = np.array([size, size, size, size, of_gap, of_rate])
+        return cls(states, found / sizes, matrix / sizes)
+
+    def nearest(self, state: ArrayLike) -> tuple[int, float]:
+        """The period whose state is nearest to a state, and its distance over the motion's size."""
+        distances = np.abs(self.scaled - np.asarray(state) @ self.matrix).max(axis=1)
+        period = int(distances.argmin())
+        return period, float(distances[period])
 
 
 def same_nodes(one: Ring, other: Ring) -> bool:
