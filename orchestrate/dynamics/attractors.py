@@ -284,10 +284,18 @@ def columns_of(found: MatchedAttractors) -> Table:
             columns["multiplier"][i, number] = motion.multiplier
             how[i, number], states[i, number] = motion.decided, motion.states[0]
             share[i, number] = np.mean(found.labels[i] == number) if len(found.labels[i]) else 0.0
-    return {**columns, "how": how, "share": share, "state": states, "labels": np.array(found.labels)}
+    return {
+        **columns,
+        "how": how,
+        "share": share,
+        "state": states,
+        "labels": np.array(found.labels),
+    }
 
 
-def of_attractors(columns: Mapping[str, Any], along: tuple[str, ...], of: str) -> dict[str, Variable]:
+def of_attractors(
+    columns: Mapping[str, Any], along: tuple[str, ...], of: str
+) -> dict[str, Variable]:
     """Variables over ``attractor``; share 0 and NaN where one does not exist."""
     dims = (*along, "attractor")
     text = "a state on it at phase 0: x1, x2 in m, v1, v2 in m/s"

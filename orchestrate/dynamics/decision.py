@@ -23,7 +23,7 @@ from .continuation import NoConvergenceError
 from .families import Setting
 from .guesses import Guess, from_impacts, start
 from .impact_sequence import TURN, Ring, Sequence
-from .orbit_search import repeats_earlier, solve, why_no_motion
+from .orbit_search import solve, why_no_motion
 from .settled_motion import (
     IRREGULAR,
     ORBIT,
@@ -32,6 +32,7 @@ from .settled_motion import (
     UNDECIDED,
     Floats,
     SettledMotion,
+    least_periods,
 )
 from .turning_points import in_order
 
@@ -264,8 +265,7 @@ def largest(ring: Ring) -> float:
 
 def without_copies(ring: Ring) -> Ring:
     """An orbit over the least number of periods after which it closes."""
-    periods = ring.sequence.periods
-    least = repeats_earlier(ring)
+    periods, least = ring.sequence.periods, least_periods(ring)
     if least == periods:
         return ring
     nodes, first = in_order(ring.nodes, periods)

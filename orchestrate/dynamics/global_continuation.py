@@ -102,9 +102,7 @@ class Value:
         groups = irregular_clusters(starts.features[irregular], telling)
         for group in range(int(groups.max(initial=-1)) + 1):
             members = irregular[groups == group]
-            self.motions.append(
-                self.irregular(starts.features[members], starts.ends[members[0]])
-            )
+            self.motions.append(self.irregular(starts.features[members], starts.ends[members[0]]))
             self.labels[members] = len(self.motions) - 1
 
     def again(self, row: Floats, state: Floats, decided: int) -> SettledMotion:

@@ -55,7 +55,12 @@ def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
     columns = dict(zip(STATE, data.state.values.T, strict=True))
     columns |= {"x_rel": columns["x2"] - columns["x1"], "v_rel": columns["v2"] - columns["v1"]}
     limits = plane.get_xlim(), plane.get_ylim()
-    style: Any = {"color": "white", "markeredgecolor": BLACK, "markersize": 8.0, "linestyle": "none"}
+    style: Any = {
+        "color": "white",
+        "markeredgecolor": BLACK,
+        "markersize": 8.0,
+        "linestyle": "none",
+    }
     for index in range(data.sizes["attractor"]):
         colour = COLOURS[index] if index < len(COLOURS) else OTHER
         style["markerfacecolor"] = colour
