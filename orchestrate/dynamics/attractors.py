@@ -442,7 +442,10 @@ def attractors(
     scale : array_like, optional
         Half width of the box of starts, m: one, or one for each value. Displacement of mass 1 in
         +-scale, gap in [0, scale], velocity of mass 1 and of the gap in +-omega scale. By default
-        ``width`` times the largest gap of the response from rest there.
+        there are two boxes, for every other start each: this one with ``width`` times the largest
+        gap G of the response from rest; and one around that response, displacement and velocity
+        (over Omega) of mass 1 within 0.7 of its largest displacement, gap in [0, 3 G] and gap
+        rate in +-3 G Omega.
     width : float
     transient : int
         Periods dropped at least.
@@ -453,20 +456,29 @@ def attractors(
     converged : float
         Relative deviation within which a repeated state decides.
     longest : int
-        Periods up to which a response is run on that does not repeat; beyond it is irregular.
-    alike, alike_irregular : float
-        Relative difference within which responses of the same multiplicity belong to one attractor:
-        periodic ones, irregular ones.
+        Periods up to which a response is run on that does not repeat, or that Newton's method does
+        not confirm; beyond it is irregular, or undecided.
+    alike : float
+        Distance over the motion's size within which responses that repeat are one attractor where
+        Newton's method finds no stable orbit.
+    alike_irregular : float
+        Relative difference within which irregular responses belong to one attractor.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
 
     Returns
     -------
     xarray.Dataset
-        Over the parameter: ``number``; over ``attractor``, the most frequent one first: ``share``
-        of the starts, ``multiplicity``, ``impacts_per_period``, ``xi_rel_max``, and ``state`` on
-        it at phase 0 (x1, x2 in m, v1, v2 in m/s); over ``start``: ``attractor_of`` and the
-        ``features`` that tell responses apart.
+        Over the parameter: ``number``; over ``attractor``, the most frequent one first, where one
+        number is the same attractor at all values: ``share`` of the random starts, 0 where carrying
+        alone has found it; ``multiplicity``, ``impacts_per_period``, ``xi_rel_max``, NaN where it
+        does not exist; ``multiplier``, the largest absolute value of its Floquet multipliers;
+        ``decided_by``, how it was decided, as CF flags: ``orbit`` (a stable orbit of Newton's
+        method), ``repeated`` (states repeat, Newton's method finds no orbit), ``irregular`` or
+        ``undecided`` (states nearly repeat, near an unstable orbit), ``absent``; ``state`` on it
+        at phase 0 (x1, x2 in m, v1, v2 in m/s); ``first_found`` and ``last_found``, between which
+        values it is there. Over ``start``: ``attractor_of`` and the ``features`` of what a start
+        has settled to.
 
     Raises
     ------
@@ -475,13 +487,19 @@ def attractors(
 
     Notes
     -----
-    The non-unique solutions of the paper's sections 3.2 and 4.1. Responses are told apart by
-    multiplicity, impacts per period, largest gap, and mean and deviation of the gap's samples.
-    A response is run on until its state repeats within ``converged``: a long transient is none of
-    the attractors. What has not repeated after ``longest`` periods is irregular, a torus or chaos;
-    how many of these there are depends on ``alike_irregular``. Where an impact falls on the
-    sampling phase itself, samples show either side of it, and a periodic response may count as
-    irregular.
+    The non-unique solutions of the paper's sections 3.2 and 4.1. A response is run on until its
+    state repeats within ``converged``. Its impacts over just these periods are what Newton's method
+    begins with (:func:`orchestrate.orbit`); the response is on the orbit found if that is a
+    possible motion, if its multipliers lie inside the unit circle, and if the response comes nearer
+    to it as they say. So multiplicity and impacts are those of the orbit, and two attractors are
+    two orbits. What has not repeated after ``longest`` periods is irregular, a torus or chaos; how
+    many of these there are depends on ``alike_irregular``. An FMU without events (FMI 2.0) tells no
+    impacts: there states that repeat decide.
+
+    Global continuation (Datseris, Rossi and Wagemakers, Chaos 33, 073151, 2023): every attractor
+    is carried to both neighbouring values, its state as a further start, or its orbit by Newton's
+    method where the state leads elsewhere. Attractors of neighbours are one where each leads to the
+    other, or where the orbit is followed.
 
     Examples
     --------
@@ -489,7 +507,7 @@ def attractors(
     >>> from orchestrate.dynamics.attractors import attractors
     >>> found = attractors(Structure.nondimensional(), eta=1.315, starts=40, seed=1)
     >>> found.multiplicity.values[0], found.share.values[0]
-    (array([1., 2.]), array([0.95, 0.05]))
+    (array([1., 2.]), array([0.825, 0.175]))
     """
     job = AttractorsJob(
         **asked_along(structure, eta, frequency, amplitude, over, values),

@@ -96,8 +96,8 @@ class MotionDecider:
 
     def run_on(self, response: Response, dropped: int) -> Response:
         """The response after some more periods."""
-        settings = dropped, self.telling.samples, self.telling.converged
-        return respond(self.plain, *self.point, response.end, *settings)
+        samples, converged = self.telling.samples, self.telling.converged
+        return respond(self.plain, *self.point, response.end, dropped, samples, converged)
 
     def settled_to(self, response: Response) -> tuple[SettledMotion | None, bool]:
         """The periodic motion that a response is on, if any, and whether it is near an unstable
@@ -219,7 +219,7 @@ class MotionDecider:
         return without_copies(ring)
 
     def impacts_from(self, state: Floats, periods: int) -> tuple[Guess, float]:
-        """The impacts of some periods, from a phase in the middle of the longest stretch without."""
+        """The impacts of some periods, from the middle of the longest stretch without any."""
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
         form, span = self.setting.form(self.values), periods * self.point.excitation.period

@@ -104,7 +104,7 @@ CAPTIONS = {
         "or chaos. Periodic ones are decided by their orbits: Newton's method begins with the "
         "impacts that the FMU reports, and the multipliers say that the orbit is stable. Every "
         "attractor is carried to the neighbouring frequencies and matched there. Irregular "
-        f"responses are clustered by their statistics (25 %). {ARTEFACT}",
+        "responses are clustered by their statistics (25 %).",
     ),
     "basin": Caption(
         "Basins of attraction",

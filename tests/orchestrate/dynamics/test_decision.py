@@ -25,6 +25,7 @@ from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
+USUAL = Telling()
 CONTACT = Structure.nondimensional(mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291)
 HEAVY = Structure.nondimensional(mu=3.0755, kappa=0.54559, D1=0.01281, D2=0.01196, e=0.30528)
 
@@ -35,7 +36,7 @@ def point_of(structure, eta):
     return Point(structure, Excitation.nondimensional(eta, structure))
 
 
-def decided_from(structure, eta, start=REST, telling=Telling(), form="fmi3"):
+def decided_from(structure, eta, start=REST, telling=USUAL, form="fmi3"):
     path = find(OSCILLATOR, form=form).path
     with Instance(path) as plain, EventInstance(find(OSCILLATOR).path) as eventful:
         events = eventful if form == "fmi3" else None
