@@ -133,7 +133,7 @@ class MotionDecider:
     def left_over(self, response: Response, unstable: bool) -> tuple[SettledMotion, Floats]:
         """What is known of a response that comes to no stable orbit."""
         n, state = response.multiplicity, np.array(response.end)
-        if not n:
+        if not n or response.repetition(self.telling.converged).multiplicity != n:  # nearly is not
             states, impacts = response.samples, response.impacts_per_period
             found = SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
             return found, state
@@ -244,7 +244,10 @@ class MotionDecider:
         if ring is None or largest(ring) >= 1.0 - MARGIN:
             return None
         found = SettledMotion.from_orbit(self.point, ring, free_phase_of(ring))
-        return self.remembered(found) if self.returns(found) else None
+        if not self.returns(found):
+            return None
+        own = self.orbit_at(found.states[0], found.multiplicity)  # with the impacts of the FMU
+        return own if own is not None and own.nearest(found.states[0])[1] < SAME else None
 
     def returns(self, orbit: SettledMotion) -> bool:
         """Whether the FMU that begins on an orbit stays there."""

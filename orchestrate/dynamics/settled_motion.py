@@ -111,10 +111,12 @@ class SettledMotion:
         return KnownStates.from_states(found, self.point.excitation.frequency, self.gap)
 
     def is_orbit_of(self, other: SettledMotion) -> bool:
-        """Whether both are one orbit: the same nodes, begun in another period or not."""
+        """Whether both are one orbit: the same nodes, begun in another period or not; or the same
+        states, where chattering that ends in contact has one more of its smallest impacts.
+        """
         if self.ring is None or other.ring is None or self.multiplicity != other.multiplicity:
             return False
-        return same_nodes(self.ring, other.ring)
+        return same_nodes(self.ring, other.ring) or self.nearest(other.states[0])[1] < SAME
 
 
 @dataclass(frozen=True)

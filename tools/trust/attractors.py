@@ -101,7 +101,7 @@ class Motion:
         for part in (part for part in range(1, n) if n % part == 0):
             if self.away(self.states[part], self.states[0]) < DIFFERS:
                 yield f"the FMU returns after {part} T already, not {n} T"
-        if self.impacts != round(self.impacts, 9):
+        if abs(self.impacts - round(self.impacts)) > 1e-9:
             yield f"{self.impacts!r} impacts in {n} T are no whole number"
         if self.counted() != TURNS * round(self.impacts):
             yield f"{self.counted()} impacts in {TURNS} times {n} T, not {TURNS} x {self.impacts:g}"

@@ -176,3 +176,17 @@ def test_distances_compare_gaps_with_the_gap():
 )
 def test_the_middle_of_the_longest_run_on_a_ring(flags, expected):
     assert middle_of_longest_run(np.array([letter == "1" for letter in flags])) == expected
+
+
+def test_an_irregular_response_that_nearly_repeats_is_irregular():
+    """After 20,000 periods its states happen to repeat nearly, after 12."""
+    structure = Structure(
+        m2=0.4505499090518278,
+        k2=0.6514549578221194,
+        d1=0.027043267030094763,
+        d2=0.02628385110590592,
+        e=0.190396868006822,
+    )
+    found = attractors(structure, eta=3.302924616126182, starts=16, seed=1002570824)
+    assert (found.multiplicity.values == 0).all()
+    assert (found.decided_by.values == IRREGULAR).all()

@@ -138,3 +138,18 @@ def test_neither_jump_joins_two_attractors_that_do_not_look_alike():
     links = {(0, 0, 1): (0, FLOWS), (0, 1, 1): (0, FLOWS), (1, 0, 0): (1, FLOWS)}
     found = pairs(value((1, 1.0), (3, 2.0)), value((2, 1.5)), 0, links)
     assert found == [(1, 0)]
+
+
+def test_chattering_that_gains_an_impact_on_the_way_is_there_once():
+    """The sequence of one value is a root at the other one too, with an impact too few."""
+    structure = Structure(
+        m2=0.5326656919141614,
+        k2=3.0361901103312166,
+        d1=0.014835068436763413,
+        d2=0.05425741861337725,
+        e=0.12145386639598714,
+    )
+    eta = 1.8903747226797813
+    found = attractors(structure, eta=[eta, 1.003 * eta], starts=4)
+    assert found.number.values.tolist() == [1, 1]
+    assert found.impacts_per_period.values.tolist() == [[6.0], [7.0]]
