@@ -7,12 +7,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from orchestrate.access import OSCILLATOR, REST, find
 from orchestrate.dynamics import attractors as module
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.global_continuation import FLOWS, FOLLOWED, pairs
+from orchestrate.dynamics.clusters import Telling
+from orchestrate.dynamics.decision import MotionDecider
+from orchestrate.dynamics.global_continuation import FLOWS, FOLLOWED, Instances, pairs
 from orchestrate.dynamics.settled_motion import ORBIT
+from orchestrate.response.questions import Point
 from orchestrate.running import runner
-from orchestrate.structures import Structure
+from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
 HIDDEN = [1.335, 1.35, 1.365]
@@ -140,16 +144,27 @@ def test_neither_jump_joins_two_attractors_that_do_not_look_alike():
     assert found == [(1, 0)]
 
 
+CHATTERING = Structure(
+    m2=0.5326656919141614,
+    k2=3.0361901103312166,
+    d1=0.014835068436763413,
+    d2=0.05425741861337725,
+    e=0.12145386639598714,
+)
+GAINS = 1.8903747226797813, 1.8960458468478205  # it gains an impact between these
+
+
 def test_chattering_that_gains_an_impact_on_the_way_is_there_once():
     """The sequence of one value is a root at the other one too, with an impact too few."""
-    structure = Structure(
-        m2=0.5326656919141614,
-        k2=3.0361901103312166,
-        d1=0.014835068436763413,
-        d2=0.05425741861337725,
-        e=0.12145386639598714,
-    )
-    eta = 1.8903747226797813
-    found = attractors(structure, eta=[eta, 1.003 * eta], starts=4)
+    found = attractors(CHATTERING, eta=list(GAINS), starts=4)
     assert found.number.values.tolist() == [1, 1]
     assert found.impacts_per_period.values.tolist() == [[6.0], [7.0]]
+
+
+def test_an_orbit_that_is_followed_has_the_impacts_that_the_fmu_runs_through():
+    points = [Point(CHATTERING, Excitation.nondimensional(eta, CHATTERING)) for eta in GAINS]
+    with Instances(find(OSCILLATOR).path) as instances:
+        before, after = (MotionDecider(*instances, point, Telling()) for point in points)
+        motion, _ = before.decide(REST)
+        followed = after.followed(motion)
+    assert (motion.impacts_per_period, followed.impacts_per_period) == (6.0, 7.0)
