@@ -44,7 +44,8 @@ def add_parser(commands: Commands) -> None:
     option(
         "--scale",
         metavar="X",
-        help="half width of the box of starts, m (default: --width times the gap from rest)",
+        help="half width of one box of starts around zero, m (default: --width times the gap from "
+        "rest, and a second box around the response from rest)",
     )
     add_numbers(
         option,

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 Side = tuple[str, float, float, int]
 EXAMPLES = """\
+  {program} basin --eta 1.315
   {program} basin --eta 1.315 --x x_rel,0,1.3,60 --y v_rel,-1.3,1.3,60
   {program} basin --eta 1.32 --x phase,0,6.28,40 --y v1,-2,2,40
   {program} basin --structure beam --hz 15.8 --g 0.02 --x x_rel,0,1e-3,40 --y v_rel,-0.1,0.1,40
