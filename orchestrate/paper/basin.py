@@ -17,7 +17,8 @@ from ..structures import Excitation
 class EvenBasinJob(BasinJob):
     """Basins where random starts have found two attractors.
 
-    Its sides ``x`` and ``y`` are in units of the largest gap of the sweep at that frequency.
+    Its sides ``x`` and ``y`` are in units of the largest gap of the sweep at that frequency; what
+    they do not vary is the mean of states on the two attractors.
 
     Attributes
     ----------
@@ -62,4 +63,7 @@ class EvenBasinJob(BasinJob):
             side._replace(low=side.low * scale, high=side.high * scale) for side in (self.x, self.y)
         )
         point = Point(self.structure, Excitation.nondimensional(eta, self.structure))
-        return Plane(point, x, y, self.at)
+        data = inputs[self.attractors].sel(eta=eta, method="nearest")
+        frequent = np.argsort(-data.share.values, kind="stable")[:2]
+        middle = np.nanmean(data.state.values[frequent], axis=0)
+        return Plane(point, x, y, tuple(middle.tolist()))
