@@ -11,8 +11,9 @@ frequency = 2.0 * np.pi * np.arange(8.0, 20.0, 0.1)  # rad/s, of 8 to 20 Hz
 amplitude = 0.02 * 9.80665 / frequency**2  # of the shaker, m
 
 found = resonance(beam, frequency=frequency, amplitude=amplitude)
-for number in range(found.sizes["peak"]):
-    peak = found.isel(peak=number)
+peaks = found.isel(peak=found.peak_irregular.values == 0)  # no chance maxima of irregular motion
+for number in range(peaks.sizes["peak"]):
+    peak = peaks.isel(peak=number)
     name = f"{peak.peak_structure.item()}, {peak.peak_direction.item()}"
     print(f"{name:17}: {1e3 * float(peak.peak_x1_max):.2f} mm at {float(peak.peak_hertz):.1f} Hz")
 

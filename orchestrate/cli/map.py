@@ -20,7 +20,7 @@ from .options import (
     values_of,
 )
 from .output import add_results
-from .question import carry_out, picture_of, place
+from .question import carry_out, is_flag, picture_of, place
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,7 +47,8 @@ def add_parser(commands: Commands) -> None:
     add_numbers(
         option,
         periods=(500, "periods for an exponent"),
-        tolerance=(1e-2, "relative deviation within which a state repeats"),
+        tolerance=(1e-2, "part of the motion's size within which a state repeats"),
+        longest=(20_000, "periods up to which an undecided response is run on"),
     )
     add_results(parser)
 
@@ -55,7 +56,7 @@ def add_parser(commands: Commands) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
     structure = structure_of(arguments)
-    names = ("exponent", "transient", "settle", "samples", "periods", "tolerance")
+    names = ("exponent", "transient", "settle", "samples", "periods", "tolerance", "longest")
     question = {**axes(arguments, structure), **numbers_of(arguments, *names)}
     carry_out(arguments, structure, question, report, picture_of)
 
@@ -90,11 +91,14 @@ def axes(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
 
 def report(data: xr.Dataset) -> None:
     """What there is on the map."""
-    kinds = data.multiplicity.values.astype(int)
+    undecided = is_flag(data.multiplicity_decided, "undecided")
+    kinds = data.multiplicity.where(~undecided, -1).values.astype(int)
     shares = [f"not periodic {float((kinds == 0).mean()):.1%}"]
     for number in range(1, KINDS + 1):
         shares.append(f"{number if number > 1 else ''}T {float((kinds == number).mean()):.1%}")
     shares.append(f"longer {float((kinds > KINDS).mean()):.1%}")
+    if (kinds < 0).any():
+        shares.append(f"undecided {float((kinds < 0).mean()):.1%}")
     print(f"{kinds.size} responses: {', '.join(shares)}")
     top = data.isel(data.xi_rel_max.argmax(...))
     where = ", ".join(place(str(name), float(top[name])) for name in data.xi_rel_max.dims)

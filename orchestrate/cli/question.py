@@ -117,6 +117,12 @@ def place(name: str, value: float) -> str:
     return f"{name} = {value:.6g}"
 
 
+def is_flag(values: xr.DataArray, word: str) -> xr.DataArray:
+    """Where a variable of flags has the one that a word stands for."""
+    number = values.attrs["flag_meanings"].split().index(word)
+    return values == values.attrs["flag_values"][number]
+
+
 def ranges(name: str, values: Any, flags: Any, most: int = 8) -> str:
     """Runs of values for which something holds, for people.
 

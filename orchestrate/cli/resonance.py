@@ -72,13 +72,20 @@ def report(data: xr.Dataset) -> None:
 def tell_peaks(data: xr.Dataset, name: str) -> None:
     """Where amplitudes are largest."""
     ends = " to ".join(place(name, float(end)) for end in (data[name].min(), data[name].max()))
+    noise = int(data.peak_irregular.sum())
+    peaks = data.isel(peak=data.peak_irregular.values == 0)
     if not data.sizes["peak"]:
         print(f"no peak from {ends}: amplitudes rise or fall from end to end")
         return
+    if noise:
+        print(f"maxima left out, as chance makes them where responses are irregular: {noise}")
+    if not peaks.sizes["peak"]:
+        print(f"no peak from {ends} where responses are periodic")
+        return
     titles = "".join(f"{title:>11}" for title, _ in COLUMNS.values())
     print(f"peaks{'':31}{titles}")
-    for i in range(data.sizes["peak"]):
-        peak = data.isel(peak=i)
+    for i in range(peaks.sizes["peak"]):
+        peak = peaks.isel(peak=i)
         told = [format(float(peak[f"peak_{key}"]), form) for key, (_, form) in COLUMNS.items()]
         where = place(name, float(peak[f"peak_{name}"]))
         print(f"  {way(peak, 'peak')} {where:>16}{''.join(told)}")

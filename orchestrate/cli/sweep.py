@@ -16,7 +16,7 @@ from .options import (
     structure_of,
 )
 from .output import add_results
-from .question import along_of, carry_out, picture_of, place, ranges, several, tell_one
+from .question import along_of, carry_out, is_flag, picture_of, place, ranges, several, tell_one
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,6 +28,10 @@ EXAMPLES = """  {program} sweep                                           the pa
   {program} sweep --structure beam --hz 8:20:0.05 --g 0.02 --format nc,csv
 Interrupted, the same command goes on where it was. A finished result is left as it is."""
 PAPER = "0.1:8.0:0.001"  # frequency ratios of Figure 6
+KINDS = {
+    "irregular": "not periodic",
+    "undecided": "still converging or nearly periodic (--transient 5000 decides most)",
+}
 APART = 0.01  # of the largest gap: where up and down differ by more, they are different motions
 
 
@@ -48,7 +52,7 @@ def add_parser(commands: Commands) -> None:
         option,
         transient=(500, "periods dropped"),
         samples=(200, "periods kept"),
-        tolerance=(1e-2, "relative deviation within which a state repeats"),
+        tolerance=(1e-2, "part of the motion's size within which a state repeats"),
     )
     add_results(parser)
 
@@ -78,14 +82,17 @@ def report(data: xr.Dataset) -> None:
     for mass in (1, 2):
         far, felt = float(data[f"x{mass}_max"].max()), float(data[f"a{mass}_max"].max())
         print(f"mass {mass}: largest displacement {far:.4g} m, acceleration {felt:.4g} m/s2")
-    kinds = data.multiplicity
-    irregular = (kinds == 0).any("direction") if "direction" in kinds.dims else kinds == 0
-    print(f"periodic: {int((kinds > 0).sum())} of {kinds.size} responses")
-    if irregular.any():
-        ordered = irregular.sortby(name)
-        print(f"not periodic at {ranges(name, ordered[name].values, ordered.values)}")
+    decided = data.multiplicity_decided
+    periodic = int(is_flag(decided, "repeated").sum())
+    print(f"periodic: {periodic} of {decided.size} responses")
+    for word, text in KINDS.items():
+        there = is_flag(decided, word)
+        there = there.any("direction") if "direction" in there.dims else there
+        if there.any():
+            ordered = there.sortby(name)
+            print(f"{text} at {ranges(name, ordered[name].values, ordered.values)}")
     contact = int(data.permanent_contact.sum())
-    print(f"with permanent contact: {contact} of {kinds.size} responses")
+    print(f"with permanent contact: {contact} of {decided.size} responses")
     if "direction" in data.dims:
         tell_differences(data, name)
 

@@ -26,10 +26,20 @@ State = tuple[float, ...]
 
 
 class Followed(NamedTuple):
-    """What is followed: a structure under an excitation, from a state at phase 0 in m and m/s."""
+    """What is followed: a structure under an excitation, from a state at phase 0 in m and m/s.
+
+    Attributes
+    ----------
+    point : Point
+    start : tuple of float
+    touching : tuple of bool
+        Whether the masses are in permanent contact where the periods followed begin, and where they
+        end.
+    """
 
     point: Point
     start: State
+    touching: tuple[bool, bool] = (False, False)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,8 +93,10 @@ class FollowingQuestion(OnwardQuestion, ABC):
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             for item in items:
                 start = settled(plain, item, self.transient)
+                first = touches(eventful, item.point, start)
                 impacts = impacts_of(eventful, item.point, start, self.periods)
-                rows.append(self.row(impacts, item))
+                last = eventful.flag("in_contact")()
+                rows.append(self.row(impacts, Followed(item.point, start, (first, last))))
         return {"rows": np.array(rows, dtype=float)}
 
     @abstractmethod
@@ -96,6 +108,7 @@ class FollowingQuestion(OnwardQuestion, ABC):
         impacts : Impacts
             Non-dimensional, of ``periods`` periods.
         item : Followed
+            From the state that the periods begin with.
         """
 
 
@@ -148,6 +161,12 @@ def settled(instance: Instance, item: Followed, transient: int) -> State:
     begin(instance, *item.point, item.start)
     instance.step(0.0, transient * item.point.excitation.period)
     return tuple(instance.get(*STATE))
+
+
+def touches(instance: EventInstance, point: Point, start: ArrayLike) -> bool:
+    """Whether a state at phase 0 is one of permanent contact."""
+    begin(instance, *point, start)
+    return instance.flag("in_contact")()
 
 
 def impacts_of(instance: EventInstance, point: Point, start: ArrayLike, periods: int) -> Impacts:

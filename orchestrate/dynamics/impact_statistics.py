@@ -18,7 +18,7 @@ from ..running.runner import answer
 from ..structures import Structure
 from .following import Followed, FollowingQuestion, starts_of
 from .lyapunov import Exponent, largest_exponent, without_impacts
-from .variational import period
+from .variational import period, releases
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +31,7 @@ FIELDS = {
     "fewest": "fewest impacts in one excitation period",
     "most": "most impacts in one excitation period",
     "contacts": "permanent contacts begun per excitation period",
-    "contact_share": "share of the time from beginnings of permanent contact to next impacts",
+    "contact_share": "share of the time in permanent contact",
     "closing_max": "largest closing velocity over omega a eta^2",
     "closing_min": "least closing velocity over omega a eta^2",
     "closing_sum": "sum of closing velocities per excitation period, over omega a eta^2",
@@ -84,6 +84,7 @@ def statistics(impacts: Impacts, item: Followed, periods: int) -> dict[str, floa
     exponent = found or largest_exponent(impacts, periods * span, eta, structure)
     return {
         **counts(impacts, span, periods),
+        "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
         **strengths(impacts, span, periods),
         "exponent": exponent.value,
         "standard_error": exponent.error,
@@ -94,15 +95,34 @@ def counts(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
     """Numbers of impacts; those of a chattering are all counted."""
     which = np.minimum((impacts.time / span).astype(int), periods - 1)
     each = np.bincount(which, minlength=periods)
-    distances = np.diff(impacts.time) / span
-    stuck = distances[impacts.sticks[:-1]].sum() if len(distances) else 0.0
     return {
         "impacts": len(impacts.time) / periods,
         "fewest": float(each.min()),
         "most": float(each.max()),
         "contacts": impacts.sticks.sum() / periods,
-        "contact_share": stuck / periods,
     }
+
+
+def contact_time(impacts: Impacts, item: Followed, end: float) -> float:
+    """Time in permanent contact until ``end``, in units of tau.
+
+    From each impact that begins it to the release (19), or to the end; and from the beginning where
+    the masses are in contact there. Contact begins by impacts alone: without any, masses that
+    touch at the end have touched all the time.
+    """
+    first, last = item.touching
+    if last and not len(impacts.time):
+        return end
+    if first:
+        impacts = Impacts(
+            np.append(0.0, impacts.time),
+            np.vstack([np.asarray(item.start) / item.point.scale, impacts.state]),
+            np.append(0.0, impacts.closing),
+            np.append(True, impacts.sticks),
+        )
+    structure, excitation = item.point
+    ends = np.append(impacts.time[1:], end)
+    return float(releases(impacts, ends, excitation.eta(structure), structure).sum())
 
 
 def strengths(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
@@ -153,7 +173,7 @@ def impact_statistics(
     -------
     xarray.Dataset
         Per excitation period: ``impacts`` on average, ``fewest``, ``most``; permanent ``contacts``
-        begun, and ``contact_share``, the share of the time from there to the next impacts. Largest
+        begun, and ``contact_share``, the share of the time in permanent contact. Largest
         and least closing velocity, and their sum per period, over omega a eta^2: ``closing_max``,
         ``closing_min``, ``closing_sum``. Times between impacts over T: ``distance_min``,
         ``distance_max``. ``exponent`` and ``standard_error`` as in :func:`orchestrate.lyapunov`,

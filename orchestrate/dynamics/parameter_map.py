@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, REST, EventInstance, Impacts, Instance, finder
 from ..errors import InputError
-from ..response.labels import Variable, parameter, variable
+from ..response.labels import Variable, flags, parameter, variable
+from ..response.multiplicity import DECIDED, REPEATED, UNDECIDED, Decision
 from ..response.questions import (
     ASKED,
     Numbers,
@@ -32,7 +33,8 @@ from ..response.questions import (
     state,
     whole,
 )
-from ..response.respond import respond
+from ..response.respond import Response, respond
+from ..response.sweep import HOW_DECIDED
 from ..running.job import Inputs, Table, plain
 from ..running.options import Running, RunOptions
 from ..running.runner import answer
@@ -50,6 +52,7 @@ if TYPE_CHECKING:
 FIELDS = {
     "impacts_per_period": "impacts per excitation period",
     "multiplicity": "excitation periods after which the response repeats; 0: irregular",
+    "multiplicity_decided": HOW_DECIDED,
     "xi_rel_max": "largest gap over a eta^2",
     "impulse_max": "largest impulse over m1 omega a eta^2",
 }
@@ -100,7 +103,9 @@ class MapJob(Question):
     samples : int
         Periods kept.
     tolerance : float
-        Of :func:`orchestrate.response.multiplicity.multiplicity`.
+        Of :func:`orchestrate.response.multiplicity.decide`.
+    longest : int
+        Periods up to which a response is run on whose multiplicity is undecided.
     start : tuple of float
         State that all points start from: x1, x2 in m, v1, v2 in m/s.
     exponent : bool
@@ -113,6 +118,7 @@ class MapJob(Question):
     settle: float = 300.0
     samples: int = 60
     tolerance: float = 1e-2
+    longest: int = 20_000
     start: tuple[float, ...] = REST
     exponent: bool = False
     periods: int = 500
@@ -154,15 +160,27 @@ class MapJob(Question):
 
     def at(self, plain: Instance, eventful: EventInstance, item: Point) -> list[float]:
         """One point, in the order of ``FIELDS`` and ``EXPONENT``."""
-        structure, excitation = item
-        dropped = settling(self.transient, self.settle, excitation.eta(structure))
-        kept = self.samples, self.tolerance
-        response = respond(plain, structure, excitation, self.start, dropped, *kept)
+        response, (n, decided) = self.response(plain, item)
         impacts = impacts_of(eventful, item, response.end, self.samples // 2)
-        impulse = impacts.impulse(structure).max(initial=0.0) / structure.m1
-        found = [response.impacts_per_period, response.multiplicity]
-        found += [response.x_rel_max / item.length, impulse]
+        impulse = impacts.impulse(item.structure).max(initial=0.0) / item.structure.m1
+        rate = response.impacts_per_period
+        if decided == REPEATED:
+            turn = period(item.excitation.eta(item.structure))
+            rate = int((impacts.time <= n * turn).sum()) / n
+        found = [rate, n, decided, response.x_rel_max / item.length, impulse]
         return [*found, *self.exponent_of(eventful, item, response.end)] if self.exponent else found
+
+    def response(self, instance: Instance, item: Point) -> tuple[Response, Decision]:
+        """The response, run on for as long as before each time its multiplicity is undecided."""
+        eta = item.excitation.eta(item.structure)
+        dropped, done, start = settling(self.transient, self.settle, eta), 0, self.start
+        while True:
+            response = respond(instance, *item, start, dropped, self.samples, self.tolerance)
+            decision = response.decision(self.tolerance)
+            done, start = done + dropped + self.samples, response.end
+            if decision.decided != UNDECIDED or done >= self.longest:
+                return response, decision
+            dropped = min(done, self.longest - done)
 
     def exponent_of(
         self, eventful: EventInstance, item: Point, start: ArrayLike
@@ -185,6 +203,8 @@ class MapJob(Question):
             name: variable(names, column.reshape(shape), "1", text)
             for (name, text), column in columns
         }
+        decided = variables["multiplicity_decided"][1]
+        variables["multiplicity_decided"] = flags(names, decided, HOW_DECIDED, DECIDED)
         coordinates = {
             axis.name: parameter(axis.name, axis.name, axis.values) for axis in self.axes
         }
@@ -224,6 +244,7 @@ def map(
     settle: float = 300.0,
     samples: int = 60,
     tolerance: float = 1e-2,
+    longest: int = 20_000,
     start: ArrayLike | None = None,
     exponent: bool = False,
     periods: int = 500,
@@ -245,7 +266,10 @@ def map(
     samples : int
         Periods kept.
     tolerance : float
-        Relative deviation within which a state counts as repeated.
+        Part of the motion's size within which a state counts as repeated.
+    longest : int
+        Periods up to which a response is run on whose multiplicity is undecided, see
+        :func:`orchestrate.sweep`.
     start : array_like of 4 floats, optional
         State at phase 0 that every point starts from: x1, x2 in m, v1, v2 in m/s; at rest by
         default.
@@ -261,8 +285,9 @@ def map(
     -------
     xarray.Dataset
         Over both parameters, the excitation's first: ``impacts_per_period``; ``multiplicity``, 0
-        where irregular; ``xi_rel_max``; ``impulse_max``, the largest impulse over m1 omega a eta^2
-        in half the periods kept; and where asked for ``exponent`` per unit of tau, with its
+        where irregular, and ``multiplicity_decided``, how it was decided; ``xi_rel_max``;
+        ``impulse_max``, the largest impulse over m1 omega a eta^2 in half the periods kept; and
+        where asked for ``exponent`` per unit of tau, with its
         ``standard_error``, NaN where there are too few impacts.
 
     Raises
@@ -298,6 +323,7 @@ def map(
         settle=positive("settle", settle),
         samples=whole("samples", samples, 4),
         tolerance=positive("tolerance", tolerance),
+        longest=whole("longest", longest, 0),
         start=state("start", start, structure),
         exponent=check_flag("exponent", exponent),
         periods=whole("periods", periods, 1),

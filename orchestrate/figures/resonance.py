@@ -103,12 +103,14 @@ def curves(values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
 
 
 def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: Along) -> None:
-    """A triangle on each peak that was found."""
+    """A triangle on each peak that was found, but where responses are irregular."""
     if not data.sizes.get("peak"):
         return
     factor, _ = unit_of(data[name])
     for i in range(data.sizes["peak"]):
         peak = data.isel(peak=i)
+        if "peak_irregular" in data and bool(peak.peak_irregular):
+            continue
         height = float(peak[f"peak_{name}"]) / factor
         if height > 0.0:
             colour = COLOURS.get(str(peak.peak_structure.values), BLACK)

@@ -17,6 +17,7 @@ from ..access import OSCILLATOR, Instance
 from ..dynamics.clusters import Telling, features, response_from
 from ..dynamics.following import Followed, OnwardQuestion
 from ..response.labels import nondimensional_state, variable, yes_or_no
+from ..response.respond import impacts_in
 from ..running.job import Inputs, Table
 
 if TYPE_CHECKING:
@@ -48,10 +49,13 @@ class SettledJob(OnwardQuestion):
         """Some responses."""
         rows, ends, contacts = [], [], []
         with Instance(fmus[OSCILLATOR]) as instance:
-            for point, start in items:
-                response, periods = response_from(instance, point, start, self.telling)
-                rows.append([*features(response, point.length)[:3], periods])
-                ends.append(response.end / point.scale)
+            for item in items:
+                response, periods = response_from(instance, item.point, item.start, self.telling)
+                n, impacts, gap = features(response, item.point.length)[:3]
+                if n:  # over the response's own period
+                    impacts = impacts_in(instance, item.point, response.end, int(n)) / n
+                rows.append([n, impacts, gap, periods])
+                ends.append(response.end / item.point.scale)
                 contacts.append(response.permanent_contact)
         return {"rows": np.array(rows), "end": np.array(ends), "contact": np.array(contacts)}
 

@@ -81,9 +81,9 @@ class Drive(NamedTuple):
         return self.amplitude * sine, self.amplitude * self.frequency * cosine
 
 
-def periods_of(response: Response, most: int) -> int:
+def periods_of(multiplicity: int, most: int) -> int:
     """Periods looked at: those it repeats after, ``most`` at most; half of them if it does not."""
-    return min(response.multiplicity, most) or (most + 1) // 2
+    return min(multiplicity, most) or (most + 1) // 2
 
 
 def orbit(instance: Instance, point: Point, response: Response, first: int, periods: int) -> Floats:

@@ -15,10 +15,11 @@ from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .labels import Variable, variable, yes_or_no
+from .multiplicity import IRREGULAR
 from .peaks import PEAKS
 from .questions import Point, asked_along, positive, whole
-from .sweep import MULTIPLICITY, NUMBERS, Direction, SweepJob
-from .turns_and_jumps import jumps, maxima
+from .sweep import NUMBERS, Direction, SweepJob, multiplicities
+from .turns_and_jumps import inside_irregular, jumps, maxima
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -93,7 +94,7 @@ class ResonanceJob(SweepJob):
         return {
             **{name: variable(along, numbers[name], *TOLD[name]) for name in TOLD},
             "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
-            "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
+            **multiplicities(along, table),
         }
 
     def coordinates(self) -> dict[str, Variable]:
@@ -119,13 +120,17 @@ class ResonanceJob(SweepJob):
 
     def peaks(self, data: xr.Dataset) -> dict[str, Variable]:
         """Where the larger one of both displacements has its maxima."""
-        rows = [
-            curve.isel({self.series.name: index})
-            for curve in self.curves(data)
-            for index in maxima(reach(curve), self.prominence)
-        ]
+        rows, noise = [], []
+        for curve in self.curves(data):
+            parts = str(curve.structure.values) != KINDS[0]  # glued, no response is irregular
+            inside = inside_irregular(parts & (curve.multiplicity_decided.values == IRREGULAR))
+            for index in maxima(reach(curve), self.prominence):
+                rows.append(curve.isel({self.series.name: index}))
+                noise.append(inside[index])
+        text = "whether it lies inside a range of irregular responses, where a maximum is chance"
         return {
             **self.named("peak", rows),
+            "peak_irregular": yes_or_no("peak", noise, text),
             **{
                 f"peak_{name}": variable("peak", [float(row[name]) for row in rows], *TOLD[name])
                 for name in OF_PEAKS
@@ -205,7 +210,7 @@ def resonance(
     transient, samples : int
         Periods dropped, and looked at after them, at each frequency.
     tolerance : float
-        Relative deviation within which a state counts as repeated.
+        Part of the motion's size within which a state counts as repeated.
     peak_periods : int
         As in :func:`orchestrate.sweep`.
     prominence : float
@@ -222,10 +227,12 @@ def resonance(
         ``hertz`` too: largest distances of both masses from the box's middle ``x1_max``, ``x2_max``
         in m and over a eta^2 as ``xi1_max``, ``xi2_max``; largest accelerations in space between
         impacts ``a1_max``, ``a2_max`` in m/s2; the largest gap ``x_rel_max`` and ``xi_rel_max``;
-        ``impacts_per_period``, ``multiplicity``, ``permanent_contact``. Over ``peak`` and ``jump``:
-        structure, direction and frequency of each, and how large it is. What peaks is the larger
-        one of both displacements; what jumps is the largest gap, in which a change from one motion
-        to another shows best.
+        ``impacts_per_period``, ``multiplicity`` and ``multiplicity_decided``,
+        ``permanent_contact``. Over ``peak`` and ``jump``: structure, direction and frequency of
+        each, and how large it is. What peaks is the larger one of both displacements; what jumps is
+        the largest gap, in which a change from one motion to another shows best.
+        ``peak_irregular`` marks peaks inside a range of irregular responses: amplitudes of these
+        are the largest of a few periods, and differ by chance from one frequency to the next.
 
     Raises
     ------

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import STATE, Instance, begin, last_samples, room_for_samples
 from ..structures import Excitation, Structure
-from .multiplicity import Repetition, over_size, repetition
+from .multiplicity import Decision, Repetition, decide, over_size, repetition
 from .questions import Point
 
 
@@ -31,7 +31,8 @@ class Response:
     permanent_contact : bool
         Whether any occurred in them.
     multiplicity : int
-        Least n such that the state repeats after n periods; 0: none.
+        Least n such that the state repeats after n periods within the tolerance; 0: none. How far
+        to believe it: :meth:`decision`.
     frequency : float
         Of the excitation, rad/s.
     """
@@ -43,9 +44,18 @@ class Response:
     multiplicity: int
     frequency: float = 1.0
 
+    @cached_property
+    def states(self) -> NDArray[np.float64]:
+        """The samples over the motion's size, see :func:`.multiplicity.over_size`."""
+        return over_size(self.samples, self.frequency, self.x_rel_max)
+
     def repetition(self, tolerance: float) -> Repetition:
         """After how many periods states repeat within a tolerance, and how closely they do."""
-        return repetition(over_size(self.samples, self.frequency, self.x_rel_max), tolerance)
+        return repetition(self.states, tolerance)
+
+    def decision(self, tolerance: float) -> Decision:
+        """The multiplicity by how deviations develop, see :func:`.multiplicity.decide`."""
+        return decide(self.states, tolerance)
 
     @property
     def gap(self) -> NDArray[np.float64]:
@@ -159,6 +169,31 @@ def sample(
         states[done : done + count] = last_samples(instance, count)
         peak = max(peak, *instance.get("x_rel_max"))
     return states, peak
+
+
+def impacts_since(instance: Instance, before: int, time: float, target: float) -> int:
+    """Impacts until a time, after a count that was read before.
+
+    Parameters
+    ----------
+    instance : Instance
+        At ``time``.
+    before : int
+        Its ``impact_count`` then.
+    time, target : float
+        s.
+    """
+    if target > time:
+        instance.step(time, target)
+    count: int = instance.get("impact_count")[0]
+    return count - before
+
+
+def impacts_in(instance: Instance, point: Point, start: ArrayLike, periods: int) -> int:
+    """Impacts in some periods from a state at phase 0 on, in m and m/s."""
+    begin(instance, *point, start)
+    (before,) = instance.get("impact_count")
+    return impacts_since(instance, before, 0.0, periods * point.excitation.period)
 
 
 def follow(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,10 +15,11 @@ from ..errors import InputError
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .labels import Dims, Variable, nondimensional_state, variable, yes_or_no
+from .labels import Dims, Variable, flags, nondimensional_state, variable, yes_or_no
+from .multiplicity import DECIDED, REPEATED
 from .peaks import PEAKS, orbit, peaks, periods_of
 from .questions import Point, SeriesQuestion, asked_along, positive, state, whole
-from .respond import follow
+from .respond import Response, follow, impacts_since
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,7 +31,10 @@ Direction = Literal["up", "down", "both", "given"]
 DIRECTIONS = ("up", "down", "both", "given")
 NUMBERS = {  # one a response: units, long name
     "xi_rel_max": ("1", "largest gap over the sampled periods, between samples too"),
-    "impacts_per_period": ("1", "impacts per excitation period, mean over the samples"),
+    "impacts_per_period": (
+        "1",
+        "impacts per excitation period: exact where the response repeats, else mean over samples",
+    ),
     "x1_max": ("m", "largest distance of mass 1 from the box's middle"),
     "x2_max": ("m", "largest distance of mass 2 from the box's middle"),
     "xi1_max": ("1", "largest distance of mass 1 from the box's middle over a eta^2"),
@@ -39,7 +43,8 @@ NUMBERS = {  # one a response: units, long name
     "a2_max": ("m/s2", "largest acceleration of mass 2 in space between impacts"),
 }
 END = "state at the last sample, from which the next value starts"
-MULTIPLICITY = "least n such that the state repeats after n periods within the tolerance; 0: none"
+MULTIPLICITY = "least n such that the state repeats after n periods; 0: none"
+HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a guess"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +58,7 @@ class SweepJob(SeriesQuestion):
     transient, samples : int
         Periods dropped, and stroboscopic samples kept after them, at each value.
     tolerance : float
-        Of :func:`.multiplicity.multiplicity`.
+        Of :func:`.multiplicity.decide`.
     start : tuple of float
         State that the first value starts from: x1, x2 in m, v1, v2 in m/s.
     peak_periods : int
@@ -106,26 +111,38 @@ class SweepJob(SeriesQuestion):
         """Some responses, from the state that the last one passes on."""
         start = self.start if carry is None else carry["end"][-1]
         settings = self.transient, self.samples, self.tolerance
-        responses, orbits, spans = [], [], []
         with Instance(fmus[OSCILLATOR]) as instance:
-            for point, response in zip(
-                items, follow(instance, items, start, *settings), strict=True
-            ):
-                spans.append(periods_of(response, self.peak_periods))
-                first = self.transient + self.samples
-                orbits.append(orbit(instance, point, response, first, spans[-1]))
-                responses.append(response)
-        return {
-            "gap": np.array([response.gap for response in responses]),
-            "end": np.array([response.end for response in responses]),
-            **{
-                name: np.array([getattr(response, name) for response in responses])
-                for name in (
-                    *("x_rel_max", "impacts_per_period"),
-                    *("permanent_contact", "multiplicity"),
+            rows = [
+                self.row(instance, point, response)
+                for point, response in zip(
+                    items, follow(instance, items, start, *settings), strict=True
                 )
-            },
-            **peaks(items, spans, np.array(orbits)),
+            ]
+        spans, orbits = ([row.pop(name) for row in rows] for name in ("span", "orbit"))
+        table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+        return {**table, **peaks(items, spans, np.array(orbits))}
+
+    def row(self, instance: Instance, point: Point, response: Response) -> dict[str, Any]:
+        """One response, and how it goes on after the samples."""
+        n, decided = response.decision(self.tolerance)
+        span = periods_of(n, self.peak_periods)
+        first = self.transient + self.samples
+        (before,) = instance.get("impact_count")
+        states = orbit(instance, point, response, first, span)
+        impacts = response.impacts_per_period
+        if decided == REPEATED:
+            done, end = ((first + count) * point.excitation.period for count in (span, n))
+            impacts = impacts_since(instance, before, done, end) / n
+        return {
+            "gap": response.gap,
+            "end": response.end,
+            "x_rel_max": response.x_rel_max,
+            "impacts_per_period": impacts,
+            "permanent_contact": response.permanent_contact,
+            "multiplicity": n,
+            "decided": decided,
+            "span": span,
+            "orbit": states,
         }
 
     def seam(self, table: Table) -> bytes:
@@ -169,7 +186,7 @@ class SweepJob(SeriesQuestion):
             ),
             **{name: variable(along, numbers[name], *NUMBERS[name]) for name in NUMBERS},
             "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
-            "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
+            **multiplicities(along, table),
             "end_state": variable((*along, "coordinate"), table["end"] / scales, "1", END),
         }
 
@@ -189,6 +206,14 @@ class SweepJob(SeriesQuestion):
     def title(self) -> str:
         """What it is, for people."""
         return f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
+
+
+def multiplicities(along: Dims, table: Table) -> dict[str, Variable]:
+    """The multiplicity, and how it was decided."""
+    return {
+        "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
+        "multiplicity_decided": flags(along, table["decided"], HOW_DECIDED, DECIDED),
+    }
 
 
 def sweep(
@@ -226,7 +251,7 @@ def sweep(
     transient, samples : int
         Periods dropped, and stroboscopic samples kept after them, at each value.
     tolerance : float
-        Relative deviation within which a state counts as repeated.
+        Part of the motion's size within which a state counts as repeated.
     start : array_like of 4 floats, optional
         State that the first value starts from, at phase 0: x1, x2 in m, v1, v2 in m/s; at rest
         by default.
@@ -242,7 +267,8 @@ def sweep(
     xarray.Dataset
         Over the parameter, and ``sample`` and ``direction``: ``xi_rel``, stroboscopic samples of
         the gap over a eta^2 (21); ``xi_rel_max``; ``impacts_per_period``; ``multiplicity`` in
-        excitation periods, 0 where the response does not repeat; ``permanent_contact``;
+        excitation periods, 0 where the response does not repeat, and ``multiplicity_decided``, how
+        it was decided: repeated, irregular or undecided; ``permanent_contact``;
         ``end_state``, the non-dimensional state at the last sample, at phase 0, from which the next
         value starts; largest distances of both masses from the
         box's middle, ``x1_max`` and ``x2_max`` in m, ``xi1_max`` and ``xi2_max`` over a eta^2; and
@@ -259,6 +285,17 @@ def sweep(
     The paper's section 3.1 and Figures 6, 10 and 11. Samples, impacts and the largest gap come
     from the FMU and are exact to rounding; for amplitudes and accelerations see
     :func:`orchestrate.response.peaks.peaks`.
+
+    A response has *repeated* where states ``multiplicity`` periods apart agree within the
+    tolerance, and their deviation has died or dies. It is *undecided* where it nearly repeats: it
+    converges too slowly to tell, next to a period doubling for instance, or it is a torus or a
+    chaotic band narrower than the tolerance; ``multiplicity`` is then the best guess, and a longer
+    ``transient`` decides. The tolerance does not hide a period doubling: one of any width above
+    1e-9 counts once the response has converged. Lengths are compared with the largest displacement
+    or velocity over the frequency, and the gap with the largest gap.
+
+    Impacts of a response that has repeated are counted over its own period, those of others over
+    the samples.
 
     What is passed on from value to value is the state at the last sample to 44 bits, 13 digits:
     what has converged to one response then comes to the very same numbers, whatever rounding it was

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Rows = NDArray[np.intp]
+WINDOW = 3  # values that a window has at least to show a maximum of its own
 NEIGHBOURS, TIMES = 2, 3.0  # of the curve's own slope, which a jump must stand out from
 
 
@@ -30,6 +31,32 @@ def maxima(curve: ArrayLike, prominence: float) -> Rows:
     values = np.asarray(curve, dtype=float)
     ratios = np.log(np.maximum(values, np.finfo(float).tiny))
     found: Rows = find_peaks(ratios, prominence=np.log1p(prominence))[0]
+    return found
+
+
+def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
+    """Which values of a curve lie inside a range of irregular responses.
+
+    Parameters
+    ----------
+    irregular : array_like of bool, shape (n,)
+        Whether each response is.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        Of irregular responses, and of up to two others between irregular ones: such a window is too
+        narrow to show a maximum of its own.
+
+    Examples
+    --------
+    >>> inside_irregular([False, True, False, False, True, False, False]).astype(int)
+    array([0, 1, 1, 1, 1, 0, 0])
+    """
+    from scipy.ndimage import binary_closing
+
+    padded = np.pad(np.asarray(irregular, dtype=bool), WINDOW)
+    found: NDArray[np.bool_] = binary_closing(padded, np.ones(WINDOW))[WINDOW:-WINDOW]
     return found
 
 

@@ -13,6 +13,7 @@ import { lengthOf, periodOf } from "./structure.js";
 
 export const USUAL = { transient: 500, samples: 200, tolerance: 1e-2 };
 
+const LEAST_GAP = 2 ** -20; // of the motion's size: smaller gaps have no size of their own
 const TO_WHOLE = 1.5 * 2 ** 52; // added and taken away it leaves a whole number, ties to even
 
 /**
@@ -39,7 +40,7 @@ export function respond(instance, point, start, { transient, samples, tolerance 
     peak: peak / length,
     impacts: (instance.get("impact_count") - before) / samples,
     contact: touching || instance.get("contact_count") > contacts,
-    multiplicity: multiplicity(states, tolerance),
+    multiplicity: multiplicity(overSize(states, (2 * Math.PI) / period, peak), tolerance),
     start: Array.from(start),
     end: withoutLastDigits(states.subarray(states.length - 4)),
   };
@@ -69,36 +70,51 @@ export function gapsOf(states, length) {
 }
 
 /**
- * The least n such that the state repeats after n periods; 0 where none up to a quarter does.
- * Only the later half of the samples is compared.
- * @param {Float64Array} states
+ * The least n such that the state repeats after n periods within a tolerance; 0 where none up to a
+ * quarter does. Only the later half of the samples is compared. How deviations develop is not
+ * asked here: `sweep` does.
+ * @param {number[][]} states Of `overSize`.
  * @param {number} tolerance
  */
 export function multiplicity(states, tolerance) {
-  const count = states.length / 4;
-  const first = Math.floor(count / 2);
-  const scale = [0, 0, 0, 0];
-  for (let i = 4 * first; i < states.length; i++) {
-    scale[i % 4] = Math.max(scale[i % 4], Math.abs(states[i]));
-  }
-  const limit = Math.min(Math.max(1, Math.floor(count / 4)), count - first - 1);
+  const first = Math.floor(states.length / 2);
+  const limit = Math.min(Math.max(1, Math.floor(states.length / 4)), states.length - first - 1);
   for (let n = 1; n <= limit; n++) {
-    if (repeats(states, 4 * first, 4 * n, scale, tolerance)) return n;
+    if (repeats(states, first, n, tolerance)) return n;
   }
   return 0;
 }
 
 /**
- * @param {Float64Array} states
+ * States with the gap and its rate, over the motion's size; the gap over its own.
+ * @param {Float64Array} states Four numbers a state.
+ * @param {number} frequency rad/s
+ * @param {number} gap The largest one, m.
+ * @returns {number[][]}
+ */
+export function overSize(states, frequency, gap) {
+  const rows = [];
+  for (let i = 0; i < states.length; i += 4) {
+    const [x1, x2] = [states[i], states[i + 1]];
+    const [v1, v2] = [states[i + 2] / frequency, states[i + 3] / frequency];
+    rows.push([x1, x2, v1, v2, x2 - x1, v2 - v1]);
+  }
+  const later = rows.slice(Math.floor(rows.length / 2));
+  const size = Math.max(...later.map((row) => Math.max(...row.slice(0, 4).map(Math.abs)))) || 1;
+  const ofGap = Math.max(gap, LEAST_GAP * size);
+  const ofRate = Math.max(ofGap, ...later.map((row) => Math.abs(row[5])));
+  return rows.map((row) => [...row.slice(0, 4).map((value) => value / size), row[4] / ofGap, row[5] / ofRate]);
+}
+
+/**
+ * @param {number[][]} states
  * @param {number} first
  * @param {number} shift
- * @param {number[]} scale
  * @param {number} tolerance
  */
-function repeats(states, first, shift, scale, tolerance) {
+function repeats(states, first, shift, tolerance) {
   for (let i = first; i + shift < states.length; i++) {
-    const unit = scale[i % 4] || 1;
-    if (Math.abs(states[i + shift] / unit - states[i] / unit) > tolerance) return false;
+    if (states[i].some((value, k) => Math.abs(states[i + shift][k] - value) > tolerance)) return false;
   }
   return true;
 }

@@ -153,7 +153,11 @@ def between(data: xr.Dataset, low: float, high: float) -> xr.Dataset:
 
 
 def impacts_in_response(data: xr.Dataset) -> np.ndarray:
-    """Impacts in a response period; 0 where the state or the number of impacts does not repeat."""
+    """Impacts in a response period; 0 where the state or the number of impacts does not repeat.
+
+    A sweep counts those of a response that has repeated over its own period: n times them is a
+    whole number. Where that is undecided their mean over the samples may miss it a little.
+    """
     n = data.multiplicity.values
     count = n * data.impacts_per_period.values
     slack = 1.5 * n / data.sizes["sample"]

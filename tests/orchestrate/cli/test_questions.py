@@ -145,6 +145,15 @@ TRIVIAL = [
     ),
     (("resonance", "--eta", "1.9:2:0.05", *SHORT), "no jump"),
     (("resonance", "--eta", "0.3:0.4:0.05", *SHORT), "no peak from eta = 0.3 to eta = 0.4"),
+    (
+        ("resonance", "--set", "mu=0.5", "--set", "kappa=1.9", "--set", "D=0.02", "--set", "e=0.8")
+        + ("--eta", "3.4:4.2:0.01"),
+        "maxima left out, as chance makes them where responses are irregular: ",
+    ),
+    (
+        ("sweep", "--set", "e=0.86", "--eta", "0.827,0.9", "--transient", "240", "--samples", "60"),
+        "still converging or nearly periodic (--transient 5000 decides most) at 0.827",
+    ),
     (("branch", "--eta", "2.5", "--limits", "2.45:2.55"), "no bifurcation in this range"),
     (("lyapunov", "--eta", "1", "--set", "bonded=true", "--periods", "20"), "there are no impacts"),
 ]

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from orchestrate.access import OSCILLATOR, Instance, begin, find
 from orchestrate.dynamics.impact_statistics import impact_statistics
 from orchestrate.response.simulate import simulate
-from orchestrate.structures import Structure
+from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=2.9, e=0.6)
@@ -32,8 +33,58 @@ def test_they_are_those_of_the_motion(structure, eta):
     apart = np.diff(times)
     assert float(found.distance_max) == pytest.approx(apart.max(), rel=1e-6)
     assert float(found.distance_min) == pytest.approx(apart.min(), rel=1e-3)
-    stuck = apart[motion.sticks.values[:-1].astype(bool)].sum() / 10
-    assert float(found.contact_share) == pytest.approx(stuck, rel=1e-6, abs=1e-12)
+
+
+def contact_of(structure, eta, periods, start=None):
+    """Share of permanent contact by the FMU: its beginnings, and its ends by bisection."""
+    excitation = Excitation.nondimensional(eta, structure)
+    points, path = 50, find(OSCILLATOR).path
+    motion = simulate(structure, eta=eta, periods=periods, points=points, start=start)
+    stuck = motion.impact_time.values[motion.sticks.values == 1]
+    begins = np.append(0.0, stuck) if motion.in_contact[0] else stuck
+    with Instance(path) as instance:
+
+        def touching(time):
+            begin(instance, structure, excitation, start or (0.0,) * 4)
+            instance.step(0.0, time)
+            return instance.get("in_contact")[0]
+
+        total, end = 0.0, float(motion.time[-1])
+        for low in begins:
+            high = low + excitation.period / points
+            while high < end and touching(high):
+                low, high = high, high + excitation.period / points
+            high = min(high, end)
+            if touching(high):
+                low = high
+            while high - low > 1e-10 * end:
+                middle = 0.5 * (low + high)
+                low, high = (middle, high) if touching(middle) else (low, middle)
+            total += high - begins[begins <= low][-1]
+    return total / end
+
+
+@pytest.mark.parametrize(
+    ("structure", "eta", "periods"),
+    [
+        (PAPER, 0.25, 3),  # contact at the beginning, from rest
+        (PAPER.replace(e=0.3), 0.7, 5),
+        (Structure.nondimensional(e=0.0), 1.3, 10),  # contact at the end too
+        (Structure.nondimensional(e=0.0, mu=0.4, kappa=1.7), 0.6, 4),
+        (OWN, 1.5, 10),
+    ],
+)
+def test_the_share_of_permanent_contact_is_the_fmu_s(structure, eta, periods):
+    found = impact_statistics(structure, eta=eta, transient=0, periods=periods).isel(eta=0)
+    expected = contact_of(structure, eta, periods)
+    assert 0.01 < expected < 0.99
+    assert float(found.contact_share) == pytest.approx(expected, abs=1e-8)
+
+
+@pytest.mark.parametrize("structure", [PAPER.as_bonded(), Structure.nondimensional(kappa=1.0)])
+def test_masses_that_never_part_are_in_contact_all_the_time(structure):
+    found = impact_statistics(structure, eta=1.3, transient=5, periods=10)
+    assert found.contact_share.values.tolist() == [1.0]
 
 
 def test_without_impacts_there_is_no_velocity():

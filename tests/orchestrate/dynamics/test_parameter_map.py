@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.lyapunov import lyapunov
+from orchestrate.dynamics.orbits import orbit
 from orchestrate.dynamics.parameter_map import map
 from orchestrate.errors import InputError
+from orchestrate.response.multiplicity import REPEATED, UNDECIDED
 from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Structure
@@ -34,6 +36,38 @@ def test_each_point_is_a_response_from_rest(found):
                 assert float(point[name]) == float(swept[name]), name
 
 
+def test_responses_next_to_each_other_are_alike_where_a_mass_passes_zero_at_phase_zero():
+    # the arc on which x2 is 0 at phase 0: T was called 2, 9, 11 and 0 along it
+    arc = map(PAPER, eta=np.linspace(1.90, 1.95, 11), e=np.linspace(0.33, 0.37, 5))
+    assert (arc.multiplicity == 1).all()
+    assert (arc.multiplicity_decided == REPEATED).all()
+
+
+def test_what_is_undecided_is_run_on():
+    given = {"eta": [0.827, 0.894], "e": [0.74, 0.86], "transient": 200}
+    stopped, run_on = (map(PAPER, **given, longest=most) for most in (0, 20_000))
+    places = [{"eta": 0.827, "e": 0.86}, {"eta": 0.894, "e": 0.74}]
+    for where, n in zip(places, (8, 2), strict=True):  # by Newton's method
+        assert int(stopped.multiplicity_decided.sel(where)) == UNDECIDED
+        assert int(run_on.multiplicity_decided.sel(where)) == REPEATED
+        assert int(run_on.multiplicity.sel(where)) == n == orbit_of(where, n)
+
+
+def orbit_of(where, n):
+    """The period of the stable orbit that the response from rest settles to."""
+    structure = PAPER.replace(e=where["e"])
+    end = sweep(structure, eta=where["eta"], transient=20_000, samples=4).end_state.values[0]
+    found = orbit(structure, eta=where["eta"], period=n, guess=end)
+    return n if bool(found.stable) and float(found.fmu_return) < 1e-9 else 0
+
+
+def test_impacts_are_counted_over_the_response_s_own_period():
+    structure = Structure.nondimensional(mu=0.879, kappa=1.838, D=0.0194, e=0.372)
+    found = map(structure, eta=[3.26, 3.27], e=[0.371, 0.372], samples=40)  # no multiple of 3
+    assert int(found.multiplicity.sel(eta=3.26, e=0.372)) == 3
+    assert float(found.impacts_per_period.sel(eta=3.26, e=0.372)) == 10.0 / 3.0
+
+
 def test_the_largest_impulse_is_that_of_the_motion(found):
     motion = simulate(PAPER, eta=1.6, transient=480 + 60, periods=30)
     expected = 0.85 * float(motion.impact_velocity.max())
@@ -52,7 +86,7 @@ def test_exponents_are_those_of_the_responses(found):
 
 def test_any_two_parameters_in_any_unit():
     own = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
-    short = {"transient": 50, "settle": 1.0, "samples": 10}
+    short = {"transient": 50, "settle": 1.0, "samples": 10, "longest": 0}
     found = map(own, k2=[6000.0, 8000.0], D=[0.01, 0.02, 0.03], eta=1.4, m2=1.0, **short)
     assert found.xi_rel_max.dims == ("k2", "D")
     assert found.k2.attrs["units"] == "N/m"

@@ -10,8 +10,13 @@ import xarray as xr
 
 import orchestrate
 from orchestrate import cli
+from orchestrate.access import OSCILLATOR, Instance, find
 from orchestrate.explorer.page import explore
+from orchestrate.response.questions import Point
+from orchestrate.response.respond import follow
+from orchestrate.structures import Excitation, Structure
 
+PAPER = Structure()
 DIAGRAM = "explorer.regions.diagram"
 MOTION = "explorer.inspector.found.motion"
 
@@ -31,11 +36,17 @@ def test_every_response_has_the_samples_of_the_file_to_the_last_bit(browser, swe
     assert np.array_equal(etas(browser), swept.eta.values)
     assert gaps(browser).tobytes() == swept.xi_rel.values.tobytes()
     found = f"{DIAGRAM}.lanes[0].found"
-    for mine, theirs in (("impacts", "impacts_per_period"), ("peak", "xi_rel_max")):
+    numbers = browser.numbers(f"{found}.map((one) => one.peak)")
+    assert numbers.tobytes() == swept.xi_rel_max.values.tobytes()
+    # the page counts over the samples, and compares within the tolerance alone
+    points = [
+        Point(PAPER, Excitation.nondimensional(float(eta), PAPER)) for eta in swept.eta.values
+    ]
+    with Instance(find(OSCILLATOR).path) as instance:
+        responses = list(follow(instance, points, (0.0,) * 4, 500, 200, 1e-2))
+    for mine, theirs in (("impacts", "impacts_per_period"), ("multiplicity", "multiplicity")):
         numbers = browser.numbers(f"{found}.map((one) => one.{mine})")
-        assert numbers.tobytes() == swept[theirs].values.tobytes()
-    multiplicity = browser.numbers(f"{found}.map((one) => one.multiplicity)")
-    assert np.array_equal(multiplicity, swept.multiplicity.values)
+        assert np.array_equal(numbers, [getattr(one, theirs) for one in responses])
 
 
 def test_a_click_shows_the_motion_that_the_command_computes(browser, swept, tmp_path, capsys):

@@ -321,6 +321,8 @@ def test_resonance_has_all_curves_and_their_peaks():
     labelled = [bool(plane.get_xlabel()) for plane in figure.axes]
     assert labelled == [False, False, True, True, True]  # two widths, each with its numbers
     assert all(plane.xaxis.get_tick_params()["labelbottom"] for plane in figure.axes[2:])
+    noisy = resonance.draw(data.assign(peak_irregular=("peak", [1, 0])))  # chance has no triangle
+    assert len([line for line in noisy.axes[0].lines if line.get_marker() == "v"]) == 1
     alone = curves(True).sel(structure="delaminated", direction="up", drop=True)
     assert len(resonance.draw(alone).axes[0].texts) == 1
 

@@ -14,15 +14,17 @@ from orchestrate.dynamics.clusters import Telling
 from orchestrate.dynamics.lyapunov import LyapunovJob
 from orchestrate.paper.basin import EvenBasinJob
 from orchestrate.paper.cases import CASES
+from orchestrate.paper.claims.results import impacts_in_response, kind
 from orchestrate.paper.curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
 from orchestrate.paper.gamma import GammaJob
 from orchestrate.paper.limits import Followed, LimitsJob, windows_of
 from orchestrate.paper.low_speed import LowSpeedJob
 from orchestrate.paper.settled import SettledJob
 from orchestrate.paper.spectra import PeakSpectraJob
+from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.runner import gather
-from orchestrate.structures import Excitation
+from orchestrate.structures import Excitation, Structure
 
 PAPER = CASES["elastic"]
 DAMPED = CASES["damped"]
@@ -85,6 +87,25 @@ def test_the_limit_of_permanent_contact_does_not_depend_on_gamma(exported):
     table = job.work({OSCILLATOR: find(OSCILLATOR).path}, job.items({})[:1], None)
     other = job.work({OSCILLATOR: find(OSCILLATOR).path}, job.items({})[1:], None)
     assert table["last"].tolist() == other["last"].tolist() == [0.417]
+
+
+def test_impacts_of_a_settled_response_are_those_of_its_own_period(exported):
+    """The mean over 48 periods of this 11T with 32 impacts is that of 33 or 34."""
+    structure, eta = Structure.nondimensional(mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291), 3.0952
+    found = ask(SettledJob(name="settled", structure=structure, eta=(eta,)))
+    n = int(found.multiplicity[0])
+    state = found.end_state.values[0]
+    motion = simulate(structure, eta=eta, start=state, periods=n, points=1)
+    assert (n, motion.sizes["impact"]) == (11, 32)
+    assert float(found.impacts_per_period[0]) == 32.0 / 11.0
+
+
+def test_impacts_in_a_response_of_a_sweep_are_counted_exactly(exported):
+    """Of 200 periods of this 3T, a mean of 3.305 impacts a period was no whole number of them."""
+    structure = Structure.nondimensional(mu=0.879, kappa=1.838, D=0.0194, e=0.372)
+    found = ask(SweepJob(name="sweep", structure=structure, eta=(3.26,)))
+    assert kind(found, 3, 10).all()
+    assert impacts_in_response(found).tolist() == [10]
 
 
 def test_exact_limits_of_a_branch_through_a_sweep(swept):

@@ -5,8 +5,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from orchestrate.access import OSCILLATOR, Instance, find
-from orchestrate.response.multiplicity import LEAST_GAP, multiplicity, over_size, repetition
+from orchestrate.access import OSCILLATOR, EventInstance, Instance, find
+from orchestrate.dynamics.continuation import NoConvergenceError
+from orchestrate.dynamics.families import Setting
+from orchestrate.dynamics.guesses import from_state
+from orchestrate.dynamics.orbit_search import repeats_earlier, solve, why_no_motion
+from orchestrate.dynamics.turning_points import phase_zero
+from orchestrate.response.multiplicity import (
+    IRREGULAR,
+    LEAST_GAP,
+    REPEATED,
+    UNDECIDED,
+    decide,
+    multiplicity,
+    over_size,
+    repetition,
+)
+from orchestrate.response.questions import Point
 from orchestrate.response.respond import respond
 from orchestrate.structures import Excitation, Structure
 
@@ -175,3 +190,151 @@ def test_the_samples_are_left_as_they_were():
     before = samples.copy()
     multiplicity(samples, TOLERANCE)
     np.testing.assert_array_equal(samples, before)
+
+
+# -- how it was decided ---------------------------------------------------------------------------
+
+
+def states_of(deviation, count=200):
+    """A response with some deviations of mass 1, of a motion of size 1 to 2."""
+    n = np.arange(count)
+    samples = np.tile([0.2, 0.8, 2.0, -1.0], (count, 1))
+    samples[:, 0] += deviation(n)
+    return over_size(samples, 1.0, 1.0)
+
+
+def doubling(multiplier, count=200, width=0.0):
+    """Next to a period doubling: a deviation that changes sides dies, beside one that stays."""
+    return states_of(lambda n: (-1.0) ** n * (0.05 * multiplier**n + width), count)
+
+
+@given(orbits(), st.integers(0, 60), st.floats(0.5, 0.9))
+def test_what_has_died_or_dies_fast_has_repeated(orbit, more, multiplier):
+    samples = repeat(orbit, 8 * len(orbit) + more + 40)
+    rest = 1e-3 * np.abs(orbit).max() * multiplier ** np.arange(len(samples))
+    n, decided = decide(over_size(samples + rest[:, None]), TOLERANCE)
+    assert n == len(orbit)
+    assert decided == REPEATED
+
+
+@pytest.mark.parametrize("multiplier", [0.5, 0.9, 0.97])
+def test_a_stable_response_next_to_a_period_doubling_is_none_of_two_periods(multiplier):
+    assert decide(doubling(multiplier), TOLERANCE) == (1, REPEATED)
+
+
+@pytest.mark.parametrize("multiplier", [0.99, 0.995, 0.999, 0.9999])
+def test_while_the_deviation_is_larger_than_the_tolerance_it_is_undecided(multiplier):
+    states = doubling(multiplier, 100)
+    assert repetition(states, TOLERANCE).multiplicity == 2  # the tolerance alone says so
+    n, decided = decide(states, TOLERANCE)
+    assert decided == UNDECIDED or n == 1
+
+
+@pytest.mark.parametrize("width", [1e-7, 1e-5, 1e-3, 0.1])
+def test_the_tolerance_does_not_hide_a_narrow_period_doubling(width):
+    states = doubling(0.8, width=width)
+    assert repetition(states, TOLERANCE).multiplicity == (1 if width < 0.01 else 2)
+    assert decide(states, TOLERANCE) == (2, REPEATED)
+
+
+@pytest.mark.parametrize("angle", [0.117, 0.291, GOLDEN])
+def test_a_deviation_that_dies_while_it_turns_round_repeats_after_one_period(angle):
+    def spiral(n, multiplier):
+        return 0.1 * multiplier**n * np.cos(2.0 * np.pi * angle * n)
+
+    assert decide(states_of(lambda n: spiral(n, 0.9)), TOLERANCE) == (1, REPEATED)
+    n, decided = decide(states_of(lambda n: spiral(n, 0.99)), TOLERANCE)
+    assert (n, decided) in [(1, REPEATED), (1, UNDECIDED)]
+
+
+@given(st.floats(0.0, 1.0), st.floats(0.05, 0.45))
+def test_a_torus_has_repeated_after_no_number_of_periods(phase, angle):
+    # its state comes back as closely as one likes, and drifts away again
+    def torus(n):
+        return 0.3 * np.cos(2.0 * np.pi * (angle * n + phase))
+
+    exact = min(abs(angle * n - round(angle * n)) for n in range(1, 51)) < 1e-4
+    assert exact or decide(states_of(torus), TOLERANCE).decided != REPEATED
+
+
+def test_what_leaves_an_unstable_orbit_is_undecided():
+    assert decide(states_of(lambda n: 1e-9 * 1.08**n), TOLERANCE) == (1, UNDECIDED)
+
+
+def test_noise_narrower_than_the_tolerance_is_undecided_and_wider_irregular():
+    noise = np.random.default_rng(3).uniform(-1.0, 1.0, (30, 200))
+    narrow = [decide(states_of(lambda n, row=row: 1e-3 * row), TOLERANCE) for row in noise]
+    assert {found.multiplicity for found in narrow} == {1}
+    assert sum(found.decided == UNDECIDED for found in narrow) >= 28  # chance may look like dying
+    wide = {decide(states_of(lambda n, row=row: 0.2 * row), TOLERANCE) for row in noise}
+    assert wide == {(0, IRREGULAR)}
+
+
+def newton(instance, point, state, periods):
+    """Least period of the orbit that Newton's method finds from a state, and whether it attracts.
+
+    Returns None where there is none, or none near.
+    """
+    excitation = point.excitation
+    numbers = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
+    limits = ((0.999 * excitation.frequency, 1.001 * excitation.frequency),)
+    setting = Setting(point.structure, numbers, ("frequency",), limits)
+    values = np.array([excitation.frequency])
+    try:
+        guess = from_state(instance, point, setting.form(values), np.array(state), periods)
+        family, root = solve(setting, guess, values)
+    except NoConvergenceError:
+        return None
+    ring = family.ring(root.unknowns)
+    away = np.abs(phase_zero(ring)[0] - np.array(state) / point.scale).max()
+    if why_no_motion(ring) or away > 1e-3 * np.abs(ring.nodes).max():
+        return None
+    return repeats_earlier(ring), bool(np.abs(ring.multipliers()).max() < 1.0)
+
+
+def checked_by_newton(points, transient, samples):
+    """How many responses from rest have repeated, and which of these Newton's method denies."""
+    count, wrong = 0, []
+    path = find(OSCILLATOR).path
+    with Instance(path) as plain, EventInstance(path) as eventful:
+        for point in points:
+            response = respond(plain, *point, (0.0,) * 4, transient, samples, TOLERANCE)
+            n, decided = response.decision(TOLERANCE)
+            if decided != REPEATED:
+                continue
+            end = respond(plain, *point, response.end, 3000, 4, TOLERANCE).end
+            orbit = newton(eventful, point, end, n)
+            count += 1
+            if orbit != (n, True):
+                wrong.append((point, n, orbit))
+    return count, wrong
+
+
+def random_points(seed, count):
+    """Structures and excitations of all kinds."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        mu = float(np.exp(rng.uniform(np.log(0.3), np.log(3.3))))
+        kappa, D1, D2, e, eta = (
+            float(rng.uniform(*ends))
+            for ends in ((0.4, 2.2), (0.003, 0.05), (0.003, 0.05), (0.1, 0.95), (0.3, 4.0))
+        )
+        structure = Structure.nondimensional(mu=mu, kappa=kappa, D1=D1, D2=D2, e=e)
+        yield Point(structure, Excitation.nondimensional(eta, structure))
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize("samples", [60, 200])
+def test_where_a_response_has_repeated_it_lies_on_a_stable_orbit_of_as_many_periods(samples):
+    count, wrong = checked_by_newton(random_points(samples, 60), 500, samples)
+    assert not wrong
+    assert count > 40
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize("samples", [60, 200])
+def test_where_any_of_a_thousand_has_repeated_it_lies_on_such_an_orbit(samples):
+    count, wrong = checked_by_newton(random_points(7 + samples, 1000), 500, samples)
+    assert not wrong
+    assert count > 700

@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 
 from orchestrate.access import OSCILLATOR, Instance, begin, find, sampled
 from orchestrate.errors import InputError
+from orchestrate.response.multiplicity import DECIDED, IRREGULAR, REPEATED, UNDECIDED
+from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import SweepJob, sweep
 from orchestrate.structures import Excitation, Structure
 
@@ -167,6 +169,38 @@ def test_a_bonded_structure_has_the_linear_amplitude():
         assert a == pytest.approx(abs(1.0 + eta**2 / reach), rel=1e-6)
     assert (found.xi_rel_max == 0.0).all()
     assert found.permanent_contact.values.tolist() == [1, 1, 1]
+
+
+def test_a_mass_that_passes_zero_at_phase_zero_doubles_no_period():
+    found = sweep(Structure.nondimensional(e=0.35), eta=[1.921])  # x2 is 1e-4 of the motion there
+    assert found.multiplicity.values.tolist() == [1]
+    assert found.multiplicity_decided.values.tolist() == [REPEATED]
+
+
+def test_it_is_told_how_the_multiplicity_was_decided():
+    found = sweep(PAPER, eta=[1.047, 1.13])
+    assert found.multiplicity_decided.values.tolist() == [REPEATED, IRREGULAR]
+    words = found.multiplicity_decided.attrs["flag_meanings"].split()
+    numbers = found.multiplicity_decided.attrs["flag_values"].tolist()
+    assert dict(zip(numbers, words, strict=True)) == DECIDED
+    converging = sweep(PAPER.replace(e=0.86), eta=0.827, transient=240, samples=60)
+    assert converging.multiplicity_decided.values.tolist() == [UNDECIDED]
+
+
+@pytest.mark.parametrize(
+    ("numbers", "eta", "n", "impacts"),
+    [
+        ({"mu": 0.879, "kappa": 1.838, "D": 0.0194, "e": 0.372}, 3.26, 3, 10),
+        ({"mu": 2.325, "kappa": 1.113, "D": 0.0413, "e": 0.374}, 2.615, 22, 24),
+    ],
+)
+def test_impacts_of_a_response_are_counted_over_its_own_period(numbers, eta, n, impacts):
+    structure = Structure.nondimensional(**numbers)
+    for peaks in (1, 8):
+        found = sweep(structure, eta=eta, peak_periods=peaks)
+        assert (int(found.multiplicity[0]), float(found.impacts_per_period[0])) == (n, impacts / n)
+    motion = simulate(structure, eta=eta, transient=700, periods=n, points=1)
+    assert motion.sizes["impact"] == impacts
 
 
 @pytest.mark.parametrize(
