@@ -109,8 +109,9 @@ CAPTIONS = {
     "basin": Caption(
         "Basins of attraction",
         "Which attractor a start leads to: gap and gap velocity at phase 0, the means of both "
-        "masses those of the two attractors; e = 0.7, D = 0.005. The frequency is the one of 1.07-1.37 at which random starts "
-        "share themselves most evenly between two periodic attractors.",
+        "masses those of the two attractors; e = 0.7, D = 0.005. The frequency is the one of "
+        "1.07-1.37 at which random starts share themselves most evenly between two periodic "
+        "attractors.",
         "Each point is a start of the FMU, followed until settled and decided as the random starts "
         "are.",
     ),
