@@ -27,9 +27,11 @@ EXAMPLES = """\
   {program} attractors --eta 1.32 --starts 200 --seed 1
   {program} attractors --eta 1.2:1.4:0.01
   {program} attractors --structure beam --hz 15.5,16 --g 0.02 --scale 1e-3
-Random starts may miss a motion whose basin is small: where resonance, or sweep with
---direction both, differs on the way up and down, there are two."""
+Half of the starts lie around zero, half around the response from rest. Every motion found at one
+value is carried to its neighbours, so along a range it is found as far as it exists; random starts
+alone may miss one whose basin is small."""
 FEW = 5  # values whose attractors are all told
+LISTED = 12  # attractors along a parameter that are told
 
 
 def add_parser(commands: Commands) -> None:
@@ -42,7 +44,8 @@ def add_parser(commands: Commands) -> None:
     option(
         "--scale",
         metavar="X",
-        help="half width of the box of starts, m (default: --width times the gap from rest)",
+        help="half width of one box of starts around zero, m (default: --width times the gap from "
+        "rest, and a second box around the response from rest)",
     )
     add_numbers(
         option,
@@ -80,3 +83,18 @@ def report(data: xr.Dataset) -> None:
         if holds.any():
             where = ranges(name, ordered[name].values, holds)
             print(f"{number} found at {int(holds.sum())} of {holds.size} values: {where}")
+    print_lines(ordered, name)
+
+
+def print_lines(data: xr.Dataset, name: str) -> None:
+    """The most frequent attractors along the parameter, from where to where."""
+    for number in range(min(LISTED, data.sizes["attractor"])):
+        one = data.isel(attractor=number)
+        there = one.multiplicity.notnull().values
+        shares = one.share.values[there]
+        first, last = (place(name, float(one[end])) for end in ("first_found", "last_found"))
+        where = first if there.sum() == 1 else f"{first} to {last}"
+        print(f"  {number}: {where}, {shares.min():.1%} to {shares.max():.1%} of starts")
+    left = data.sizes["attractor"] - LISTED
+    if left > 0:
+        print(f"  and {left} more")

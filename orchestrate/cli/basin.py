@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 Side = tuple[str, float, float, int]
 EXAMPLES = """\
+  {program} basin --eta 1.315
   {program} basin --eta 1.315 --x x_rel,0,1.3,60 --y v_rel,-1.3,1.3,60
   {program} basin --eta 1.32 --x phase,0,6.28,40 --y v1,-2,2,40
   {program} basin --structure beam --hz 15.8 --g 0.02 --x x_rel,0,1e-3,40 --y v_rel,-0.1,0.1,40
@@ -41,11 +42,14 @@ def add_parser(commands: Commands) -> None:
     add_structure(parser)
     option = add_excitation(parser, several=False).add_argument
     side = "NAME,FIRST,LAST,COUNT"
-    usual = "x_rel from 0 to a eta^2, 80 values"
+    usual = "x_rel as far as twice the attractors' largest gap, 80 values"
     option("--x", metavar=side, help=f"horizontal side of the plane (default: {usual})")
-    usual = "v_rel from -omega a eta^2 to omega a eta^2, 80 values"
+    usual = "v_rel as far as twice the attractors' largest rate, 80 values"
     option("--y", metavar=side, help=f"vertical side of the plane (default: {usual})")
-    rest = "state that the plane goes through, m and m/s (default: rest)"
+    rest = (
+        "state that the plane goes through, m and m/s "
+        "(default: rest; without --x and --y the mean of the attractors)"
+    )
     option("--at", metavar="X1,X2,V1,V2", help=rest)
     add_numbers(
         option,
@@ -57,20 +61,12 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
-    from ..structures import Excitation
-
     structure = structure_of(arguments)
     asked = excitation_of(arguments, structure, si=True, one=True)
-    if "eta" in asked:
-        excitation = Excitation.nondimensional(asked["eta"], structure)
-    else:
-        excitation = Excitation(**asked)
-    length = excitation.length(structure)
-    speed = structure.omega * length
     question = {
         **asked,
-        "x": side_of("--x", arguments.x) or ("x_rel", 0.0, length, 80),
-        "y": side_of("--y", arguments.y) or ("v_rel", -speed, speed, 80),
+        "x": side_of("--x", arguments.x),
+        "y": side_of("--y", arguments.y),
         "at": state_of("--at", arguments.at),
         **numbers_of(arguments, "phase", "transient", "settle", "samples"),
     }

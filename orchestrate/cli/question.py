@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from ..structures import Structure
 
 TURN = 2.0 * math.pi
+HOW_DECIDED = {  # of attractors; nothing is said where Newton's method confirms a stable orbit
+    2: ", by repeated states alone",
+    4: ", undecided: near an unstable orbit",
+}
 Question = Mapping[str, Any]
 Draw = Callable[["xr.Dataset"], Any]
 
@@ -158,14 +162,15 @@ def tell_attractors(data: xr.Dataset, of: str) -> None:
     """
     for number in range(data.sizes["attractor"]):
         one = data.isel(attractor=number)
-        if not float(one.share) > 0.0:
-            continue
+        if math.isnan(float(one.multiplicity)):
+            continue  # there at other values alone
         kind = int(one.multiplicity)
         word = f"repeats after {kind} period{'s' * (kind > 1)}" if kind else "not periodic"
+        doubt = HOW_DECIDED.get(int(one.decided_by), "")
         print(
             f"  {number}: {float(one.share):6.1%} of {of}, {word}, "
             f"{float(one.impacts_per_period):.4g} impacts per period, "
-            f"largest gap xi_Rel = {float(one.xi_rel_max):.5g}"
+            f"largest gap xi_Rel = {float(one.xi_rel_max):.5g}{doubt}"
         )
         state = ",".join(f"{value:.6g}" for value in one.state.values)
         print(f"     a state on it at phase 0, x1, x2 in m, v1, v2 in m/s: {state}")

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, Instance, finder
+from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, finder, sampled
 from ..errors import InputError
-from ..response.labels import Variable, si_state, variable
+from ..response.labels import Variable, flags, si_state, variable
 from ..response.questions import (
     Numbers,
     Point,
@@ -26,7 +26,10 @@ from ..response.questions import (
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .clusters import ABOUT, FEATURES, Telling, attractors_of, clusters, features, response_from
+from .clusters import ABOUT, FEATURES, Telling, response_from
+from .decision import MotionDecider
+from .global_continuation import Instances, MatchedAttractors, Starts, continued
+from .settled_motion import ABSENT, DECIDED, SettledMotion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,6 +43,14 @@ OF_ATTRACTORS = {
     "impacts_per_period": "impacts per excitation period",
     "xi_rel_max": "largest gap over a eta^2",
 }
+MULTIPLIER = "largest absolute value of the orbit's Floquet multipliers"
+DECIDED_BY = (
+    "how it was decided: by a stable orbit of Newton's method; by states that repeat; irregular; "
+    "undecided: states repeat nearly, near an unstable orbit"
+)
+COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
+LOOKED_AT, LOOKS = 8, 64  # periods of the response from rest, and states in each
+AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: the second box
 
 
 class Start(NamedTuple):
@@ -87,6 +98,8 @@ class AttractorsJob(SeriesQuestion):
     telling: Telling = Telling()
     asked: ClassVar[str] = "attractors"
     chunk: ClassVar[int] = 240
+    gathers: ClassVar[bool] = True
+    item: ClassVar[str] = "start"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -103,18 +116,19 @@ class AttractorsJob(SeriesQuestion):
         return (self.follows,) if self.follows else ()
 
     def count(self) -> int:
-        """Number of starts in all."""
-        return self.starts * super().count()
+        """Number of starts in all, and one more: their attractors are gathered and carried."""
+        return self.starts * super().count() + 1
 
-    def items(self, inputs: Inputs) -> Sequence[Start]:
-        """Every start at every value."""
+    def items(self, inputs: Inputs) -> Sequence[Start | None]:
+        """Every start at every value; None: gather them."""
         points = self.series.points
         scales = self.scales(inputs)
-        return [
+        starts = [
             Start(place, point, scales[place], number)
             for place, point in enumerate(points)
             for number in range(self.starts)
         ]
+        return [*starts, None]
 
     def scales(self, inputs: Inputs) -> Sequence[float | None]:
         """Half widths of the boxes of starts, where they are known."""
@@ -130,88 +144,168 @@ class AttractorsJob(SeriesQuestion):
             return self.scale
         return [self.scale] * len(series.points)
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Start], carry: Table | None) -> Table:
-        """Some starts."""
-        rows, ends = [], []
-        with Instance(fmus[OSCILLATOR]) as instance:
-            for item, start in self.drawn(instance, items):
-                response, _ = response_from(instance, item.point, start, self.telling)
-                rows.append(features(response, item.point.length))
-                ends.append(response.end)
-        return {"features": np.array(rows, dtype=float), "end": np.array(ends)}
+    def aside(self, first: int) -> str:
+        """The last item is no start."""
+        return "attractors carried to neighbours" if first == self.count() - 1 else ""
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Start | None], carry: Table | None
+    ) -> Table:
+        """Some starts; or all attractors, carried along the parameter and matched."""
+        starts = [item for item in items if item is not None]
+        with Instances(fmus[OSCILLATOR]) as instances:
+            if not starts:
+                assert carry is not None
+                return self.gathered(instances, carry)
+            rows = SettledRows()
+            for place, some in itertools.groupby(starts, lambda item: item.place):
+                group = list(some)
+                decider = MotionDecider(*instances, group[0].point, self.telling)
+                for state in self.drawn(decider.plain, place, group):
+                    rows.add(*decider.decide(state))
+            return rows.table()
 
     def drawn(
-        self, instance: Instance, items: Sequence[Start]
-    ) -> Iterator[tuple[Start, NDArray[np.float64]]]:
-        """Starts with their states."""
-        for place, group in itertools.groupby(items, lambda item: item.place):
-            some = list(group)
-            point, scale = some[0].point, some[0].scale
-            scale = self.scale_from_rest(instance, point) if scale is None else scale
-            states = random_starts(self.starts, scale, (self.seed, place), point.structure.omega)
-            for item in some:
-                yield item, states[item.number]
+        self, instance: Instance, place: int, group: Sequence[Start]
+    ) -> Iterator[NDArray[np.float64]]:
+        """States of some starts at one value."""
+        point, scale = group[0].point, group[0].scale
+        seed = (self.seed, place)
+        if self.scale is not None:
+            assert scale is not None
+            states = random_starts(self.starts, scale, seed, point.structure.omega)
+        else:
+            size = size_from_rest(instance, point, self.telling)
+            gap = scale or self.width * (size.gap or point.length)
+            states = starts_in_both_boxes(self.starts, gap, size, seed, point)
+        for item in group:
+            yield states[item.number]
 
-    def scale_from_rest(self, instance: Instance, point: Point) -> float:
-        """Half width of the box of starts from the response from rest, m."""
-        gap = response_from(instance, point, REST, self.telling).response.x_rel_max
-        return self.width * (gap or point.length)
+    def gathered(self, instances: tuple[Instance, EventInstance | None], table: Table) -> Table:
+        """Attractors of all values, in arrays with one entry."""
+        series, order = self.series, self.order()
+        shape = len(series.points), self.starts
+        features = table["features"].reshape(*shape, len(FEATURES))
+        ends, decided = table["end"].reshape(*shape, 4), table["decided"].reshape(shape)
+        found = continued(
+            instances,
+            [series.points[i] for i in order],
+            [Starts(features[i], ends[i], decided[i]) for i in order],
+            self.telling,
+        )
+        back = np.argsort(order)
+        columns = {name: rows[back] for name, rows in columns_of(found).items()}
+        return {name: rows[np.newaxis] for name, rows in columns.items()}
+
+    def order(self) -> NDArray[np.intp]:
+        """Indices of the values in increasing order: neighbours are next to each other."""
+        return np.argsort(self.series.values, kind="stable")
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """The attractors of each value with their shares of starts."""
         import xarray as xr
 
-        count, along = len(self.series.values), self.series.name
-        rows = table["features"].reshape(count, self.starts, len(FEATURES))
-        ends = table["end"].reshape(count, self.starts, 4)
-        labels = np.array([clusters(row, self.telling) for row in rows])
+        along, shape = self.series.name, (len(self.series.values), self.starts)
+        rows = table["features"].reshape(*shape, len(FEATURES))
+        there = table["how"][0] != ABSENT
+        text = "attractor that the start leads to"
         variables = {
-            "number": variable(along, labels.max(axis=1) + 1, "1", "attractors found"),
-            **self.of_attractors(labels, rows, ends),
-            "attractor_of": variable(
-                (along, "start"), labels, "1", "attractor that the start leads to"
-            ),
+            "number": variable(along, there.sum(axis=1), "1", "attractors found"),
+            **of_attractors({name: table[name][0] for name in COLUMNS}, (along,), "starts"),
+            **self.ends(there),
+            "attractor_of": variable((along, "start"), table["labels"][0], "1", text),
             "features": variable(
-                (along, "start", "feature"), rows, "1", f"what tells responses apart{ABOUT}"
+                (along, "start", "feature"), rows, "1", f"what responses have settled to{ABOUT}"
             ),
         }
-        found = np.arange(labels.max() + 1)
         coordinates = {
             **self.series.coordinates(),
             **si_state(),
-            "attractor": variable("attractor", found, "1", ATTRACTOR),
+            "attractor": variable("attractor", np.arange(there.shape[1]), "1", ATTRACTOR),
             "start": variable("start", np.arange(self.starts), "1", "number of the start"),
             "feature": variable("feature", np.array(FEATURES), "1", "feature"),
         }
         title = f"Coexisting attractors along {along}: {self.structure.label()}"
         return xr.Dataset(variables, coordinates, {"title": title})
 
-    def of_attractors(
-        self,
-        labels: NDArray[np.intp],
-        rows: NDArray[np.float64],
-        ends: NDArray[np.float64],
-    ) -> dict[str, Variable]:
-        """Variables along ``attractor``; share 0 and NaN where there are fewer than elsewhere."""
-        shape = (len(labels), int(labels.max()) + 1)
-        share, about, states = (
-            np.zeros(shape),
-            np.full((*shape, 3), np.nan),
-            np.full((*shape, 4), np.nan),
-        )
-        for i in range(len(labels)):
-            for k, found in enumerate(attractors_of(labels[i], rows[i], ends[i])):
-                share[i, k], about[i, k], states[i, k] = found.share, found.about, found.state
-        along = (self.series.name, "attractor")
-        text = "a state on it at phase 0: x1, x2 in m, v1, v2 in m/s"
+    def ends(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
+        """Between which values each attractor has been found."""
+        values = np.array(self.series.values)[:, np.newaxis]
+        first = np.where(there, values, np.inf).min(axis=0)
+        last = np.where(there, values, -np.inf).max(axis=0)
+        unit = self.series.coordinates()[self.series.name][2]["units"]
+        text = f"{self.series.name} at which the attractor has been found"
         return {
-            "share": variable(along, share, "1", "share of the starts"),
-            **{
-                name: variable(along, about[..., i], "1", OF_ATTRACTORS[name])
-                for i, name in enumerate(OF_ATTRACTORS)
-            },
-            "state": variable((*along, "coordinate"), states, "1", text),
+            "first_found": variable("attractor", first, unit, f"smallest {text}"),
+            "last_found": variable("attractor", last, unit, f"largest {text}"),
         }
+
+
+@dataclass
+class SettledRows:
+    """What responses have settled to, one row a response."""
+
+    features: list[list[float]] = field(default_factory=list)
+    ends: list[NDArray[np.float64]] = field(default_factory=list)
+    decided: list[int] = field(default_factory=list)
+
+    def add(self, motion: SettledMotion, state: NDArray[np.float64]) -> None:
+        """One response, with a state of it at phase 0."""
+        self.features.append(motion.features)
+        self.ends.append(state)
+        self.decided.append(motion.decided)
+
+    def add_none(self) -> None:
+        """No response."""
+        self.features.append([np.nan] * len(FEATURES))
+        self.ends.append(np.full(4, np.nan))
+        self.decided.append(ABSENT)
+
+    def table(self) -> Table:
+        """As arrays."""
+        return {
+            "features": np.array(self.features, dtype=float),
+            "end": np.array(self.ends, dtype=float),
+            "decided": np.array(self.decided, dtype=np.int8),
+        }
+
+
+def columns_of(found: MatchedAttractors) -> Table:
+    """Attractors along a parameter as arrays, a row a value; ABSENT where one does not exist."""
+    shape = len(found.motions), found.count
+    columns = {name: np.full(shape, np.nan) for name in (*OF_ATTRACTORS, "multiplier")}
+    how, share = np.zeros(shape, dtype=np.int8), np.zeros(shape)
+    states = np.full((*shape, 4), np.nan)
+    for i, motions in enumerate(found.motions):
+        for number, motion in zip(found.numbers[i], motions, strict=True):
+            columns["multiplicity"][i, number] = motion.multiplicity
+            columns["impacts_per_period"][i, number] = motion.impacts_per_period
+            columns["xi_rel_max"][i, number] = motion.gap / motion.point.length
+            columns["multiplier"][i, number] = motion.multiplier
+            how[i, number], states[i, number] = motion.decided, motion.states[0]
+            share[i, number] = np.mean(found.labels[i] == number) if len(found.labels[i]) else 0.0
+    return {
+        **columns,
+        "how": how,
+        "share": share,
+        "state": states,
+        "labels": np.array(found.labels),
+    }
+
+
+def of_attractors(
+    columns: Mapping[str, Any], along: tuple[str, ...], of: str
+) -> dict[str, Variable]:
+    """Variables over ``attractor``; share 0 and NaN where one does not exist."""
+    dims = (*along, "attractor")
+    text = "a state on it at phase 0: x1, x2 in m, v1, v2 in m/s"
+    return {
+        "share": variable(dims, columns["share"], "1", f"share of the {of}"),
+        **{name: variable(dims, columns[name], "1", OF_ATTRACTORS[name]) for name in OF_ATTRACTORS},
+        "multiplier": variable(dims, columns["multiplier"], "1", MULTIPLIER),
+        "decided_by": flags(dims, columns["how"], DECIDED_BY, DECIDED),
+        "state": variable((*dims, "coordinate"), columns["state"], "1", text),
+    }
 
 
 def random_starts(
@@ -237,6 +331,67 @@ def random_starts(
     draws = np.random.default_rng(list(seed)).uniform(-scale, scale, (count, 4))
     x1, gap, v1, rate = draws[:, 0], np.abs(draws[:, 1]), draws[:, 2] * omega, draws[:, 3] * omega
     return np.column_stack([x1, x1 + gap, v1, v1 + rate])
+
+
+class SizeFromRest(NamedTuple):
+    """How large the response from rest is.
+
+    Attributes
+    ----------
+    state : ndarray, shape (4,)
+        At phase 0, x1, x2 in m, v1, v2 in m/s.
+    displacement : float
+        Largest displacement of both masses, m.
+    gap : float
+        Largest gap, m.
+    """
+
+    state: NDArray[np.float64]
+    displacement: float
+    gap: float
+
+
+def size_from_rest(instance: Instance, point: Point, telling: Telling) -> SizeFromRest:
+    """The size of the response from rest."""
+    response = response_from(instance, point, REST, telling).response
+    begin(instance, *point, response.end)
+    span = LOOKED_AT * point.excitation.period
+    states = sampled(instance, 0.0, span, LOOKED_AT * LOOKS)
+    displacement = float(np.abs(states[:, :2]).max())
+    return SizeFromRest(np.array(response.end), displacement, response.x_rel_max)
+
+
+def starts_in_both_boxes(
+    count: int, scale: float, size: SizeFromRest, seed: tuple[int, int], point: Point
+) -> NDArray[np.float64]:
+    """Starts in two boxes in turn: around zero, and around the response from rest.
+
+    Parameters
+    ----------
+    count : int
+    scale : float
+        Half width of the box around zero, see :func:`random_starts`.
+    size : SizeFromRest
+    seed : (int, int)
+        Of the random numbers: the question's, and the index of the value.
+    point : Point
+
+    Returns
+    -------
+    ndarray, shape (count, 4)
+        x1, x2, v1, v2: even rows are of the first box. In the second, displacement and velocity of
+        mass 1 lie within 0.7 of the largest displacement from those of the response from rest, the
+        gap in [0, 3 G] and its rate in +-3 G Omega with the largest gap G.
+    """
+    found = random_starts(count, scale, seed, point.structure.omega)
+    draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (count, 4))
+    frequency = point.excitation.frequency
+    around, gap = AROUND * size.displacement, BEYOND * (size.gap or point.length)
+    x1 = size.state[0] + around * draws[:, 0]
+    v1 = size.state[2] + frequency * around * draws[:, 2]
+    x2, v2 = x1 + gap * np.abs(draws[:, 1]), v1 + frequency * gap * draws[:, 3]
+    found[1::2] = np.column_stack([x1, x2, v1, v2])[1::2]
+    return found
 
 
 def told_apart(**given: Any) -> Telling:
@@ -287,7 +442,10 @@ def attractors(
     scale : array_like, optional
         Half width of the box of starts, m: one, or one for each value. Displacement of mass 1 in
         +-scale, gap in [0, scale], velocity of mass 1 and of the gap in +-omega scale. By default
-        ``width`` times the largest gap of the response from rest there.
+        there are two boxes, for every other start each: this one with ``width`` times the largest
+        gap G of the response from rest; and one around that response, displacement and velocity
+        (over Omega) of mass 1 within 0.7 of its largest displacement, gap in [0, 3 G] and gap
+        rate in +-3 G Omega.
     width : float
     transient : int
         Periods dropped at least.
@@ -298,20 +456,29 @@ def attractors(
     converged : float
         Relative deviation within which a repeated state decides.
     longest : int
-        Periods up to which a response is run on that does not repeat; beyond it is irregular.
-    alike, alike_irregular : float
-        Relative difference within which responses of the same multiplicity belong to one attractor:
-        periodic ones, irregular ones.
+        Periods up to which a response is run on that does not repeat, or that Newton's method does
+        not confirm; beyond it is irregular, or undecided.
+    alike : float
+        Distance over the motion's size within which responses that repeat are one attractor where
+        Newton's method finds no stable orbit.
+    alike_irregular : float
+        Relative difference within which irregular responses belong to one attractor.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
 
     Returns
     -------
     xarray.Dataset
-        Over the parameter: ``number``; over ``attractor``, the most frequent one first: ``share``
-        of the starts, ``multiplicity``, ``impacts_per_period``, ``xi_rel_max``, and ``state`` on
-        it at phase 0 (x1, x2 in m, v1, v2 in m/s); over ``start``: ``attractor_of`` and the
-        ``features`` that tell responses apart.
+        Over the parameter: ``number``; over ``attractor``, the most frequent one first, where one
+        number is the same attractor at all values: ``share`` of the random starts, 0 where carrying
+        alone has found it; ``multiplicity``, ``impacts_per_period``, ``xi_rel_max``, NaN where it
+        does not exist; ``multiplier``, the largest absolute value of its Floquet multipliers;
+        ``decided_by``, how it was decided, as CF flags: ``orbit`` (a stable orbit of Newton's
+        method), ``repeated`` (states repeat, Newton's method finds no orbit), ``irregular`` or
+        ``undecided`` (states nearly repeat, near an unstable orbit), ``absent``; ``state`` on it
+        at phase 0 (x1, x2 in m, v1, v2 in m/s); ``first_found`` and ``last_found``, between which
+        values it is there. Over ``start``: ``attractor_of`` and the ``features`` of what a start
+        has settled to.
 
     Raises
     ------
@@ -320,13 +487,19 @@ def attractors(
 
     Notes
     -----
-    The non-unique solutions of the paper's sections 3.2 and 4.1. Responses are told apart by
-    multiplicity, impacts per period, largest gap, and mean and deviation of the gap's samples.
-    A response is run on until its state repeats within ``converged``: a long transient is none of
-    the attractors. What has not repeated after ``longest`` periods is irregular, a torus or chaos;
-    how many of these there are depends on ``alike_irregular``. Where an impact falls on the
-    sampling phase itself, samples show either side of it, and a periodic response may count as
-    irregular.
+    The non-unique solutions of the paper's sections 3.2 and 4.1. A response is run on until its
+    state repeats within ``converged``. Its impacts over just these periods are what Newton's method
+    begins with (:func:`orchestrate.orbit`); the response is on the orbit found if that is a
+    possible motion, if its multipliers lie inside the unit circle, and if the response comes nearer
+    to it as they say. So multiplicity and impacts are those of the orbit, and two attractors are
+    two orbits. What has not repeated after ``longest`` periods is irregular, a torus or chaos; how
+    many of these there are depends on ``alike_irregular``. An FMU without events (FMI 2.0) tells no
+    impacts: there states that repeat decide.
+
+    Global continuation (Datseris, Rossi and Wagemakers, Chaos 33, 073151, 2023): every attractor
+    is carried to both neighbouring values, its state as a further start, or its orbit by Newton's
+    method where the state leads elsewhere. Attractors of neighbours are one where each leads to the
+    other, or where the orbit is followed.
 
     Examples
     --------
@@ -334,7 +507,7 @@ def attractors(
     >>> from orchestrate.dynamics.attractors import attractors
     >>> found = attractors(Structure.nondimensional(), eta=1.315, starts=40, seed=1)
     >>> found.multiplicity.values[0], found.share.values[0]
-    (array([1., 2.]), array([0.95, 0.05]))
+    (array([1., 2.]), array([0.825, 0.175]))
     """
     job = AttractorsJob(
         **asked_along(structure, eta, frequency, amplitude, over, values),

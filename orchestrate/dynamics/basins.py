@@ -11,15 +11,27 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, STATE, Instance, begin, finder
+from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, finder
 from ..errors import InputError
-from ..response.labels import Variable, si_state, variable
+from ..response.labels import si_state, variable
 from ..response.questions import Point, Question, one_point, state, whole
+from ..response.respond import sample
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Excitation, Structure
-from .attractors import ATTRACTOR, OF_ATTRACTORS, told_apart
-from .clusters import FEATURES, Telling, attractors_of, clusters, features, response_from
+from .attractors import (
+    ATTRACTOR,
+    COLUMNS,
+    SettledRows,
+    attractors,
+    columns_of,
+    of_attractors,
+    told_apart,
+)
+from .clusters import Telling
+from .decision import MotionDecider
+from .global_continuation import Instances, Starts, continued
+from .settled_motion import ABSENT
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,6 +49,13 @@ AXES = {  # coordinates of a plane of starts: units, long name
     "v_rel": ("m/s", "velocity of the gap at the start"),
     "phase": ("rad", "phase of the box at the start"),
 }
+SEARCH = 24  # random starts for the attractors that a default plane is laid around
+COUNT = 80  # values along its sides
+BEYOND = 2.0  # how far it goes, over the attractors' largest gap
+SETTINGS = (
+    *("transient", "settle", "samples", "converged", "longest"),
+    *("alike", "alike_irregular"),
+)
 GAPS = {"x_rel": ("x1", "x2"), "v_rel": ("v1", "v2")}
 
 
@@ -121,6 +140,8 @@ class BasinJob(Question):
         Its phase is that of all starts where ``phase`` is not a coordinate.
     x, y : Side
     at : tuple of float
+    known : tuple of tuple of float
+        States on attractors that are known, at phase 0.
     telling : Telling
     """
 
@@ -128,62 +149,74 @@ class BasinJob(Question):
     x: Side
     y: Side
     at: tuple[float, ...] = REST
+    known: tuple[tuple[float, ...], ...] = ()
     telling: Telling = Telling()
     asked: ClassVar[str] = "basin"
     chunk: ClassVar[int] = 240
+    gathers: ClassVar[bool] = True
+    item: ClassVar[str] = "start"
 
     def plane(self, inputs: Inputs) -> Plane:
         """What is looked at; another job may find it in what it starts from."""
         return Plane(Point(self.structure, self.excitation), self.x, self.y, self.at)
 
     def count(self) -> int:
-        """Number of starts."""
-        return self.x.number * self.y.number
+        """Number of starts, and one more: their attractors are gathered."""
+        return self.x.number * self.y.number + 1
 
-    def items(self, inputs: Inputs) -> Sequence[Start]:
-        """Every start."""
+    def items(self, inputs: Inputs) -> Sequence[Start | Point]:
+        """Every start; the point itself: gather them."""
         plane = self.plane(inputs)
         states, phases = plane.starts()
         rows = zip(map(tuple, states.tolist()), phases.tolist(), strict=True)
-        return [Start(plane.point, *row) for row in rows]
+        return [*(Start(plane.point, *row) for row in rows), plane.point]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Start], carry: Table | None) -> Table:
-        """Some starts; NaN where the masses would overlap."""
-        rows = np.full((len(items), len(FEATURES)), np.nan)
-        ends = np.full((len(items), len(STATE)), np.nan)
-        with Instance(fmus[OSCILLATOR]) as instance:
-            for i, item in enumerate(items):
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Start | Point], carry: Table | None
+    ) -> Table:
+        """Some starts, nothing where the masses would overlap; or the attractors of all."""
+        with Instances(fmus[OSCILLATOR]) as instances:
+            if isinstance(items[0], Point):
+                assert carry is not None
+                return self.gathered(instances, items[0], carry)
+            rows, decider = SettledRows(), None
+            for item in items:
+                assert isinstance(item, Start)
+                decider = decider or MotionDecider(*instances, item.point, self.telling)
                 if item.state[1] < item.state[0]:
-                    continue
-                start = at_phase_zero(instance, item)
-                response, _ = response_from(instance, item.point, start, self.telling)
-                rows[i] = features(response, item.point.length)
-                ends[i] = response.end
-        return {"features": rows, "end": ends}
+                    rows.add_none()
+                else:
+                    rows.add(*decider.decide(at_phase_zero(decider.plain, item)))
+            return rows.table()
+
+    def gathered(
+        self, instances: tuple[Instance, EventInstance | None], point: Point, table: Table
+    ) -> Table:
+        """The attractors, in arrays with one entry."""
+        there = table["decided"] != ABSENT
+        names = "features", "end", "decided"
+        starts = Starts(*(table[name][there] for name in names))
+        columns = columns_of(continued(instances, [point], [starts], self.telling, self.known))
+        labels = np.full((1, len(there)), -1, dtype=np.int16)
+        labels[0, there] = columns.pop("labels")[0]
+        return {**columns, "labels": labels}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """The attractor that each start leads to."""
         import xarray as xr
 
         plane = self.plane(inputs)
-        rows, ends = table["features"], table["end"]
-        there = np.isfinite(rows).all(axis=1)
-        labels = np.full(len(rows), -1, dtype=np.int16)
-        labels[there] = clusters(rows[there], self.telling)
         text = "attractor that the start leads to; -1: the masses would overlap"
         sides = (plane.y, plane.x)
+        labels = table["labels"][0].reshape([side.number for side in sides])
         variables = {
-            "attractor_of": variable(
-                tuple(side.name for side in sides),
-                labels.reshape([side.number for side in sides]),
-                "1",
-                text,
-            ),
-            **of_attractors(labels[there].astype(np.intp), rows[there], ends[there]),
+            "attractor_of": variable(tuple(side.name for side in sides), labels, "1", text),
+            **of_attractors({name: table[name][0] for name in COLUMNS}, (), "plane"),
         }
+        count = len(table["share"][0])
         coordinates = {
             **{side.name: variable(side.name, side.values(), *AXES[side.name]) for side in sides},
-            "attractor": variable("attractor", np.arange(labels.max() + 1), "1", ATTRACTOR),
+            "attractor": variable("attractor", np.arange(count), "1", ATTRACTOR),
             **si_state(),
             "eta": variable((), plane.point.excitation.eta(plane.point.structure), "1", "eta (2)"),
         }
@@ -200,24 +233,6 @@ def at_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
     begin(instance, start.point.structure, excitation, start.state)
     instance.step(0.0, left / excitation.frequency)
     return tuple(instance.get(*STATE))
-
-
-def of_attractors(labels: NDArray[np.intp], rows: Floats, ends: Floats) -> dict[str, Variable]:
-    """Variables along ``attractor``."""
-    found = attractors_of(labels, rows, ends)
-    about = np.array([one.about for one in found])
-    text = "a state on it at phase 0: x1, x2 in m, v1, v2 in m/s"
-    share = np.bincount(labels) / len(labels)
-    return {
-        "share": variable("attractor", share, "1", "share of the plane"),
-        **{
-            name: variable("attractor", about[:, i], "1", OF_ATTRACTORS[name])
-            for i, name in enumerate(OF_ATTRACTORS)
-        },
-        "state": variable(
-            ("attractor", "coordinate"), np.array([one.state for one in found]), "1", text
-        ),
-    }
 
 
 def side(name: str, given: Any) -> Side:
@@ -247,8 +262,8 @@ def basin(
     eta: float | None = None,
     frequency: float | None = None,
     amplitude: float | None = None,
-    x: tuple[str, float, float, int] = ("x_rel", 0.0, 1.0, 80),
-    y: tuple[str, float, float, int] = ("v_rel", -1.0, 1.0, 80),
+    x: tuple[str, float, float, int] | None = None,
+    y: tuple[str, float, float, int] | None = None,
     at: ArrayLike | None = None,
     phase: float = 0.0,
     transient: int = 400,
@@ -269,14 +284,16 @@ def basin(
         Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m.
     frequency, amplitude : float, optional
         The physical form instead: rad/s and m.
-    x, y : (str, float, float, int)
+    x, y : (str, float, float, int), optional
         Sides of the plane: coordinate, its first and last value, and how many. Coordinates are
         ``x1``, ``x2`` in m, ``v1``, ``v2`` in m/s, ``x_rel`` in m, ``v_rel`` in m/s and ``phase``
-        in rad.
+        in rad. By default 80 values each of the gap and of its velocity, in which all attractors
+        lie that 24 random starts lead to (:func:`orchestrate.attractors`, ``seed=0``), as far as
+        the motions' largest gap.
     at : array_like of 4 floats, optional
-        x1, x2 in m, v1, v2 in m/s: what the coordinates that are not varied are; at rest by
-        default. Where a gap or its velocity is varied alone, the mean of both masses stays that
-        of ``at``.
+        x1, x2 in m, v1, v2 in m/s: what the coordinates that are not varied are. Where a gap or its
+        velocity is varied alone, the mean of both masses stays that of ``at``. By default rest;
+        where neither side is given either, the mean of the attractors' states at phase 0.
     phase : float
         Phase of the box at the start, rad.
     transient, settle, samples, converged, longest, alike, alike_irregular
@@ -288,9 +305,10 @@ def basin(
     -------
     xarray.Dataset
         ``attractor_of`` over y and x: the number of the attractor, the most frequent one first; -1
-        where x2 < x1, which counts in no share. Over ``attractor``: ``share`` of the plane,
-        ``multiplicity``, ``impacts_per_period``, ``xi_rel_max``, and ``state`` on it at phase 0
-        (x1, x2 in m, v1, v2 in m/s).
+        where x2 < x1, which counts in no share. Over ``attractor``: ``share`` of the plane, 0 where
+        an attractor is known to which no start of it leads; ``multiplicity``,
+        ``impacts_per_period``, ``xi_rel_max``, ``multiplier``, ``decided_by``, and ``state`` on it
+        at phase 0 (x1, x2 in m, v1, v2 in m/s).
 
     Raises
     ------
@@ -299,8 +317,8 @@ def basin(
 
     Notes
     -----
-    A start at another phase is run on to phase 0 first. Responses are told apart as in
-    :func:`orchestrate.attractors`.
+    A start at another phase is run on to phase 0 first. What a response settles to is decided as
+    by :func:`orchestrate.attractors`.
 
     Examples
     --------
@@ -311,29 +329,95 @@ def basin(
     >>> found.attractor_of.dims, found.multiplicity.values.tolist()
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
-    chosen, excitation = one_point(structure, eta, frequency, amplitude)
-    sides = side("x", x), side("y", y)
+    point = one_point(structure, eta, frequency, amplitude)
+    telling = told_apart(
+        transient=transient,
+        settle=settle,
+        samples=samples,
+        converged=converged,
+        longest=longest,
+        alike=alike,
+        alike_irregular=alike_irregular,
+    )
+    known: Known | None = None
+    if x is None or y is None:
+        known = known_attractors(point, telling, running)
+        if x is None and y is None and at is None:
+            at = known.middle()
+    sides = (
+        known.side("x_rel") if x is None and known else side("x", x),
+        known.side("v_rel") if y is None and known else side("y", y),
+    )
     if sides[0].name == sides[1].name:
         raise InputError(f"x and y: {sides[0].name} twice; expected two coordinates")
     job = BasinJob(
         name=f"basin_{structure.label()}",
-        structure=chosen,
-        excitation=excitation.replace(phase=phase),
+        structure=point.structure,
+        excitation=point.excitation.replace(phase=phase),
         x=sides[0],
         y=sides[1],
         at=state("at", at, structure),
-        telling=told_apart(
-            transient=transient,
-            settle=settle,
-            samples=samples,
-            converged=converged,
-            longest=longest,
-            alike=alike,
-            alike_irregular=alike_irregular,
-        ),
+        known=known.states if known else (),
+        telling=telling,
     )
     check_plane(job)
     return answer(job, running, finder(running))
+
+
+class Known(NamedTuple):
+    """Attractors that a plane of starts is laid around.
+
+    Attributes
+    ----------
+    point : Point
+    states : tuple of tuple of float
+        A state on each at phase 0.
+    samples : ndarray, shape (n, 4)
+        States of all of them at phase 0.
+    gap : float
+        Largest gap of their motions, m.
+    """
+
+    point: Point
+    states: tuple[tuple[float, ...], ...]
+    samples: Floats
+    gap: float
+
+    def side(self, name: str) -> Side:
+        """A side of the plane for the gap or for its velocity, twice as wide as the attractors."""
+        gap = self.gap or self.point.length
+        if name == "x_rel":
+            return Side(name, 0.0, two_digits(BEYOND * gap), COUNT)
+        rates = np.abs(self.samples[:, 3] - self.samples[:, 2])
+        high = two_digits(BEYOND * max(float(rates.max()), self.point.excitation.frequency * gap))
+        return Side(name, -high, high, COUNT)
+
+    def middle(self) -> tuple[float, ...]:
+        """The mean of all states."""
+        return tuple(self.samples.mean(axis=0).tolist())
+
+
+def known_attractors(point: Point, telling: Telling, running: Mapping[str, Any]) -> Known:
+    """What a few random starts lead to."""
+    excitation = {"frequency": point.excitation.frequency, "amplitude": point.excitation.amplitude}
+    kept = {name: value for name, value in running.items() if name in ("fmu", "build_folder")}
+    asked = {name: getattr(telling, name) for name in SETTINGS}
+    search: Any = {**excitation, **asked, **kept, "jobs": 1, "progress": False}
+    found = attractors(point.structure, starts=SEARCH, **search).isel(frequency=0)
+    states = tuple(map(tuple, found.state.values.tolist()))
+    samples = []
+    with Instance(finder(running)(OSCILLATOR).path) as instance:
+        for state, n in zip(states, found.multiplicity.values, strict=True):
+            begin(instance, *point, state)
+            periods = int(n) or telling.irregular_samples
+            samples.append(sample(instance, point.excitation.period, 0, periods)[0].copy())
+    gap = float(found.xi_rel_max.max()) * point.length
+    return Known(point, states, np.concatenate(samples), gap)
+
+
+def two_digits(value: float) -> float:
+    """A number above zero to two digits: ends of an axis."""
+    return float(f"{value:.1e}")
 
 
 def check_plane(job: BasinJob) -> None:

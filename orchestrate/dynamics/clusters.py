@@ -1,8 +1,10 @@
-"""Settled responses told apart: what they have in common at whatever phase one looks."""
+"""Responses run on until they are settled, and irregular ones grouped by single linkage.
+
+What a periodic response settles to is decided by its orbit: see :mod:`.decision`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -10,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import Instance
-from ..response.multiplicity import multiplicity
+from ..response.multiplicity import Repetition
 from ..response.questions import Point
 from ..response.respond import Response, respond
 
@@ -41,11 +43,14 @@ class Telling:
         Periods after which a response that does not repeat is irregular.
     irregular_samples : int
         Periods looked at then.
-    alike, alike_irregular : float
-        Features of one attractor differ by less, relatively: periodic responses, others, whose
-        means are taken over few periods.
+    alike : float
+        Distance over the motion's size within which responses that repeat are one attractor where
+        Newton's method finds no stable orbit.
+    alike_irregular : float
+        Features of one irregular attractor differ by less, relatively: means are taken over few
+        periods.
     count_weight : float
-        Weight of the impacts per period: a count over the samples may be off by one.
+        Weight of the impacts per period of irregular responses, a mean over the samples.
     """
 
     transient: int = 400
@@ -87,18 +92,19 @@ def response_from(instance: Instance, point: Point, start: ArrayLike, telling: T
     end counts as periodic if it did so before and its deviation shrinks, else it is a narrow torus.
     """
     dropped = settling(telling.transient, telling.settle, point.excitation.eta(point.structure))
-    done, before = 0, (0, np.inf)
+    done, before = 0, Repetition(0, np.inf)
     while True:
         response = respond(instance, *point, start, dropped, telling.samples, telling.converged)
         done, start = done + dropped + telling.samples, response.end
         if response.multiplicity and decided(response, telling):
             return Settled(response, done)
-        nearly = deviation(response.samples, telling.apart * telling.converged)
+        nearly = response.repetition(telling.apart * telling.converged)
         if done >= telling.longest:
             break
         before, dropped = nearly, min(done, telling.longest - done)
-    if nearly[0] and nearly[0] == before[0] and 2.0 * nearly[1] < before[1]:
-        return Settled(replace(response, multiplicity=nearly[0]), done)
+    same = nearly.multiplicity == before.multiplicity
+    if nearly.multiplicity and same and 2.0 * nearly.deviation < before.deviation:
+        return Settled(replace(response, multiplicity=nearly.multiplicity), done)
     response = respond(instance, *point, start, 0, telling.irregular_samples, telling.converged)
     return Settled(response, done + telling.irregular_samples)
 
@@ -108,19 +114,8 @@ def decided(response: Response, telling: Telling) -> bool:
 
     A deviation that dies while it turns round is smaller after some periods than after one.
     """
-    nearly = multiplicity(response.samples, telling.apart * telling.converged)
-    return nearly == response.multiplicity
-
-
-def deviation(samples: Floats, tolerance: float) -> tuple[int, float]:
-    """After how many periods states nearly repeat, and how nearly; 0 and infinity where never."""
-    n = multiplicity(samples, tolerance)
-    if not n:
-        return 0, np.inf
-    states = samples[len(samples) // 2 :]
-    scale = np.abs(states).max(axis=0)
-    away = np.abs(states[n:] - states[:-n]).max(axis=0)
-    return n, float(np.divide(away, scale, out=np.zeros_like(away), where=scale > 0.0).max())
+    nearly = response.repetition(telling.apart * telling.converged)
+    return nearly.multiplicity == response.multiplicity
 
 
 def features(response: Response, length: float) -> list[float]:
@@ -140,35 +135,31 @@ def features(response: Response, length: float) -> list[float]:
     return [n, impacts, response.x_rel_max / length, float(gaps.mean()), float(gaps.std())]
 
 
-def clusters(rows: ArrayLike, telling: Telling) -> NDArray[np.intp]:
-    """Labels 0, 1, ... of attractors, the most frequent first.
+def irregular_clusters(rows: ArrayLike, telling: Telling) -> NDArray[np.intp]:
+    """Labels 0, 1, ... of irregular attractors, in the order in which they are met.
 
     Parameters
     ----------
     rows : array_like, shape (n, 5)
-        Features of responses. Those belong together whose multiplicity agrees and that a chain of
-        responses connects, each like the next.
+        Features of irregular responses. Those belong together that a chain of responses connects,
+        each like the next (single linkage).
     telling : Telling
 
     Returns
     -------
     ndarray of int, shape (n,)
-        Of as many as each other, that of the smaller multiplicity comes first, then the one met
-        first.
     """
-    table = np.asarray(rows, dtype=float)
-    labels = np.zeros(len(table), dtype=np.intp)
+    table = np.asarray(rows, dtype=float).reshape(-1, len(FEATURES))
     scale = np.maximum(np.abs(table[:, 2]), 1e-300)
-    shape = np.column_stack([np.log(scale), table[:, 3] / scale, table[:, 4] / scale])
-    for n in np.unique(table[:, 0]):
-        which = np.flatnonzero(table[:, 0] == n)
-        points = np.column_stack([shape[which], telling.count_weight * table[which, 1]])
-        radius = telling.alike if n else telling.alike_irregular
-        labels[which] = labels.max() + 1 + connected(points, radius)
-    _, positions, sizes = np.unique(labels, return_inverse=True, return_counts=True)
-    rank = np.empty(len(sizes), dtype=np.intp)
-    rank[np.argsort(-sizes, kind="stable")] = np.arange(len(sizes))
-    return rank[positions]
+    points = np.column_stack(
+        [
+            np.log(scale),
+            table[:, 3] / scale,
+            table[:, 4] / scale,
+            telling.count_weight * table[:, 1],
+        ]
+    )
+    return connected(points, telling.alike_irregular)
 
 
 def connected(points: Floats, radius: float) -> NDArray[np.intp]:
@@ -200,42 +191,3 @@ def connected(points: Floats, radius: float) -> NDArray[np.intp]:
             left = left[~near]
         count += 1
     return labels
-
-
-@dataclass(frozen=True)
-class Attractor:
-    """What many responses of one kind have in common.
-
-    Attributes
-    ----------
-    share : float
-        Of the responses.
-    about : ndarray, shape (3,)
-        Medians of the first three of ``FEATURES``.
-    state : ndarray, shape (4,)
-        A state on it at phase 0: x1, x2 in m, v1, v2 in m/s.
-    """
-
-    share: float
-    about: Floats
-    state: Floats
-
-
-def attractors_of(labels: NDArray[np.intp], rows: Floats, ends: Floats) -> Sequence[Attractor]:
-    """The attractors of labelled responses.
-
-    Parameters
-    ----------
-    labels : ndarray of int, shape (n,)
-    rows : ndarray, shape (n, 5)
-    ends : ndarray, shape (n, 4)
-        States at the ends of the responses; that of the first one of each kind is taken.
-    """
-    return [
-        Attractor(
-            share=float(np.mean(labels == label)),
-            about=np.median(rows[labels == label][:, :3], axis=0),
-            state=ends[(labels == label).argmax()],
-        )
-        for label in range(labels.max() + 1)
-    ]

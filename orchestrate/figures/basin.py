@@ -10,11 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from .labels import about, symbol
-from .style import BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, entitle, in_our_look, panels
+from .labels import about, orbit_label, symbol
+from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, entitle, in_our_look, panels
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the most frequent attractors
 OTHER = "#bbbbbb"
+STATE = ("x1", "x2", "v1", "v2")
 
 
 @in_our_look
@@ -37,6 +38,7 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     limits: Any = {"vmin": -0.5, "vmax": len(COLOURS) + 0.5}
     plane.pcolormesh(data[x], data[y], labels, cmap=shades, rasterized=True, **limits)
     label_attractors(plane, data)
+    mark_attractors(plane, data)
     plane.set(xlabel=names[0] or symbol(x), ylabel=names[1] or symbol(y))
     plane.grid(False)
     eta = [rf"$\eta$ = {float(data.eta):.4g}"] if "eta" in data.coords else []
@@ -45,14 +47,36 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     return figure
 
 
+def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
+    """A cross where a state on each attractor lies, seen along what the plane does not vary."""
+    y, x = map(str, data.attractor_of.dims)
+    if "state" not in data or "phase" in (x, y):
+        return
+    columns = dict(zip(STATE, data.state.values.T, strict=True))
+    columns |= {"x_rel": columns["x2"] - columns["x1"], "v_rel": columns["v2"] - columns["v1"]}
+    limits = plane.get_xlim(), plane.get_ylim()
+    style: Any = {
+        "color": "white",
+        "markeredgecolor": BLACK,
+        "markersize": 8.0,
+        "linestyle": "none",
+    }
+    for index in range(data.sizes["attractor"]):
+        colour = COLOURS[index] if index < len(COLOURS) else OTHER
+        style["markerfacecolor"] = colour
+        plane.plot(columns[x][index], columns[y][index], "X", **style)
+    plane.set(xlim=limits[0], ylim=limits[1])
+    plane.plot([], [], "X", **{**style, "markerfacecolor": "white"}, label="states on them")
+
+
 def label_attractors(plane: Axes, data: xr.Dataset) -> None:
     """A line in the legend for each attractor that has a colour, and for what has none."""
     for index, colour in zip(range(data.sizes["attractor"]), COLOURS, strict=False):
         part = data.isel(attractor=index)
-        n, impacts = int(part.multiplicity), float(part.impacts_per_period)
-        kind = f"{n if n > 1 else ''}T-periodic" if n else "not periodic"
+        n, impacts = float(part.multiplicity), float(part.impacts_per_period)
+        kind = orbit_label(n, impacts) or f"not periodic, {impacts:.2f} impacts per T"
         gap, share = float(part.xi_rel_max), float(part.share)
-        text = f"{share:.1%}: {kind}, {impacts:.2f} impacts per T, largest {XI_REL} = {gap:.3g}"
+        text = f"{share:.1%}: {kind}, largest {XI_REL} = {gap:.3g}"
         plane.plot([], [], "s", color=colour, label=text)
     rest = data.share.values[len(COLOURS) :].sum()
     if rest:

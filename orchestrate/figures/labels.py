@@ -145,3 +145,12 @@ def meanings(variable: xr.DataArray) -> dict[int, str]:
         int(value): word.replace("_", " ")
         for value, word in zip(variable.attrs["flag_values"], words, strict=True)
     }
+
+
+def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
+    """A periodic motion for a legend: "2T, 3 impacts"; empty for one that is not periodic."""
+    n = round(multiplicity)
+    if not n:
+        return ""
+    impacts = round(n * impacts_per_period)
+    return f"{n if n > 1 else ''}T, {impacts} impact{'s' * (impacts != 1)}"

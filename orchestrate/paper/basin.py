@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..dynamics.basins import BasinJob, Plane
 from ..response.questions import Point
@@ -16,7 +17,8 @@ from ..structures import Excitation
 class EvenBasinJob(BasinJob):
     """Basins where random starts have found two attractors.
 
-    Its sides ``x`` and ``y`` are in units of the largest gap of the sweep at that frequency.
+    Its sides ``x`` and ``y`` are in units of the largest gap of the sweep at that frequency; what
+    they do not vary is the mean of states on the two attractors.
 
     Attributes
     ----------
@@ -41,11 +43,17 @@ class EvenBasinJob(BasinJob):
     def frequency(self, inputs: Inputs) -> float:
         """The frequency ratio."""
         data = inputs[self.attractors].sel(eta=slice(self.low, self.high))
-        first, second = data.isel(attractor=0), data.isel(attractor=1)
-        periodic = (first.multiplicity > 0) & (second.multiplicity > 0)
-        apart = np.abs(first.impacts_per_period - second.impacts_per_period) > self.apart
-        clear = second.share.where(periodic & apart, 0.0)
-        return float((clear if float(clear.max()) > 0.0 else second.share).idxmax())
+        frequent = np.argsort(-data.share.values, axis=1, kind="stable")[:, :2]
+
+        def two(name: str) -> NDArray[np.float64]:
+            """A quantity of the two most frequent attractors at each frequency."""
+            found: NDArray[np.float64] = np.take_along_axis(data[name].values, frequent, axis=1)
+            return found
+
+        share, impacts = two("share")[:, -1], two("impacts_per_period")
+        apart = np.abs(impacts[:, 0] - impacts[:, -1]) > self.apart
+        clear = np.where((two("multiplicity") > 0).all(axis=1) & apart, share, 0.0)
+        return float(data.eta.values[(clear if clear.max() > 0.0 else share).argmax()])
 
     def plane(self, inputs: Inputs) -> Plane:
         """What is looked at, at that frequency and to its scale."""
@@ -55,4 +63,7 @@ class EvenBasinJob(BasinJob):
             side._replace(low=side.low * scale, high=side.high * scale) for side in (self.x, self.y)
         )
         point = Point(self.structure, Excitation.nondimensional(eta, self.structure))
-        return Plane(point, x, y, self.at)
+        data = inputs[self.attractors].sel(eta=eta, method="nearest")
+        frequent = np.argsort(-data.share.values, kind="stable")[:2]
+        middle = np.nanmean(data.state.values[frequent], axis=0)
+        return Plane(point, x, y, tuple(middle.tolist()))

@@ -95,23 +95,26 @@ CAPTIONS = {
     ),
     "attractors": Caption(
         "Coexisting attractors",
-        "Random starts, e = 0.7, D = 0.005. Above: largest xi_Rel of each attractor found, its "
-        "size the share of starts that lead to it; black: periodic, red: not periodic. Below: "
-        "number of attractors; where responses are irregular the number depends on the "
-        "clustering's threshold.",
-        "At each frequency random starts in a box three times the up-sweep's largest gap, each run "
-        "on until its state repeats within 1e-6, at most for 8,000 periods: what has not repeated "
-        "then is irregular, a torus or chaos. Responses are clustered by multiplicity, impacts per "
-        "period, largest gap, mean and deviation of the samples (2 % for periodic ones, 25 % for "
-        f"others). {ARTEFACT}",
+        "Random starts, e = 0.7, D = 0.005. Above: largest xi_Rel of each attractor, in the colour "
+        "of its multiplicity and impacts; grey lines connect what is one attractor. Middle: share "
+        "of the starts that lead to it. Below: number of attractors; where responses are irregular "
+        "the number depends on the clustering's threshold.",
+        "At each frequency random starts, half of them in a box three times the up-sweep's largest "
+        "gap around zero, half around the response from rest, each run on until its state repeats "
+        "within 1e-6, at most for 8,000 periods: what has not repeated then is irregular, a torus "
+        "or chaos. Periodic ones are decided by their orbits: Newton's method begins with the "
+        "impacts that the FMU reports, and the multipliers say that the orbit is stable. Every "
+        "attractor is carried to the neighbouring frequencies and matched there. Irregular "
+        "responses are clustered by their statistics (25 %).",
     ),
     "basin": Caption(
         "Basins of attraction",
-        "Which attractor a start leads to: gap and gap velocity at phase 0, mass 1 at rest in its "
-        "middle; e = 0.7, D = 0.005. The frequency is the one of 1.07-1.37 at which random starts "
-        "share themselves most evenly between two periodic attractors.",
-        "Each point is a start of the FMU, followed until settled and told apart as in the random "
-        "starts.",
+        "Which attractor a start leads to: gap and gap velocity at phase 0, the means of both "
+        "masses those of the two attractors; e = 0.7, D = 0.005. The frequency is the one of "
+        "1.07-1.37 at which random starts share themselves most evenly between two periodic "
+        "attractors.",
+        "Each point is a start of the FMU, followed until settled and decided as the random starts "
+        "are.",
     ),
     "maps": Caption(
         "Parameter maps",

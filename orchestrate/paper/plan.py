@@ -214,14 +214,14 @@ def attractors_job(sweep: SweepJob, resolution: Resolution) -> AttractorsJob:
 
 
 def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution) -> EvenBasinJob:
-    """Gap and gap velocity, mass 1 at rest in its middle, up to three times the largest gap."""
+    """Gap and gap velocity around the two attractors, up to three times the largest gap."""
     side = resolution.basin
     return EvenBasinJob(
         name="basin",
         structure=sweep.structure,
         excitation=Excitation.nondimensional(1.0, sweep.structure),  # replaced by what is found
-        x=Side("x2", 0.0, 3.0, side),
-        y=Side("v2", -3.0, 3.0, side),
+        x=Side("x_rel", 0.0, 3.0, side),
+        y=Side("v_rel", -3.0, 3.0, side),
         telling=attractors.telling,
         attractors=attractors.name,
         sweep=sweep.name,

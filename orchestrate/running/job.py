@@ -57,6 +57,7 @@ class Job(ABC):
     chunk: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
     closing: ClassVar[bool] = False  # a sequential job's last chunk starts from all before it
+    gathers: ClassVar[bool] = False  # the last item starts from all others, in a chunk of its own
     lead: ClassVar[int] = 0  # items after which a sequential job has forgotten its beginning
     item: ClassVar[str] = "it"  # what the progress bar counts
 
@@ -87,7 +88,7 @@ class Job(ABC):
         items : sequence
         carry : dict of ndarray, optional
             The last entries of the chunk before, in a sequential job; of the last chunk of a
-            ``closing`` one, all entries of all before, put together.
+            ``closing`` one, or one that ``gathers``, all entries of all before, put together.
 
         Returns
         -------
@@ -108,7 +109,9 @@ class Job(ABC):
 
     @abstractmethod
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The result, from all chunks put together along their first axis."""
+        """The result, from all chunks put together along their first axis; the last chunk of a job
+        that ``gathers`` adds arrays of other names.
+        """
 
     def parameters(self) -> dict[str, Any]:
         """All that decides the numbers, as plain data; long lists by what they are made of."""
@@ -125,13 +128,15 @@ class Job(ABC):
 
     def chunks(self) -> list[Chunk]:
         """The parts, in order."""
-        count, lanes = self.count(), self.lanes()
+        count, lanes = self.count() - self.gathers, self.lanes()
         found: list[Chunk] = []
         for lane in range(lanes):
             begin, end = lane * count // lanes, (lane + 1) * count // lanes
             for first in range(begin, end, self.chunk):
                 after = len(found) - 1 if self.sequential and first > begin else None
                 found.append(Chunk(len(found), first, min(first + self.chunk, end), after))
+        if self.gathers:
+            found.append(Chunk(len(found), count, count + 1, len(found) - 1))
         return found
 
 

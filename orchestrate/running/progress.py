@@ -153,7 +153,7 @@ class Progress:
         """What a chunk starts from: the end of the one before, or all of them."""
         if chunk.after is None:
             return None
-        if self.job.closing and chunk.index == len(self.chunks) - 1:
+        if (self.job.closing or self.job.gathers) and chunk.index == len(self.chunks) - 1:
             return self.store.table(chunk.index)
         return self.end_of(chunk.after)
 
@@ -165,7 +165,11 @@ class Progress:
 
     def is_certain(self, chunk: Chunk) -> bool:
         """Whether nobody is at a chunk whose beginning is known."""
-        return self.untouched(chunk.index) and (chunk.after is None or chunk.after in self.there)
+        if not self.untouched(chunk.index) or chunk.after is None:
+            return self.untouched(chunk.index)
+        if self.job.gathers:
+            return len(self.there) == chunk.index
+        return chunk.after in self.there
 
     def continued(self) -> Iterator[Task]:
         """Chunks that go on from a guessed one, in place of guesses that began elsewhere: a run of
@@ -260,7 +264,14 @@ class Progress:
             return
         if self.wasted:
             log.debug("%s: %d items were guessed in vain", self.job.name, self.wasted)
-        dataset = self.job.dataset(self.store.table(len(self.chunks)), self.inputs)
+        dataset = self.job.dataset(self.table(), self.inputs)
         dataset = with_provenance(dataset, self.job, self.identity, self.fmus, self.store.begun)
         self.result = self.store.finish(dataset)
         self.inputs, self.items = {}, None
+
+    def table(self) -> Table:
+        """All chunks put together; the last one of a job that gathers has arrays of its own."""
+        last = len(self.chunks) - 1
+        if self.job.gathers:
+            return {**self.store.table(last), **self.store.get(last)}
+        return self.store.table(len(self.chunks))

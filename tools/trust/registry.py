@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .attractors import Attractors
 from .bits import Grids
 from .campaign import Campaign
 from .clusters import Clusters
@@ -15,7 +16,7 @@ from .mutants import Mutants
 CAMPAIGNS: dict[str, Campaign] = {
     campaign.name: campaign
     for campaign in (
-        *(Impacts(), Roots(), Grids(), Energy(), Fuzzing()),
+        *(Impacts(), Roots(), Grids(), Energy(), Fuzzing(), Attractors()),
         *(Faults(), Clusters(), Hostile(), Mutants(), Leaks()),
     )
 }

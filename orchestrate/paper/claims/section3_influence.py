@@ -170,9 +170,8 @@ def nearly_2t(results: Results) -> Finding:
 def non_unique(results: Results) -> Finding:
     """Where several attractors are found in 1.07-1.37."""
     data = between(results.get("attractors"), 1.07, 1.37)
-    several = data.eta.values[(data.number.values > 1) & (data.share.values[:, 1] > 0.0)]
-    periodic = data.isel(attractor=slice(0, 2)).multiplicity.values > 0
-    sure = several[periodic[np.isin(data.eta.values, several)].all(axis=1)]
+    several = data.eta.values[data.number.values > 1]
+    sure = data.eta.values[(data.multiplicity.values > 0).sum(axis=1) > 1]
     up, down = results.up("elastic"), results.down("elastic")
     differ = (
         (impacts_in_response(up) != impacts_in_response(down))
@@ -180,12 +179,14 @@ def non_unique(results: Results) -> Finding:
         & (up.eta.values < 1.37)
     )
     text = (
-        f"two or more attractors at {len(several)} of {data.sizes['eta']} frequencies, both "
+        f"two or more attractors at {len(several)} of {data.sizes['eta']} frequencies, two "
         f"periodic at {len(sure)}; up and down differ at {int(differ.sum())}"
     )
     why = (
-        "Each start is run on until its state repeats within 1e-6, at most 8,000 periods. Of "
-        "irregular responses how many there are depends on how alike one's statistics must be."
+        "Each start is run on until its state repeats within 1e-6, at most 8,000 periods; what it "
+        "is then Newton's method decides by its orbit, and each attractor is carried to the next "
+        "frequencies. Of irregular responses how many there are depends on how alike one's "
+        "statistics must be."
     )
     low = results.begins("elastic", "T/1", 2.0).value
     high = results.ends("elastic", "2T/3", 1.36).value

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR, REST, Instance, find
+from orchestrate.access import OSCILLATOR, REST, Instance, find, finder
 from orchestrate.dynamics.basins import BasinJob, Plane, Side, Start, at_phase_zero, basin
 from orchestrate.errors import InputError
 from orchestrate.response.questions import Point
 from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import sweep
+from orchestrate.running.runner import answer
 from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
@@ -141,4 +142,36 @@ def test_a_job_may_find_its_plane_in_what_it_starts_from():
         x=Side("x2", 0.0, 1.0, 2),
         y=Side("v2", 0.0, 1.0, 2),
     )
-    assert [item.state[0] for item in job.items({})] == [-1.0] * 4
+    assert [item.state[0] for item in job.items({})[:-1]] == [-1.0] * 4
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize("structure", [PAPER, Structure(m1=1.5, m2=1.5, k1=8437.5, k2=10125.0)])
+def test_the_default_plane_holds_the_attractors_and_shows_both_basins(structure, monkeypatch):
+    monkeypatch.setattr("orchestrate.dynamics.basins.COUNT", 12)
+    structure = structure.replace(D=0.005)
+    asked = {"frequency": 1.315 * structure.omega, "amplitude": 1e-4}
+    found = basin(structure, **asked)
+    assert found.attractor_of.dims == ("v_rel", "x_rel")
+    assert sorted(found.multiplicity.values.tolist()) == [1.0, 2.0]
+    assert (found.share > 0.05).all()  # not one flat colour
+    gap, rate = found.state[:, 1] - found.state[:, 0], found.state[:, 3] - found.state[:, 2]
+    assert (gap < found.x_rel.max()).all() and (abs(rate) < found.v_rel.max()).all()
+    scale = 1e-4 * 1.315**2
+    assert 0.5 < float(found.x_rel.max()) / scale < 2.0  # of the size of the motion
+
+
+def test_what_is_known_is_told_though_no_start_of_the_plane_leads_there(found):
+    one, two = (found.state.values[found.multiplicity.values == n][0] for n in (1, 2))
+    job = BasinJob(
+        name="basin",
+        structure=PAPER,
+        excitation=POINT.excitation,
+        x=Side("v1", one[2] - 1e-4, one[2] + 1e-4, 2),
+        y=Side("v2", one[3] - 1e-4, one[3] + 1e-4, 2),
+        at=tuple(one.tolist()),
+        known=(tuple(two.tolist()),),
+    )
+    near = answer(job, {}, finder({}))
+    assert near.share.values.tolist() == [1.0, 0.0]
+    assert near.multiplicity.values.tolist() == [1.0, 2.0]

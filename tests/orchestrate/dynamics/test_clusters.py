@@ -11,10 +11,9 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from orchestrate.access import OSCILLATOR, REST, Instance, find
 from orchestrate.dynamics.clusters import (
     Telling,
-    attractors_of,
-    clusters,
     connected,
     features,
+    irregular_clusters,
     response_from,
     settling,
 )
@@ -45,24 +44,12 @@ def test_memory_does_not_grow_with_the_square_of_the_starts():
     assert (connected(points, 0.1) == 0).all()
 
 
-def test_attractors_are_told_apart():
-    one, two = [1, 1.0, 0.25, 0.1, 0.0], [2, 1.5, 0.43, 0.2, 0.1]
-    wild = [[0, 1.4 + 0.02 * k, 2.0 + 0.1 * k, 0.5, 0.3] for k in range(5)]
-    rows = [one, two, [1, 1.0, 0.2501, 0.1, 0.0], one, *wild, [1, 1.0, 0.35, 0.1, 0.0]]
-    labels = clusters(rows, Telling())
-    assert labels.tolist() == [1, 3, 1, 1, 0, 0, 0, 0, 0, 2]
-    assert clusters(rows, Telling(alike=1.0)).max() == 2
-    assert clusters(rows, Telling(alike_irregular=0.01)).max() == 7
-
-
-def test_attractors_have_shares_medians_and_a_state():
-    rows = np.array([[1, 1, 0.2, 0, 0], [2, 1, 0.4, 0, 0], [1, 1, 0.3, 0, 0]], dtype=float)
-    ends = np.arange(12.0).reshape(3, 4)
-    first, second = attractors_of(np.array([0, 1, 0]), rows, ends)
-    assert first.share == pytest.approx(2 / 3)
-    assert first.about.tolist() == [1.0, 1.0, 0.25]
-    assert first.state.tolist() == ends[0].tolist()
-    assert second.state.tolist() == ends[1].tolist()
+def test_irregular_responses_are_grouped_by_their_means():
+    chain = [[0, 1.4 + 0.02 * k, 2.0 + 0.1 * k, 0.5, 0.3] for k in range(5)]
+    rows = [*chain[:2], [0, 1.4, 0.5, 0.1, 0.1], *chain[2:]]
+    assert irregular_clusters(rows, Telling()).tolist() == [0, 0, 1, 0, 0, 0]
+    assert irregular_clusters(rows, Telling(alike_irregular=0.01)).max() == 5
+    assert irregular_clusters(np.empty((0, 5)), Telling()).tolist() == []
 
 
 def test_features_of_periodic_responses_are_over_whole_periods():

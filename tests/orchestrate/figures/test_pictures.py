@@ -112,14 +112,18 @@ def test_exponents(exported):
 def test_attractors_and_basins(exported):
     asked = {"transient": 60, "settle": 60.0, **HERE}
     found = orchestrate.attractors(PAPER, eta=[1.1, 1.315], starts=4, **asked)
-    top, bottom = attractors.draw(found).axes
+    figure = attractors.draw(found)
+    top, middle, bottom = figure.axes
     assert top.get_yscale() == "log" and len(bottom.lines) == 1
+    assert middle.get_ylabel() == "share of random starts"
+    assert "T, 1 impact" in texts(figure) and "irregular" in texts(figure)
     plane = {"x": ("x_rel", 0.0, 1.3, 4), "y": ("v_rel", -1.3, 1.3, 4)}
     data = orchestrate.basin(PAPER, eta=1.315, **plane, **asked)
     figure = basin.draw(data, "here", ("gap", ""))
     (axes,) = figure.axes
     assert axes.get_xlabel() == "gap" and axes.get_ylabel().endswith(" in m/s")
-    assert len(texts(figure)) == data.sizes["attractor"] and "%" in texts(figure)[0]
+    assert len(texts(figure)) == data.sizes["attractor"] + 1 and "%" in texts(figure)[0]
+    assert texts(figure)[-1] == "states on them"
 
 
 def test_maps(exported):
@@ -138,3 +142,26 @@ def test_names():
     assert [labels.kind_of(n) for n in (1, 3)] == ["$T$", "$3T$"]
     assert labels.symbol("kappa") == r"$\kappa$" and labels.symbol("a_thing") == "a thing"
     assert labels.parameters_text({"e": 0.7, "omega": 75.0}) == r"$e$ = 0.7, $\omega$ = 75 rad/s"
+
+
+def test_an_attractor_is_drawn_as_far_as_it_exists():
+    """One attractor, T and then 2T, that ends; another one that appears beside it."""
+    nan = np.nan
+    over = ("eta", "attractor")
+    n = np.array([[1.0, nan], [2.0, nan], [2.0, 0.0], [nan, 0.0]])
+    data = xr.Dataset(
+        {
+            "number": ("eta", np.array([1, 1, 2, 1])),
+            "multiplicity": (over, n),
+            "impacts_per_period": (over, np.where(n == 2.0, 1.5, np.where(n > 0, 1.0, n + 1.3))),
+            "xi_rel_max": (over, np.where(np.isnan(n), nan, [0.4, 2.0])),
+            "share": (over, np.array([[1.0, 0.0], [1.0, 0.0], [0.3, 0.7], [0.0, 1.0]])),
+        },
+        {"eta": [1.0, 1.1, 1.2, 1.3]},
+    )
+    figure = attractors.draw(data)
+    assert texts(figure) == ["T, 1 impact", "2T, 3 impacts", "irregular"]
+    _, middle, _ = figure.axes
+    shares = [line.get_ydata() for line in middle.lines if line.get_color() == "#c8c8c8"]
+    np.testing.assert_array_equal(shares[0], [1.0, 1.0, 0.3, nan])  # not 0 where it is not there
+    np.testing.assert_array_equal(shares[1], [nan, nan, 0.7, 1.0])

@@ -83,6 +83,7 @@ def coexisting(si: bool) -> xr.Dataset:
         "number": (name, np.full(count, 2)),
         "share": (over, np.tile([0.9, 0.1], (count, 1))),
         "multiplicity": (over, np.tile([1.0, 0.0], (count, 1))),
+        "impacts_per_period": (over, np.tile([2.0, 1.4], (count, 1))),
         "xi_rel_max": (over, RANDOM.uniform(0.1, 9.0, (count, 2))),
     }
     return xr.Dataset(found, along(count, si), known(si))

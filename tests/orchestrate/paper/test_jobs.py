@@ -169,14 +169,14 @@ def test_basins_where_starts_are_shared(exported):
         name="basin",
         structure=PAPER,
         excitation=Excitation.nondimensional(1.0, PAPER),
-        x=Side("x2", 0.0, 3.0, 4),
-        y=Side("v2", -3.0, 3.0, 3),
+        x=Side("x_rel", 0.0, 3.0, 4),
+        y=Side("v_rel", -3.0, 3.0, 3),
         telling=telling,
         attractors="starts",
         sweep="sweep",
     )
     found = ask(sweep, starts, plane)
     gap = float(ask(sweep).xi_rel_max.sel(eta=float(found.eta)))
-    assert found.x2.values.tolist() == pytest.approx(np.linspace(0.0, 3.0 * gap, 4))
+    assert found.x_rel.values.tolist() == pytest.approx(np.linspace(0.0, 3.0 * gap, 4))
     assert found.attractor_of.shape == (3, 4)
     assert replace(plane, low=1.3).frequency({"starts": ask(sweep, starts)}) == 1.315

@@ -55,6 +55,27 @@ class Sums(Squares):
 
 
 @dataclass(frozen=True)
+class Gathered(Squares):
+    """Squares, and their sum over all that nobody knows before all are there."""
+
+    gathers: ClassVar[bool] = True
+
+    def count(self) -> int:
+        return self.size + 1
+
+    def items(self, inputs: Inputs) -> range:
+        return range(self.size + 1)
+
+    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+        if carry is None:
+            return super().work(fmus, items, None)
+        return {"whole": carry["square"].sum(keepdims=True)}
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        return xr.Dataset({"square": ("number", table["square"]), "whole": table["whole"][0]})
+
+
+@dataclass(frozen=True)
 class Roots(Job):
     """Roots of the squares of another job."""
 

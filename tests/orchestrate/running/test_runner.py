@@ -21,7 +21,7 @@ from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
 
 from .conftest import Find
-from .sums import Roots, Squares, Sums
+from .sums import Gathered, Roots, Squares, Sums
 
 SQUARES = np.arange(10.0) ** 2
 
@@ -48,7 +48,16 @@ def test_lanes_know_nothing_of_each_other(find):
     assert np.array_equal(found, [*np.cumsum(squares[:6]), *np.cumsum(squares[6:])])
 
 
-@pytest.mark.parametrize("job", [Squares("job", size=40), Sums("job", size=40)])
+@pytest.mark.parametrize("size", [1, 3, 10])
+def test_what_gathers_starts_when_all_others_are_there(find, size):
+    job = Gathered("all", size=size)
+    assert [chunk.last - chunk.first for chunk in job.chunks()][-1] == 1
+    assert float(answer(job, {}, find)["whole"]) == (np.arange(size) ** 2.0).sum()
+
+
+@pytest.mark.parametrize(
+    "job", [Squares("job", size=40), Sums("job", size=40), Gathered("job", size=40)]
+)
 def test_processes_give_what_this_process_gives(find, monkeypatch, job):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     alone = answer(job, {"jobs": 1}, find)

@@ -1,0 +1,330 @@
+"""What a response settles to, decided by Newton's method where a repeated state leaves doubt.
+
+A response is run on until its state repeats. Its impacts over exactly those periods, counted from a
+phase far from any impact, are what Newton's method begins with. The orbit it finds says what the
+response is, if its multipliers lie inside the unit circle, if it is a possible motion, and if the
+response comes nearer to it as the multipliers say. Copies of a shorter orbit are that orbit.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import STATE, EventInstance, Instance, begin
+from ..errors import FmuError, InputError
+from ..response.questions import Point
+from ..response.respond import Response, respond, sample
+from .clusters import Telling, response_from
+from .continuation import NoConvergenceError
+from .families import Setting
+from .guesses import Guess, from_impacts, start
+from .impact_sequence import TURN, Ring, Sequence
+from .orbit_search import solve, why_no_motion
+from .settled_motion import (
+    IRREGULAR,
+    ORBIT,
+    REPEATED,
+    SAME,
+    UNDECIDED,
+    Floats,
+    SettledMotion,
+    least_periods,
+)
+from .turning_points import in_order
+
+SPREAD = (0.999, 1.001)  # of the frequency, which does not vary: its scale alone matters
+RESIDUAL = 1e-9  # of an orbit's equations in units of a eta^2, at most
+MARGIN = 1e-9  # by which the multipliers of a stable orbit are smaller than 1 at least
+NEAR = 0.1  # distance over the motion's size from which a response may be coming to an orbit
+SHRINKS = 0.1  # to which part of itself a deviation is followed
+NOTHING = 1e-9  # a deviation over the motion's size that is rounding
+OTHER_PHASE = 2.4  # rad: where a response is looked at that does not repeat at phase 0
+PIECES = 64  # of a period, among which a stretch without impacts is sought
+MOST_NODES = 400  # of an orbit that Newton's method is tried on
+
+
+class MotionDecider:
+    """Decides what responses at one point settle to, and remembers what it has met.
+
+    Parameters
+    ----------
+    plain : Instance
+        Of ``TwoMassImpactOscillator``.
+    eventful : EventInstance, optional
+        For impacts one by one; None where the FMU is FMI 2.0, which tells none: responses then are
+        decided by repeated states alone.
+    point : Point
+    telling : Telling
+
+    Attributes
+    ----------
+    known : list of SettledMotion
+        Periodic motions and undecided ones, in the order in which they were met.
+    """
+
+    def __init__(
+        self, plain: Instance, eventful: EventInstance | None, point: Point, telling: Telling
+    ) -> None:
+        self.plain, self.eventful, self.point, self.telling = plain, eventful, point, telling
+        excitation = point.excitation
+        given = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
+        limits = ((excitation.frequency * SPREAD[0], excitation.frequency * SPREAD[1]),)
+        self.setting = Setting(point.structure, given, ("frequency",), limits)
+        self.values = np.array([excitation.frequency])
+        self.known: list[SettledMotion] = []
+
+    # -- responses --------------------------------------------------------------------------------
+
+    def decide(self, state: ArrayLike) -> tuple[SettledMotion, Floats]:
+        """What the response from a state at phase 0 settles to, and a state on it at phase 0."""
+        response, done = response_from(self.plain, self.point, state, self.telling)
+        unstable = False
+        while True:
+            found, doubtful = self.settled_to(response)
+            if found is not None:
+                return found, found.states[found.nearest(response.end)[0]]
+            unstable |= doubtful
+            dropped = min(done, self.telling.longest - done)
+            if dropped <= 0:
+                return self.left_over(response, unstable)
+            response = self.run_on(response, dropped)
+            done += dropped + self.telling.samples
+
+    def run_on(self, response: Response, dropped: int) -> Response:
+        """The response after some more periods."""
+        samples, converged = self.telling.samples, self.telling.converged
+        return respond(self.plain, *self.point, response.end, dropped, samples, converged)
+
+    def settled_to(self, response: Response) -> tuple[SettledMotion | None, bool]:
+        """The periodic motion that a response is on, if any, and whether it is near an unstable
+        orbit.
+        """
+        n = response.multiplicity
+        if n:
+            known = self.known_at(response.end, n)
+            if known is not None:
+                return known, False
+        unstable = False
+        for periods in [n] if n else self.possible_periods(response):
+            ring, free_phase = self.orbit(response.end, periods)
+            if ring is None:
+                continue
+            if largest(ring) >= 1.0 - MARGIN:
+                unstable = True
+                continue
+            found = SettledMotion.from_orbit(self.point, ring, free_phase)
+            if self.comes_to(response.end, found):
+                return self.remembered(found), False
+        return None, unstable
+
+    def possible_periods(self, response: Response) -> list[int]:
+        """Periods after which a response may repeat that does not at phase 0: an impact at that
+        phase hides it, or it still converges.
+        """
+        seen = at_another_phase(self.plain, self.point, response, self.telling.irregular_samples)
+        close, nearly = self.telling.converged, self.telling.apart * self.telling.converged
+        found = [seen.repetition(tolerance).multiplicity for tolerance in (close, nearly)]
+        return [n for n in dict.fromkeys(found) if n]
+
+    def left_over(self, response: Response, unstable: bool) -> tuple[SettledMotion, Floats]:
+        """What is known of a response that comes to no stable orbit."""
+        n, state = response.multiplicity, np.array(response.end)
+        if not n or response.repetition(self.telling.converged).multiplicity != n:  # nearly is not
+            states, impacts = response.samples, response.impacts_per_period
+            found = SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
+            return found, state
+        states = response.samples[-n:].copy()
+        impacts = whole_impacts(self.plain, self.point, response.end, n) / n
+        decided = UNDECIDED if unstable else REPEATED
+        found = SettledMotion(self.point, decided, states, n, impacts, response.x_rel_max)
+        self.known.append(found)
+        return found, state
+
+    # -- known motions ----------------------------------------------------------------------------
+
+    def known_at(self, state: ArrayLike, n: int) -> SettledMotion | None:
+        """The known motion that a response is on which repeats after some periods."""
+        for motion in self.known:
+            distance = motion.nearest(state)[1]
+            within = SAME if motion.decided == ORBIT else self.telling.alike
+            if distance < within and motion.multiplicity == n:
+                return motion
+            near = motion.decided == ORBIT and distance < NEAR
+            if near and self.comes_to(state, motion):
+                return motion
+        return None
+
+    def remembered(self, orbit: SettledMotion) -> SettledMotion:
+        """A stable orbit, or in its place the known one that is the same."""
+        for known in self.known:
+            if known.is_orbit_of(orbit):
+                return known
+        self.known.append(orbit)
+        return orbit
+
+    def orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
+        """The stable orbit near a state at phase 0 that repeats after some periods."""
+        ring, free_phase = self.orbit(state, periods)
+        if ring is None or largest(ring) >= 1.0 - MARGIN:
+            return None
+        return self.remembered(SettledMotion.from_orbit(self.point, ring, free_phase))
+
+    def comes_to(self, state: ArrayLike, orbit: SettledMotion) -> bool:
+        """Whether the response from a state at phase 0 is on a stable orbit: in its neighbourhood,
+        and nearer to it, as its multipliers say, after some of its periods.
+        """
+        excitation, periods = self.point.excitation, orbit.multiplicity
+        begin(self.plain, *self.point, state)
+        if orbit.free_phase > 0.0:
+            self.plain.step(0.0, orbit.free_phase / excitation.frequency)
+        there, states = self.plain.get(*STATE), orbit.free_states
+        before = states.nearest(there)[1]
+        if before < SAME or not before < NEAR:
+            return before < SAME
+        rate = max(orbit.multiplier, 1e-3)
+        turns = math.ceil(math.log(SHRINKS) / math.log(rate))
+        turns = max(1, min(turns, self.telling.longest // periods))
+        shifted = excitation.replace(phase=orbit.free_phase % TURN)
+        begin(self.plain, self.point.structure, shifted, there)
+        self.plain.step(0.0, turns * periods * excitation.period)
+        after = states.nearest(self.plain.get(*STATE))[1]
+        return after <= max(0.5 * (1.0 + rate**turns) * before, NOTHING)
+
+    # -- orbits -----------------------------------------------------------------------------------
+
+    def orbit(self, state: ArrayLike, periods: int) -> tuple[Ring | None, float]:
+        """The orbit near the response from a state at phase 0, with its least period, and a phase
+        of it far from impacts; no orbit where Newton's method finds no possible motion.
+        """
+        if self.eventful is None:
+            return None, 0.0
+        guess, free_phase = self.impacts_from(np.array(state), periods)
+        return self.solved(guess), free_phase
+
+    def solved(self, guess: Guess) -> Ring | None:
+        """The orbit of a guess, with its least period; None where there is no possible motion."""
+        if len(guess[0].kinds) > MOST_NODES:
+            return None
+        try:
+            family, root = solve(self.setting, guess, self.values)
+        except NoConvergenceError:
+            return None
+        ring = family.ring(root.unknowns)
+        if root.residual > RESIDUAL or why_no_motion(ring):
+            return None
+        return without_copies(ring)
+
+    def impacts_from(self, state: Floats, periods: int) -> tuple[Guess, float]:
+        """The impacts of some periods, from the middle of the longest stretch without any."""
+        instance, frequency = self.eventful, self.point.excitation.frequency
+        assert instance is not None
+        form, span = self.setting.form(self.values), periods * self.point.excitation.period
+        start(instance, self.point, form, state)
+        times = instance.impacts(0.0, span).time
+        if not len(times):
+            return (Sequence(periods, ()), np.zeros((0, 4))), 0.0
+        stretches = np.diff(np.append(times, times[0] + span))
+        longest = int(stretches.argmax())
+        begun = float(times[longest] + 0.5 * stretches[longest]) % span
+        start(instance, self.point, form, state)
+        if begun > 0.0:
+            instance.impacts(0.0, begun)
+        found = instance.impacts(begun, begun + span)
+        return from_impacts(found, self.point, form, periods), frequency * begun
+
+    def followed(self, orbit: SettledMotion) -> SettledMotion | None:
+        """The stable orbit here of the sequence of an orbit at another value of the parameter."""
+        if orbit.ring is None or self.eventful is None:
+            return None
+        ring = self.solved((orbit.ring.sequence, orbit.ring.nodes))
+        if ring is None or largest(ring) >= 1.0 - MARGIN:
+            return None
+        found = SettledMotion.from_orbit(self.point, ring, free_phase_of(ring))
+        if not self.returns(found):
+            return None
+        own = self.orbit_at(found.states[0], found.multiplicity)  # with the impacts of the FMU
+        return own if own is not None and own.nearest(found.states[0])[1] < SAME else None
+
+    def returns(self, orbit: SettledMotion) -> bool:
+        """Whether the FMU that begins on an orbit stays there."""
+        excitation = self.point.excitation
+        shifted = excitation.replace(phase=orbit.free_phase % TURN)
+        try:
+            begin(self.plain, self.point.structure, shifted, orbit.free_states.states[0])
+        except (FmuError, InputError):  # in contact the masses overlap within rounding
+            return False
+        self.plain.step(0.0, orbit.multiplicity * excitation.period)
+        return orbit.free_states.nearest(self.plain.get(*STATE))[1] < SAME
+
+
+def largest(ring: Ring) -> float:
+    """The largest absolute value of an orbit's multipliers."""
+    return float(np.abs(ring.multipliers()).max(initial=0.0))
+
+
+def without_copies(ring: Ring) -> Ring:
+    """An orbit over the least number of periods after which it closes."""
+    periods, least = ring.sequence.periods, least_periods(ring)
+    if least == periods:
+        return ring
+    nodes, first = in_order(ring.nodes, periods)
+    count = len(nodes) * least // periods
+    kinds = np.roll(np.array(ring.sequence.kinds, dtype=int), -first)[:count]
+    return Ring(Sequence(least, tuple(kinds.tolist())), ring.form, nodes[:count])
+
+
+def free_phase_of(ring: Ring) -> float:
+    """A phase of an orbit in the middle of its longest segment."""
+    if not ring.count:
+        return 0.0
+    longest = int(ring.durations.argmax())
+    middle = 0.5 * (ring.begins[longest] + ring.ends[longest])
+    return float(middle % (TURN * ring.sequence.periods))
+
+
+def at_another_phase(
+    instance: Instance, point: Point, response: Response, samples: int
+) -> Response:
+    """A response that goes on, sampled at a phase other than 0."""
+    begin(instance, *point, response.end)
+    instance.step(0.0, OTHER_PHASE / point.excitation.frequency)
+    there = instance.get(*STATE)
+    begin(instance, point.structure, point.excitation.replace(phase=OTHER_PHASE), there)
+    states, gap = sample(instance, point.excitation.period, 0, samples)
+    return replace(response, samples=states, x_rel_max=gap)
+
+
+def whole_impacts(instance: Instance, point: Point, state: ArrayLike, periods: int) -> int:
+    """Impacts of a response in some of its periods, from a phase in the middle of a stretch without
+    any, so that none is counted twice or left out.
+    """
+    begin(instance, *point, state)
+    width = point.excitation.period / PIECES
+    counts: list[int] = []
+    for piece in range(periods * PIECES):
+        instance.step(piece * width, (piece + 1) * width)
+        counts += instance.get("impact_count")
+    each = np.diff([0, *counts])
+    middle = middle_of_longest_run(each == 0)
+    begin(instance, *point, state)
+    instance.step(0.0, (middle + 0.5) * width)
+    (before,) = instance.get("impact_count")
+    instance.step((middle + 0.5) * width, (middle + 0.5 + periods * PIECES) * width)
+    (after,) = instance.get("impact_count")
+    return int(after - before)
+
+
+def middle_of_longest_run(flags: NDArray[np.bool_]) -> int:
+    """The place in the middle of the longest run of true flags on a ring; 0 where there is none."""
+    if flags.all() or not flags.any():
+        return 0
+    first = int(np.flatnonzero(~flags)[0])
+    rolled = np.roll(flags, -first)  # begins with a false one
+    edges = np.diff(np.concatenate([rolled, [False]]).astype(int))
+    begins, ends = np.flatnonzero(edges == 1) + 1, np.flatnonzero(edges == -1) + 1
+    longest = int((ends - begins).argmax())
+    return int((begins[longest] + ends[longest] - 1) // 2 + first) % len(flags)

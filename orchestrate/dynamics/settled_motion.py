@@ -1,0 +1,198 @@
+"""What a response has settled to, and how that was decided; when two of these are the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..response.multiplicity import LEAST_GAP
+from ..response.questions import Point
+from .impact_sequence import PHASE, TURN, Ring
+from .turning_points import Amplitudes, phase_zero, turning_points
+
+Floats = NDArray[np.float64]
+ABSENT, ORBIT, REPEATED, IRREGULAR, UNDECIDED = range(5)
+DECIDED = {
+    ABSENT: "absent",
+    ORBIT: "orbit",
+    REPEATED: "repeated",
+    IRREGULAR: "irregular",
+    UNDECIDED: "undecided",
+}
+SAME = 1e-5  # distance over the motion's size within which a state lies on a known motion
+LENGTHS = np.array(  # displacements, velocities, the gap and its rate, from a state
+    [[1, 0, 0, 0, -1, 0], [0, 1, 0, 0, 1, 0], [0, 0, 1, 0, 0, -1], [0, 0, 0, 1, 0, 1]], dtype=float
+)
+ALIKE = 1e-6  # of the nodes of two orbits over their size, within which these are one orbit
+
+
+@dataclass(frozen=True, eq=False)
+class SettledMotion:
+    """A settled motion: an orbit, or what is known of a response that is none.
+
+    Attributes
+    ----------
+    point : Point
+    decided : int
+        Of ``DECIDED``: by a stable orbit of Newton's method, by states that repeat, or neither.
+    states : ndarray, shape (n, 4)
+        x1, x2 in m, v1, v2 in m/s at phase 0 of successive periods: all of a periodic motion's,
+        some of an irregular one.
+    multiplicity : int
+        Excitation periods after which it repeats; 0: irregular.
+    impacts_per_period : float
+        Of a periodic motion a whole number over ``multiplicity``.
+    gap : float
+        Largest gap, m.
+    multiplier : float
+        Largest absolute value of the orbit's Floquet multipliers; NaN where there is no orbit.
+    ring : Ring, optional
+        The orbit.
+    free_phase : float
+        Phase in rad at which it is far from impacts.
+    """
+
+    point: Point
+    decided: int
+    states: Floats
+    multiplicity: int
+    impacts_per_period: float
+    gap: float
+    multiplier: float = np.nan
+    ring: Ring | None = None
+    free_phase: float = 0.0
+
+    @classmethod
+    def from_orbit(cls, point: Point, ring: Ring, free_phase: float) -> SettledMotion:
+        """A stable orbit."""
+        periods, scale = ring.sequence.periods, point.scale
+        states = phase_zero(ring) * scale
+        states[:, 1] = np.maximum(states[:, 0], states[:, 1])  # in contact, within rounding
+        return cls(
+            point=point,
+            decided=ORBIT,
+            states=states,
+            multiplicity=periods,
+            impacts_per_period=ring.sequence.impacts / periods,
+            gap=Amplitudes.of(ring, turning_points(ring)).gap * point.length,
+            multiplier=float(np.abs(ring.multipliers()).max(initial=0.0)),
+            ring=ring,
+            free_phase=free_phase,
+        )
+
+    @cached_property
+    def features(self) -> list[float]:
+        """Numbers that do not depend on the phase of the samples, by ``clusters.FEATURES``."""
+        gaps = (self.states[:, 1] - self.states[:, 0]) / self.point.length
+        means = [float(gaps.mean()), float(gaps.std())]
+        gap = self.gap / self.point.length
+        return [self.multiplicity, self.impacts_per_period, gap, *means]
+
+    def nearest(self, state: ArrayLike) -> tuple[int, float]:
+        """The period whose first state is nearest to a state at phase 0, and its distance."""
+        return self._known.nearest(state)
+
+    @cached_property
+    def _known(self) -> KnownStates:
+        return KnownStates.from_states(self.states, self.point.excitation.frequency, self.gap)
+
+    @cached_property
+    def free_states(self) -> KnownStates:
+        """States of an orbit at its free phase in successive periods."""
+        assert self.ring is not None, "no orbit"
+        wanted = self.free_phase + TURN * np.arange(self.multiplicity)
+        begin = self.ring.begins[0]
+        shifted = begin + np.mod(wanted - begin, TURN * self.multiplicity)
+        segment = np.searchsorted(self.ring.begins, shifted, side="right") - 1
+        found = self.ring.states(segment, shifted) * self.point.scale
+        return KnownStates.from_states(found, self.point.excitation.frequency, self.gap)
+
+    def is_orbit_of(self, other: SettledMotion) -> bool:
+        """Whether both are one orbit: the same nodes, begun in another period or not; or the same
+        states, where chattering that ends in contact has one more of its smallest impacts.
+        """
+        if self.ring is None or other.ring is None or self.multiplicity != other.multiplicity:
+            return False
+        return same_nodes(self.ring, other.ring) or self.nearest(other.states[0])[1] < SAME
+
+
+@dataclass(frozen=True)
+class KnownStates:
+    """States of a motion at one phase in successive periods, and what differences compare with.
+
+    Displacements and velocities over the frequency are compared with the largest of them; the gap
+    and its rate with the largest gap, as by :func:`orchestrate.response.multiplicity.over_size`.
+
+    Attributes
+    ----------
+    states : ndarray, shape (n, 4)
+        SI.
+    scaled : ndarray, shape (n, 6)
+        Displacements, velocities, gap and its rate over their sizes.
+    matrix : ndarray, shape (4, 6)
+        From a state to these.
+    """
+
+    states: Floats
+    scaled: Floats
+    matrix: Floats
+
+    @classmethod
+    def from_states(cls, states: Floats, frequency: float, gap: float) -> KnownStates:
+        """Some states, SI, with the excitation's frequency in rad/s and the largest gap in m."""
+        matrix = LENGTHS / np.array([1.0, 1.0, frequency, frequency])[:, np.newaxis]
+        found = states @ matrix
+        size = float(np.abs(found[:, :4]).max()) or 1.0
+        of_gap = max(gap, LEAST_GAP * size)
+        of_rate = max(of_gap, float(np.abs(found[:, 5]).max()))
+        sizes = np.array([size, size, size, size, of_gap, of_rate])
+        return cls(states, found / sizes, matrix / sizes)
+
+    def nearest(self, state: ArrayLike) -> tuple[int, float]:
+        """The period whose state is nearest to a state, and its distance over the motion's size."""
+        distances = np.abs(self.scaled - np.asarray(state) @ self.matrix).max(axis=1)
+        period = int(distances.argmin())
+        return period, float(distances[period])
+
+
+def same_nodes(one: Ring, other: Ring) -> bool:
+    """Whether two orbits of as many periods have the same nodes, whole periods apart or not."""
+    kinds, others = np.array(one.sequence.kinds), np.array(other.sequence.kinds)
+    if len(kinds) != len(others):
+        return False
+    if not len(kinds):
+        return True
+    size = float(np.abs([one.nodes[:, 1:], other.nodes[:, 1:]]).max()) or 1.0
+    for shift in range(len(kinds)):
+        if (np.roll(others, -shift) != kinds).any():
+            continue
+        away = np.roll(other.nodes, -shift, axis=0) - one.nodes
+        away[:, PHASE] -= TURN * np.round(away[:, PHASE] / TURN)
+        away[:, 1:] /= size
+        if np.abs(away).max() < ALIKE:
+            return True
+    return False
+
+
+def least_periods(ring: Ring) -> int:
+    """The least number of periods after which an orbit closes, wherever its impacts lie: phases are
+    compared on a circle, so that one at phase 0 may be told as 2 pi.
+    """
+    periods, count = ring.sequence.periods, ring.count
+    kinds, span = np.array(ring.sequence.kinds), TURN * ring.sequence.periods
+    size = float(np.abs(ring.nodes[:, 1:]).max(initial=0.0)) or 1.0
+    for part in range(1, periods):
+        if periods % part or count * part % periods:
+            continue
+        shift = count * part // periods
+        away = np.roll(ring.nodes, -shift, axis=0) - ring.nodes
+        away[:, PHASE] -= TURN * part
+        away[:, PHASE] -= span * np.round(away[:, PHASE] / span)
+        away[:, 1:] /= size
+        same = (np.roll(kinds, -shift) == kinds).all()
+        if same and np.abs(away).max(initial=0.0) < ALIKE:
+            return part
+    return periods

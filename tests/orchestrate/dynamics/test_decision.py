@@ -1,0 +1,222 @@
+"""What responses settle to: known orbits, copies, long transients, impacts at the sampled phase."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from orchestrate import orbit
+from orchestrate.access import OSCILLATOR, REST, EventInstance, Instance, find
+from orchestrate.dynamics.attractors import attractors
+from orchestrate.dynamics.clusters import Telling
+from orchestrate.dynamics.decision import MotionDecider, middle_of_longest_run, whole_impacts
+from orchestrate.dynamics.settled_motion import (
+    IRREGULAR,
+    ORBIT,
+    REPEATED,
+    UNDECIDED,
+    KnownStates,
+    least_periods,
+    same_nodes,
+)
+from orchestrate.response.questions import Point
+from orchestrate.response.sweep import sweep
+from orchestrate.structures import Excitation, Structure
+
+PAPER = Structure.nondimensional()
+USUAL = Telling()
+CONTACT = Structure.nondimensional(mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291)
+HEAVY = Structure.nondimensional(mu=3.0755, kappa=0.54559, D1=0.01281, D2=0.01196, e=0.30528)
+
+pytestmark = pytest.mark.usefixtures("exported")
+
+
+def point_of(structure, eta):
+    return Point(structure, Excitation.nondimensional(eta, structure))
+
+
+def decided_from(structure, eta, start=REST, telling=USUAL, form="fmi3"):
+    path = find(OSCILLATOR, form=form).path
+    with Instance(path) as plain, EventInstance(find(OSCILLATOR).path) as eventful:
+        events = eventful if form == "fmi3" else None
+        decider = MotionDecider(plain, events, point_of(structure, eta), telling)
+        return decider.decide(start)
+
+
+def told(data):
+    """Multiplicity and impacts of all attractors at the only value."""
+    here = data.isel({next(iter(data.number.dims)): 0})
+    n = here.multiplicity.values
+    return sorted(zip(n.tolist(), (n * here.impacts_per_period.values).tolist(), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("structure", "eta", "asked", "expected"),
+    [
+        (CONTACT, 3.0952, {"starts": 60, "seed": 3}, [(2, 1), (11, 32)]),
+        (HEAVY, 2.67054, {"starts": 60}, [(2, 1), (5, 9)]),
+        (PAPER, 1.3048, {"starts": 60}, [(1, 1), (2, 3)]),
+    ],
+    ids=["11T once", "no 5T with 8 impacts", "T before its period doubling"],
+)
+def test_attractors_are_those_that_newtons_method_confirms(structure, eta, asked, expected):
+    found = attractors(structure, eta=eta, **asked)
+    assert told(found) == [tuple(map(float, pair)) for pair in expected]
+    for k in range(found.sizes["attractor"]):
+        one = found.isel(eta=0, attractor=k)
+        n = int(one.multiplicity)
+        confirmed = orbit(structure, eta=eta, period=n, guess=one.state.values)
+        assert bool(confirmed.stable)
+        assert np.isfinite(confirmed.impact_time).sum() == n * float(one.impacts_per_period)
+        sizes = np.hypot(*confirmed.multipliers.transpose("part", "multiplier").values)
+        assert float(one.multiplier) == pytest.approx(sizes.max(), rel=1e-6)
+        assert int(one.decided_by) == ORBIT
+
+
+def test_an_impact_at_the_sampled_phase_does_not_matter():
+    structure = PAPER.replace(e=0.5)
+
+    def phase(eta):
+        found = float(orbit(structure, eta=eta).node_phase[0])
+        return (found + np.pi) % (2.0 * np.pi) - np.pi
+
+    eta = brentq(phase, 2.09, 2.097, xtol=1e-15)
+    assert abs(phase(eta)) < 1e-12
+    for beside in (0.0, 1e-12, -1e-12, 1e-9):
+        assert told(attractors(structure, eta=eta + beside, starts=8)) == [(1.0, 1.0)]
+
+
+@pytest.mark.parametrize(("eta", "e"), [(0.4, 0.7), (0.6, 0.2), (0.6, 0.0)])
+def test_chattering_that_ends_in_contact_is_decided_by_its_orbit(eta, e):
+    structure = PAPER.replace(e=e)
+    motion, state = decided_from(structure, eta)
+    confirmed = orbit(structure, eta=eta, guess=state)
+    assert (motion.decided, motion.multiplicity) == (ORBIT, 1)
+    assert motion.impacts_per_period == np.isfinite(confirmed.impact_time).sum()
+
+
+def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
+    motion, _ = decided_from(CONTACT, 3.0952, telling=Telling(transient=2000))
+    assert motion.multiplicity in (2, 11)
+    with Instance(find(OSCILLATOR).path) as instance:
+        counts = {
+            whole_impacts(instance, motion.point, state, motion.multiplicity)
+            for state in motion.states
+        }
+    assert counts == {round(motion.impacts_per_period * motion.multiplicity)}
+
+
+def test_an_fmu_without_events_decides_by_repeated_states():
+    motion, _ = decided_from(PAPER, 1.315, form="fmi2", telling=Telling(longest=1500))
+    other, _ = decided_from(PAPER, 1.315)
+    assert (motion.decided, other.decided) == (REPEATED, ORBIT)
+    assert motion.features == pytest.approx(other.features, rel=1e-4)
+
+
+def test_what_stays_near_an_unstable_orbit_is_undecided_and_settles_when_run_on():
+    """At D = 0.05 T/1 is unstable at 1.116: deviations take thousands of periods to grow."""
+    damped = PAPER.replace(D=0.05)
+    near = sweep(damped, eta=1.115, transient=3000, samples=10).end_state.values[0]
+    start = orbit(damped, eta=1.116, guess=near).state.values[0]
+    early, _ = decided_from(damped, 1.116, start, Telling(transient=100, settle=1.0, longest=300))
+    late, _ = decided_from(damped, 1.116, near)
+    assert (early.decided, early.impacts_per_period) == (UNDECIDED, 1.0)
+    assert (late.decided, late.multiplicity, late.impacts_per_period) == (ORBIT, 2, 1.5)
+
+
+def test_a_torus_and_chaos_are_irregular():
+    for eta in (2.655, 0.8):
+        motion, _ = decided_from(PAPER, eta)
+        assert (motion.decided, motion.multiplicity) == (IRREGULAR, 0)
+        assert np.isnan(motion.multiplier)
+
+
+def two_periods():
+    """A motion of two periods with three impacts."""
+    with Instance(find(OSCILLATOR).path) as plain, EventInstance(find(OSCILLATOR).path) as events:
+        point = point_of(PAPER, 1.28)
+        motion, _ = MotionDecider(plain, events, point, Telling()).decide(REST)
+    return motion
+
+
+def test_orbits_are_one_whatever_period_they_begin_with():
+    ring = two_periods().ring
+    nodes = ring.nodes.copy()
+    nodes[:, 0] += 2.0 * np.pi
+    later = type(ring)(ring.sequence, ring.form, np.roll(nodes, 1, axis=0))
+    assert same_nodes(ring, later) and same_nodes(later, ring)
+    nodes[0, 3] += 1e-4
+    assert not same_nodes(ring, type(ring)(ring.sequence, ring.form, nodes))
+    twice = type(ring)(
+        ring.sequence.doubled(),
+        ring.form,
+        np.vstack([ring.nodes, ring.nodes + [4.0 * np.pi, 0.0, 0.0, 0.0]]),
+    )
+    assert (least_periods(ring), least_periods(twice)) == (2, 2)
+
+
+def test_distances_compare_gaps_with_the_gap():
+    """A gap may be a hundredth of the displacements."""
+    known = KnownStates.from_states(np.array([[1.0, 1.01, 0.0, 0.0]]), 1.0, 0.01)
+    assert known.nearest([1.0, 1.011, 0.0, 0.0]) == (0, pytest.approx(0.1))
+    assert known.nearest([1.001, 1.011, 0.0, 0.0]) == (0, pytest.approx(1e-3, rel=0.02))
+
+
+@pytest.mark.parametrize(
+    ("flags", "expected"),
+    [
+        ("0110", 1),
+        ("10011", 4),
+        ("1110011", 0),
+        ("0000", 0),
+        ("1111", 0),
+        ("0011111000", 4),
+    ],
+)
+def test_the_middle_of_the_longest_run_on_a_ring(flags, expected):
+    assert middle_of_longest_run(np.array([letter == "1" for letter in flags])) == expected
+
+
+def test_an_irregular_response_that_nearly_repeats_is_irregular():
+    """After 20,000 periods its states happen to repeat nearly, after 12."""
+    structure = Structure(
+        m2=0.4505499090518278,
+        k2=0.6514549578221194,
+        d1=0.027043267030094763,
+        d2=0.02628385110590592,
+        e=0.190396868006822,
+    )
+    found = attractors(structure, eta=3.302924616126182, starts=16, seed=1002570824)
+    assert (found.multiplicity.values == 0).all()
+    assert (found.decided_by.values == IRREGULAR).all()
+
+
+LABELS = """
+import orchestrate
+paper = orchestrate.Structure.nondimensional()
+asked = {"starts": 12, "jobs": 1, "progress": False}
+near = orchestrate.attractors(paper, eta=[0.4, 1.2, 1.3048, 1.335], **asked)
+words = ["number", "multiplicity", "impacts_per_period", "decided_by", "attractor_of"]
+print([near[word].values.tolist() for word in words])
+"""
+
+
+@pytest.mark.slow
+def test_labels_do_not_depend_on_the_processor():
+    """Linear algebra has other last digits on other processors."""
+    found = set()
+    for core in ("Haswell", "SkylakeX", "Nehalem", "Zen"):
+        ended = subprocess.run(
+            [sys.executable, "-c", LABELS],
+            env={**os.environ, "OPENBLAS_CORETYPE": core},
+            capture_output=True,
+            check=True,
+            text=True,
+        )
+        found.add(ended.stdout)
+    assert len(found) == 1 and "1.5" in found.pop()

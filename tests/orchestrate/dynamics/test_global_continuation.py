@@ -1,0 +1,170 @@
+"""Attractors carried along a parameter: found as far as they exist, matched, with their shares."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from orchestrate.access import OSCILLATOR, REST, find
+from orchestrate.dynamics import attractors as module
+from orchestrate.dynamics.attractors import attractors
+from orchestrate.dynamics.clusters import Telling
+from orchestrate.dynamics.decision import MotionDecider
+from orchestrate.dynamics.global_continuation import FLOWS, FOLLOWED, Instances, pairs
+from orchestrate.dynamics.settled_motion import ORBIT
+from orchestrate.response.questions import Point
+from orchestrate.running import runner
+from orchestrate.structures import Excitation, Structure
+
+PAPER = Structure.nondimensional()
+HIDDEN = [1.335, 1.35, 1.365]
+
+pytestmark = pytest.mark.usefixtures("exported")
+
+
+def kinds(data, i):
+    """Multiplicity and impacts of what is there at a value."""
+    here = data.isel(eta=i)
+    n = here.multiplicity.values
+    there = n > 0
+    return set(zip(n[there], (n * here.impacts_per_period.values)[there], strict=True))
+
+
+def test_both_attractors_are_found_where_few_starts_lead_to_one():
+    found = attractors(PAPER, eta=HIDDEN, starts=60)
+    for i in range(3):
+        assert kinds(found, i) == {(1.0, 1.0), (2.0, 3.0)}
+    assert found.number.values.tolist() == [2, 2, 2]
+
+
+@pytest.fixture(scope="module")
+def line(exported):
+    """T and 2T with three impacts: from the period doubling of T on, as far as 2T exists."""
+    return attractors(PAPER, eta=np.arange(1.31, 1.381, 0.01).round(3), starts=8, seed=2)
+
+
+def test_an_attractor_has_one_number_as_far_as_it_exists(line):
+    there = line.decided_by.values == ORBIT
+    for k in range(line.sizes["attractor"]):
+        n = line.multiplicity.values[there[:, k], k]
+        assert (n == n[0]).all()
+        assert (np.diff(np.flatnonzero(there[:, k])) == 1).all()  # no value is left out
+    assert line.sizes["attractor"] == 2
+    two = int(np.flatnonzero(line.multiplicity.values[0] == 2)[0])
+    assert float(line.first_found[two]) == 1.31
+    assert float(line.last_found[two]) == 1.36  # it ends in a fold at 1.3657
+    assert float(line.last_found[1 - two]) == 1.38
+
+
+def test_shares_count_random_starts_alone(line):
+    np.testing.assert_allclose(line.share.sum("attractor"), 1.0)
+    labels = line.attractor_of.values
+    for i in range(line.sizes["eta"]):
+        expected = np.bincount(labels[i], minlength=2) / 8
+        np.testing.assert_array_equal(line.share.values[i], expected)
+    carried = (line.decided_by.values == ORBIT) & (line.share.values == 0.0)
+    assert carried.any()  # found by carrying alone
+
+
+def test_the_order_of_the_values_does_not_matter(line):
+    order = [3, 0, 7, 5, 1, 6, 2, 4]
+    again = attractors(PAPER, eta=line.eta.values[order], starts=8, seed=2)
+    assert again.number.values.tolist() == line.number.values[order].tolist()
+    np.testing.assert_allclose(again.first_found.values.min(), 1.31)
+
+
+def test_any_number_of_workers_gives_the_same_bytes(monkeypatch, tmp_path):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    asked = {"eta": [1.3, 1.32, 1.34], "starts": 120, "transient": 200}
+    attractors(PAPER, **asked, jobs=1, store=tmp_path / "one.nc")
+    monkeypatch.setattr(runner, "WORTH", 0.0)
+    attractors(PAPER, **asked, jobs=2, store=tmp_path / "two.nc")
+    assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()
+
+
+def test_a_run_that_was_interrupted_goes_on_to_the_same_bytes(monkeypatch, tmp_path):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    monkeypatch.setattr(module.AttractorsJob, "chunk", 20)
+    asked = {"eta": [1.3, 1.32], "starts": 30, "transient": 200, "jobs": 1}
+    attractors(PAPER, **asked, store=tmp_path / "whole.nc")
+    with monkeypatch.context() as broken:
+        broken.setattr(module, "continued", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            attractors(PAPER, **asked, store=tmp_path / "again.nc")
+    calls = []
+    monkeypatch.setattr(module, "starts_in_both_boxes", lambda *_: calls.append(1))
+    attractors(PAPER, **asked, store=tmp_path / "again.nc")
+    assert not calls  # all starts were kept
+    assert (tmp_path / "again.nc").read_bytes() == (tmp_path / "whole.nc").read_bytes()
+
+
+def interrupted(*_):
+    raise KeyboardInterrupt
+
+
+def value(*motions):
+    return SimpleNamespace(motions=[motion(*one) for one in motions])
+
+
+def motion(n, impacts):
+    point = SimpleNamespace(scale=np.ones(4))
+    states = np.ones((max(n, 1), 4))
+    return SimpleNamespace(
+        multiplicity=n,
+        impacts_per_period=impacts,
+        point=point,
+        states=states,
+        nearest=lambda state: (0, 0.0),
+    )
+
+
+def test_attractors_that_lead_to_each_other_are_one():
+    links = {(0, 0, 1): (1, FLOWS), (0, 1, 1): (0, FLOWS)}
+    links |= {(1, 0, 0): (1, FLOWS), (1, 1, 0): (0, FLOWS)}
+    before, after = value((1, 1.0), (2, 1.5)), value((2, 1.5), (4, 1.5))
+    assert sorted(pairs(before, after, 0, links)) == [(0, 1), (1, 0)]
+
+
+def test_an_attractor_that_jumps_to_another_ends():
+    links = {(0, 0, 1): (0, FLOWS), (0, 1, 1): (0, FLOWS), (1, 0, 0): (0, FLOWS)}
+    assert pairs(value((1, 1.0), (2, 1.5)), value((1, 1.0)), 0, links) == [(0, 0)]
+
+
+def test_an_orbit_that_is_followed_is_one_though_its_state_leads_elsewhere():
+    links = {(0, 0, 1): (1, FOLLOWED), (1, 0, 0): (0, FLOWS), (1, 1, 0): (0, FLOWS)}
+    found = pairs(value((2, 1.5)), value((1, 1.0), (2, 1.5)), 0, links)
+    assert found == [(0, 1)]
+
+
+def test_neither_jump_joins_two_attractors_that_do_not_look_alike():
+    links = {(0, 0, 1): (0, FLOWS), (0, 1, 1): (0, FLOWS), (1, 0, 0): (1, FLOWS)}
+    found = pairs(value((1, 1.0), (3, 2.0)), value((2, 1.5)), 0, links)
+    assert found == [(1, 0)]
+
+
+CHATTERING = Structure(
+    m2=0.5326656919141614,
+    k2=3.0361901103312166,
+    d1=0.014835068436763413,
+    d2=0.05425741861337725,
+    e=0.12145386639598714,
+)
+GAINS = 1.8903747226797813, 1.8960458468478205  # it gains an impact between these
+
+
+def test_chattering_that_gains_an_impact_on_the_way_is_there_once():
+    """The sequence of one value is a root at the other one too, with an impact too few."""
+    found = attractors(CHATTERING, eta=list(GAINS), starts=4)
+    assert found.number.values.tolist() == [1, 1]
+    assert found.impacts_per_period.values.tolist() == [[6.0], [7.0]]
+
+
+def test_an_orbit_that_is_followed_has_the_impacts_that_the_fmu_runs_through():
+    points = [Point(CHATTERING, Excitation.nondimensional(eta, CHATTERING)) for eta in GAINS]
+    with Instances(find(OSCILLATOR).path) as instances:
+        before, after = (MotionDecider(*instances, point, Telling()) for point in points)
+        motion, _ = before.decide(REST)
+        followed = after.followed(motion)
+    assert (motion.impacts_per_period, followed.impacts_per_period) == (6.0, 7.0)
