@@ -4,7 +4,8 @@ A slow ramp takes the motor along a branch of stationary motions. Where the bran
 leaves it and passes the resonance: it changes many times as much as the voltage does meanwhile, and
 so fast that the rotor's inertia takes a good part of the torque that the vibration sets free. A
 steep but stable branch is followed in the ramp's own time: it is no jump. A record of a ramp does
-not always tell the two apart; :mod:`.held` asks the FMUs then.
+not always tell the two apart: near the edge of a fold the one passes into the other. :mod:`.held`
+asks the FMUs then.
 
 Non-dimensional throughout: time 1/omega, speeds over omega, the voltage as no-load speed over
 omega. The slip is no-load speed less speed: what the vibration takes from the motor.
@@ -66,10 +67,14 @@ class Criterion(NamedTuple):
         Least change of the speed over that of the voltage meanwhile.
     share : float
         Least torque of the rotor's inertia at its largest, over the torque set free.
+    strength : float
+        Least share times the square of the growth of the whole change. By the edge of a fold, where
+        the branch is vertical but not lost, it is 2 to 6 at every rate.
     """
 
     growth: float = 3.0
     share: float = 0.25
+    strength: float = 12.0
 
 
 def find_passing(
@@ -116,10 +121,12 @@ def find_passing(
         return Passing(row, before, last, UNFINISHED, half)
     slip = sign * (way.eta0 - way.Omega)
     inertia = rise[top] / (b * (time[top + width] - time[top]))
-    grown = abs(way.Omega[last] - way.Omega[before])
-    if grown < limits.growth * np.ptp(way.eta0[before : last + 1]):
+    growth = abs(way.Omega[last] - way.Omega[before]) / np.ptp(way.eta0[before : last + 1])
+    if growth < limits.growth:
         return Passing(row, before, last, SMOOTH, half)
-    sure = before > width and inertia >= limits.share * (slip[before] - slip[last])
+    free = slip[before] - slip[last]
+    strong = inertia * growth**2 >= limits.strength * free
+    sure = before > width and inertia >= limits.share * free and strong
     return Passing(row, before, last, JUMP if sure else DOUBTFUL, half)
 
 
