@@ -72,11 +72,14 @@ class Settled(NamedTuple):
         Mean speed over omega that it settles at; NaN where it had not settled in time.
     state : dict of ndarray
         Of the run, to go on from.
+    origin : float
+        Voltage from which it was reached in one step, V; NaN where that was a state of the run.
     """
 
     voltage: float
     speed: float
     state: Table
+    origin: float
 
 
 @dataclass(frozen=True)
@@ -161,6 +164,10 @@ class HeldVoltageTest:
         """Hold the run's voltage of a step from its state there on."""
         return self.hold(self.state(step), self.schedule.voltage((step + 0.5) * self.step))
 
+    def step_from(self, point: Settled, voltage: float) -> Settled:
+        """Change the voltage in one step, and hold it."""
+        return self.hold(point.state, voltage)._replace(origin=point.voltage)
+
     def hold(self, state: Table | None, voltage: float) -> Settled:
         """Hold a voltage from a state on until the speed has settled, or the time is over."""
         count = math.ceil(self.longest / self.step)
@@ -176,7 +183,7 @@ class HeldVoltageTest:
                 speed = settled_speed(block_means(speeds, self.settings), self.settings)
                 if math.isfinite(speed):
                     break
-            return Settled(voltage, speed, run.memory())
+            return Settled(voltage, speed, run.memory(), math.nan)
         finally:
             run.master.close()
 
@@ -221,7 +228,8 @@ class HeldVoltageTest:
             if abs(high.speed - low.speed) < self.settings.distinct:
                 return Verdict(FOLLOWS)
             if self.is_close(low, high):
-                again = self.hold(low.state, high.voltage)
+                short = high.origin == low.voltage
+                again = high if short else self.step_from(low, high.voltage)
                 if not self.differ(again, high):
                     return self.there_and_back(low, high)
                 points[i + 1] = again  # a longer step of the voltage had thrown it across
@@ -235,11 +243,11 @@ class HeldVoltageTest:
     def inside(self, low: Settled, high: Settled) -> Iterator[Settled]:
         """Voltages between two, held: the middle first."""
         for part in (0.5, 0.25, 0.75):
-            yield self.hold(low.state, low.voltage + part * (high.voltage - low.voltage))
+            yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
     def there_and_back(self, low: Settled, high: Settled) -> Verdict:
         """Go back to the lower voltage: a motion was lost where the speed does not come back."""
-        back = self.hold(high.state, low.voltage)
+        back = self.step_from(high, low.voltage)
         if math.isnan(back.speed):
             return Verdict(UNDECIDED, low.voltage, high.voltage)
         if self.differ(back, low):

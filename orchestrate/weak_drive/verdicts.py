@@ -7,6 +7,7 @@ contradicts by more than its own error is not given: the direction is undecided.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 from ..structures.drive import Drive
@@ -15,7 +16,6 @@ from . import averaged
 from .held import FOLLOWS, LEFT_BEFORE, LOST, NOT_ASKED, UNDECIDED, Verdict
 from .jumps import DOUBTFUL, JUMP, SMOOTH, UNFINISHED, Passing
 
-UP, DOWN = 0, 1
 STEEP = (
     0.3  # least slope d eta0 / d Omega, bonded, below which a delaminated motion may have a fold
 )
@@ -45,6 +45,7 @@ class Theory(NamedTuple):
     slope: float
 
 
+@lru_cache(maxsize=64)
 def theories(structure: Structure, drive: Drive) -> tuple[Theory, Theory]:
     """What the averaged theory says of both directions, up and down."""
     folds = averaged.folds(structure, drive)
