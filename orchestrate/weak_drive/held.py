@@ -96,15 +96,19 @@ class HoldSettings:
         Of the bracket of voltages that is asked for, over K omega.
     distinct : float
         Smallest difference of two settled speeds that are told apart, over omega.
+    smallest_jump : float
+        Change of the settled speed, over omega, below which no jump is looked for: where two folds
+        are ``width`` apart, the speed jumps by more.
     max_holds : int
-        Most voltages that are held.
+        Most voltages that are held between the ends of the way.
     """
 
     block: int = 24
     tolerance: float = 1e-4
     width: float = 1e-4
     distinct: float = 2e-3
-    max_holds: int = 60
+    smallest_jump: float = 8e-3
+    max_holds: int = 100
 
 
 class HeldVoltageTest:
@@ -218,14 +222,14 @@ class HeldVoltageTest:
             high = self.hold_step(ends[1])
         if not beyond(high) or math.isnan(high.speed):
             return Verdict(UNDECIDED, low.voltage, high.voltage)
-        return self.between(low, high)
+        return self.between(low, high, 1.0 if up else -1.0)
 
-    def between(self, low: Settled, high: Settled) -> Verdict:
-        """Bracket the largest change of the settled speed, and say what it is."""
+    def between(self, low: Settled, high: Settled, sign: float) -> Verdict:
+        """Bracket the largest rise (``sign`` -1: fall) of the settled speed, and say what it is."""
         points = [low, high]
         for _ in range(self.settings.max_holds):
-            i, low, high = largest_change(points)
-            if abs(high.speed - low.speed) < self.settings.distinct:
+            i, low, high = largest_change(points, sign)
+            if sign * (high.speed - low.speed) < self.settings.smallest_jump:
                 return Verdict(FOLLOWS)
             if self.is_close(low, high):
                 short = high.origin == low.voltage
@@ -264,10 +268,12 @@ class HeldVoltageTest:
         return abs(point.speed - other.speed) > self.settings.distinct
 
 
-def largest_change(points: list[Settled]) -> tuple[int, Settled, Settled]:
-    """The two neighbours whose speeds differ most, and the place of the first one."""
+def largest_change(points: list[Settled], sign: float) -> tuple[int, Settled, Settled]:
+    """The two neighbours between which the speed rises (``sign`` -1: falls) most, and the place of
+    the first one.
+    """
     pairs = list(pairwise(points))
-    i = int(np.argmax([abs(high.speed - low.speed) for low, high in pairs]))
+    i = int(np.argmax([sign * (high.speed - low.speed) for low, high in pairs]))
     return i, *pairs[i]
 
 
@@ -283,8 +289,8 @@ def settled_speed(means: np.ndarray, settings: HoldSettings) -> float:
 
     Means that approach a limit as an exponential say it before they are there (Aitken's process):
     three such limits in turn must agree. By a fold the approach is slower than any exponential, and
-    they do not. Irregular motions have settled where three long means differ by less than their
-    scatter.
+    they do not. Small changes to and fro have settled. Irregular motions have where three long
+    means differ by less than their scatter.
     """
     changes = np.diff(means)
     if len(changes) < 4:
@@ -292,7 +298,10 @@ def settled_speed(means: np.ndarray, settings: HoldSettings) -> float:
     last = changes[-4:]
     if np.abs(last).max() < 0.01 * settings.tolerance:
         return float(means[-1])
-    if (last > 0.0).all() or (last < 0.0).all():
+    if not (last > 0.0).all() and not (last < 0.0).all():
+        if np.ptp(means[-5:]) < 0.3 * settings.tolerance:
+            return float(means[-5:].mean())
+    else:
         ratios = last[1:] / last[:-1]
         if ratios.max() < 0.95:
             limits = means[-3:] + last[1:] * ratios / (1.0 - ratios)
@@ -302,7 +311,7 @@ def settled_speed(means: np.ndarray, settings: HoldSettings) -> float:
         return math.nan
     thirds = means[-24:].reshape(3, 8).mean(axis=1)
     scatter = float(np.std(np.diff(means[-24:])))
-    if np.ptp(thirds) < max(settings.tolerance, 0.5 * scatter):
+    if np.ptp(thirds) < max(settings.tolerance, 0.7 * scatter):
         return float(thirds.mean())
     return math.nan
 

@@ -109,8 +109,8 @@ def undecided(held: Verdict, theory: Theory, hold: float) -> str:
         known = math.isfinite(held.low) and math.isfinite(held.high)
         between = f" between {held.low:.5g} and {held.high:.5g} V" if known else ""
         return (
-            f"undecided{between}: the speed had not settled in {hold:.4g} s at a held voltage; "
-            "a longer hold may decide"
+            f"undecided{between}: voltages held for {hold:.4g} s at most do not tell; a longer "
+            "hold may"
         )
     middle = 0.5 * (held.low + held.high)
     ours = f"lose the motion at {middle:.5g} V" if held.what == LOST else "lose no motion"
