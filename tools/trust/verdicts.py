@@ -232,11 +232,11 @@ class Verdicts(Campaign):
     asks = (
         "A random structure with a random drive that has folds, and the same with an unbalance "
         "for which folds are close or just vanish, bonded and delaminated, each on ramps up and "
-        "down at four rates. Where the branch of stationary motions, found by Newton's method through both "
-        "FMUs, loses its motion in a fold or a Neimark-Sacker point, `couple` does not say that "
-        "there is none, and brackets it within 2e-4 K omega where it holds voltages; where the "
-        "branch loses none, `couple` finds none; and it does not say one thing at one rate and "
-        "another at another. What it leaves undecided is counted."
+        "down at four rates. Where the branch of stationary motions, found by Newton's method "
+        "through both FMUs, loses its motion in a fold or a Neimark-Sacker point, `couple` does "
+        "not say that there is no jump, and brackets the place within 2e-4 K omega where it holds "
+        "voltages; where the branch loses none, `couple` says that there is none; and it does not "
+        "say one thing at one rate and another at another. What it leaves undecided is counted."
     )
     unit, target, batch, package = "drives", 40, 1, True
 
