@@ -70,6 +70,8 @@ class Settled(NamedTuple):
         V.
     speed : float
         Mean speed over omega that it settles at; NaN where it had not settled in time.
+    error : float
+        Of the speed of an irregular motion; 0 where it settles.
     state : dict of ndarray
         Of the run, to go on from.
     origin : float
@@ -78,6 +80,7 @@ class Settled(NamedTuple):
 
     voltage: float
     speed: float
+    error: float
     state: Table
     origin: float
 
@@ -177,17 +180,18 @@ class HeldVoltageTest:
         count = math.ceil(self.longest / self.step)
         piece = max(1, round(150.0 / self.omega / self.step))
         run, speeds = self.begin(Constant(voltage, count * self.step)), np.zeros(0)
-        speed = math.nan
+        speed, error = math.nan, 0.0
         try:
             if state is not None:
                 run.remember(state)
             for first in range(0, count, piece):
                 rows = run.revolve(range(first, min(first + piece, count)))
                 speeds = np.append(speeds, np.abs(rows["speed"]) / self.omega)
-                speed = settled_speed(block_means(speeds, self.settings), self.settings)
+                means = block_means(speeds, self.settings)
+                speed, error = settled_speed(means, self.settings)
                 if math.isfinite(speed):
                     break
-            return Settled(voltage, speed, run.memory(), math.nan)
+            return Settled(voltage, speed, error, run.memory(), math.nan)
         finally:
             run.master.close()
 
@@ -229,7 +233,7 @@ class HeldVoltageTest:
         points = [low, high]
         for _ in range(self.settings.max_holds):
             i, low, high = largest_change(points, sign)
-            if sign * (high.speed - low.speed) < self.settings.smallest_jump:
+            if sign * (high.speed - low.speed) < self.settings.smallest_jump + noise(low, high):
                 return Verdict(FOLLOWS)
             if self.is_close(low, high):
                 short = high.origin == low.voltage
@@ -265,7 +269,12 @@ class HeldVoltageTest:
 
     def differ(self, point: Settled, other: Settled) -> bool:
         """Whether both have settled, at different speeds."""
-        return abs(point.speed - other.speed) > self.settings.distinct
+        return abs(point.speed - other.speed) > self.settings.distinct + noise(point, other)
+
+
+def noise(point: Settled, other: Settled) -> float:
+    """Three errors of the difference of two speeds."""
+    return 3.0 * math.hypot(point.error, other.error)
 
 
 def largest_change(points: list[Settled], sign: float) -> tuple[int, Settled, Settled]:
@@ -284,8 +293,9 @@ def block_means(speeds: np.ndarray, settings: HoldSettings) -> np.ndarray:
     return np.asarray(blocks.mean(axis=1)[1:])
 
 
-def settled_speed(means: np.ndarray, settings: HoldSettings) -> float:
-    """The speed that a motion settles at, by its mean speeds; NaN where they do not say.
+def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, float]:
+    """The speed that a motion settles at, by its mean speeds, and the error of an irregular one;
+    NaN where they do not say.
 
     Means that approach a limit as an exponential say it before they are there (Aitken's process):
     three such limits in turn must agree. By a fold the approach is slower than any exponential, and
@@ -294,26 +304,27 @@ def settled_speed(means: np.ndarray, settings: HoldSettings) -> float:
     """
     changes = np.diff(means)
     if len(changes) < 4:
-        return math.nan
+        return math.nan, 0.0
     last = changes[-4:]
     if np.abs(last).max() < 0.01 * settings.tolerance:
-        return float(means[-1])
+        return float(means[-1]), 0.0
     if not (last > 0.0).all() and not (last < 0.0).all():
         if np.ptp(means[-5:]) < 0.3 * settings.tolerance:
-            return float(means[-5:].mean())
+            return float(means[-5:].mean()), 0.0
     else:
         ratios = last[1:] / last[:-1]
         if ratios.max() < 0.95:
             limits = means[-3:] + last[1:] * ratios / (1.0 - ratios)
             if np.ptp(limits) < 0.5 * settings.tolerance:
-                return float(limits[-1])
+                return float(limits[-1]), 0.0
     if len(means) < 24:
-        return math.nan
+        return math.nan, 0.0
     thirds = means[-24:].reshape(3, 8).mean(axis=1)
     scatter = float(np.std(np.diff(means[-24:])))
     if np.ptp(thirds) < max(settings.tolerance, 0.7 * scatter):
-        return float(thirds.mean())
-    return math.nan
+        error = max(float(np.ptp(thirds)), 0.5 * float(np.std(means[-24:])))
+        return float(thirds.mean()), error
+    return math.nan, 0.0
 
 
 def with_a_last_one(chunks: list[Chunk]) -> list[Chunk]:

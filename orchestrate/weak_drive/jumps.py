@@ -70,11 +70,18 @@ class Criterion(NamedTuple):
     strength : float
         Least share times the square of the growth of the whole change. By the edge of a fold, where
         the branch is vertical but not lost, it is 2 to 6 at every rate.
+    clearness : float
+        Least change of the speed over the scatter of its changes before and after: the speed of an
+        irregular motion comes and goes by itself.
+    around : int
+        Of how many widths of the running mean before and after that scatter is.
     """
 
     growth: float = 3.0
     share: float = 0.25
     strength: float = 12.0
+    clearness: float = 8.0
+    around: int = 40
 
 
 def find_passing(
@@ -126,7 +133,11 @@ def find_passing(
         return Passing(row, before, last, SMOOTH, half)
     free = slip[before] - slip[last]
     strong = inertia * growth**2 >= limits.strength * free
-    sure = before > width and inertia >= limits.share * free and strong
+    far = limits.around * width
+    around = rise[max(0, before - far) : max(0, before - width)], rise[last + width : last + far]
+    noise = max((float(np.std(part)) for part in around if len(part)), default=0.0)
+    clear = strong and abs(way.Omega[last] - way.Omega[before]) >= limits.clearness * noise
+    sure = before > width and inertia >= limits.share * free and clear
     return Passing(row, before, last, JUMP if sure else DOUBTFUL, half)
 
 

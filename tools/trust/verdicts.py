@@ -159,7 +159,11 @@ def truths(system: System) -> dict[tuple[str, str], Truth]:
 
 
 def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:
-    """The first loss of stability along a branch, from below or from above."""
+    """The first loss of stability along a branch, from below or from above.
+
+    Unknown where that is no fold: of the delaminated structure, whose impacts may become irregular
+    there without any change of the speed.
+    """
     volts, omega = units
     leg = branch.isel(leg=0)
     if way == "down" and str(leg.end.item()) != "limit":
@@ -187,7 +191,7 @@ def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -
     if kinds[first] == FOLD:
         return Truth(FOLD, scaled[0, first], scaled[0, first])
     folds = scaled[0, kinds == FOLD]
-    if kinds[first] == TORUS and folds.size:
+    if kind == "bonded" and kinds[first] == TORUS and folds.size:
         last = folds.max() if way == "up" else folds.min()
         low, high = sorted([scaled[0, first], float(last)])
         return Truth(TORUS, low, high)
