@@ -1,12 +1,13 @@
 """Whether a motion is lost on the way through the resonance: the voltage is held, again and again.
 
 Where the record of a ramp does not tell a jump from a steep branch, a state of the run is restored
-and its voltage is held until the speed has settled. From there the voltage goes on in steps, each
-held until the speed has settled, and each half as long as the one before where the speed changes
-most: so the largest change of the settled speed is bracketed, whatever the rate of the ramp was.
-Then the voltage goes back from beyond that change. Where the speed does not come back with it, two
-motions exist at one voltage, and the first one is lost on the way; where it does, the speed follows
-the voltage. What has not settled in the time that is given decides nothing.
+and its voltage is held until the speed has settled. From there the voltage goes on in short steps,
+each held until the speed has settled, so that the motion stays the same as long as it lasts. Where
+the speed changes most the steps are halved: the largest change of the settled speed is bracketed,
+whatever the rate of the ramp was. Then the voltage goes back from beyond that change. Where the
+speed does not come back with it, two motions exist at one voltage, and the first one is lost on the
+way; where it does, all the steps back, the speed follows the voltage. What has not settled in the
+time that is given, or comes back another way, decides nothing.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ MEMORY = (
     "revolution_memory",
     "control_memory",
 )
+FIRST = 4  # revolutions of a hold whose speed is still that of the ramp
 NOT_ASKED, LOST, FOLLOWS, LEFT_BEFORE, UNDECIDED = range(5)
 MEANINGS = {
     NOT_ASKED: "not asked",
@@ -72,6 +74,8 @@ class Settled(NamedTuple):
         Mean speed over omega that it settles at; NaN where it had not settled in time.
     error : float
         Of the speed of an irregular motion; 0 where it settles.
+    begin : float
+        Mean speed of the first revolutions; NaN where there are none.
     state : dict of ndarray
         Of the run, to go on from.
     origin : float
@@ -81,6 +85,7 @@ class Settled(NamedTuple):
     voltage: float
     speed: float
     error: float
+    begin: float
     state: Table
     origin: float
 
@@ -102,8 +107,12 @@ class HoldSettings:
     smallest_jump : float
         Change of the settled speed, over omega, below which no jump is looked for: where two folds
         are ``width`` apart, the speed jumps by more.
+    stair : float
+        Longest first step of the voltage, over K omega, and
+    max_stairs : int
+        how many of them there are at most.
     max_holds : int
-        Most voltages that are held between the ends of the way.
+        Most voltages that are held after them.
     """
 
     block: int = 24
@@ -111,7 +120,9 @@ class HoldSettings:
     width: float = 1e-4
     distinct: float = 2e-3
     smallest_jump: float = 8e-3
-    max_holds: int = 100
+    stair: float = 4e-3
+    max_stairs: int = 25
+    max_holds: int = 60
 
 
 class HeldVoltageTest:
@@ -191,7 +202,8 @@ class HeldVoltageTest:
                 speed, error = settled_speed(means, self.settings)
                 if math.isfinite(speed):
                     break
-            return Settled(voltage, speed, error, run.memory(), math.nan)
+            begin = float(speeds[:FIRST].mean()) if speeds.size else math.nan
+            return Settled(voltage, speed, error, begin, run.memory(), math.nan)
         finally:
             run.master.close()
 
@@ -210,15 +222,20 @@ class HeldVoltageTest:
             Speed over omega between the motions below and beyond the resonance.
         up : bool
         """
+        sign = 1.0 if up else -1.0
 
         def beyond(point: Settled) -> bool:
-            return (point.speed > threshold) == up
+            return sign * (point.speed - threshold) > 0.0
 
         step, back = steps.before, max(1, steps.row - steps.before)
         low = self.hold_step(step)
-        while math.isnan(low.speed) or beyond(low):
+        while math.isnan(low.speed) or beyond(low) or self.falls_back(low, sign):
             if step <= ends[0]:
-                return Verdict(UNDECIDED if math.isnan(low.speed) else LEFT_BEFORE)
+                if math.isnan(low.speed):
+                    return Verdict(UNDECIDED)
+                if beyond(low):
+                    return Verdict(LEFT_BEFORE)
+                break
             step, back = max(ends[0], step - back), 2 * back
             low = self.hold_step(step)
         high = self.hold_step(steps.after)
@@ -226,11 +243,42 @@ class HeldVoltageTest:
             high = self.hold_step(ends[1])
         if not beyond(high) or math.isnan(high.speed):
             return Verdict(UNDECIDED, low.voltage, high.voltage)
-        return self.between(low, high, 1.0 if up else -1.0)
+        points = self.stairs(low, high)
+        if not beyond(points[-1]):
+            return Verdict(UNDECIDED, points[-1].voltage, high.voltage)
+        verdict = self.between(list(points), sign)
+        if verdict.what == FOLLOWS and not self.comes_back(points):
+            return Verdict(UNDECIDED, low.voltage, high.voltage)
+        return verdict
 
-    def between(self, low: Settled, high: Settled, sign: float) -> Verdict:
+    def comes_back(self, points: list[Settled]) -> bool:
+        """Go the same steps back: whether the speeds are the same, as far as they settle."""
+        last = points[-1]
+        for point in reversed(points[:-1]):
+            back = self.step_from(last, point.voltage)
+            if self.differ(back, point):
+                return False
+            last = back if math.isfinite(back.speed) else last
+        return True
+
+    def stairs(self, low: Settled, high: Settled) -> list[Settled]:
+        """Go from one voltage to another in steps; those where nothing settles are left out."""
+        span = abs(high.voltage - low.voltage) / self.volts
+        count = min(math.ceil(span / self.settings.stair), self.settings.max_stairs)
+        points = [low]
+        for voltage in np.linspace(low.voltage, high.voltage, count + 1)[1:].tolist():
+            point = self.step_from(points[-1], voltage)
+            if math.isfinite(point.speed):
+                points.append(point)
+        return points if points[-1].voltage == high.voltage else [*points, high]
+
+    def falls_back(self, low: Settled, sign: float) -> bool:
+        """Whether a held speed goes back from the ramp's, which lags: then to another motion."""
+        allowed = 2.0 * self.settings.distinct + 3.0 * low.error
+        return sign * (low.speed - low.begin) < -allowed
+
+    def between(self, points: list[Settled], sign: float) -> Verdict:
         """Bracket the largest rise (``sign`` -1: fall) of the settled speed, and say what it is."""
-        points = [low, high]
         for _ in range(self.settings.max_holds):
             i, low, high = largest_change(points, sign)
             if sign * (high.speed - low.speed) < self.settings.smallest_jump + noise(low, high):
