@@ -111,6 +111,8 @@ class HoldSettings:
         Longest first step of the voltage, over K omega, and
     max_stairs : int
         how many of them there are at most.
+    past : float
+        How far past the passing of the ramp the steps go, over K omega.
     max_holds : int
         Most voltages that are held after them.
     """
@@ -122,6 +124,7 @@ class HoldSettings:
     smallest_jump: float = 8e-3
     stair: float = 4e-3
     max_stairs: int = 25
+    past: float = 0.02
     max_holds: int = 60
 
 
@@ -180,7 +183,11 @@ class HeldVoltageTest:
 
     def hold_step(self, step: int) -> Settled:
         """Hold the run's voltage of a step from its state there on."""
-        return self.hold(self.state(step), self.schedule.voltage((step + 0.5) * self.step))
+        return self.hold(self.state(step), self.voltage(step))
+
+    def voltage(self, step: int) -> float:
+        """The run's voltage at a step, V."""
+        return self.schedule.voltage((step + 0.5) * self.step)
 
     def step_from(self, point: Settled, voltage: float) -> Settled:
         """Change the voltage in one step, and hold it."""
@@ -238,18 +245,20 @@ class HeldVoltageTest:
                 break
             step, back = max(ends[0], step - back), 2 * back
             low = self.hold_step(step)
-        high = self.hold_step(steps.after)
-        if not beyond(high) or math.isnan(high.speed):
-            high = self.hold_step(ends[1])
-        if not beyond(high) or math.isnan(high.speed):
-            return Verdict(UNDECIDED, low.voltage, high.voltage)
-        points = self.stairs(low, high)
+        target = self.target(steps.after, ends[1], sign)
+        points = self.stairs(low, target)
         if not beyond(points[-1]):
-            return Verdict(UNDECIDED, points[-1].voltage, high.voltage)
+            return Verdict(UNDECIDED, points[-1].voltage, target)
         verdict = self.between(list(points), sign)
         if verdict.what == FOLLOWS and not self.comes_back(points):
-            return Verdict(UNDECIDED, low.voltage, high.voltage)
+            return Verdict(UNDECIDED, low.voltage, target)
         return verdict
+
+    def target(self, after: int, last: int, sign: float) -> float:
+        """The voltage to go to: well past the passing, but no further than the run goes, V."""
+        past = self.voltage(after) + sign * self.settings.past * self.volts
+        end = self.voltage(last)
+        return min(past, end) if sign > 0.0 else max(past, end)
 
     def comes_back(self, points: list[Settled]) -> bool:
         """Go the same steps back: whether the speeds are the same, as far as they settle."""
@@ -261,16 +270,16 @@ class HeldVoltageTest:
             last = back if math.isfinite(back.speed) else last
         return True
 
-    def stairs(self, low: Settled, high: Settled) -> list[Settled]:
-        """Go from one voltage to another in steps; those where nothing settles are left out."""
-        span = abs(high.voltage - low.voltage) / self.volts
-        count = min(math.ceil(span / self.settings.stair), self.settings.max_stairs)
+    def stairs(self, low: Settled, target: float) -> list[Settled]:
+        """Go to a voltage in steps; those where nothing settles are left out."""
+        span = abs(target - low.voltage) / self.volts
+        count = max(1, min(math.ceil(span / self.settings.stair), self.settings.max_stairs))
         points = [low]
-        for voltage in np.linspace(low.voltage, high.voltage, count + 1)[1:].tolist():
+        for voltage in np.linspace(low.voltage, target, count + 1)[1:].tolist():
             point = self.step_from(points[-1], voltage)
             if math.isfinite(point.speed):
                 points.append(point)
-        return points if points[-1].voltage == high.voltage else [*points, high]
+        return points
 
     def falls_back(self, low: Settled, sign: float) -> bool:
         """Whether a held speed goes back from the ramp's, which lags: then to another motion."""
