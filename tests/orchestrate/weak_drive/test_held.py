@@ -12,6 +12,7 @@ from orchestrate.weak_drive.held import (
     UNDECIDED,
     HeldVoltageTest,
     HoldSettings,
+    Settled,
     settled_speed,
 )
 from orchestrate.weak_drive.jumps import DOUBTFUL, Passing
@@ -70,10 +71,10 @@ def test_a_fold(slope, up, start, rate):
     assert low - 5e-6 <= fold_of(slope, up) <= high + 5e-6 and high - low < 2e-4
 
 
-@pytest.mark.parametrize("slope", [0.02, 0.1])
+@pytest.mark.parametrize("slope", [0.001, 0.02, 0.1])
 def test_a_steep_branch(slope):
-    """Fifty times as steep as the voltage, but the speed comes back with it."""
-    verdict = judged(slope)
+    """A thousand times as steep as the voltage, but the speed comes back with it."""
+    verdict = judged(slope, longest=2e5)
     assert verdict.what == FOLLOWS and np.isnan(verdict.low)
 
 
@@ -88,6 +89,40 @@ def test_a_short_hold_is_never_wrong(slope, longest):
 def test_a_short_hold_is_undecided_and_a_longer_one_decides():
     assert judged(-0.02, longest=1500.0).what == UNDECIDED
     assert judged(-0.02, longest=2e4).what == LOST
+
+
+class Scripted(HeldVoltageTest):
+    """Two motions, 0.02 apart in speed, both half as steep as the voltage."""
+
+    def __init__(self, back=0.0, falls=()):
+        ramp = Ramp(1.4, 1.6, 1e-3, back=False)
+        super().__init__(lambda _: None, ramp, H, 1.0, 1.0, 1.0)
+        self.back, self.falls, self.held = back, falls, []
+
+    def at(self, voltage, higher=0.0, begin=0.0):
+        speed = 1.3 + 0.5 * (voltage - 1.5) + higher
+        return Settled(voltage, speed, 0.0, speed + begin, {}, np.nan)
+
+    def hold_step(self, step):
+        self.held.append(step)
+        return self.at(self.voltage(step), begin=0.02 if step in self.falls else 0.0)
+
+    def step_from(self, point, voltage):
+        return self.at(voltage, self.back if voltage < point.voltage else 0.0)
+
+    def verdict(self):
+        return self.classify(Passing(28, 15, 35, DOUBTFUL, 28.0), (0, 39), 1.3, True).what
+
+
+def test_another_motion_on_the_way_back_is_undecided():
+    assert Scripted().verdict() == FOLLOWS
+    assert Scripted(back=0.02).verdict() == UNDECIDED
+
+
+def test_it_begins_on_the_motion_of_the_ramp():
+    """A lagging ramp's speed only rises when the voltage is held, unless its motion is lost."""
+    scripted = Scripted(falls=(15,))
+    assert scripted.verdict() == FOLLOWS and scripted.held == [15, 2]
 
 
 def test_what_has_left_before():

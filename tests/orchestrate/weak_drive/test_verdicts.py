@@ -10,7 +10,16 @@ from orchestrate.access import OSCILLATOR, SHAKER, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import couple_job
 from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, NOT_ASKED, UNDECIDED, Verdict
-from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, SMOOTH, UNFINISHED, Passing
+from orchestrate.weak_drive.jumps import (
+    DOUBTFUL,
+    JUMP,
+    SMOOTH,
+    UNFINISHED,
+    Criterion,
+    Passing,
+    Way,
+    find_passing,
+)
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.verdicts import Theory, agreed, is_doubtful, reason, theories
@@ -64,6 +73,13 @@ def test_no_record_makes_a_jump_of_a_vertical_branch():
     found = run(edge, (1.58, 1.45), 1e-4, **DOWN).sel(jump="down")
     assert np.isnan(found.jumps) and found.held_verdict == FOLLOWS
     assert "without a gap" in str(found.no_jump.item())
+    falls = np.flatnonzero(found.eta0.diff("revolution").values < -1e-9)
+    time = found.time.values[falls] * edge.structure.omega
+    way = Way(time, found.eta0.values[falls], found.Omega.values[falls])
+    b, threshold = edge.drive.b(edge.structure), averaged.dividing_speed(*edge)
+    assert find_passing(way, b, up=False, divide=threshold).look == DOUBTFUL
+    weaker = Criterion(strength=0.0)
+    assert find_passing(way, b, up=False, divide=threshold, criterion=weaker).look == JUMP
 
 
 def test_what_has_not_settled_is_undecided():
