@@ -239,7 +239,7 @@ class Verdicts(Campaign):
     asks = (
         "A random structure with a random drive that has folds, bonded and delaminated, on ramps "
         "up and down at four rates, and the same at two rates with an unbalance for which folds "
-        "are close or just vanish. Where the branch of stationary motions, found by Newton's method "
+        "are close or just vanish. Where the branch of stationary motions, by Newton's method "
         "through both FMUs, loses its motion in a fold or a Neimark-Sacker point, `couple` does "
         "not say that there is no jump, and brackets the place within 2e-4 K omega where it holds "
         "voltages; where the branch loses none, `couple` says that there is none; and it does not "
