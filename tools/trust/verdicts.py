@@ -181,6 +181,7 @@ def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -
         return Truth(NONE) if whole else Truth(UNKNOWN)
     i = int(np.argmin(stable))
     own = branch.bifurcation_structure.values == kind
+    own &= branch.bifurcation_revolutions.values == float(leg.revolutions[0])  # not a branch beside
     kinds = branch.bifurcation_kind.values[own]
     places = np.stack([branch.bifurcation_voltage.values, branch.bifurcation_speed.values])[:, own]
     scaled = places / np.array([[volts], [omega]])

@@ -66,21 +66,23 @@ def test_answers_that_change_with_the_rate_are_findings(monkeypatch):
 
 
 def branch(stable, end):
-    """A branch up to a fold at 1.2 V, at 1.3 rad/s; stable or not."""
+    """A branch up to a fold at 1.2 V, at 1.3 rad/s; stable or not; another one folds beside it."""
     count = len(stable)
     legs = {
         "voltage": np.linspace(1.0, 1.2, count),
         "speed": np.linspace(1.0, 1.3, count),
         "stable": np.array(stable),
+        "revolutions": np.ones(count),
     }
     return xr.Dataset(
         {name: (("leg", "point"), values[np.newaxis]) for name, values in legs.items()}
         | {
             "end": ("leg", [end]),
-            "bifurcation_structure": ("bifurcation", ["bonded"]),
-            "bifurcation_kind": ("bifurcation", ["fold"]),
-            "bifurcation_voltage": ("bifurcation", [1.2]),
-            "bifurcation_speed": ("bifurcation", [1.3]),
+            "bifurcation_structure": ("bifurcation", ["bonded"] * 2),
+            "bifurcation_kind": ("bifurcation", ["fold"] * 2),
+            "bifurcation_voltage": ("bifurcation", [1.195, 1.2]),
+            "bifurcation_speed": ("bifurcation", [1.295, 1.3]),
+            "bifurcation_revolutions": ("bifurcation", [2.0, 1.0]),
         },
         {"leg": ["from below"]},
     )
