@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, Any
 from .drives import (
     ETA0,
     add_control,
+    add_hold,
     add_only,
     add_schedule,
     add_step,
     check_files,
     control_of,
     file_name,
+    hold_of,
     schedule_from,
     states_of,
     step_of,
@@ -69,6 +71,7 @@ def add_master(parser: argparse.ArgumentParser) -> None:
     """How both FMUs are stepped."""
     group = parser.add_argument_group("master")
     add_step(group)
+    add_hold(group)
     text = "of that control: largest defect over the work exchanged in a step (default: 1e-8)"
     group.add_argument("--tolerance", type=plain_float, help=text)
     text = "master, see the manual (default: %(default)s)"
@@ -84,10 +87,12 @@ def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -
     step = step_of(arguments, structure)
     given = (arguments.algorithm, arguments.tolerance, control is not None)
     scheme = scheme_of(structure, step, *given)
-    stem = file_name(arguments, structure, drive, (schedule, scheme, control))
+    hold = hold_of(arguments, structure)
+    stem = file_name(arguments, structure, drive, (schedule, scheme, control, hold))
     return [
         replace(
-            couple_job(chosen, drive, schedule, scheme, control=control), name=f"{stem}_{state}"
+            couple_job(chosen, drive, schedule, scheme, control=control, hold=hold),
+            name=f"{stem}_{state}",
         )
         for state, chosen in states_of(arguments, structure).items()
     ]
@@ -255,12 +260,16 @@ def told_jump(
         Voltage at which a slow ramp jumps, by the branch of stationary motions, V.
     """
     voltage, jump = float(at.jumps), at.jump.item()
+    if at.decided.item() == "undecided":
+        why = str(at.no_jump.item()).replace("a longer hold", "a longer --hold")
+        return f"jump {jump} {why}"
     if not math.isfinite(voltage):
         return f"jump {jump} none ({at.no_jump.item()})"
     text = f"jump {jump} at {voltage:.4f} V (eta0 = {voltage / volts:.4f})"
     held = float(at.held_jumps)
     if math.isfinite(held):
-        return f"{text}, told by held voltages: the motion is lost at {held:.4f} V"
+        error = float(at.held_error)
+        return f"{text}, told by held voltages: the motion is lost at {held:.4f} +- {error:.4f} V"
     return f"{text}, {lag_words(at, volts, bonded, fold)}"
 
 

@@ -82,6 +82,15 @@ def add_step(group: Any) -> None:
     group.add_argument("--step", type=plain_float, help=text)
 
 
+def add_hold(group: Any) -> None:
+    """``--hold``."""
+    text = (
+        "longest time for which a voltage is held where the ramp's record does not tell a jump, in "
+        "1/omega (default: 4000 and 200 times the rotor's own)"
+    )
+    group.add_argument("--hold", type=plain_float, metavar="TIME", help=text)
+
+
 def add_control(parser: argparse.ArgumentParser) -> None:
     """A controller that takes a part of the voltage."""
     title = "controller: starts from rest, takes a part of the voltage at every communication step"
@@ -205,6 +214,11 @@ def volt_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive)
 def step_of(arguments: argparse.Namespace, structure: Structure) -> float | None:
     """The communication step, s, where one is given."""
     return None if arguments.step is None else float(arguments.step / structure.omega)
+
+
+def hold_of(arguments: argparse.Namespace, structure: Structure) -> float | None:
+    """The longest hold, s, where one is given."""
+    return None if arguments.hold is None else float(arguments.hold / structure.omega)
 
 
 def schedule_from(

@@ -11,11 +11,13 @@ from ..errors import InputError
 from .drives import (
     ETA0,
     add_control,
+    add_hold,
     add_only,
     add_schedule,
     add_step,
     ask_each,
     control_of,
+    hold_of,
     schedule_from,
     step_of,
     title_of_runs,
@@ -53,6 +55,7 @@ def add_parser(commands: Commands) -> None:
     mass = "whose acceleration the spectra are of (default: %(default)s)"
     group.add_argument("--mass", type=int, default=1, choices=(1, 2), help=mass)
     add_step(group)
+    add_hold(group)
     add_results(parser, store=False, several=True)
 
 
@@ -73,6 +76,7 @@ def run(arguments: argparse.Namespace) -> None:
         "around": around,
         "control": control,
         "step": step_of(arguments, structure),
+        "hold": hold_of(arguments, structure),
     }
     spectra = {"revolutions": arguments.revolutions, "mass": arguments.mass}
     draw = partial(picture_of, name=Path(arguments.drive).stem, spectra=spectra, control=control)

@@ -85,6 +85,8 @@ def told(data: xr.Dataset) -> str:
         for way in data.jump.values
         if np.isfinite(float(data.jumps.sel(jump=way)))
     ]
+    pairs = zip(data.jump.values, data.decided.values, strict=True)
+    found += [f"jump {way} undecided" for way, how in pairs if how == "undecided"]
     if found:
         return ", ".join(found)
     passed = float(data.passage_time)

@@ -106,7 +106,14 @@ def jumps_of(name: str, data: xr.Dataset) -> str:
         for way in ("up", "down")
         if jumped(data, way)
     ]
+    found += [f"{way} undecided" for way in undecided_ways(data)]
     return f"{name}: jump {', '.join(found)}" if found else f"{name}: no jump"
+
+
+def undecided_ways(data: xr.Dataset) -> list[str]:
+    """Directions in which held voltages leave it undecided whether the speed jumps."""
+    decided = zip(data.jump.values, data.decided.values, strict=True)
+    return [str(way) for way, how in decided if how == "undecided"]
 
 
 def ways(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
@@ -189,6 +196,12 @@ def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
     for value in data.jumps.values:
         if np.isfinite(value):
             axes.axvline(value, color=COLOURS[name], linewidth=0.6, alpha=0.6)
+    for way in undecided_ways(data):
+        at = data.sel(jump=way)
+        ends = [float(at.held_jumps) + sign * float(at.held_error) for sign in (-1.0, 1.0)]
+        if np.isfinite(ends).all():
+            label = f"{name}, jump {way} undecided"
+            axes.axvspan(*ends, color=COLOURS[name], linewidth=0.0, alpha=0.15, label=label)
 
 
 def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str, what: str) -> None:

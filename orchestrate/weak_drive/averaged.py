@@ -141,6 +141,25 @@ def slope(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
     return size**2 - factor * (torque.deriv() * size - torque * size.deriv()), size**2
 
 
+def least_slope(
+    structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 10_001
+) -> float:
+    """The least slope d eta0 / d Omega of the branch: negative between folds.
+
+    Parameters
+    ----------
+    structure : Structure
+    drive : Drive
+    low, high : float
+        Range of Omega.
+    count : int
+        Speeds that are looked at.
+    """
+    numerator, denominator = slope(structure, drive)
+    speeds = np.linspace(low, high, count)
+    return float((numerator(speeds) / denominator(speeds)).min())
+
+
 def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
     """Growth rates of slow disturbances: the roots s, but the 0 of a shifted angle.
 

@@ -18,6 +18,7 @@ import numpy as np
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
+from ..response.labels import Variable, flags
 from ..running.job import Chunk, Inputs, Job, Table
 from ..running.options import Running
 from ..structures.drive import Drive
@@ -25,21 +26,12 @@ from ..structures.structure import Structure
 from . import averaged
 from .compiled import master_of
 from .controllers import Controller, Seen
-from .held import FOLLOWS, LEFT_BEFORE, LOST, NOT_ASKED, TOLD, Holder, Verdict, with_a_last_one
-from .jumps import (
-    DOUBTFUL,
-    JUMP,
-    SMOOTH,
-    UNFINISHED,
-    Passing,
-    Way,
-    find_passing,
-    stays_beyond,
-    why_none,
-)
+from .held import MEANINGS, NOT_ASKED, HeldVoltageTest, Verdict, with_a_last_one
+from .jumps import Passing, Way, find_passing, stays_beyond, why_none
 from .master import Scheme
 from .revolutions import COLUMNS, Revolutions
 from .schedule import Constant, Ramp, Schedule, check
+from .verdicts import agreed, how_decided, is_doubtful, is_jump, reason, theories
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,7 +41,7 @@ MOST_STEPS = 1e9
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 UPWARD = (True, False)  # ways: whether the voltage rises
-Variable = tuple[str, Sequence[float] | Sequence[str], dict[str, str]]
+HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
 
 def oscillator_start(structure: Structure) -> dict[str, float | bool]:
@@ -70,6 +62,8 @@ class CoupleJob(Job):
     scheme : Scheme
     speed_start : float
         Of the motor, rad/s.
+    hold: float
+        Time for which a voltage is held at most, where the record does not tell a jump, s.
     control : Controller, optional
         What takes the voltage from the schedule; the motor gets all of it where there is none.
     """
@@ -79,6 +73,7 @@ class CoupleJob(Job):
     schedule: Schedule
     scheme: Scheme
     speed_start: float
+    hold: float
     control: Controller | None = None
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
@@ -146,11 +141,11 @@ class CoupleJob(Job):
         every : int
         """
         doubts = [self.doubt(table, up) for up in UPWARD]
-        found = [Verdict(NOT_ASKED, math.nan, math.nan)] * len(doubts)
+        verdicts = [Verdict(NOT_ASKED)] * len(doubts)
         if not any(doubts):
-            return np.array(found)
+            return np.array(verdicts)
         structure, drive = self.structure, self.drive
-        divide = averaged.dividing_speed(structure, drive)
+        threshold = averaged.dividing_speed(structure, drive)
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
 
             def begin(schedule: Schedule) -> Run:
@@ -159,12 +154,12 @@ class CoupleJob(Job):
                 return Run(replace(self, schedule=schedule), oscillator, shaker)
 
             units = (self.scheme.h, structure.omega, drive.volts(structure))
-            holder = Holder(begin, self.schedule, *units)
-            holder.know(table, every, self.steps())
+            test = HeldVoltageTest(begin, self.schedule, *units, self.hold)
+            test.add_checkpoints(table, every, self.steps())
             for i, doubt in enumerate(doubts):
                 if doubt is not None:
-                    found[i] = holder.judge(*doubt, divide, UPWARD[i])
-        return np.array(found)
+                    verdicts[i] = test.classify(*doubt, threshold, UPWARD[i])
+        return np.array(verdicts)
 
     def way(self, table: Table, up: bool) -> tuple[Way, np.ndarray]:
         """Revolutions on which the voltage goes up or down, and their rows."""
@@ -185,20 +180,20 @@ class CoupleJob(Job):
         half = float(np.interp(found.half, np.arange(len(rows)), rows))
         return Passing(row, before, after, found.look, half)
 
-    def doubt(self, table: Table, up: bool) -> tuple[Passing, int] | None:
+    def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
         """A passing that the record alone does not tell from a steep branch, by steps of the run,
-        and the step at which the voltage begins to go that way.
+        and the steps between which the voltage goes that way.
         """
-        found = None if self.control else self.passing(table, up)
-        if found is None or found.look not in (DOUBTFUL, SMOOTH):
+        passing = None if self.control else self.passing(table, up)
+        theory = theories(self.structure, self.drive)[UPWARD.index(up)]
+        if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
             return None
-        if found.look == SMOOTH and not averaged.folds(self.structure, self.drive):
-            return None
-        ends = np.append(table["time"][list(found[:3])], table["time"][self.way(table, up)[1][0]])
-        row, before, after, first = (
-            min(math.ceil(end / self.scheme.h), self.steps() - 1) for end in ends
+        rows = self.way(table, up)[1]
+        times = table["time"][[*passing[:3], rows[0], rows[-1]]]
+        row, before, after, first, last = (
+            min(math.ceil(time / self.scheme.h), self.steps() - 1) for time in times
         )
-        return Passing(row, before, after, found.look, float(row)), first
+        return Passing(row, before, after, passing.look, float(row)), (first, last)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """All revolutions, and the jumps.
@@ -241,25 +236,28 @@ class CoupleJob(Job):
 
     def jumps(self, table: Table) -> dict[str, Variable]:
         """The jumps up and down, or why there is none; where bonded, the averaged theory's too."""
-        verdicts = [Verdict(*row) for row in table["verdicts"][-1]]
+        held = [Verdict(*row) for row in table["verdicts"][-1]]
+        theory, volts = theories(self.structure, self.drive), self.drive.volts(self.structure)
+        final = list(held)
+        if self.structure.bonded:
+            final = [agreed(*pair, volts) for pair in zip(held, theory, strict=True)]
         passings = [None if self.control else self.passing(table, up) for up in UPWARD]
-        jumps = [
-            found if found and (found.look == JUMP or verdict.what == LOST) else None
-            for found, verdict in zip(passings, verdicts, strict=True)
-        ]
+        pairs = list(zip(passings, final, strict=True))
+        jumps = [passing if is_jump(passing, verdict) else None for passing, verdict in pairs]
         columns = jump_columns(table, jumps)
         columns |= self.theory(np.array(columns["jumps"][1], dtype=float))
-        reasons, decided = [], []
-        for up, found, verdict, jump in zip(UPWARD, passings, verdicts, jumps, strict=True):
-            reasons.append("" if jump else self.why_none(table, up, found, verdict))
-            by = "by the record" if found and not self.control else ""
-            decided.append("by held voltages" if verdict.what != NOT_ASKED else by)
+        reasons = []
+        for i, (passing, verdict) in enumerate(pairs):
+            if passing is None:
+                reasons.append(self.why_none(table, UPWARD[i]))
+            elif jumps[i] is None:
+                reasons.append(reason(passing, held[i], verdict, theory[i], self.hold))
+            else:
+                reasons.append("")
+        decided = [how_decided(*pair) for pair in pairs]
         columns["no_jump"] = ("jump", reasons, {"long_name": "why there is no jump"})
         columns["decided"] = ("jump", decided, {"long_name": "how jump or none was told"})
-        held = [0.5 * (verdict.low + verdict.high) for verdict in verdicts]
-        text = "voltage at which the motion is lost though it is held; where held voltages decide"
-        columns["held_jumps"] = ("jump", held, {"units": "V", "long_name": text})
-        return columns
+        return columns | held_columns(final)
 
     def theory(self, jumps: np.ndarray) -> dict[str, Variable]:
         """Where the averaged theory loses the motion of the bonded structure, and by what."""
@@ -278,18 +276,12 @@ class CoupleJob(Job):
             "jump_lag": ("jump", (jumps - ends).tolist(), late),
         }
 
-    def why_none(self, table: Table, up: bool, found: Passing | None, verdict: Verdict) -> str:
-        """Why there is no jump on a way up or down."""
+    def why_none(self, table: Table, up: bool) -> str:
+        """Why the speed does not pass the resonance for good in a direction."""
         if self.control:
             return "a controller sets the voltage"
-        if found is None:
-            way = self.way(table, up)[0]
-            return why_none(way, up, averaged.resonance(self.structure, self.drive))
-        if found.look == UNFINISHED:
-            return "the ramp ends within a jump"
-        if verdict.what in (FOLLOWS, LEFT_BEFORE):
-            return TOLD[int(verdict.what)]
-        return "no fold: the speed follows the voltage through the resonance"
+        resonance = averaged.resonance(self.structure, self.drive)
+        return why_none(self.way(table, up)[0], up, resonance)
 
     def attributes(self, table: Table) -> dict[str, str | float]:
         """Title, and what the coupling has lost of the motor's work."""
@@ -310,6 +302,20 @@ def no_verdicts() -> Table:
 def together(parts: Sequence[Table]) -> Table:
     """Tables of chunks put together."""
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
+    """What held voltages say, and between which voltages."""
+    codes = [int(verdict.what) for verdict in verdicts]
+    middles = [0.5 * (verdict.low + verdict.high) for verdict in verdicts]
+    errors = [0.5 * abs(verdict.high - verdict.low) for verdict in verdicts]
+    text = "voltage at which the motion is lost though it is held; where held voltages decide"
+    half = "half the bracket of that voltage, between staying and lost"
+    return {
+        "held_verdict": flags("jump", codes, "what held voltages say of the motion", MEANINGS),
+        "held_jumps": ("jump", middles, {"units": "V", "long_name": text}),
+        "held_error": ("jump", errors, {"units": "V", "long_name": half}),
+    }
 
 
 def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
@@ -516,6 +522,7 @@ def couple_job(
     scheme: Scheme,
     speed_start: float | None = None,
     control: Controller | None = None,
+    hold: float | None = None,
 ) -> CoupleJob:
     """The run with this schedule.
 
@@ -531,7 +538,11 @@ def couple_job(
     check("speed_start", speed_start, "rad/s")
     name = "bonded" if structure.bonded else "delaminated"
     start = float(speed_start)
-    job = CoupleJob(f"couple_{name}", structure, drive, schedule, scheme, start, control)
+    if hold is None:
+        hold = (HOLD + HOLD_OF_ROTOR / drive.b(structure)) / structure.omega
+    check("hold", hold, "s", low=0.0, exclusive=True)
+    hold = float(hold)
+    job = CoupleJob(f"couple_{name}", structure, drive, schedule, scheme, start, hold, control)
     steps = schedule.duration / scheme.h
     if not steps <= MOST_STEPS:
         raise InputError(
@@ -554,6 +565,7 @@ def couple(
     spin_up: float | None = None,
     speed_start: float | None = None,
     control: Controller | None = None,
+    hold: float | None = None,
     step: float | None = None,
     algorithm: str = "rollback",
     tolerance: float | None = None,
@@ -593,6 +605,10 @@ def couple(
         :class:`orchestrate.SpeedControl` or :class:`orchestrate.SpeedGradient`: takes a part of
         ``voltage``, once a communication step, by the speed. There are no jumps to be found then;
         ``passage_time`` says whether the motor has passed the resonance.
+    hold : float, optional
+        Longest time for which a voltage is held where the record of a ramp does not tell a jump
+        from a steep branch, s; (4000 + 200/b)/omega by default, 1/b being the time in which the
+        rotor settles. A direction that is undecided may need more.
     step : float, optional
         Communication step, s. By default its defect controls it, up to 0.4/omega; with a controller
         up to 0.1/omega, with an ``algorithm`` that cannot go back it is that.
@@ -615,7 +631,10 @@ def couple(
         ``jump``: ``jumps`` (V), ``jump_time`` (s), ``jump_speed`` (rad/s), speed and amplitude
         before and after, ``jump_rate`` (V/s) at the jumps up and down, NaN where there is none,
         and ``no_jump`` says why. ``decided`` says how it was told: by the record of the ramp, or
-        by held voltages, which give ``held_jumps`` (V) too. For a bonded structure
+        by held voltages, or that it is undecided. ``held_verdict`` says what held voltages say, as
+        a number with a meaning: 0 not asked, 1 lost, 2 follows, 3 left before, 4 undecided; with
+        ``held_jumps`` and ``held_error`` (V), the voltage and half of its bracket. For a bonded
+        structure
         ``averaged_jumps`` (V), ``averaged_kind`` and ``jump_lag`` (V): where the averaged theory
         loses the motion, by a fold or a Neimark-Sacker point. From
         ``passage_time`` (s) on the speed stays beyond the resonance.
@@ -629,8 +648,10 @@ def couple(
     -----
     A ramp's jump comes late, about as rate^(2/3). What counts as a jump is told in
     :mod:`orchestrate.weak_drive.jumps`. Where the ramp's record does not tell a jump from a steep
-    branch, states of the run are restored and the voltage is held there: a motion that is lost
-    leaves a gap between the speeds that last, see :mod:`orchestrate.weak_drive.held`.
+    branch, a state of the run is restored and voltages are held: where a motion is lost, two speeds
+    last at one voltage, see :mod:`orchestrate.weak_drive.held`. Such a verdict does not depend on
+    the rate. Of a bonded structure none is given that the averaged theory contradicts by more than
+    its own error: it is undecided then.
 
     Examples
     --------
@@ -652,5 +673,5 @@ def couple(
     given = (duration, rate, settle, increment, back, spin_up)
     schedule = schedule_of(structure, drive, voltage, *given)
     scheme = scheme_of(structure, step, algorithm, tolerance, control is not None)
-    job = couple_job(structure, drive, schedule, scheme, speed_start, control)
+    job = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     return answer(job, running, finder(running))

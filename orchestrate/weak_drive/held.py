@@ -1,16 +1,21 @@
-"""Whether a passing of the resonance is a jump, asked of the FMUs: the voltage is held on the way.
+"""Whether a motion is lost on the way through the resonance: the voltage is held, again and again.
 
-Where the record of a ramp does not tell a jump from a steep branch, states of the run are restored,
-and the voltage is held there. From low ones the motion goes on as it is; from higher ones the speed
-passes the resonance all the same. Bisection brings the two together: where the motion is lost, the
-speeds at which they end stay apart; on a steep branch they come together with the voltages.
+Where the record of a ramp does not tell a jump from a steep branch, a state of the run is restored
+and its voltage is held until the speed has settled. From there the voltage goes on in short steps,
+each held until the speed has settled, so that the motion stays the same as long as it lasts. Where
+the speed changes most the steps are halved: the largest change of the settled speed is bracketed,
+whatever the rate of the ramp was. Then the voltage goes back from beyond that change. Where the
+speed does not come back with it, two motions exist at one voltage, and the first one is lost on the
+way; where it does, all the steps back, the speed follows the voltage. What has not settled in the
+time that is given, or comes back another way, decides nothing.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -29,69 +34,101 @@ MEMORY = (
     "revolution_memory",
     "control_memory",
 )
-SHARE = 1.0 / 64.0  # of a step: steps of the voltage come no closer
-NOT_ASKED, LOST, FOLLOWS, LEFT_BEFORE = range(4)
-TOLD = {
-    FOLLOWS: "no loss of stability: at held voltages too the speed passes without a gap",
-    LEFT_BEFORE: "left its branch before the ramp: it does so at the first voltage, held, too",
+FIRST = 4  # revolutions of a hold whose speed is still that of the ramp
+NOT_ASKED, LOST, FOLLOWS, LEFT_BEFORE, UNDECIDED = range(5)
+MEANINGS = {
+    NOT_ASKED: "not asked",
+    LOST: "lost",
+    FOLLOWS: "follows",
+    LEFT_BEFORE: "left before",
+    UNDECIDED: "undecided",
 }
 
 
 class Verdict(NamedTuple):
-    """What held voltages tell.
+    """What held voltages say of one direction.
 
     Attributes
     ----------
     what : int
-        ``NOT_ASKED``, ``LOST``, ``FOLLOWS`` or ``LEFT_BEFORE``.
+        ``NOT_ASKED``, ``LOST``, ``FOLLOWS``, ``LEFT_BEFORE`` or ``UNDECIDED``.
     low, high : float
-        The last voltage at which the motion stays and the first at which it is lost, V; NaN where
-        it is not.
+        The last voltage at which the motion stays and the first at which it is lost, V; of an
+        undecided verdict the voltages between which the speed changes most, as far as known; NaN
+        else.
     """
 
     what: float
-    low: float
-    high: float
+    low: float = math.nan
+    high: float = math.nan
 
 
-class Ending(NamedTuple):
-    """How a motion ends at a held voltage: whether it has left, and its mean speed over omega."""
-
-    left: bool
-    speed: float
-
-
-@dataclass(frozen=True)
-class Patience:
-    """How closely is looked.
+class Settled(NamedTuple):
+    """The end of a motion at a held voltage.
 
     Attributes
     ----------
-    time : float
-        For which a voltage is held at most, 1/omega.
-    look, rest : float
-        Mean speeds of such times, 1/omega, that come closer by a third or more each time, and have
-        less than this left, over omega, have arrived.
-    width : float
-        Of the voltages between which the gap is measured first, over K omega.
-    halvings : int
-        Of that width until it is measured again.
-    kept : float
-        Part of the gap that is still there then, where a motion is lost.
-    stay : int
-        Revolutions beyond the resonance after which a motion has left; its mean speed is theirs.
+    voltage : float
+        V.
+    speed : float
+        Mean speed over omega that it settles at; NaN where it had not settled in time.
+    error : float
+        Of the speed of an irregular motion; 0 where it settles.
+    begin : float
+        Mean speed of the first revolutions; NaN where there are none.
+    state : dict of ndarray
+        Of the run, to go on from.
+    origin : float
+        Voltage from which it was reached in one step, V; NaN where that was a state of the run.
     """
 
-    time: float = 4000.0
-    look: float = 150.0
-    rest: float = 1e-4
-    width: float = 4e-4
-    halvings: int = 2
-    kept: float = 0.8
-    stay: int = 20
+    voltage: float
+    speed: float
+    error: float
+    begin: float
+    state: Table
+    origin: float
 
 
-class Holder:
+@dataclass(frozen=True)
+class HoldSettings:
+    """Settings of the held-voltage test.
+
+    Attributes
+    ----------
+    block : int
+        Revolutions of a mean speed; a multiple of the periods after which motions usually repeat.
+    tolerance : float
+        Of the speed that a motion settles at, over omega.
+    width : float
+        Of the bracket of voltages that is asked for, over K omega.
+    distinct : float
+        Smallest difference of two settled speeds that are told apart, over omega.
+    smallest_jump : float
+        Change of the settled speed, over omega, below which no jump is looked for: where two folds
+        are ``width`` apart, the speed jumps by more.
+    stair : float
+        Longest first step of the voltage, over K omega, and
+    max_stairs : int
+        how many of them there are at most.
+    past : float
+        How far past the passing of the ramp the steps go, over K omega.
+    max_holds : int
+        Most voltages that are held after them.
+    """
+
+    block: int = 24
+    tolerance: float = 1e-4
+    width: float = 1e-4
+    distinct: float = 2e-3
+    smallest_jump: float = 8e-3
+    stair: float = 4e-3
+    max_stairs: int = 25
+    past: float = 0.02
+    max_holds: int = 60
+
+
+class HeldVoltageTest:
     """A run of the past, from whose states the voltage is held.
 
     Parameters
@@ -100,129 +137,251 @@ class Holder:
         Begins a run with another schedule.
     schedule : Schedule
         Of the run.
-    h, omega, volts : float
-        Its step, s, and the units of speed and voltage.
-    patience : Patience, optional
+    step : float
+        Its communication step, s.
+    omega, volts : float
+        The units of speed and voltage.
+    longest : float
+        Time for which a voltage is held at most, s.
+    settings : HoldSettings, optional
     """
 
     def __init__(
         self,
         begin: Callable[[Schedule], Run],
         schedule: Schedule,
-        h: float,
+        step: float,
         omega: float,
         volts: float,
-        patience: Patience | None = None,
+        longest: float,
+        settings: HoldSettings | None = None,
     ) -> None:
-        self.begin, self.schedule, self.h = begin, schedule, h
-        self.omega, self.volts, self.patience = omega, volts, patience or Patience()
-        self.known: dict[int, Table] = {}
+        self.begin, self.schedule, self.step = begin, schedule, step
+        self.omega, self.volts, self.longest = omega, volts, longest
+        self.settings = settings or HoldSettings()
+        self.checkpoints: dict[int, Table] = {}
 
-    def know(self, table: Table, every: int, steps: int) -> None:
+    def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
         """Keep the states of a table, one after each ``every`` steps."""
         for i in range(len(table["master_memory"])):
-            self.known[min((i + 1) * every, steps)] = {name: table[name][[i]] for name in MEMORY}
+            state = {name: table[name][[i]] for name in MEMORY}
+            self.checkpoints[min((i + 1) * every, steps)] = state
 
     def state(self, step: int) -> Table | None:
         """The state before a step; None for the start."""
-        if step not in self.known and step:
-            last = max((known for known in self.known if known < step), default=0)
+        if step not in self.checkpoints and step:
+            last = max((known for known in self.checkpoints if known < step), default=0)
             run = self.begin(self.schedule)
             try:
                 if last:
-                    run.remember(self.known[last])
+                    run.remember(self.checkpoints[last])
                 run.revolve(range(last, step))
-                self.known[step] = run.memory()
+                self.checkpoints[step] = run.memory()
             finally:
                 run.master.close()
-        return self.known.get(step)
+        return self.checkpoints.get(step)
 
-    def voltage(self, step: float) -> float:
-        """The run's voltage at a step, or a part of it later, V."""
-        return self.schedule.voltage((step + 0.5) * self.h)
+    def hold_step(self, step: int) -> Settled:
+        """Hold the run's voltage of a step from its state there on."""
+        return self.hold(self.state(step), self.voltage(step))
 
-    def hold(self, step: float, divide: float, up: bool, whole: bool = False) -> Ending:
-        """Hold the voltage of a step from there on; to the end, or until the motion has left."""
-        count = math.ceil(self.patience.time / self.omega / self.h)
-        piece = max(1, round(self.patience.look / self.omega / self.h))
-        state, voltage = self.state(int(step)), self.voltage(step)
-        run, speeds = self.begin(Constant(voltage, count * self.h)), np.zeros(0)
-        means: list[float] = []
+    def voltage(self, step: int) -> float:
+        """The run's voltage at a step, V."""
+        return self.schedule.voltage((step + 0.5) * self.step)
+
+    def step_from(self, point: Settled, voltage: float) -> Settled:
+        """Change the voltage in one step, and hold it."""
+        return self.hold(point.state, voltage)._replace(origin=point.voltage)
+
+    def hold(self, state: Table | None, voltage: float) -> Settled:
+        """Hold a voltage from a state on until the speed has settled, or the time is over."""
+        count = math.ceil(self.longest / self.step)
+        piece = max(1, round(150.0 / self.omega / self.step))
+        run, speeds = self.begin(Constant(voltage, count * self.step)), np.zeros(0)
+        speed, error = math.nan, 0.0
         try:
             if state is not None:
                 run.remember(state)
             for first in range(0, count, piece):
                 rows = run.revolve(range(first, min(first + piece, count)))
-                now = np.abs(rows["speed"]) / self.omega
-                speeds, means = np.append(speeds, now), [*means, now.mean() if now.size else 0.0]
-                last = speeds[-self.patience.stay :]
-                left = bool(((last > divide) == up).all()) and len(last) == self.patience.stay
-                if (left and not whole) or at_rest(np.diff(means[-5:]), self.patience.rest):
+                speeds = np.append(speeds, np.abs(rows["speed"]) / self.omega)
+                means = block_means(speeds, self.settings)
+                speed, error = settled_speed(means, self.settings)
+                if math.isfinite(speed):
                     break
+            begin = float(speeds[:FIRST].mean()) if speeds.size else math.nan
+            return Settled(voltage, speed, error, begin, run.memory(), math.nan)
         finally:
             run.master.close()
-        return Ending(left, float(last.mean()) if last.size else math.nan)
 
-    def judge(self, steps: Passing, first: int, divide: float, up: bool) -> Verdict:
-        """Whether a motion is lost on the way through the resonance.
+    def classify(
+        self, steps: Passing, ends: tuple[int, int], threshold: float, up: bool
+    ) -> Verdict:
+        """Say whether a motion is lost on the way through the resonance.
 
         Parameters
         ----------
         steps : Passing
             By steps of the run.
-        first : int
-            Step at which the voltage begins to go this way.
-        divide : float
+        ends : (int, int)
+            Steps at which the voltage begins and ceases to go this way.
+        threshold : float
             Speed over omega between the motions below and beyond the resonance.
         up : bool
         """
-        high, low = float(steps.row), float(steps.before)
-        back = max(1.0, high - low)
-        if not self.hold(high, divide, up).left:
-            high = float(steps.after)
-            if not self.hold(high, divide, up).left:
-                return Verdict(FOLLOWS, math.nan, math.nan)
-        ending = self.hold(low, divide, up)
-        while ending.left:
-            if low == first:
-                return Verdict(LEFT_BEFORE, math.nan, math.nan)
-            high, low, back = low, max(float(first), low - back), 2.0 * back
-            ending = self.hold(low, divide, up)
-        gaps, width = [], self.patience.width
-        for part in (width, width / 2**self.patience.halvings):
-            low, high, ending = self.closer((low, high), ending, part, divide, up)
-            gaps.append(abs(self.hold(high, divide, up, whole=True).speed - ending.speed))
-        apart = abs(self.voltage(high) - self.voltage(low)) / self.volts
-        lost = gaps[1] > self.patience.kept * gaps[0] and gaps[1] > 10.0 * apart
-        if not lost:
-            return Verdict(FOLLOWS, math.nan, math.nan)
-        return Verdict(LOST, self.voltage(low), self.voltage(high))
+        sign = 1.0 if up else -1.0
 
-    def closer(
-        self, ends: tuple[float, float], ending: Ending, width: float, divide: float, up: bool
-    ) -> tuple[float, float, Ending]:
-        """Steps whose voltages are no further apart than ``width``, and how the lower one ends."""
-        low, high = ends
-        while high - low > SHARE:
-            if abs(self.voltage(high) - self.voltage(low)) <= width * self.volts:
+        def beyond(point: Settled) -> bool:
+            return sign * (point.speed - threshold) > 0.0
+
+        step, back = steps.before, max(1, steps.row - steps.before)
+        low = self.hold_step(step)
+        while math.isnan(low.speed) or beyond(low) or self.falls_back(low, sign):
+            if step <= ends[0]:
+                if math.isnan(low.speed):
+                    return Verdict(UNDECIDED)
+                if beyond(low):
+                    return Verdict(LEFT_BEFORE)
                 break
-            middle = 0.5 * (low + high)
-            found = self.hold(middle, divide, up)
-            if found.left:
-                high = middle
-            else:
-                low, ending = middle, found
-        return low, high, ending
+            step, back = max(ends[0], step - back), 2 * back
+            low = self.hold_step(step)
+        target = self.target(steps.after, ends[1], sign)
+        points = self.stairs(low, target)
+        if not beyond(points[-1]):
+            return Verdict(UNDECIDED, points[-1].voltage, target)
+        verdict = self.between(list(points), sign)
+        if verdict.what == FOLLOWS and not self.comes_back(points):
+            return Verdict(UNDECIDED, low.voltage, target)
+        return verdict
+
+    def target(self, after: int, last: int, sign: float) -> float:
+        """The voltage to go to: well past the passing, but no further than the run goes, V."""
+        past = self.voltage(after) + sign * self.settings.past * self.volts
+        end = self.voltage(last)
+        return min(past, end) if sign > 0.0 else max(past, end)
+
+    def comes_back(self, points: list[Settled]) -> bool:
+        """Go the same steps back: whether the speeds are the same, as far as they settle."""
+        last = points[-1]
+        for point in reversed(points[:-1]):
+            back = self.step_from(last, point.voltage)
+            if self.differ(back, point):
+                return False
+            last = back if math.isfinite(back.speed) else last
+        return True
+
+    def stairs(self, low: Settled, target: float) -> list[Settled]:
+        """Go to a voltage in steps; those where nothing settles are left out."""
+        span = abs(target - low.voltage) / self.volts
+        count = max(1, min(math.ceil(span / self.settings.stair), self.settings.max_stairs))
+        points = [low]
+        for voltage in np.linspace(low.voltage, target, count + 1)[1:].tolist():
+            point = self.step_from(points[-1], voltage)
+            if math.isfinite(point.speed):
+                points.append(point)
+        return points
+
+    def falls_back(self, low: Settled, sign: float) -> bool:
+        """Whether a held speed goes back from the ramp's, which lags: then to another motion."""
+        allowed = 2.0 * self.settings.distinct + 3.0 * low.error
+        return sign * (low.speed - low.begin) < -allowed
+
+    def between(self, points: list[Settled], sign: float) -> Verdict:
+        """Bracket the largest rise (``sign`` -1: fall) of the settled speed, and say what it is."""
+        for _ in range(self.settings.max_holds):
+            i, low, high = largest_change(points, sign)
+            if sign * (high.speed - low.speed) < self.settings.smallest_jump + noise(low, high):
+                return Verdict(FOLLOWS)
+            if self.is_close(low, high):
+                short = high.origin == low.voltage
+                again = high if short else self.step_from(low, high.voltage)
+                if not self.differ(again, high):
+                    return self.there_and_back(low, high)
+                points[i + 1] = again  # a longer step of the voltage had thrown it across
+                continue
+            middle = next((one for one in self.inside(low, high) if one.speed == one.speed), None)
+            if middle is None:
+                return self.there_and_back(low, high)
+            points.insert(i + 1, middle)
+        return Verdict(UNDECIDED, low.voltage, high.voltage)
+
+    def inside(self, low: Settled, high: Settled) -> Iterator[Settled]:
+        """Voltages between two, held: the middle first."""
+        for part in (0.5, 0.25, 0.75):
+            yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
+
+    def there_and_back(self, low: Settled, high: Settled) -> Verdict:
+        """Go back to the lower voltage: a motion was lost where the speed does not come back."""
+        back = self.step_from(high, low.voltage)
+        if math.isnan(back.speed):
+            return Verdict(UNDECIDED, low.voltage, high.voltage)
+        if self.differ(back, low):
+            return Verdict(LOST, low.voltage, high.voltage)
+        what = FOLLOWS if self.is_close(low, high) else UNDECIDED
+        return Verdict(what) if what == FOLLOWS else Verdict(what, low.voltage, high.voltage)
+
+    def is_close(self, low: Settled, high: Settled) -> bool:
+        """Whether two voltages are as close as is asked for."""
+        return abs(high.voltage - low.voltage) <= self.settings.width * self.volts
+
+    def differ(self, point: Settled, other: Settled) -> bool:
+        """Whether both have settled, at different speeds."""
+        return abs(point.speed - other.speed) > self.settings.distinct + noise(point, other)
 
 
-def at_rest(changes: np.ndarray, rest: float) -> bool:
-    """Whether speeds with these last changes have arrived: those by a fold are slow, but go on."""
-    sizes = np.abs(changes)
-    if len(sizes) < 4:
-        return False
-    return bool((sizes[1:] < 0.67 * sizes[:-1]).all() and 2.0 * sizes[-1] < rest) or bool(
-        sizes.max() < 0.01 * rest
-    )
+def noise(point: Settled, other: Settled) -> float:
+    """Three errors of the difference of two speeds."""
+    return 3.0 * math.hypot(point.error, other.error)
+
+
+def largest_change(points: list[Settled], sign: float) -> tuple[int, Settled, Settled]:
+    """The two neighbours between which the speed rises (``sign`` -1: falls) most, and the place of
+    the first one.
+    """
+    pairs = list(pairwise(points))
+    i = int(np.argmax([sign * (high.speed - low.speed) for low, high in pairs]))
+    return i, *pairs[i]
+
+
+def block_means(speeds: np.ndarray, settings: HoldSettings) -> np.ndarray:
+    """Mean speeds of blocks of revolutions; the first block, a transient, is left out."""
+    count = len(speeds) // settings.block
+    blocks = speeds[: count * settings.block].reshape(count, settings.block)
+    return np.asarray(blocks.mean(axis=1)[1:])
+
+
+def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, float]:
+    """The speed that a motion settles at, by its mean speeds, and the error of an irregular one;
+    NaN where they do not say.
+
+    Means that approach a limit as an exponential say it before they are there (Aitken's process):
+    three such limits in turn must agree. By a fold the approach is slower than any exponential, and
+    they do not. Small changes to and fro have settled. Irregular motions have where three long
+    means differ by less than their scatter.
+    """
+    changes = np.diff(means)
+    if len(changes) < 4:
+        return math.nan, 0.0
+    last = changes[-4:]
+    if np.abs(last).max() < 0.01 * settings.tolerance:
+        return float(means[-1]), 0.0
+    if not (last > 0.0).all() and not (last < 0.0).all():
+        if np.ptp(means[-5:]) < 0.3 * settings.tolerance:
+            return float(means[-5:].mean()), 0.0
+    else:
+        ratios = last[1:] / last[:-1]
+        if ratios.max() < 0.95:
+            limits = means[-3:] + last[1:] * ratios / (1.0 - ratios)
+            if np.ptp(limits) < 0.5 * settings.tolerance:
+                return float(limits[-1]), 0.0
+    if len(means) < 24:
+        return math.nan, 0.0
+    thirds = means[-24:].reshape(3, 8).mean(axis=1)
+    scatter = float(np.std(np.diff(means[-24:])))
+    if np.ptp(thirds) < max(settings.tolerance, 0.7 * scatter):
+        error = max(float(np.ptp(thirds)), 0.5 * float(np.std(means[-24:])))
+        return float(thirds.mean()), error
+    return math.nan, 0.0
 
 
 def with_a_last_one(chunks: list[Chunk]) -> list[Chunk]:

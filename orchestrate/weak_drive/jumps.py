@@ -4,7 +4,8 @@ A slow ramp takes the motor along a branch of stationary motions. Where the bran
 leaves it and passes the resonance: it changes many times as much as the voltage does meanwhile, and
 so fast that the rotor's inertia takes a good part of the torque that the vibration sets free. A
 steep but stable branch is followed in the ramp's own time: it is no jump. A record of a ramp does
-not always tell the two apart; :mod:`.held` asks the FMUs then.
+not always tell the two apart: near the edge of a fold the one passes into the other. :mod:`.held`
+asks the FMUs then.
 
 Non-dimensional throughout: time 1/omega, speeds over omega, the voltage as no-load speed over
 omega. The slip is no-load speed less speed: what the vibration takes from the motor.
@@ -66,10 +67,21 @@ class Criterion(NamedTuple):
         Least change of the speed over that of the voltage meanwhile.
     share : float
         Least torque of the rotor's inertia at its largest, over the torque set free.
+    strength : float
+        Least share times the square of the growth of the whole change. By the edge of a fold, where
+        the branch is vertical but not lost, it is 2 to 6 at every rate.
+    clearness : float
+        Least change of the speed over the scatter of its changes before and after: the speed of an
+        irregular motion comes and goes by itself.
+    around : int
+        Of how many widths of the running mean before and after that scatter is.
     """
 
     growth: float = 3.0
     share: float = 0.25
+    strength: float = 12.0
+    clearness: float = 8.0
+    around: int = 40
 
 
 def find_passing(
@@ -116,10 +128,16 @@ def find_passing(
         return Passing(row, before, last, UNFINISHED, half)
     slip = sign * (way.eta0 - way.Omega)
     inertia = rise[top] / (b * (time[top + width] - time[top]))
-    grown = abs(way.Omega[last] - way.Omega[before])
-    if grown < limits.growth * np.ptp(way.eta0[before : last + 1]):
+    growth = abs(way.Omega[last] - way.Omega[before]) / np.ptp(way.eta0[before : last + 1])
+    if growth < limits.growth:
         return Passing(row, before, last, SMOOTH, half)
-    sure = before > width and inertia >= limits.share * (slip[before] - slip[last])
+    free = slip[before] - slip[last]
+    strong = inertia * growth**2 >= limits.strength * free
+    far = limits.around * width
+    around = rise[max(0, before - far) : max(0, before - width)], rise[last + width : last + far]
+    noise = max((float(np.std(part)) for part in around if len(part)), default=0.0)
+    clear = strong and abs(way.Omega[last] - way.Omega[before]) >= limits.clearness * noise
+    sure = before > width and inertia >= limits.share * free and clear
     return Passing(row, before, last, JUMP if sure else DOUBTFUL, half)
 
 

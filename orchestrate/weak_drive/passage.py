@@ -171,6 +171,7 @@ def passage(
     spin_up: float | None = None,
     speed_start: float | None = None,
     control: Controller | None = None,
+    hold: float | None = None,
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
@@ -185,7 +186,7 @@ def passage(
     around : float, optional
         Keep only what is up to this time before or after a jump, s, or where there is none, the
         passage of the resonance, or the end; ``kept`` in the attributes says which. By default all.
-    duration, rate, back, settle, spin_up, speed_start, control
+    duration, rate, back, settle, spin_up, speed_start, control, hold
         As in :func:`orchestrate.couple`, but the voltage does not come back unless wanted.
     step : float, optional
         Communication step, s, and so the distance of samples; 0.1/omega by default.
@@ -220,7 +221,7 @@ def passage(
     given = (duration, rate, settle, 0.0, back, spin_up)
     schedule = schedule_of(structure, drive, voltage, *given)
     scheme = scheme_of(structure, step, sampled=True)
-    run = couple_job(structure, drive, schedule, scheme, speed_start, control)
+    run = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     name = run.name.replace("couple", "passage")
     return answer(PassageJob(name, run, around), running, finder(running))
 

@@ -12,11 +12,12 @@ from .fuzzing import Fuzzing
 from .hostile import Hostile
 from .leaks import Leaks
 from .mutants import Mutants
+from .verdicts import Verdicts
 
 CAMPAIGNS: dict[str, Campaign] = {
     campaign.name: campaign
     for campaign in (
-        *(Impacts(), Roots(), Grids(), Energy(), Fuzzing(), Attractors()),
+        *(Impacts(), Roots(), Grids(), Energy(), Fuzzing(), Attractors(), Verdicts()),
         *(Faults(), Clusters(), Hostile(), Mutants(), Leaks()),
     )
 }

@@ -12,6 +12,7 @@ import xarray as xr
 from orchestrate import Drive, Structure, couple
 from orchestrate.cli import capture, drive_branch, jump_voltages
 from orchestrate.cli import couple as couple_command
+from orchestrate.figures import weak_drive
 
 from .test_results import shows_something
 
@@ -127,6 +128,17 @@ def test_the_fold_of_a_jump_is_the_one_that_crosses_the_resonance():
     low = made.isel(point=slice(6)).isel(bifurcation=slice(2))
     assert couple_command.folds_met(low, *system) == {}
     assert couple_command.folds_met(None, *system) == {}
+
+
+def test_what_is_undecided_is_told_and_drawn(ask, folder):
+    """So fast a ramp does not tell, and voltages are hardly held."""
+    options = ("--eta0", "1.5:1.75", "--rate", "2e-3", "--one-way", "--only", "bonded")
+    done = ask("couple", *options, "--hold", "300", "--step", "0.4").success()
+    assert "jump up undecided" in done.out and "a longer --hold may" in done.out
+    (data,) = results(folder).values()
+    assert data.held_verdict.values.tolist() == [4, 0]
+    title = weak_drive.draw({"bonded": data}).axes[0].get_title(loc="left")
+    assert title == "bonded: jump up undecided"
 
 
 def test_a_motor_of_one_s_own(ask, folder, motor):
@@ -377,6 +389,7 @@ CASES = {
         *(*OF_ALL, *DATASHEETS, *SCHEDULES, *CONTROLS),
         (["--algorithm", "euler"], ["algorithm", "euler", "jacobi", "rollback"]),
         (["--tolerance", "-1"], ["tolerance", ">= 0"]),
+        (["--hold", "0"], ["hold = 0.0 s", "0 < hold"]),
     ],
     "passage": [
         *(*OF_ALL, *SCHEDULES, *CONTROLS),

@@ -170,6 +170,7 @@ def test_a_finished_result_is_read(tmp_path):
         ({"step": -0.1}, ["step = -0.1", "0.0001 <= step <= 1"]),
         ({"increment": 2.0}, ["increment = 2.0", "0 <= increment <= 0.4"]),
         ({"settle": -1.0}, ["settle = -1.0", "0 <= settle"]),
+        ({"hold": 0.0}, ["hold = 0.0 s", "0 < hold"]),
         ({"speed_start": float("inf")}, ["speed_start = inf", "finite"]),
         ({"algorithm": "euler"}, ["euler", "jacobi", "rollback"]),
         ({"tolerance": -1.0}, ["tolerance", ">= 0"]),

@@ -1,0 +1,135 @@
+"""What is said of each direction: jump, none or undecided, and why; agreed with averaged theory.
+
+For a bonded structure the averaged theory knows where the motion is lost. A verdict that it
+contradicts by more than its own error is not given: the direction is undecided.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+from ..structures.drive import Drive
+from ..structures.structure import Structure
+from . import averaged
+from .held import FOLLOWS, LEFT_BEFORE, LOST, NOT_ASKED, UNDECIDED, Verdict
+from .jumps import DOUBTFUL, JUMP, SMOOTH, UNFINISHED, Passing
+
+STEEP = (
+    0.3  # least slope d eta0 / d Omega, bonded, below which a delaminated motion may have a fold
+)
+THEORY_ERROR = 5e-4  # of eta0, of the averaged theory's folds
+NARROW = 2e-4  # of eta0: two folds so close may be none, so far as the averaged theory knows
+FOLLOWS_TEXT = "no loss of stability: at held voltages too the speed passes without a gap"
+LEFT_BEFORE_TEXT = "left its branch before the ramp: it does so at the first voltage, held, too"
+NO_FOLD_TEXT = "no fold: the speed follows the voltage through the resonance"
+
+
+class Theory(NamedTuple):
+    """What the averaged theory says of the bonded structure, in one direction of the voltage.
+
+    Attributes
+    ----------
+    losses : tuple of float
+        Voltages over K omega where a motion may be lost: a Neimark-Sacker point and the fold after
+        it, or one of them; empty where none is lost.
+    narrow : bool
+        Whether its folds are so close that there may be none.
+    slope : float
+        Least slope d eta0 / d Omega of all motions.
+    """
+
+    losses: tuple[float, ...]
+    narrow: bool
+    slope: float
+
+
+@lru_cache(maxsize=64)
+def theories(structure: Structure, drive: Drive) -> tuple[Theory, Theory]:
+    """What the averaged theory says of both directions, up and down."""
+    folds = averaged.folds(structure, drive)
+    narrow = bool(folds) and abs(folds[0].eta0 - folds[-1].eta0) < NARROW
+    slope = averaged.least_slope(structure, drive)
+    up, down = (
+        Theory(tuple(one.eta0 for one in (place, *fold) if one), narrow, slope)
+        for place, fold in zip(
+            averaged.losses(structure, drive), (folds[:1], folds[-1:]), strict=True
+        )
+    )
+    return up, down
+
+
+def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
+    """Whether held voltages are needed: where the record does not tell, or the theory objects."""
+    if passing.look == JUMP:
+        return bonded and not theory.losses
+    if passing.look == SMOOTH:
+        return bool(theory.losses) or (not bonded and theory.slope < STEEP)
+    return passing.look == DOUBTFUL
+
+
+def agreed(verdict: Verdict, theory: Theory, volts: float) -> Verdict:
+    """The verdict on a bonded structure, undecided where the averaged theory contradicts it."""
+    if theory.narrow or verdict.what not in (LOST, FOLLOWS):
+        return verdict
+    if verdict.what == FOLLOWS:
+        return verdict if not theory.losses else Verdict(UNDECIDED)
+    if theory.losses:
+        low, high = sorted(abs(voltage) / volts for voltage in (verdict.low, verdict.high))
+        first, last = min(theory.losses) - THEORY_ERROR, max(theory.losses) + THEORY_ERROR
+        if low <= last and high >= first:
+            return verdict
+    return verdict._replace(what=UNDECIDED)
+
+
+def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold: float) -> str:
+    """Why there is no jump, or none is told, though the speed passes the resonance.
+
+    Parameters
+    ----------
+    passing : Passing
+    held, final : Verdict
+        Of held voltages, before and after the averaged theory was asked.
+    theory : Theory
+    hold : float
+        Time for which voltages were held at most, s.
+    """
+    if final.what == UNDECIDED:
+        return undecided(held, theory, hold)
+    if passing.look == UNFINISHED:
+        return "the ramp ends while the speed passes the resonance"
+    texts = {FOLLOWS: FOLLOWS_TEXT, LEFT_BEFORE: LEFT_BEFORE_TEXT}
+    return texts.get(int(final.what), NO_FOLD_TEXT)
+
+
+def undecided(held: Verdict, theory: Theory, hold: float) -> str:
+    """Why nothing is told, and what helps."""
+    if held.what == UNDECIDED:
+        known = math.isfinite(held.low) and math.isfinite(held.high)
+        between = f" between {held.low:.5g} and {held.high:.5g} V" if known else ""
+        return (
+            f"undecided{between}: voltages held for {hold:.4g} s at most do not tell; a longer "
+            "hold may"
+        )
+    middle = 0.5 * (held.low + held.high)
+    ours = f"lose the motion at {middle:.5g} V" if held.what == LOST else "lose no motion"
+    theirs = "loses it elsewhere" if held.what == LOST and theory.losses else "loses it"
+    theirs = theirs if theory.losses else "does not"
+    return f"undecided: held voltages {ours}, the averaged theory {theirs}; see drive_branch"
+
+
+def how_decided(passing: Passing | None, final: Verdict) -> str:
+    """How jump or none was told; empty where the speed does not pass the resonance."""
+    if passing is None:
+        return ""
+    if final.what == UNDECIDED:
+        return "undecided"
+    return "by the record" if final.what == NOT_ASKED else "by held voltages"
+
+
+def is_jump(passing: Passing | None, final: Verdict) -> bool:
+    """Whether the speed jumps."""
+    if passing is None:
+        return False
+    return final.what == LOST or (final.what == NOT_ASKED and passing.look == JUMP)

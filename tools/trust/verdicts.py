@@ -1,0 +1,278 @@
+"""Verdicts on jumps: random drives, bonded and delaminated, at four rates, against known folds."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from orchestrate import Drive, Structure, couple, drive_branch
+from orchestrate.errors import VibroimpactError
+from orchestrate.weak_drive import averaged
+from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, UNDECIDED
+
+from .campaign import Campaign, Outcome
+
+RATES = (2e-4, 1e-4, 5e-5, 2e-5)  # of eta0 in a time 1/omega
+FEW_RATES = RATES[::3]  # for drives near the edge of folds
+KINDS = ("bonded", "delaminated")
+WAYS = ("up", "down")
+FOLD, TORUS, NONE, UNKNOWN = "fold", "Neimark-Sacker", "none", "unknown"
+TOLERANCE = 2e-4  # of eta0: how far a bracket may lie from where the motion is lost
+EARLY = 2e-3  # of eta0: how far before it the jump of a ramp may be seen
+NARROW = 2e-4  # of eta0: folds so close are left out, a bracket is half as wide
+SLOPES = (-0.6, 0.3)  # least slopes d eta0 / d Omega of drives that nearly have, or lack, folds
+
+
+class System(NamedTuple):
+    """A structure and what shakes it."""
+
+    structure: Structure
+    drive: Drive
+
+    def of_kind(self, kind: str) -> System:
+        """The same, bonded or delaminated."""
+        bonded = kind == "bonded"
+        structure = self.structure.as_bonded() if bonded else self.structure.as_delaminated()
+        return self._replace(structure=structure)
+
+
+class Truth(NamedTuple):
+    """Where a slow ramp loses its motion.
+
+    Attributes
+    ----------
+    kind : str
+        ``FOLD``, ``TORUS``, ``NONE`` where it loses none, or ``UNKNOWN``.
+    low, high : float
+        Voltages over K omega between which it may be lost.
+    """
+
+    kind: str
+    low: float = np.nan
+    high: float = np.nan
+
+
+class Answer(NamedTuple):
+    """What ``couple`` says of one direction; voltages over K omega.
+
+    Attributes
+    ----------
+    said : str
+        ``"lost"``, ``"none"``, ``"undecided"`` or ``"not passed"``.
+    low, high : float
+        Where it is lost: the bracket of held voltages, or the one voltage of the record.
+    held : bool
+        Whether held voltages decided.
+    """
+
+    said: str
+    low: float
+    high: float
+    held: bool
+
+
+def draw(rng: np.random.Generator) -> System:
+    """A random structure with a random drive."""
+    damping = rng.uniform(0.006, 0.03)
+    b = float(np.exp(rng.uniform(np.log(0.01), np.log(0.5))))
+    mu, kappa = rng.uniform(0.5, 2.0), rng.uniform(1.05, 2.0)
+    second, restitution = damping * rng.uniform(0.5, 3.0), rng.uniform(0.3, 0.9)
+    beta, epsilon = rng.uniform(0.05, 0.4), rng.uniform(3e-4, 2e-3)
+    box, box_damping = rng.uniform(0.05, 0.3), rng.uniform(0.005, 0.05)
+    structure = Structure.nondimensional(mu=mu, kappa=kappa, D1=damping, D2=second, e=restitution)
+    numbers = {"beta": beta, "epsilon": epsilon, "b": b, "Omega_b": box, "D_b": box_damping}
+    return System(structure, Drive.nondimensional(**numbers, structure=structure))
+
+
+def with_folds(rng: np.random.Generator) -> System:
+    """One whose folds, by the averaged theory, are not too close."""
+    while True:
+        system = draw(rng)
+        folds = averaged.folds(*system)
+        if folds and folds[0].eta0 - folds[-1].eta0 > NARROW:
+            return system
+
+
+def with_slope(system: System, slope: float) -> System:
+    """The same with another unbalance, so that the least slope d eta0 / d Omega is ``slope``."""
+    structure, drive = system
+    share = (1.0 - slope) / (1.0 - averaged.least_slope(*system))
+    numbers = {
+        name: getattr(drive, name)(structure) for name in ("beta", "b", "Omega_b", "D_b")
+    } | {"epsilon": drive.epsilon * share}
+    return System(structure, Drive.nondimensional(**numbers, structure=structure))
+
+
+def ends_of(system: System) -> tuple[float, float]:
+    """Ends of the ramps over K omega: past both jumps, with what a fast ramp is late."""
+    folds = averaged.folds(*system)
+    at = averaged.resonance(*system)
+    places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, at))]
+    return min(places) - 0.15, max(places) + 0.15
+
+
+def answers(system: System, rate: float) -> tuple[Answer, ...]:
+    """What ``couple`` says at a rate, up and down."""
+    structure, drive = system
+    volts = drive.volts(structure)
+    first, last = (end * volts for end in ends_of(system))
+    rate *= volts * structure.omega
+    run = couple(structure, drive, voltage=(first, last), rate=rate, progress=False)
+    return tuple(answer_of(run.sel(jump=way), volts) for way in WAYS)
+
+
+def answer_of(at: xr.Dataset, volts: float) -> Answer:
+    """The answer in one direction."""
+    code, held, error = (float(at[name]) for name in ("held_verdict", "held_jumps", "held_error"))
+    jump = float(at.jumps) / volts
+    if code == LOST:
+        return Answer("lost", (held - error) / volts, (held + error) / volts, True)
+    if code == UNDECIDED:
+        return Answer("undecided", np.nan, np.nan, True)
+    if code == LEFT_BEFORE or str(at.decided.item()) == "":
+        return Answer("not passed", np.nan, np.nan, False)
+    if np.isfinite(jump):
+        return Answer("lost", jump, jump, False)
+    return Answer("none", np.nan, np.nan, code == FOLLOWS)
+
+
+def truths(system: System) -> dict[tuple[str, str], Truth]:
+    """Where both structures lose their motion, by their branches, up and down."""
+    structure, drive = system
+    folds, omega = averaged.folds(*system), structure.omega
+    at = averaged.resonance(*system)
+    speeds = [fold.Omega for fold in folds] or [at]
+    speed = ((min(speeds) - 0.1) * omega, (max(speeds) + 0.1) * omega)
+    if len(folds) > 1 and abs(folds[0].eta0 - folds[-1].eta0) < NARROW:
+        return dict.fromkeys(((kind, way) for kind in KINDS for way in WAYS), Truth(UNKNOWN))
+    branch = drive_branch(structure, drive, speed=speed, longest=0.03, progress=False)
+    units = drive.volts(structure), omega
+    return {
+        (kind, way): truth(branch.sel(structure=kind), kind, way, units)
+        for kind in KINDS
+        for way in WAYS
+    }
+
+
+def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:
+    """The first loss of stability along a branch, from below or from above.
+
+    Unknown where that is no fold: of the delaminated structure, whose impacts may become irregular
+    there without any change of the speed.
+    """
+    volts, omega = units
+    leg = branch.isel(leg=0)
+    if way == "down" and str(leg.end.item()) != "limit":
+        leg = branch.isel(leg=1)
+    count = int(np.isfinite(leg.voltage.values).sum())
+    voltage, speed = (leg[name].values[:count] for name in ("voltage", "speed"))
+    stable = leg.stable.values[:count]
+    whole = str(leg.end.item()) == "limit"
+    if way == "down" and int(branch.leg.size) and leg.leg.item() == branch.leg.values[0]:
+        voltage, speed, stable = voltage[::-1], speed[::-1], stable[::-1]
+    if not count or not stable[0]:
+        return Truth(UNKNOWN)
+    if stable.all():
+        return Truth(NONE) if whole else Truth(UNKNOWN)
+    i = int(np.argmin(stable))
+    own = branch.bifurcation_structure.values == kind
+    own &= branch.bifurcation_revolutions.values == float(leg.revolutions[0])  # not a branch beside
+    kinds = branch.bifurcation_kind.values[own]
+    places = np.stack([branch.bifurcation_voltage.values, branch.bifurcation_speed.values])[:, own]
+    scaled = places / np.array([[volts], [omega]])
+    near = 0.5 * np.array([voltage[i - 1] + voltage[i], speed[i - 1] + speed[i]])
+    away = np.abs(scaled - (near / [volts, omega])[:, np.newaxis]).max(axis=0)
+    if not away.size or away.min() > 0.05:
+        return Truth(UNKNOWN)
+    first = int(away.argmin())
+    if kinds[first] == FOLD:
+        return Truth(FOLD, scaled[0, first], scaled[0, first])
+    folds = scaled[0, kinds == FOLD]
+    if kind == "bonded" and kinds[first] == TORUS and folds.size:
+        last = folds.max() if way == "up" else folds.min()
+        low, high = sorted([scaled[0, first], float(last)])
+        return Truth(TORUS, low, high)
+    return Truth(UNKNOWN)
+
+
+def complaint(answer: Answer, known: Truth, way: str) -> str:
+    """What is wrong with an answer; empty where nothing is, or nothing is known."""
+    if known.kind == UNKNOWN or answer.said in ("undecided", "not passed"):
+        return ""
+    if known.kind == NONE:
+        return "" if answer.said == "none" else f"lost at {answer.low:.5f}, but no motion is lost"
+    if answer.said == "none":
+        return f"none, but a motion is lost at {known.low:.5f}"
+    early, late = (EARLY, np.inf) if not answer.held else (TOLERANCE, TOLERANCE)
+    before, after = (early, late) if way == "up" else (late, early)
+    if known.low - before <= answer.high and answer.low <= known.high + after:
+        return ""
+    return f"lost at {answer.low:.5f} to {answer.high:.5f}, in truth at {known.low:.5f}"
+
+
+def judged(
+    system: System, kind: str, known: dict[str, Truth], rates: Sequence[float] = RATES
+) -> Iterator[tuple[str, str]]:
+    """Each answer's name for the counts, and what is wrong with it."""
+    said: dict[str, set[str]] = {way: set() for way in WAYS}
+    for rate in rates:
+        for way, answer in zip(WAYS, answers(system, rate), strict=True):
+            said[way].add(answer.said)
+            by = "by held voltages" if answer.held else "by the record"
+            decided = answer.said in ("lost", "none")
+            name = f"{answer.said} {by}" if decided else answer.said
+            wrong = complaint(answer, known[way], way)
+            yield name, f"{kind}, {way}, rate {rate:g}: {wrong}" if wrong else ""
+    for way in WAYS:
+        if {"lost", "none"} <= said[way]:
+            yield "", f"{kind}, {way}: lost at some rates, none at others"
+
+
+class Verdicts(Campaign):
+    """Random drives at four rates, bonded and delaminated, with folds and near their edge."""
+
+    name, title = "verdicts", "Jump, none, or undecided"
+    asks = (
+        "A random structure with a random drive that has folds, bonded and delaminated, on ramps "
+        "up and down at four rates, and the same at two rates with an unbalance for which folds "
+        "are close or just vanish. Where the branch of stationary motions, by Newton's method "
+        "through both FMUs, loses its motion in a fold or a Neimark-Sacker point, `couple` does "
+        "not say that there is no jump, and brackets the place within 2e-4 K omega where it holds "
+        "voltages; where the branch loses none, `couple` says that there is none; and it does not "
+        "say one thing at one rate and another at another. What it leaves undecided is counted."
+    )
+    unit, target, batch, package = "drives", 40, 1, True
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """One drive after the other."""
+        rng, counts, notes = np.random.default_rng(seed), Counter[str](), []
+        wrong = 0
+        for number in range(count):
+            folded = with_folds(rng)
+            edge = with_slope(folded, float(rng.uniform(*SLOPES)))
+            before = len(notes)
+            both = (("with folds", folded, RATES), ("near the edge", edge, FEW_RATES))
+            for name, system, rates in both:
+                try:
+                    for said, problem in self.judge(system, rates):
+                        counts[f"{said}:"] += bool(said)
+                        if problem:
+                            notes.append(f"seed {seed}, drive {number} {name}, {problem}")
+                except VibroimpactError as error:
+                    notes.append(f"seed {seed}, drive {number} {name}: {error}")
+            wrong += len(notes) > before
+        return Outcome(count, wrong, counts=+counts, notes=tuple(notes))
+
+    def judge(self, system: System, rates: Sequence[float]) -> Iterator[tuple[str, str]]:
+        """Both structures of a drive."""
+        known = truths(system)
+        for kind in KINDS:
+            of_kind = {way: known[kind, way] for way in WAYS}
+            for way in WAYS:
+                yield f"truth {of_kind[way].kind}", ""
+            yield from judged(system.of_kind(kind), kind, of_kind, rates)
