@@ -23,7 +23,7 @@ from .continuation import NoConvergenceError
 from .families import Setting
 from .guesses import Guess, from_impacts, start
 from .impact_sequence import TURN, Ring, Sequence
-from .orbit_search import solve, why_no_motion
+from .orbit_search import least_periods, solve, why_no_motion
 from .settled_motion import (
     IRREGULAR,
     ORBIT,
@@ -32,7 +32,6 @@ from .settled_motion import (
     UNDECIDED,
     Floats,
     SettledMotion,
-    least_periods,
 )
 from .turning_points import in_order
 

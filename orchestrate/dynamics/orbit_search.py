@@ -16,6 +16,7 @@ from .impact_sequence import CLOSING, IMPACT, PHASE, TURN, Ring, Sequence
 from .turning_points import in_order, nearest, phase_zero, turning_points, weakest_force
 
 SAME_PHASE = 1e-6  # rad: impacts of the FMU at these are the orbit's own
+SAME_ORBIT = 1e-6  # of the nodes over their size: an orbit is as at its beginning again
 PHASES = 24  # at which a single impact is tried
 
 
@@ -66,18 +67,23 @@ def why_no_motion(ring: Ring) -> str:
     return ""
 
 
-def repeats_earlier(ring: Ring) -> int:
-    """The least number of periods after which the orbit closes."""
-    periods, (nodes, first) = ring.sequence.periods, in_order(ring.nodes, ring.sequence.periods)
-    kinds = np.roll(ring.sequence.kinds, -first)
+def least_periods(ring: Ring) -> int:
+    """The least number of periods after which an orbit closes, wherever its impacts lie: phases are
+    compared on a circle, so that one at phase 0 may be told as 2 pi.
+    """
+    periods, count = ring.sequence.periods, ring.count
+    kinds, span = np.array(ring.sequence.kinds), TURN * ring.sequence.periods
+    size = float(np.abs(ring.nodes[:, 1:]).max(initial=0.0)) or 1.0
     for part in range(1, periods):
-        if periods % part or len(nodes) * part % periods:
+        if periods % part or count * part % periods:
             continue
-        shift = len(nodes) * part // periods
-        moved = np.roll(nodes, -shift, axis=0)
-        moved[:, PHASE] = np.mod(moved[:, PHASE] - part * TURN, periods * TURN)
-        alike = np.abs(moved - nodes).max(initial=0.0) < 1e-7
-        if alike and (np.roll(kinds, -shift) == kinds).all():
+        shift = count * part // periods
+        away = np.roll(ring.nodes, -shift, axis=0) - ring.nodes
+        away[:, PHASE] -= TURN * part
+        away[:, PHASE] -= span * np.round(away[:, PHASE] / span)
+        away[:, 1:] /= size
+        same = (np.roll(kinds, -shift) == kinds).all()
+        if same and np.abs(away).max(initial=0.0) < SAME_ORBIT:
             return part
     return periods
 
@@ -140,7 +146,7 @@ def first_motion(
 
 def why_shorter(ring: Ring, periods: int) -> str:
     """Why an orbit is none of so many periods; empty where it is one."""
-    shorter = repeats_earlier(ring)
+    shorter = least_periods(ring)
     return f"the orbit found repeats after {shorter} already" if shorter < periods else ""
 
 

@@ -175,24 +175,3 @@ def same_nodes(one: Ring, other: Ring) -> bool:
         if np.abs(away).max() < ALIKE:
             return True
     return False
-
-
-def least_periods(ring: Ring) -> int:
-    """The least number of periods after which an orbit closes, wherever its impacts lie: phases are
-    compared on a circle, so that one at phase 0 may be told as 2 pi.
-    """
-    periods, count = ring.sequence.periods, ring.count
-    kinds, span = np.array(ring.sequence.kinds), TURN * ring.sequence.periods
-    size = float(np.abs(ring.nodes[:, 1:]).max(initial=0.0)) or 1.0
-    for part in range(1, periods):
-        if periods % part or count * part % periods:
-            continue
-        shift = count * part // periods
-        away = np.roll(ring.nodes, -shift, axis=0) - ring.nodes
-        away[:, PHASE] -= TURN * part
-        away[:, PHASE] -= span * np.round(away[:, PHASE] / span)
-        away[:, 1:] /= size
-        same = (np.roll(kinds, -shift) == kinds).all()
-        if same and np.abs(away).max(initial=0.0) < ALIKE:
-            return part
-    return periods

@@ -15,13 +15,13 @@ from orchestrate.access import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.clusters import Telling
 from orchestrate.dynamics.decision import MotionDecider, middle_of_longest_run, whole_impacts
+from orchestrate.dynamics.orbit_search import least_periods
 from orchestrate.dynamics.settled_motion import (
     IRREGULAR,
     ORBIT,
     REPEATED,
     UNDECIDED,
     KnownStates,
-    least_periods,
     same_nodes,
 )
 from orchestrate.response.questions import Point

@@ -237,3 +237,12 @@ def test_no_orbit_is_said():
     """4T/1 does not exist at 7.4: its flight would go through mass 1."""
     with pytest.raises(InputError, match="period = 4: no orbit found"):
         orbit(PAPER, eta=7.4, period=4, guess={"impact_time": [0.4]})
+
+
+def test_an_impact_at_phase_0_makes_no_longer_period():
+    """There its phase is 0 or a whole turn by rounding: a T orbit is no 2T orbit."""
+    structure, eta = Structure.nondimensional(e=0.5), 2.093969319892331
+    single = orbit(structure, eta=eta)
+    assert abs(np.sin(eta * single.impact_time.values)).max() < 1e-9
+    with pytest.raises(InputError, match="repeats after 1 already"):
+        orbit(structure, eta=eta, period=2)
