@@ -1,4 +1,4 @@
-"""Responses of a sweep run on until a repeated state decides what they are, or 20,000 periods do.
+"""Responses of a sweep run on until a repeated state decides what they are, or 100,000 periods do.
 
 After the paper's 500 periods a transient may look like an attractor: chaos that dies out, a
 deviation from an unstable orbit that has not grown yet.
