@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import random
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -47,6 +48,12 @@ class Course:
     def names(self) -> tuple[str, ...]:
         """Outputs that are compared; those of a point of time first."""
         return (*POINT[self.model], *OF_STEP[self.model])
+
+
+@functools.cache
+def path_of(model: str, form: str) -> Path:
+    """An FMU of the present sources, looked for once."""
+    return find(model, form).path
 
 
 def drawn_course(seed: int, number: int) -> Course:
@@ -265,7 +272,7 @@ class Restores(Campaign):
         counts = {"courses:": 0, "in the pythonfmu form:": 0, "of MotorShaker:": 0}
         while done < count:
             course = drawn_course(seed, number)
-            rows = undisturbed(course, find(course.model).path)
+            rows = undisturbed(course, path_of(course.model, "fmi3"))
             for kinds in pools(course, number, rows) if rows else ():
                 restored, wrong = self.compare(seed, number, course, rows, kinds)
                 done += restored
@@ -289,7 +296,7 @@ class Restores(Campaign):
         """Restores of a course by a pool of instances, and what is wrong."""
         rng = random.Random(f"{seed} {number} {kinds[0][1]}")
         with ExitStack() as stack:
-            pool = [stack.enter_context(k(find(course.model, form).path)) for k, form in kinds]
+            pool = [stack.enter_context(k(path_of(course.model, form))) for k, form in kinds]
             try:
                 return disturbed(rng, course, rows, pool)
             except (FmuError, InputError) as error:
