@@ -167,12 +167,19 @@ def in_event_mode(rng: random.Random, instance: EventInstance, course: Course) -
 
 
 def advance_disturbed(
-    rng: random.Random, instance: EventInstance, course: Course, time: float, target: float
+    rng: random.Random, instance: EventInstance, course: Course, time: float, end: float
 ) -> int:
-    """As :func:`advance`, with states restored in event mode; says how many were."""
-    restored = 0
-    while time < target:
-        event, _, _, time = instance.call("doStep", time, target - time)
+    """To ``end`` with early returns, and with states restored in event mode; says how many were.
+
+    -1 where no step size of 53 bits leads from an impact to ``end``: another time is not compared.
+    Where the clock's last digit puts an impact at ``end``, a step of no length follows: an early
+    return shows the state at the impact.
+    """
+    restored, event = 0, True
+    while event or time < end:
+        if time + (end - time) != end:
+            return -1
+        event, _, _, time = instance.call("doStep", time, end - time)
         if event:
             instance.call("enterEventMode")
             if not restored or rng.random() < 0.02:
@@ -222,10 +229,15 @@ def disturbed(
         restored += 1
         if not pending:
             here.set(**inputs)
-        stops = isinstance(here, EventInstance) and target > time
-        if stops:
-            restored += advance_disturbed(rng, here, course, time, target)
-        else:
+        end, stops = time + (target - time), 0  # where a step ends, to the last bit
+        if isinstance(here, EventInstance) and end > time:
+            data = here.save_state()
+            stops = 1 + advance_disturbed(rng, here, course, time, end)
+            restored += stops
+            if not stops:
+                here = pool[0]
+                here.restore_state(data)
+        if not stops:
             here.step(time, target)
         names = POINT[course.model] if stops else course.names
         found = outputs(here, names)
