@@ -48,6 +48,7 @@ void instantiation(void) {
     }
     messages = 0;
     CHECK(fmi.Instantiate("a", fmi2ModelExchange, TOKEN, NULL, &callbacks, fmi2False, fmi2False) == NULL && messages == 1);
+    SAYS("co-simulation only");
     fmi2CallbackFunctions bare = {0}; /* no logger, no memory functions: the FMU needs none */
     const fmi2CallbackFunctions *given[] = {NULL, &bare, &callbacks};
     for (int i = 0; i < 3; i++) {
@@ -83,7 +84,10 @@ void null_pointers(fmi2Component c) {
     REFUSED(c, fmi.GetStatus(c, fmi2DoStepStatus, NULL)); REFUSED(c, fmi.GetIntegerStatus(c, fmi2DoStepStatus, NULL));
     REFUSED(c, fmi.GetStringStatus(c, fmi2PendingStatus, NULL)); REFUSED(c, fmi.CancelStep(c));
     REFUSED(c, fmi.GetDirectionalDerivative(c, NULL, 1, NULL, 1, NULL, NULL));
-    IS_OK(fmi.SetDebugLogging(c, fmi2True, 0, NULL));
+    const char *categories[] = {"logStatusError", "%s%n"}, *nothing = NULL;
+    IS_OK(fmi.SetDebugLogging(c, fmi2True, 0, NULL)); IS_OK(fmi.SetDebugLogging(c, fmi2True, 1, categories));
+    REFUSED(c, fmi.SetDebugLogging(c, fmi2True, 2, categories)); SAYS("logAll");
+    REFUSED(c, fmi.SetDebugLogging(c, fmi2True, 1, &nothing)); REFUSED(c, fmi.SetDebugLogging(c, fmi2True, 1, NULL));
     IS_OK(fmi.GetReal(c, NULL, 0, NULL)); IS_OK(fmi.SetReal(c, NULL, 0, NULL)); IS_OK(fmi.GetString(c, NULL, 0, NULL)); IS_OK(fmi.SetString(c, NULL, 0, NULL));
     IS_OK(fmi.GetInteger(c, NULL, 0, NULL)); IS_OK(fmi.SetInteger(c, NULL, 0, NULL)); IS_OK(fmi.GetBoolean(c, NULL, 0, NULL)); IS_OK(fmi.SetBoolean(c, NULL, 0, NULL));
     IS_OK(fmi.SetRealInputDerivatives(c, NULL, 0, NULL, NULL)); IS_OK(fmi.GetRealOutputDerivatives(c, NULL, 0, NULL, NULL));

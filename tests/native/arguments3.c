@@ -102,6 +102,9 @@ void null_pointers(fmi3Instance c) {
     IS_OK(fmi.GetFloat64(c, NULL, 0, NULL, 0)); IS_OK(fmi.SetFloat64(c, NULL, 0, NULL, 0)); IS_OK(fmi.GetInt32(c, NULL, 0, NULL, 0));
     IS_OK(fmi.SetInt32(c, NULL, 0, NULL, 0)); IS_OK(fmi.GetBoolean(c, NULL, 0, NULL, 0)); IS_OK(fmi.SetBoolean(c, NULL, 0, NULL, 0));
     IS_OK(fmi.FreeFMUState(c, NULL)); IS_OK(fmi.SetDebugLogging(c, true, 0, NULL));
+    const char *categories[] = {"logStatusError", "%s%n"}, *nothing = NULL;
+    IS_OK(fmi.SetDebugLogging(c, true, 1, categories)); REFUSED(c, fmi.SetDebugLogging(c, true, 2, categories));
+    REFUSED(c, fmi.SetDebugLogging(c, true, 1, &nothing)); REFUSED(c, fmi.SetDebugLogging(c, true, 1, NULL));
     IS_OK(fmi.GetOutputDerivatives(c, NULL, 0, NULL, NULL, 0));
     /* numbers of values that do not fit the references */
     size_t wrong[] = {0, 2, 3, SIZE_MAX};

@@ -12,12 +12,13 @@ from .fuzzing import Fuzzing
 from .hostile import Hostile
 from .leaks import Leaks
 from .mutants import Mutants
+from .restores import Restores
 from .verdicts import Verdicts
 
 CAMPAIGNS: dict[str, Campaign] = {
     campaign.name: campaign
     for campaign in (
-        *(Impacts(), Roots(), Grids(), Energy(), Fuzzing(), Attractors(), Verdicts()),
-        *(Faults(), Clusters(), Hostile(), Mutants(), Leaks()),
+        *(Impacts(), Roots(), Grids(), Restores(), Energy(), Fuzzing()),
+        *(Attractors(), Verdicts(), Faults(), Clusters(), Hostile(), Mutants(), Leaks()),
     )
 }
