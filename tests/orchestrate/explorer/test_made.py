@@ -1,6 +1,8 @@
 """What a page is made of, and what it refuses."""
 
 import re
+from collections import Counter
+from html.parser import HTMLParser
 
 import numpy as np
 import pytest
@@ -23,6 +25,60 @@ def test_the_page_is_one_small_file_without_network(page):
     assert not re.search(r'(?:src|href)="(?!data:|#|\$)', text)
     assert not re.search(r"\b(?:fetch|XMLHttpRequest|WebSocket|cookie|localStorage)\b", text)
     assert set(re.findall(r"https?://[^\s\"'`]+", text)) <= {"http://www.w3.org/2000/svg"}
+
+
+MARKUP = "</script></p><script>window.forged = 1</script><img src=x onerror='window.forged = 2'>"
+
+
+class Elements(HTMLParser):
+    """Elements of a page by name, and the attributes by which elements run scripts."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.names, self.handlers = Counter(), []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.names[tag] += 1
+        self.handlers += [name for name, _ in attributes if name.startswith("on")]
+
+
+@pytest.fixture(scope="module")
+def forged(swept, tmp_path_factory):
+    """A page of a file whose every text is markup."""
+    path = tmp_path_factory.mktemp("forged") / "page.html"
+    kept = ("start", "direction", "bonded")
+    texts = {name for name, value in swept.attrs.items() if isinstance(value, str)} - {*kept}
+    assert {"source", "fmu_model", "fmu_guid", "call"} <= texts
+    return explore(swept.assign_attrs(dict.fromkeys(texts, MARKUP)), output=path)
+
+
+def test_what_a_file_says_is_text_on_its_page_and_no_markup(page, forged):
+    clean, other = (Elements(path.read_text(encoding="utf-8")) for path in (page, forged))
+    assert other.names == clean.names and other.names["script"] == 6
+    assert other.handlers == []
+    assert MARKUP not in forged.read_text(encoding="utf-8")
+
+
+def test_no_script_of_a_file_runs_and_none_that_is_added_to_its_page(window, forged):
+    window.open(forged)
+    assert MARKUP in window.run("return document.querySelector('footer').textContent")
+    for add in (
+        "const one = document.createElement('script'); one.textContent = 'window.forged = 3';"
+        "document.body.append(one)",
+        "document.body.insertAdjacentHTML('beforeend', '<img src=x onerror=\"forged = 4\">')",
+    ):
+        window.run(add)
+    window.run("setTimeout(() => { window.later = true; }, 300)")
+    window.until("return window.later")
+    assert window.run("return window.forged ?? null") is None
+    assert len(window.console()) >= 2  # what the policy has kept from running
+
+
+def test_no_module_of_the_page_makes_elements_of_text():
+    ways = r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\b|new Function"
+    found = [name for name, text in modules().items() if re.search(ways, text)]
+    assert found == []
 
 
 def test_each_module_imports_in_the_form_that_is_joined_and_is_used():
