@@ -18,6 +18,8 @@ from orchestrate.explorer.page import explore, modules
 from orchestrate.explorer.shipped import shipped
 from orchestrate.running.store import load
 
+from .conftest import ETAS
+
 
 def test_the_page_is_one_small_file_without_network(page):
     text = page.read_text(encoding="utf-8")
@@ -132,6 +134,50 @@ def test_what_is_no_sweep_along_the_frequency_is_refused(tmp_path):
     with pytest.raises(InputError, match="branches over nothing: expected"):
         explore(output=tmp_path / "page.html", branches=xr.Dataset())
     assert not list(tmp_path.glob("*.html"))
+
+
+WRONG = {
+    "m1": ["heavy", 0.0, -1.0, np.nan, np.inf, np.array([1.0, 2.0])],
+    "tolerance": ["small", np.nan, 0.0, np.array([1e-2, 1e-3])],
+    "transient": ["long", 0.5, -1.0, 1e300, np.inf],
+    "samples": ["many", 0.0, np.nan],
+    "start": ["[a, b, c, d]", "[0.0]", "", "[nan, 0, 0, 0]", 5.0],
+    "bonded": ["no", 2.0],
+    "direction": ["sideways", "both"],
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [(name, value) for name, values in WRONG.items() for value in values]
+)
+def test_a_file_with_a_wrong_attribute_is_refused_in_one_line(swept, tmp_path, name, value):
+    with pytest.raises(InputError, match="expected"):
+        explore(swept.assign_attrs({name: value}), output=tmp_path / "page.html")
+    assert not list(tmp_path.iterdir())
+
+
+STATE = ("eta", "coordinate")
+SHAPES = {
+    "a state of texts": {"end_state": (STATE, np.full((211, 4), "x"))},
+    "a state of three numbers": {"end_state": (("eta", "three"), np.zeros((211, 3)))},
+    "a state that is not a number": {"end_state": (STATE, np.full((211, 4), np.nan))},
+    "a single state": {"end_state": ((), 1.0)},
+    "a single answer": {"impacts_per_period": ((), 1.0)},
+    "answers over another dimension": {"impacts_per_period": ("other", np.zeros(5))},
+    "frequencies of texts": {"frequency": ("eta", np.full(211, "x"))},
+    "frequencies of zero": {"frequency": ("eta", np.zeros(211))},
+    "amplitudes below zero": {"amplitude": ("eta", np.full(211, -1.0))},
+    "an amplitude without end": {"amplitude": ("eta", np.full(211, np.inf))},
+    "frequency ratios below zero": {"eta": ("eta", -ETAS)},
+    "frequency ratios of texts": {"eta": ("eta", ETAS.astype(str))},
+}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_a_file_of_another_shape_is_refused_in_one_line(swept, tmp_path, name):
+    with pytest.raises(InputError, match="expected"):
+        explore(swept.assign(SHAPES[name]), output=tmp_path / "page.html")
+    assert not list(tmp_path.iterdir())
 
 
 def test_the_command_writes_a_page(tmp_path, capsys, swept):
