@@ -7,9 +7,10 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from . import archives, documents
+from . import archives, documents, pages
 from .campaign import Campaign, Outcome
 from .children import Child, Ended, import_all, in_little_memory
+from .pages import Window, window
 
 SLOW = 30.0  # s
 LONG = 2000  # letters of a line that a person reads
@@ -27,9 +28,11 @@ class Hostile(Campaign):
         "terabytes or attributes that are markup. Each is refused in one line that begins with "
         "`error:`, with an exit code, without a traceback, within 30 s and 2 GiB, and nothing is "
         "written outside of the temporary folder; or it is taken, where it does no harm. "
-        "No command reads CSV."
+        "Every second input is a whole result, or a branch, whose texts are markup; the command "
+        "makes a page of it, which Chromium opens: no script of the file runs, no address in it "
+        "is asked, and the page works."
     )
-    unit, target, batch = "inputs", 1000, 50
+    unit, target, batch = "inputs", 2000, 50
     package = True
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
@@ -40,30 +43,57 @@ class Hostile(Campaign):
         import_all()
         for model in MODELS:
             web_kernel(model)  # or the first page would compile it
-        chance, counts, notes = random.Random(seed), {"refused:": 0, "taken:": 0}, []
-        with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder:
+        chance, notes = random.Random(seed), []
+        counts = {"refused:": 0, "taken:": 0, "pages in Chromium:": 0}
+        with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder, window() as seen:
             folder = Path(holder)
-            good = good_result(folder)
+            good, branch = good_results(folder)
             for number in range(count):
-                kind, arguments = prepare(folder, fmu, good, chance, number)
-                ended, strays = hand(arguments, folder)
-                reason = verdict(ended, strays)
+                if number % 2:
+                    kind, (ended, reason) = "page", opened(folder, good, branch, chance, seen)
+                    counts["pages in Chromium:"] += ended.code == 0
+                else:
+                    kind, arguments = prepare(folder, fmu, good, chance, number // 2)
+                    ended, strays = hand(arguments, folder)
+                    reason = verdict(ended, strays)
                 if reason:
                     notes.append(f"seed {seed}, input {number} ({kind}): {reason}")
                 counts["taken:" if ended.code == 0 else "refused:"] += 1
         return Outcome(count, len(notes), counts=counts, notes=tuple(notes))
 
 
-def good_result(folder: Path) -> Path:
-    """A result to be damaged."""
+def good_results(folder: Path) -> tuple[Path, Path]:
+    """A sweep and a branch, to be damaged and forged."""
     import orchestrate
 
-    place = folder / "good.nc"
-    structure = orchestrate.Structure.nondimensional()
-    orchestrate.sweep(
-        structure, eta=[1.0, 1.1], transient=2, samples=4, store=place, jobs=1, progress=False
-    )
-    return place
+    places = folder / "good.nc", folder / "branch.nc"
+    structure, usual = orchestrate.Structure.nondimensional(), {"jobs": 1, "progress": False}
+    orchestrate.sweep(structure, eta=[1.0, 1.1], transient=2, samples=4, store=places[0], **usual)
+    start = orchestrate.orbit(structure, eta=2.6, **usual)
+    orchestrate.branch(structure, start=start, limits=(2.45, 2.62), store=places[1], **usual)
+    return places
+
+
+def opened(
+    folder: Path, good: Path, branch: Path, chance: random.Random, seen: Window
+) -> tuple[Ended, str]:
+    """Forge a result that becomes a page, and open that; what is wrong, empty where nothing is."""
+    from orchestrate.running.store import load
+
+    result, branches, page = (folder / name for name in ("f.nc", "b.nc", "page.html"))
+    pages.forged(result, chance, load(good), seen.address)
+    command = ["explore", str(result), "--no-open", "--output", str(page)]
+    if chance.random() < 0.3:
+        pages.forged_branch(branches, chance, load(branch), seen.address)
+        command += ["--branches", str(branches)]
+    ended = Child(command, folder / "temporary", in_little_memory).wait(2.0 * SLOW)
+    reason = verdict(ended, [])
+    if not reason:
+        fragment = pages.fragment(chance, seen.address)
+        made = ended.code == 0
+        reason = seen.verdict(page, fragment) if made else f"no page: {ended.lines[-1][:200]}"
+    pages.clean_up(result, branches, page)
+    return ended, reason
 
 
 def prepare(
@@ -99,10 +129,7 @@ def hand(arguments: list[str], folder: Path) -> tuple[Ended, list[str]]:
     ended = Child(arguments, temporary, in_little_memory).wait(2.0 * SLOW)
     strays = [str(path) for path in outside(folder) if path.exists() and path not in before]
     left = [path.name for path in temporary.iterdir()] if temporary.exists() else []
-    page = folder / "page.html"
-    if page.exists() and "<script>alert(1)" in page.read_text("utf-8", "replace"):
-        left.append("markup in the page")
-    page.unlink(missing_ok=True)
+    pages.clean_up(folder / "page.html")
     shutil.rmtree(temporary, ignore_errors=True)
     shutil.rmtree(folder / "results", ignore_errors=True)
     return ended, strays + left
