@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 SOURCES = Path(__file__).parent / "page"
+HEAD = b"<title>Explorer of a vibro-impacting structure</title>"  # by which a page is known
+READ = 4096  # bytes of a file that are read for it
 
 
 def explore(
@@ -85,6 +87,11 @@ def explore(
     path = Path(output)
     if path.is_dir():
         raise InputError(f"output = {str(output)!r}: is a folder; expected a file to write")
+    if path.exists() and HEAD not in first_bytes(path):
+        raise InputError(
+            f"output = {str(output)!r}: a file that is no page of the explorer; expected a name "
+            "that is free, or such a page to be replaced"
+        )
     open_folder(path.parent)
     kernels = {
         "oscillator": web_kernel(OSCILLATOR, build_folder),
@@ -92,6 +99,14 @@ def explore(
     }
     text = page(chosen, overlay(branches), kernels)
     return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
+
+
+def first_bytes(path: Path) -> bytes:
+    """The beginning of a file; nothing of what is no ordinary file."""
+    if not path.is_file():
+        return b""
+    with path.open("rb") as file:
+        return file.read(READ)
 
 
 def page(chosen: Shipped, drawn: dict[str, Any], kernels: dict[str, WebKernel]) -> str:

@@ -118,7 +118,7 @@ class Disk(Store):
     Parameters
     ----------
     path : Path
-        The NetCDF file.
+        The NetCDF file. Where it is computed anew, it stays as it is until the new one is whole.
     identity : dict
         What it answers.
     options : RunOptions
@@ -129,6 +129,8 @@ class Disk(Store):
         Where another question's result or journal is there.
     StaleError
         Where it answers this question, but was made by other code or another FMU.
+    StoreError
+        Where a file stands there that is no result of this project.
     """
 
     def __init__(self, path: Path, identity: Identity, options: RunOptions) -> None:
@@ -144,23 +146,26 @@ class Disk(Store):
         self.begun = ""
         try:
             if path.exists() and options.force:
-                path.unlink()
-                discard(journal_path(path))
-            if path.exists():
+                read_identity(path)  # of another's file there is nothing to replace
+                self._open(journal_path(path, anew=True))
+            elif path.exists():
                 identity = read_identity(path)
                 self._found = load(path)  # first of all, or damage is taken for another question
                 self.check(identity, path)
                 discard(journal_path(path))  # where the process was killed before it did so
             else:
-                self._journal = self.open_journal()
-                self.begun = self._journal.begun
+                self._open(journal_path(path))
         except BaseException:
             self.close()
             raise
 
-    def open_journal(self) -> Journal:
+    def _open(self, path: Path) -> None:
+        """Open the journal that this run goes on with."""
+        self._journal = self.open_journal(path)
+        self.begun = self._journal.begun
+
+    def open_journal(self, path: Path) -> Journal:
         """The journal of this job, begun where there is none."""
-        path = journal_path(self.path)
         journal: Journal | None = None
         try:
             journal = Journal(path, self.identity, now())
@@ -220,9 +225,10 @@ class Disk(Store):
         self.journal.drop(index, reason)
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Keep the result and drop the chunks."""
+        """Keep the result, in place of the one that was there, and drop the chunks."""
         write_netcdf(dataset, self.path)
         self.journal.remove()
+        discard(journal_path(self.path))  # of a run that was killed as it finished
         self._journal = None
         self._found = load(self.path)
         return self._found
@@ -295,11 +301,12 @@ def read_identity(path: Path) -> Identity:
     try:
         with netCDF4.Dataset(path) as found:
             identity: Identity = json.loads(found.getncattr("identity"))
-            return identity
+        identity["question"]  # or it is another's attribute of the same name
+        return identity
     except Exception as error:
         raise StoreError(
-            f"{path}: not a result of this project ({first_line(error)}); expected a "
-            "place that is free or holds one"
+            f"{path}: not a result of this project, or damaged ({first_line(error)}); "
+            f"choose another place, or {ANEW}"
         ) from error
 
 

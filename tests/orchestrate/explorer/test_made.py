@@ -136,6 +136,17 @@ def test_what_is_no_sweep_along_the_frequency_is_refused(tmp_path):
     assert not list(tmp_path.glob("*.html"))
 
 
+def test_a_page_is_replaced_and_no_other_file(tmp_path):
+    path = tmp_path / "notes.html"
+    path.write_text("<title>Notes</title>")
+    with pytest.raises(InputError, match="no page of the explorer; expected a name that is free"):
+        explore(output=path)
+    assert path.read_text() == "<title>Notes</title>"
+    path.unlink()
+    inodes = {explore(output=path).stat().st_ino for _ in range(2)}
+    assert len(inodes) == 2 and [one.name for one in tmp_path.iterdir()] == ["notes.html"]
+
+
 WRONG = {
     "m1": ["heavy", 0.0, -1.0, np.nan, np.inf, np.array([1.0, 2.0])],
     "tolerance": ["small", np.nan, 0.0, np.array([1e-2, 1e-3])],
