@@ -18,7 +18,7 @@ import threading
 from pathlib import Path
 
 from ..errors import InputError, StoreError
-from ..files import alive
+from ..files import alive, check_name
 from .description import Description
 
 PREFIX = "vibroimpact-fmu-"
@@ -74,6 +74,7 @@ def process_folder() -> Path:
     pid = os.getpid()
     folder = _folders.get(pid)
     if folder is None or not folder.is_dir():
+        check_name(tempfile.gettempdir())
         remove_leftovers()
         folder = _folders[pid] = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{pid}-"))
         atexit.register(remove, folder, pid)

@@ -180,7 +180,8 @@ def stored(option: str, path: Path) -> xr.Dataset:
     try:
         found = load(path)
     except StoreError as error:
-        raise InputError(f"{option} {error}; expected a NetCDF file") from None
+        expected = "" if "expected" in str(error) else "; expected a NetCDF file"
+        raise InputError(f"{option} {error}{expected}") from None
     try:
         json.loads(found.attrs.get("identity", '{"question": ""}'))["question"]
     except (ValueError, TypeError, KeyError, RecursionError):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import logging
 import os
+import re
 import time
 from abc import ABC, abstractmethod
 from contextlib import suppress
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import InputError, StaleError, StoreError
-from ..files import open_folder, write_whole
+from ..files import check_name, open_folder, write_whole
 from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
@@ -26,13 +27,25 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 COMPRESSED = 10_000  # values from which a variable is worth compressing
+LAST_SECOND = 253_402_300_799  # of the year 9999
 LEVEL = 1  # of zlib: the last digits of numbers do not shrink, however long it tries
 
 
 def now() -> str:
-    """The time as ISO 8601; SOURCE_DATE_EPOCH in the environment fixes it, for equal bytes."""
-    seconds = float(os.environ.get("SOURCE_DATE_EPOCH") or time.time())
-    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(seconds))
+    """The time as ISO 8601; SOURCE_DATE_EPOCH in the environment fixes it, for equal bytes.
+
+    Raises
+    ------
+    InputError
+        Where that is no such number.
+    """
+    fixed = os.environ.get("SOURCE_DATE_EPOCH")
+    if fixed and not (re.fullmatch("[0-9]{1,12}", fixed) and int(fixed) <= LAST_SECOND):
+        raise InputError(
+            f"SOURCE_DATE_EPOCH = {fixed!r} in the environment: expected a whole number of seconds "
+            f"since 1970, up to {LAST_SECOND}"
+        )
+    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(int(fixed) if fixed else time.time()))
 
 
 class Store(ABC):
@@ -135,6 +148,8 @@ class Disk(Store):
 
     def __init__(self, path: Path, identity: Identity, options: RunOptions) -> None:
         self.path, self.identity, self.options = path, identity, options
+        check_name(path)
+        self.begun = now()
         open_folder(path.parent)
         if path.is_dir():
             raise InputError(
@@ -143,7 +158,6 @@ class Disk(Store):
         self._lock = Lock(path)
         self._journal: Journal | None = None
         self._found: xr.Dataset | None = None
-        self.begun = ""
         try:
             if path.exists() and options.force:
                 read_identity(path)  # of another's file there is nothing to replace
@@ -261,6 +275,7 @@ def load(path: Path) -> xr.Dataset:
     """
     import xarray as xr
 
+    check_name(path)
     try:
         data = xr.load_dataset(path, engine="netcdf4")
         told = data.attrs.pop(ATTRIBUTE, None)
