@@ -25,6 +25,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "errors": set(),
     "version": set(),
     "files": {"errors"},
+    "supervisor": set(),
     "structures": GROUND,
     "access": GROUND | {"structures"},
     "running": GROUND,
@@ -35,8 +36,10 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "paper": BELOW_ANSWERS | {"response", "dynamics", "weak_drive", "figures"},
     "__init__": BELOW_ANSWERS | {"response", "dynamics", "weak_drive"},
     "explorer": BELOW_ANSWERS,
-    "cli": BELOW_ANSWERS | {"__init__", "weak_drive", "figures", "paper", "explorer"},
-    "__main__": {"cli"},
+    "cli": BELOW_ANSWERS
+    | {"__init__", "weak_drive", "figures", "paper", "explorer"}
+    | {"supervisor"},
+    "__main__": {"cli", "supervisor"},
 }
 PARTS: dict[str, set[str]] = {  # and of fmu_src
     "kernels.numerics": set(),

@@ -21,7 +21,7 @@ from ..errors import InputError, StoreError
 from ..files import alive, check_name
 from .description import Description
 
-PREFIX = "vibroimpact-fmu-"
+PREFIX = "vibroimpact-fmu-"  # by which the supervisor of a command knows them too
 _lock = threading.RLock()
 _folders: dict[int, Path] = {}  # by process: a forked child makes its own
 

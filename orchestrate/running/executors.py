@@ -151,7 +151,8 @@ class Processes:
 
     remote = False
     losses: ClassVar[Mapping[type[BaseException], str]] = {
-        BrokenProcessPool: "a worker process ended without a word (killed, or out of memory)"
+        BrokenProcessPool: "a worker process ended without a word (an FMU has crashed or ended "
+        "it, it was killed, or out of memory)"
     }
 
     def __init__(self, count: int) -> None:
