@@ -42,25 +42,24 @@ def supervised(work: Callable[[], int]) -> int:
     work : callable
         Returns an exit code, or raises ``SystemExit``.
     """
-    if not hasattr(os, "fork"):
-        return work()
-    fill_descriptors()
-    try:
-        reader, writer = os.pipe()
-    except OSError:
-        return work()
+    pipes: list[int] = []
     parent = os.getpid()
     try:
+        fill_descriptors()
+        pipes += os.pipe()
+        pipes += os.pipe()
         child = os.fork()
-    except OSError:
-        os.close(reader)
-        os.close(writer)
+    except (AttributeError, OSError):  # a system without fork, or no room for more
+        for number in pipes:
+            os.close(number)
         return work()
+    reader, writer, wake_reader, wake_writer = pipes
     if child == 0:
-        os.close(reader)
+        for number in (reader, wake_reader, wake_writer):
+            os.close(number)
         return carried_out(work, writer, parent)
     os.close(writer)
-    return Supervisor(child, reader).run()
+    return Supervisor(child, reader).run(wake_reader, wake_writer)
 
 
 def carried_out(work: Callable[[], int], writer: int, parent: int) -> int:
@@ -128,9 +127,8 @@ class Supervisor:
         self.signals: list[tuple[int, float]] = []  # number and time
         self.handed_on = self.forced = False
 
-    def run(self) -> int:
-        """Wait; returns the exit code."""
-        wake_reader, wake_writer = os.pipe()
+    def run(self, wake_reader: int, wake_writer: int) -> int:
+        """Wait; returns the exit code. A signal is written into a pipe, so that it wakes this."""
         os.set_blocking(wake_writer, False)
         signal.set_wakeup_fd(wake_writer, warn_on_full_buffer=False)
         for heard, usual in (

@@ -31,6 +31,10 @@ LAST_SECOND = 253_402_300_799  # of the year 9999
 LEVEL = 1  # of zlib: the last digits of numbers do not shrink, however long it tries
 
 
+STARTED: set[Path] = set()  # journals with chunks that this process has seen or written
+FINISHED: set[Path] = set()  # results, likewise; both for who says what an interruption costs
+
+
 def now() -> str:
     """The time as ISO 8601; SOURCE_DATE_EPOCH in the environment fixes it, for equal bytes.
 
@@ -166,6 +170,7 @@ class Disk(Store):
                 identity = read_identity(path)
                 self._found = load(path)  # first of all, or damage is taken for another question
                 self.check(identity, path)
+                FINISHED.add(path)
                 discard(journal_path(path))  # where the process was killed before it did so
             else:
                 self._open(journal_path(path))
@@ -177,6 +182,8 @@ class Disk(Store):
         """Open the journal that this run goes on with."""
         self._journal = self.open_journal(path)
         self.begun = self._journal.begun
+        if not self._journal.is_empty():
+            STARTED.add(path)
 
     def open_journal(self, path: Path) -> Journal:
         """The journal of this job, begun where there is none."""
@@ -233,6 +240,7 @@ class Disk(Store):
     def put(self, index: int, table: Table) -> None:
         """Keep a chunk."""
         self.journal.put(index, table)
+        STARTED.add(self.journal.path)
 
     def drop(self, index: int, reason: str) -> None:
         """Forget a chunk."""
@@ -241,6 +249,8 @@ class Disk(Store):
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
         """Keep the result, in place of the one that was there, and drop the chunks."""
         write_netcdf(dataset, self.path)
+        FINISHED.add(self.path)
+        STARTED.discard(self.journal.path)
         self.journal.remove()
         discard(journal_path(self.path))  # of a run that was killed as it finished
         self._journal = None
