@@ -25,7 +25,7 @@ DEAF = 5.0  # s after which a child that has not heard a signal is ended
 GRACE = 20.0  # s that one that has heard it has for ending
 POLL = 0.25  # s
 KEPT = "what was stored before is kept"
-UNPACKED = "vibroimpact-fmu-"  # temporary folders of FMUs begin so, then comes the process
+UNPACKED = "vibroimpact-fmu-"  # temporary folders begin so (`temporary`), then comes the process
 TOLD, HEEDED = b"D", b"S"  # what the child says: it has done its work; it has heard a signal
 PR_SET_PDEATHSIG = 1  # of Linux
 

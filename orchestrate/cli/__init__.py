@@ -155,7 +155,7 @@ def carry_out(arguments: Sequence[str]) -> int:
 
 def interrupted(ended: KeyboardInterrupt) -> int:
     """Say that a signal has ended the command; returns the exit code."""
-    from ..access.unpacked import remove_leftovers
+    from ..temporary import remove_leftovers
 
     remove_leftovers()  # of workers that were ended in the middle of a chunk
     terminated = isinstance(ended, Terminated)
