@@ -422,3 +422,19 @@ def test_an_fmu_of_gigabytes_is_not_read(ask, tmp_path):
     with path.open("wb") as file:
         file.truncate(8 << 30)
     ask("sweep", "--eta", "1", "--fmu", path).complaint(path, f"{8 << 30} bytes, at most")
+
+
+RECOMMENDED = [
+    (("map", "--hz", "8:20:4", "--over", "e", "--values", "0.3,0.5"), "--amplitude in m with it"),
+    (("map", "--hz", "8:20:4", "--over", "g", "--values", "0.3,0.5"), "--over g: a response"),
+    (("map", "--hz", "8", "--over", "hz", "--values", "1,2"), "--over hz: expected --hz VALUES"),
+    (("branch", "--over", "hz", "--limits", "20:30", "--hz", "20"), "--amplitude in m with it"),
+    (("branch", "--over", "hz", "--limits", "20:30"), "--over hz: expected --amplitude in m"),
+    (("branch", "--over", "g", "--limits", "1:2", "--hz", "20"), "expected --over amplitude"),
+]
+
+
+@pytest.mark.parametrize(("asked", "words"), RECOMMENDED)
+def test_nothing_is_recommended_that_is_refused_then(ask, asked, words):
+    line = ask(*asked, "--structure", "beam").complaint(words)
+    assert "--g with it" not in line and "--g in" not in line
