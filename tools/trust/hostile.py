@@ -24,8 +24,8 @@ class Hostile(Campaign):
     asks = (
         "FMU archives with paths that lead out, links, bombs, crowds of files, entities that grow "
         "or read other files, names that are paths or markup, two files of one name; TOML that is "
-        "nested, huge or full of control characters; NetCDF cut short, forged, with dimensions of "
-        "terabytes or attributes that are markup. Each is refused in one line that begins with "
+        "nested, huge or full of control characters; CSV of voltages; NetCDF cut short, "
+        "forged, with dimensions of terabytes or attributes that are markup. Each is refused in one line that begins with "
         "`error:`, with an exit code, without a traceback, within 30 s and 2 GiB, and nothing is "
         "written outside of the temporary folder; or it is taken, where it does no harm. "
         "Every second input is a whole result, or a branch, whose texts are markup; the command "
@@ -108,6 +108,11 @@ def prepare(
         archives.KINDS[kind](fmu, place, chance)
         command = ["simulate", "--eta", "1", "--periods", "2", "--plot", "none"]
         return kind, [*command, "--output", str(folder / "results"), "--fmu", str(place)]
+    if turn == 2 and number % 8 == 2:
+        place = folder / "input.csv"
+        documents.course(place, chance)
+        command = ["couple", "--only", "delaminated", "--one-way", "--plot", "none"]
+        return "CSV", [*command, "--output", str(folder / "results"), "--course", str(place)]
     if turn == 2:
         place = folder / "input.toml"
         documents.toml(place, chance)

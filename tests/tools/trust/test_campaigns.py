@@ -99,6 +99,11 @@ def test_memory_stays_flat(fmu, monkeypatch):
     assert found.worst == 400.0
 
 
+def test_a_short_run_finds_no_leak_where_there_is_none(fmu):
+    """What a process takes once was shared out among ten frequencies."""
+    clean(Leaks().run(fmu, 1, 10_000), 10_000)
+
+
 def test_a_few_faults(fmu, monkeypatch):
     monkeypatch.setattr(Faults, "commands", ("sweep",))
     clean(Faults().run(fmu, 1, 3), 3)
