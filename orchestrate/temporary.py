@@ -6,6 +6,7 @@ another one.
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import os
 import re
@@ -29,7 +30,8 @@ def process_folder() -> Path:
         check_name(tempfile.gettempdir())
         remove_leftovers()
         folder = _folders[pid] = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{pid}-"))
-        # not by atexit, of which processes of multiprocessing know nothing: Dask's workers
+        atexit.register(remove, folder, pid)
+        # processes of multiprocessing, such as Dask's workers, know nothing of atexit
         Finalize(None, remove, (folder, pid), exitpriority=0)
     return folder
 

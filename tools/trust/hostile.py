@@ -22,15 +22,15 @@ class Hostile(Campaign):
     name = "hostile"
     title = "Malicious input"
     asks = (
-        "FMU archives with paths that lead out, links, bombs, crowds of files, entities that grow "
-        "or read other files, names that are paths or markup, two files of one name; TOML that is "
-        "nested, huge or full of control characters; CSV of voltages; NetCDF cut short, "
-        "forged, with dimensions of terabytes or attributes that are markup. Each is refused in one line that begins with "
-        "`error:`, with an exit code, without a traceback, within 30 s and 2 GiB, and nothing is "
-        "written outside of the temporary folder; or it is taken, where it does no harm. "
-        "Every second input is a whole result, or a branch, whose texts are markup; the command "
-        "makes a page of it, which Chromium opens: no script of the file runs, no address in it "
-        "is asked, and the page works."
+        "FMU archives with paths that lead out, links, bombs, crowds of files, entities that grow"
+        " or read other files, names that are paths or markup, two files of one name; TOML that "
+        "is nested, huge or full of control characters; CSV of voltages; NetCDF cut short, "
+        "forged, with dimensions of terabytes or attributes that are markup. Each is refused in "
+        "one line that begins with `error:`, with an exit code, without a traceback, within 30 s "
+        "and 2 GiB, and nothing is written outside of the temporary folder; or it is taken, where"
+        " it does no harm. Every second input is a whole result, or a branch, whose texts are "
+        "markup; the command makes a page of it, which Chromium opens: no script of the file "
+        "runs, no address in it is asked, and the page works."
     )
     unit, target, batch = "inputs", 2000, 50
     package = True
