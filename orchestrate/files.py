@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import shutil
 import stat
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+
+from filelock import FileLock, Timeout
 
 from .errors import InputError, StoreError
 
+log = logging.getLogger(__name__)
 PROBE = ".writable"
 
 
@@ -43,6 +48,30 @@ def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -
     finally:
         temporary.unlink(missing_ok=True)
     return path
+
+
+@contextmanager
+def made_once(path: Path) -> Iterator[None]:
+    """Keep other processes from making a file meanwhile; who has waited finds it there.
+
+    Raises
+    ------
+    StoreError
+        Where its folder cannot be written.
+    """
+    open_folder(path.parent)
+    lock = FileLock(path.with_name(f".{path.name}.lock"))
+    try:
+        lock.acquire(timeout=0.0)
+    except Timeout:
+        log.info("%s: another process makes it, this one waits", path)
+        lock.acquire()
+    except (NotImplementedError, OSError) as error:  # of a disk without locks
+        log.info("%s: made without a lock (%s)", path, error)
+    try:
+        yield
+    finally:
+        lock.release()
 
 
 def read_text(path: str | os.PathLike[str], most: int) -> str:
