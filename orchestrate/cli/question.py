@@ -110,7 +110,7 @@ def tell_where(arguments: argparse.Namespace, structure: Structure, question: Qu
     if not values:
         return
     own = f"{structure.omega / TURN:.4g} Hz"
-    if getattr(arguments, "structure", "") == "paper":
+    if getattr(arguments, "structure", "") == "paper" and not arguments.set:
         omega = f"omega = {structure.omega:.6g} rad/s, {own}"
         print(f"structure: the paper's, {omega} (--structure names another)")
     low, high = (end(values) / structure.omega for end in (min, max))

@@ -175,7 +175,6 @@ def table(chosen: Shipped) -> dict[str, Any]:
         "count": chosen.count,
         "low": chosen.low,
         "high": chosen.high,
-        "command": chosen.command,
     }
 
 

@@ -41,8 +41,6 @@ class Shipped:
         Number of responses in a direction.
     low, high : float
         Ends of the frequency ratios.
-    command : str
-        How it was computed.
     source : str
         What computed it.
     """
@@ -54,14 +52,13 @@ class Shipped:
     count: int
     low: float
     high: float
-    command: str
     source: str
 
 
 def nothing(structure: Structure) -> Shipped:
     """No sweep: the page computes its first diagram itself, over the paper's frequency ratios."""
     settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
-    return Shipped(structure, ("up",), settings, np.empty(0), 0, *PAPER, "", "")
+    return Shipped(structure, ("up",), settings, np.empty(0), 0, *PAPER, "")
 
 
 def shipped(data: xr.Dataset) -> Shipped:
@@ -112,7 +109,6 @@ def read(data: xr.Dataset, direction: str) -> Shipped:
         count=data.sizes[parameter],
         low=float(data.eta.min()),
         high=float(data.eta.max()),
-        command=str(data.attrs["call"]),
         source=f"{data.attrs['source']}, {data.attrs['fmu_model']} {data.attrs['fmu_guid']}",
     )
 
@@ -133,7 +129,7 @@ def check(data: xr.Dataset) -> str:
     needed = {"eta", "frequency", "amplitude", "impacts_per_period", "end_state"}
     missing = needed - {str(name) for name in data.variables}
     direction = str(data.attrs.get("direction"))
-    if missing or not {*SETTINGS, "start", "m1", "call"} <= set(data.attrs):
+    if missing or not {*SETTINGS, "start", "m1"} <= set(data.attrs):
         raise InputError(f"{data.attrs.get('title', 'data')!r}: no sweep; {EXPECTED}")
     if not set(SWEPT) & {str(name) for name in data.impacts_per_period.dims}:
         raise InputError(f"sweep over {data.impacts_per_period.dims[-1]}: {EXPECTED}")

@@ -53,9 +53,9 @@ export class Controls {
     inputs[1].ariaLabel = `${label}, number`;
     row.append(labelOf(name, label), ...inputs);
     this.inputs.set(name, inputs);
-    for (const input of inputs) {
-      input.addEventListener("input", () => this.set(name, input, low, high));
-    }
+    inputs[0].addEventListener("input", () => this.set(name, inputs[0], low, high));
+    // not while it is typed: 1.7 begins with 1
+    inputs[1].addEventListener("change", () => this.set(name, inputs[1], low, high));
     return row;
   }
 
@@ -77,7 +77,10 @@ export class Controls {
     const value = input.valueAsNumber;
     const good = Number.isFinite(value) && value >= low && value <= high && this.structure;
     input.setCustomValidity(good ? "" : `expected ${low} to ${high}`);
-    if (!good || !this.structure) return;
+    if (!good || !this.structure) {
+      input.reportValidity();
+      return;
+    }
     const both = name === "D" ? ["D1", "D2"] : [name];
     const changed = both.reduce((structure, one) => withRatio(structure, one, value), this.structure);
     this.show(changed, input);
