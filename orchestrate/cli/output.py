@@ -257,10 +257,10 @@ class Files:
         check_output(result.parent)
         found = cls(result, formats, plots, arguments.force or not result.exists())
         others = [path for path in found.beside() if there(path)]
-        if store is not None and found.fresh and not arguments.force and others:
+        if store is not None and others and not result.exists():
             raise InputError(
-                f"{others[0]}: is there, without {result.name}; expected another --store, or "
-                "--force to replace it"
+                f"{others[0]}: is there, without {result.name}, and may be of others; expected "
+                "another --store, or remove it"
             )
         return found
 

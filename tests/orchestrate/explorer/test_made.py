@@ -147,6 +147,17 @@ def test_a_page_is_replaced_and_no_other_file(tmp_path):
     assert len(inodes) == 2 and [one.name for one in tmp_path.iterdir()] == ["notes.html"]
 
 
+def test_a_branch_of_no_numbers_is_refused(swept, tmp_path):
+    numbers = {"stable": ("point", [1, 1]), "xi_rel": (("sample", "point"), [[1.0, 2.0]])}
+    good = xr.Dataset({**numbers, "eta": ("point", [1.0, 1.1])}, attrs={"over": "eta"})
+    explore(swept, output=tmp_path / "page.html", branches=good)
+    for wrong in ([1.0, np.nan], [1.0, np.inf], ["a", "b"]):
+        with pytest.raises(InputError, match="branches: .*; expected a result"):
+            branches = good.assign(eta=("point", wrong))
+            explore(swept, output=tmp_path / "other.html", branches=branches)
+    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+
+
 WRONG = {
     "m1": ["heavy", 0.0, -1.0, np.nan, np.inf, np.array([1.0, 2.0])],
     "tolerance": ["small", np.nan, 0.0, np.array([1e-2, 1e-3])],
