@@ -13,6 +13,7 @@ from .children import Child, Ended, import_all, in_little_memory
 from .pages import Window, window
 
 SLOW = 30.0  # s
+WRONG = 0.2  # of the forged results have numbers that make no sense too
 LONG = 2000  # letters of a line that a person reads
 
 
@@ -30,9 +31,10 @@ class Hostile(Campaign):
         "and 2 GiB, and nothing is written outside of the temporary folder; or it is taken, where"
         " it does no harm. Every second input is a whole result, or a branch, whose texts are "
         "markup; the command makes a page of it, which Chromium opens: no script of the file "
-        "runs, no address in it is asked, and the page works."
+        "runs, no address in it is asked, and the page works. Of a fifth of them numbers are "
+        "changed too: such a file is refused, or its page works."
     )
-    unit, target, batch = "inputs", 2000, 50
+    unit, target, batch = "inputs", 2600, 50
     package = True
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
@@ -82,6 +84,9 @@ def opened(
 
     result, branches, page = (folder / name for name in ("f.nc", "b.nc", "page.html"))
     pages.forged(result, chance, load(good), seen.address)
+    wrong = chance.random() < WRONG
+    if wrong:
+        pages.with_wrong_numbers(result, chance)
     command = ["explore", str(result), "--no-open", "--output", str(page)]
     if chance.random() < 0.3:
         pages.forged_branch(branches, chance, load(branch), seen.address)
@@ -91,7 +96,8 @@ def opened(
     if not reason:
         fragment = pages.fragment(chance, seen.address)
         made = ended.code == 0
-        reason = seen.verdict(page, fragment) if made else f"no page: {ended.lines[-1][:200]}"
+        lost = "" if wrong else f"no page: {' / '.join(ended.lines)[:200]}"
+        reason = seen.verdict(page, fragment) if made else lost
     pages.clean_up(result, branches, page)
     return ended, reason
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import http.server
 import json
+import math
 import random
 import shutil
 import tempfile
@@ -80,6 +81,24 @@ def forged(place: Path, chance: random.Random, good: Any, address: str) -> None:
     if chance.random() < 0.5:
         letters = (letter for letter in wrapped(chance, bad) if letter.isprintable())
         data.attrs["x" + "".join(letters).replace("/", "|").strip()[:200]] = "a name that is markup"
+    data.to_netcdf(place, engine="netcdf4", encoding={name: {} for name in data.variables})
+
+
+def with_wrong_numbers(place: Path, chance: random.Random) -> None:
+    """An attribute or a variable of a forged result changed to what makes no sense."""
+    import xarray as xr
+
+    wrong = ("heavy", math.nan, math.inf, -1.0, 0.0, 1e308, 5e-324, [1.0, 2.0], "[nan, 0, 0, 0]")
+    data = xr.load_dataset(place, engine="netcdf4")
+    if chance.random() < 0.6:
+        names = ("m1", "m2", "k1", "d2", "e", "gamma", "bonded", "transient", "samples")
+        data.attrs[chance.choice((*names, "tolerance", "start", "direction"))] = chance.choice(
+            wrong
+        )
+    else:
+        name = chance.choice(("eta", "frequency", "amplitude", "end_state"))
+        value = chance.choice(wrong[:7])
+        data = data.assign({name: (data[name].dims, np.full(data[name].shape, value))})
     data.to_netcdf(place, engine="netcdf4", encoding={name: {} for name in data.variables})
 
 
