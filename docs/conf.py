@@ -45,6 +45,7 @@ myst_heading_anchors = 3
 nb_execution_timeout = 300
 nb_execution_raise_on_error = True
 nb_merge_streams = True
+nb_ipywidgets_js: dict[str, Any] = {}  # there are no widgets, and their scripts are others'
 nb_output_stderr = "remove"  # progress bars
 
 autodoc_default_options = {"members": True, "show-inheritance": True}

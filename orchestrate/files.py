@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import shutil
+import stat
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from .errors import StoreError
+from filelock import FileLock, Timeout
 
+from .errors import InputError, StoreError
+
+log = logging.getLogger(__name__)
 PROBE = ".writable"
 
 
@@ -42,6 +48,69 @@ def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -
     finally:
         temporary.unlink(missing_ok=True)
     return path
+
+
+@contextmanager
+def made_once(path: Path) -> Iterator[None]:
+    """Keep other processes from making a file meanwhile; who has waited finds it there.
+
+    Raises
+    ------
+    StoreError
+        Where its folder cannot be written.
+    """
+    open_folder(path.parent)
+    lock = FileLock(path.with_name(f".{path.name}.lock"))
+    try:
+        lock.acquire(timeout=0.0)
+    except Timeout:
+        log.info("%s: another process makes it, this one waits", path)
+        lock.acquire()
+    except (NotImplementedError, OSError) as error:  # of a disk without locks
+        log.info("%s: made without a lock (%s)", path, error)
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+def read_text(path: str | os.PathLike[str], most: int) -> str:
+    """The text of an ordinary file; devices and pipes may never end, and others be too long.
+
+    Parameters
+    ----------
+    path : path-like
+    most : int
+        Bytes that it may have.
+
+    Raises
+    ------
+    OSError
+        Where it cannot be read.
+    ValueError
+        Where it is no ordinary file, longer, or not UTF-8.
+    """
+    path = Path(path)
+    if not stat.S_ISREG(path.stat().st_mode):
+        raise ValueError("no ordinary file")
+    with path.open("rb") as file:
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise ValueError(f"{max(path.stat().st_size, len(data))} bytes, at most {most}")
+    return data.decode("utf-8")
+
+
+def check_name(path: str | os.PathLike[str]) -> None:
+    """See that a path is UTF-8: the libraries that write results take no other.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        str(Path(path).absolute()).encode("utf-8")
+    except UnicodeEncodeError:
+        raise InputError(f"{path}: a path that is not UTF-8; expected one that is") from None
 
 
 def reason(error: BaseException, folder: Path) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from pathlib import Path
 
 import pytest
 
 from orchestrate import cli
+from orchestrate.access import find
 from tools import assets
 
 from .exports import BUILD
@@ -49,3 +51,9 @@ def test_what_it_points_to_is_there():
     assert pages
     assert folders
     assert [p for p in (*pictures, *pages, *folders) if not (ROOT / p).exists()] == []
+
+
+def test_the_fmu_of_the_example_is_one_that_the_first_command_makes():
+    made = inspect.signature(find).parameters["form"].default
+    (block,) = (part for part in re.findall(r"```python\n(.*?)```", README, re.S) if "fmpy" in part)
+    assert re.findall(r'"build/([\w-]+)/', block) == [made]

@@ -12,7 +12,7 @@ from fmu_src.export.errors import CannotExport
 from fmu_src.export.platforms import PLATFORMS, chosen, this_machine, usual
 
 from ..errors import StoreError
-from ..files import open_folder, write_whole
+from ..files import made_once, open_folder, write_whole
 from .exported import SHIPPED, default_folder
 
 log = logging.getLogger(__name__)
@@ -41,15 +41,21 @@ def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | N
         return None
     places = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     token = sources.guid(source).encode()
-    for place in places:
-        path = place / FORM / sources.file_name(source, platform)
-        if path.is_file() and token in path.read_bytes():
+    paths = [place / FORM / sources.file_name(source, platform) for place in places]
+    for path in paths:
+        if is_of(path, token):
             return path
     try:
-        return compiled(source, platform, places[0])
+        with made_once(paths[0]):
+            return paths[0] if is_of(paths[0], token) else compiled(source, platform, places[0])
     except (CannotExport, StoreError) as reason:
         log.info("%s is not compiled, Python does the same: %s", source.name, reason)
         return None
+
+
+def is_of(path: Path, token: bytes) -> bool:
+    """Whether there is a library, of the source with this token."""
+    return path.is_file() and token in path.read_bytes()
 
 
 def build_libraries(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from ctypes import Array, byref, c_bool, c_double, c_uint, c_void_p, cast
+from math import isfinite
 from typing import Any, NamedTuple
 
 from ..errors import FmuError
@@ -57,6 +58,7 @@ class Channel:
         places, count, self._inputs = self._array(inputs)
         self._puts = [self._arguments(places, n, self._inputs) for n in range(count + 1)]
         places, count, self._outputs = self._array(outputs)
+        self._names = tuple(outputs)
         self._gets = self._arguments(places, count, self._outputs)
 
     def _array(self, names: Sequence[str]) -> tuple[Any, int, Any]:
@@ -124,6 +126,8 @@ class Channel:
         """Values of the outputs."""
         self._call(self._read, *self._gets)
         values: list[float] = self._outputs[:]
+        if not isfinite(sum(values)) and not all(map(isfinite, values)):
+            raise self.instance.no_number(self._names, values)
         return values
 
     def step(self, time: float, h: float) -> None:

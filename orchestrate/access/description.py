@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from .archive import check_archive, check_identifier
+from .archive import MOST_BYTES, check_archive, check_identifier
 
 SI = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
@@ -112,6 +112,9 @@ _known: dict[str, Description] = {}  # by digest: validation takes long
 
 def read_description(path: Path) -> Description:
     """Read and validate ``modelDescription.xml``, once in a process for a file's bytes."""
+    size = path.stat().st_size
+    if size > MOST_BYTES:  # packed, it is smaller than unpacked
+        raise ValueError(f"{size} bytes, at most {MOST_BYTES} expected")
     data = path.read_bytes()
     digest = hashlib.sha256(data).hexdigest()
     if digest not in _known:

@@ -14,7 +14,7 @@ from fmu_src.export import forms as sources
 from fmu_src.export.errors import CannotExport
 
 from ..errors import InputError, StoreError
-from ..files import open_folder
+from ..files import made_once, open_folder
 from ..version import __version__
 from .description import Description, describe
 
@@ -130,6 +130,15 @@ def export(
         raise StoreError(f"{folder}: {reason}; expected a folder that can be written") from None
 
 
+def exported_once(name: str, form: str, folder: Path, level: int) -> Description:
+    """Export one model in one form, where no other process has done so meanwhile."""
+    path = folder / form / f"{name}.fmu"
+    with made_once(path):
+        if not up_to_date(form, name, folder):
+            export(name, form, folder, level=level)
+    return describe(path, name)
+
+
 @functools.cache
 def announce(folder: Path, level: int) -> None:
     """Say once that it takes long."""
@@ -225,7 +234,7 @@ def find(
             if up_to_date(wanted, model, place):
                 return describe(place / wanted / f"{model}.fmu", model)
         try:
-            return describe(export(model, wanted, places[0], level=level), model)
+            return exported_once(model, wanted, places[0], level)
         except CannotExport as reason:
             reasons.append(reason)
     text = f"FMU {model}: there is none of the present sources, and none can be made here"

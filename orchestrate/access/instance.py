@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..errors import FmuError, InputError, VibroimpactError
 from .description import describe
@@ -253,7 +253,28 @@ class Instance:
         sizes = (c_size_t(len(values)),) if self.is_fmi3 else ()
         function = f"fmi{3 if self.is_fmi3 else 2}{verb}{kind}"
         call = self.prepared(function, references, c_size_t(count), values, *sizes)
+        if verb == "Get" and kind in REAL:
+            call = self._checked(call, variables, np.ctypeslib.as_array(values))
         return Transfer(call, values, places)
+
+    def _checked(
+        self, call: Prepared, variables: Sequence[tuple[Any, int]], values: NDArray[np.float64]
+    ) -> Prepared:
+        """A call that reads, and sees that the FMU has answered with numbers."""
+
+        def run() -> None:
+            call()
+            if not math.isfinite(values.sum()) and not np.isfinite(values).all():
+                names = [variable.name for variable, length in variables for _ in range(length)]
+                raise self.no_number(names, values)
+
+        return run
+
+    def no_number(self, names: Sequence[str], values: ArrayLike) -> FmuError:
+        """What is said of an FMU that answers NaN or infinity."""
+        wrong = int(np.flatnonzero(~np.isfinite(values))[0])
+        said = f"{names[wrong]} = {np.ravel(values)[wrong]}"
+        return FmuError(f"the FMU {self.description.name} answers {said}; expected a finite number")
 
     def initialize(self, start_time: float = 0.0, **values: float) -> None:
         """Set ``values`` and initialise."""

@@ -1,29 +1,19 @@
-"""Where FMUs are unpacked: a temporary folder of the process.
-
-It is removed at the end of the process; where that was killed, at the start of another one.
-"""
+"""Where FMUs are unpacked: the temporary folder of the process."""
 
 from __future__ import annotations
 
-import atexit
-import contextlib
 import hashlib
 import io
-import os
-import re
 import shutil
-import sys
 import tempfile
 import threading
 from pathlib import Path
 
 from ..errors import InputError, StoreError
-from ..files import alive
+from ..temporary import process_folder
 from .description import Description
 
-PREFIX = "vibroimpact-fmu-"
 _lock = threading.RLock()
-_folders: dict[int, Path] = {}  # by process: a forked child makes its own
 
 
 def unpacked(description: Description) -> Path:
@@ -67,38 +57,3 @@ def unpack(data: bytes, folder: Path) -> None:
     except BaseException:
         shutil.rmtree(partial, ignore_errors=True)
         raise
-
-
-def process_folder() -> Path:
-    """The folder of this process, made at the first call."""
-    pid = os.getpid()
-    folder = _folders.get(pid)
-    if folder is None or not folder.is_dir():
-        remove_leftovers()
-        folder = _folders[pid] = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{pid}-"))
-        atexit.register(remove, folder, pid)
-    return folder
-
-
-def remove(folder: Path, pid: int) -> None:
-    """Remove a folder at the end of the process that made it, not of one forked from it."""
-    if os.getpid() == pid:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def remove_leftovers() -> None:
-    """Remove this user's folders whose processes are gone: killed ones do not clean up."""
-    for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
-        match = re.match(rf"{PREFIX}(\d+)-", folder.name)
-        with contextlib.suppress(OSError):
-            if match and is_mine(folder) and not alive(int(match[1])):
-                shutil.rmtree(folder, ignore_errors=True)
-
-
-def is_mine(folder: Path) -> bool:
-    """Whether it is a folder, not a link to one, and this user's."""
-    return (
-        folder.is_dir()
-        and not folder.is_symlink()
-        and (sys.platform == "win32" or folder.lstat().st_uid == os.getuid())
-    )

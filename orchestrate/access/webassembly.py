@@ -14,7 +14,7 @@ from fmu_src.export.forms import MODELS
 from fmu_src.export.sources import model_sources
 
 from ..errors import InputError
-from ..files import open_folder, write_whole
+from ..files import made_once, open_folder, write_whole
 from .exported import SHIPPED, check, default_folder
 
 log = logging.getLogger(__name__)
@@ -73,17 +73,24 @@ def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKern
     places = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     wanted = sources.guid(MODELS[model])
     tables = sources.slots(MODELS[model]), sources.starts(MODELS[model])
-    for place in places:
-        path = place / FORM / f"{model}.wasm"
-        module = path.read_bytes() if path.is_file() else b""
-        if sources.guid_inside(module) == wanted:
+    paths = [place / FORM / f"{model}.wasm" for place in places]
+    for path in paths:
+        module = module_of(path, wanted)
+        if module:
             return WebKernel(module, *tables, wanted)
     try:
-        path = compiled(model, places[0])
+        with made_once(paths[0]):
+            module = module_of(paths[0], wanted) or compiled(model, places[0]).read_bytes()
     except CannotExport as reason:
         text = f"{model}.wasm: there is none of the present sources, and none can be made here"
         raise InputError(f"{text}: {reason}") from None
-    return WebKernel(path.read_bytes(), *tables, wanted)
+    return WebKernel(module, *tables, wanted)
+
+
+def module_of(path: Path, wanted: str) -> bytes:
+    """A module of the present sources; nothing where there is none."""
+    module = path.read_bytes() if path.is_file() else b""
+    return module if sources.guid_inside(module) == wanted else b""
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:

@@ -46,7 +46,7 @@ COMMANDS = (
     *(explore, paper),
 )
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
-KEPT = "nothing computed is lost, the same command goes on from here"
+STORE = "orchestrate.running.store"
 EXAMPLES = """examples:
   {program} build
   {program} sweep
@@ -130,6 +130,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def carry_out(arguments: Sequence[str]) -> int:
     """Run a command; returns the exit code."""
     set_up_logging()
+    if store := sys.modules.get(STORE):  # of a command before, in this process
+        store.STARTED.clear()
+        store.FINISHED.clear()
     chosen = make_parser().parse_args(with_negative_values(arguments))
     try:
         chosen.run(chosen)
@@ -140,7 +143,7 @@ def carry_out(arguments: Sequence[str]) -> int:
         if chosen.debug:
             raise
         reason = (str(error).strip().splitlines() or ["out of memory"])[0]
-        tell(f"error: {reason}; expected more memory, or an installation that is whole: {KEPT}")
+        tell(f"error: {reason}; expected more memory, or an installation that is whole; {kept()}")
         return FAILURE
     except (VibroimpactError, RuntimeError, OSError) as error:
         if chosen.debug:
@@ -152,12 +155,22 @@ def carry_out(arguments: Sequence[str]) -> int:
 
 def interrupted(ended: KeyboardInterrupt) -> int:
     """Say that a signal has ended the command; returns the exit code."""
-    from ..access.unpacked import remove_leftovers
+    from ..temporary import remove_leftovers
 
     remove_leftovers()  # of workers that were ended in the middle of a chunk
     terminated = isinstance(ended, Terminated)
-    tell(f"{'terminated' if terminated else 'interrupted'}: {KEPT}")
+    tell(f"{'terminated' if terminated else 'interrupted'}: {kept()}")
     return TERMINATED if terminated else INTERRUPTED
+
+
+def kept() -> str:
+    """What an interruption leaves: whether the same command goes on from there."""
+    store = sys.modules.get(STORE)  # not imported only to say that nothing is in it
+    if store and store.STARTED:
+        return "what was stored is kept, the same command goes on from there"
+    if store and store.FINISHED:
+        return "the result is stored, the same command (without --force) goes on from there"
+    return "nothing was stored, the same command begins anew"
 
 
 def tell(line: str) -> None:

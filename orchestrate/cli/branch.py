@@ -83,6 +83,8 @@ def over_of(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
 
     if arguments.limits is None:
         raise InputError("--limits: nothing given; expected FIRST:LAST")
+    if arguments.over == "g":
+        raise InputError("--over g: expected --over amplitude, in m, at one frequency")
     first, last = ends_of("--limits", arguments.limits)
     if arguments.over in UNITS:
         turns = TO_RAD_S[UNITS[arguments.over]]
@@ -100,6 +102,8 @@ def shaken(
             "--g: a branch over the frequency has one amplitude; expected --amplitude in m "
             "(impacts and bifurcations do not depend on the level)"
         )
+    if over == "frequency" and amplitude is None and not begun:
+        raise InputError(f"--over {arguments.over}: expected --amplitude in m with it")
     if name is None and over in ("eta", "frequency") or begun and name is None:
         return {} if amplitude is None else {"amplitude": amplitude}
     found = excitation_of(arguments, structure, one=True)

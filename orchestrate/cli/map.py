@@ -70,14 +70,16 @@ def axes(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
     """
     if len(arguments.over) != len(arguments.values):
         raise InputError("--over and --values: expected as many of one as of the other")
-    found = excitation_of(arguments, structure, one=len(arguments.over) == 2)
+    for name in arguments.over:
+        check_over(name, arguments)
+    twice = len(arguments.over) == 2
+    found = excitation_of(arguments, structure, one=twice, level=twice)
     if isinstance(found.get("amplitude"), tuple):
         raise InputError(
             "--g: a map over the frequency has one amplitude; expected --amplitude in m (what it "
             "shows does not depend on the level)"
         )
     for name, text in zip(arguments.over, arguments.values, strict=True):
-        check_over(name, arguments)
         if name in found:
             raise InputError(f"--over {name}: twice; expected two parameters")
         found[name] = values_of("--values", text, zero=True)[0]

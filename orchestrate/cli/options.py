@@ -249,7 +249,11 @@ def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual:
 
 
 def excitation_of(
-    arguments: argparse.Namespace, structure: Structure, si: bool = False, one: bool = False
+    arguments: argparse.Namespace,
+    structure: Structure,
+    si: bool = False,
+    one: bool = False,
+    level: bool = True,
 ) -> dict[str, Any]:
     """The box's motion as keywords of the public API.
 
@@ -262,6 +266,8 @@ def excitation_of(
         structure whose omega is not 1 rad/s.
     one : bool
         Whether it must be one frequency.
+    level : bool
+        Whether ``--g`` may tell the amplitude.
 
     Raises
     ------
@@ -286,7 +292,8 @@ def excitation_of(
             )
         return {"eta": values}
     if amplitude is None:
-        raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
+        either = "--amplitude in m or --g" if level else "--amplitude in m"
+        raise InputError(f"--{name} {text}: expected {either} with it")
     omega = structure.omega
     turns = each(TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values)
     if arguments.g is None:
@@ -443,11 +450,11 @@ def along(
 
 def check_over(over: str, arguments: argparse.Namespace) -> None:
     """See that what varies is the structure, and that ``--eta`` means one frequency then."""
-    if over in ("eta", "frequency"):
+    if over in FREQUENCIES:
         raise InputError(f"--over {over}: expected --{over} VALUES instead")
-    if over == "amplitude":
+    if over in ("amplitude", "g"):
         raise InputError(
-            "--over amplitude: a response over a eta^2 is the same at every amplitude; expected a "
+            f"--over {over}: a response over a eta^2 is the same at every amplitude; expected a "
             "parameter of the structure"
         )
     scaled = amplitude_of(arguments) is not None and arguments.eta is not None

@@ -176,8 +176,13 @@ def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> 
     >>> from orchestrate.structures import Structure
     >>> name_of("simulate", Structure(), {"eta": 0.4, "periods": 2})
     'simulate_e0.7_D0.005_eta0.4_7ed5cb'
+    >>> name_of("branch", Structure(), {"over": "frequency", "limits": (31.4159265, 62.831853)})
+    'branch_e0.7_D0.005_5-10Hz_e71461'
     """
-    parts = [command, structure.label(), *(brief(*item) for item in question.items())]
+    turns = question.get("over") == "frequency"  # then its values and limits are in Hz too
+    named = ("frequency" if turns and name in ("values", "limits") else name for name in question)
+    told = zip(named, question.values(), strict=True)
+    parts = [command, structure.label(), *(brief(*item) for item in told)]
     return "_".join(filter(None, [*parts, digest(structure.parameters(), question)]))
 
 
@@ -196,7 +201,7 @@ def brief(name: str, value: Any) -> str:
     """What a file's name says of a keyword: the frequency, what varies, the direction."""
     from ..structures import PARAMETERS
 
-    if name in ("direction", "over"):
+    if name in ("direction", "over") and value != "frequency":
         return "-".join(value) if isinstance(value, tuple) else str(value)
     if name in ("bifurcation", "switch"):
         return "" if value is None else f"{name}{value}"
@@ -252,10 +257,10 @@ class Files:
         check_output(result.parent)
         found = cls(result, formats, plots, arguments.force or not result.exists())
         others = [path for path in found.beside() if there(path)]
-        if store is not None and found.fresh and not arguments.force and others:
+        if store is not None and others and not result.exists():
             raise InputError(
-                f"{others[0]}: is there, without {result.name}; expected another --store, or "
-                "--force to replace it"
+                f"{others[0]}: is there, without {result.name}, and may be of others; expected "
+                "another --store, or remove it"
             )
         return found
 

@@ -17,7 +17,10 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
+from ..supervisor import fill_descriptors, heeded
+
 GRACE = 15.0  # s that a process has for ending on its own
+_ending = False  # whether a signal was heard
 
 
 class Terminated(KeyboardInterrupt):
@@ -88,13 +91,6 @@ def outputs() -> Iterator[Unfailing]:
         sys.stdout, sys.stderr = before
 
 
-def fill_descriptors() -> None:
-    """Open what was closed of the first three files, or a database would be the error output."""
-    while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
-        os.set_inheritable(number, True)
-    os.close(number)
-
-
 @contextmanager
 def signals() -> Iterator[None]:
     """SIGTERM ends the process as Ctrl-C does; one that hangs on its way out is ended anyway."""
@@ -102,6 +98,8 @@ def signals() -> Iterator[None]:
         signal.SIGINT: signal.default_int_handler,
         signal.SIGTERM: signal.SIG_DFL,
     }
+    global _ending
+    _ending = False
     ours = threading.current_thread() is threading.main_thread()
     taken = [
         number for number, given in usual.items() if ours and signal.getsignal(number) == given
@@ -127,7 +125,9 @@ def send_again(otherwise: Callable[[Any], object], lost: sys.UnraisableHookArgs)
         The hook for all other exceptions.
     lost : sys.UnraisableHookArgs
     """
+    global _ending
     if issubclass(lost.exc_type, KeyboardInterrupt):
+        _ending = False
         number = signal.SIGTERM if issubclass(lost.exc_type, Terminated) else signal.SIGINT
         threading.Timer(0.05, os.kill, (os.getpid(), number)).start()
     else:
@@ -135,7 +135,12 @@ def send_again(otherwise: Callable[[Any], object], lost: sys.UnraisableHookArgs)
 
 
 def end_soon(number: int, _: FrameType | None) -> None:
-    """End by an exception, and see that it does."""
+    """End by an exception, and see that it does; at once where it comes once more."""
+    global _ending
+    if _ending:
+        os._exit(128 + number)
+    _ending = True
+    heeded()
     threading.Thread(target=end_anyway, args=(number,), daemon=True).start()
     raise Terminated if number == signal.SIGTERM else KeyboardInterrupt
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import logging
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -23,6 +24,8 @@ HOW_DECIDED = {  # of attractors; nothing is said where Newton's method confirms
     2: ", by repeated states alone",
     4: ", undecided: near an unstable orbit",
 }
+FAR = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
+log = logging.getLogger(__name__)
 Question = Mapping[str, Any]
 Draw = Callable[["xr.Dataset"], Any]
 
@@ -62,6 +65,7 @@ def carry_out(
     name = "_".join(filter(None, [name_of(command, structure, question), ending]))
     files = Files.of(arguments, name)
     ask = getattr(orchestrate, command)
+    tell_where(arguments, structure, question)
     with preparing_a_picture(draw is not None and files.lacks_pictures()):
         data: xr.Dataset = ask(structure, **question, **running_of(arguments, files.result))
     for line in notes(structure):
@@ -101,6 +105,26 @@ def notes(structure: Structure) -> list[str]:
     if structure.alike:
         return ["both oscillators are alike: masses that start together never part"]
     return []
+
+
+def tell_where(arguments: argparse.Namespace, structure: Structure, question: Question) -> None:
+    """Say whose frequencies they are where nobody chose the structure, and where they are far."""
+    asked = question.get("frequency")
+    values = asked if isinstance(asked, tuple) else () if asked is None else (asked,)
+    if not values:
+        return
+    own = f"{structure.omega / TURN:.4g} Hz"
+    if getattr(arguments, "structure", "") == "paper" and not arguments.set:
+        omega = f"omega = {structure.omega:.6g} rad/s, {own}"
+        print(f"structure: the paper's, {omega} (--structure names another)")
+    low, high = (end(values) / structure.omega for end in (min, max))
+    if high > FAR or low < 1.0 / FAR:
+        ends = " to ".join(f"{ratio:.3g}" for ratio in dict.fromkeys((low, high)))
+        log.warning(
+            "frequencies of %s times the structure's %s are far from it: is it the structure that "
+            "is meant (--structure)?",
+            *(ends, own),
+        )
 
 
 def along_of(data: xr.Dataset) -> str:
@@ -191,7 +215,8 @@ def stored(option: str, path: Path) -> xr.Dataset:
     try:
         found = load(path)
     except StoreError as error:
-        raise InputError(f"{option} {error}; expected a NetCDF file") from None
+        expected = "" if "expected" in str(error) else "; expected a NetCDF file"
+        raise InputError(f"{option} {error}{expected}") from None
     try:
         json.loads(found.attrs.get("identity", '{"question": ""}'))["question"]
     except (ValueError, TypeError, KeyError, RecursionError):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from .shipped import READING
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,8 +34,10 @@ def overlay(found: xr.Dataset | None) -> dict[str, Any]:
         over = found.attrs.get("over", "nothing")
         raise InputError(f"branches over {over}: expected a result of orchestrate.branch over eta")
     try:
-        return {"branches": lines(found), "bifurcations": bifurcations(found)}
-    except (AttributeError, KeyError, TypeError, ValueError) as error:  # of a file's contents
+        drawn = {"branches": lines(found), "bifurcations": bifurcations(found)}
+        json.dumps(drawn, allow_nan=False)  # as the page reads it
+        return drawn
+    except READING as error:
         raise InputError(
             f"branches: a part is missing or of another kind ({error}); "
             "expected a result of orchestrate.branch over eta"
@@ -46,7 +50,7 @@ def lines(found: xr.Dataset) -> list[dict[str, Any]]:
     return [
         {"x": along.tolist(), "y": gaps.tolist(), "stable": bool(flag)}
         for samples in found.xi_rel.transpose("sample", "point").values
-        for along, gaps, flag in runs(found["eta"].values, samples, stable)
+        for along, gaps, flag in runs(found["eta"].values.astype(float), samples, stable)
     ]
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import base64
 import functools
-import json
-import re
+import hashlib
 import zlib
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import jinja2
+from markupsafe import Markup
 
 from ..access import OSCILLATOR, SHAKER
 from ..access.webassembly import WebKernel, web_kernel
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 SOURCES = Path(__file__).parent / "page"
+HEAD = b"<title>Explorer of a vibro-impacting structure</title>"  # by which a page is known
+READ = 4096  # bytes of a file that are read for it
 
 
 def explore(
@@ -83,6 +87,11 @@ def explore(
     path = Path(output)
     if path.is_dir():
         raise InputError(f"output = {str(output)!r}: is a folder; expected a file to write")
+    if path.exists() and HEAD not in first_bytes(path):
+        raise InputError(
+            f"output = {str(output)!r}: a file that is no page of the explorer; expected a name "
+            "that is free, or such a page to be replaced"
+        )
     open_folder(path.parent)
     kernels = {
         "oscillator": web_kernel(OSCILLATOR, build_folder),
@@ -92,24 +101,67 @@ def explore(
     return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
+def first_bytes(path: Path) -> bytes:
+    """The beginning of a file; nothing of what is no ordinary file."""
+    if not path.is_file():
+        return b""
+    with path.open("rb") as file:
+        return file.read(READ)
+
+
 def page(chosen: Shipped, drawn: dict[str, Any], kernels: dict[str, WebKernel]) -> str:
-    """The HTML of the page."""
+    """The HTML of the page: the one place where text meets HTML, which the template escapes."""
     scripts = modules()
     made_by = f"vibroimpact {__version__}, kernel {kernels['oscillator'].guid}"
     tables = {name: {"slots": one.slots, "starts": one.starts} for name, one in kernels.items()}
-    parts = {
-        "style": source("style.css"),
-        "title": title(chosen.structure),
-        "branches": "" if drawn["branches"] else "hidden",
-        "source": f"{made_by}; sweep by {chosen.source}" if chosen.source else made_by,
-        "table": as_json({**table(chosen), **drawn, **tables, "drive": weak_drive()}),
-        **{name: packed(kernel.module) for name, kernel in kernels.items()},
-        **voltages(),
-        "data": packed(chosen.numbers.astype("<f8").tobytes()),
-        "worker": bundle(scripts, "worker"),
-        "script": bundle(scripts, "main"),
-    }
-    return re.sub(r"\{(\w+)\}", lambda match: parts[match[1]], source("page.html"))
+    style, script = source("style.css"), bundle(scripts, "main")
+    return (
+        environment()
+        .get_template("page.html.j2")
+        .render(
+            policy=content_security_policy(style, script),
+            style=Markup(style),  # own sources, in elements whose content HTML takes as it stands
+            script=Markup(script),
+            worker=Markup(bundle(scripts, "worker")),
+            title=title(chosen.structure),
+            branches=drawn["branches"],
+            source=f"{made_by}; sweep by {chosen.source}" if chosen.source else made_by,
+            table={**table(chosen), **drawn, **tables, "drive": weak_drive()},
+            data=packed(chosen.numbers.astype("<f8").tobytes()),
+            **{name: packed(kernel.module) for name, kernel in kernels.items()},
+            **voltages(),
+        )
+    )
+
+
+@functools.cache
+def environment() -> jinja2.Environment:
+    """What fills the template: it escapes all that is not marked as HTML, and misses nothing."""
+    return jinja2.Environment(
+        loader=jinja2.PackageLoader("orchestrate.explorer", "page"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+    )
+
+
+def content_security_policy(style: str, script: str) -> str:
+    """What a browser lets the page do: run its own script and workers, and reach no network."""
+    return "; ".join(
+        (
+            "default-src 'none'",
+            f"script-src '{digest(script)}' 'wasm-unsafe-eval' blob:",
+            "worker-src blob:",
+            f"style-src '{digest(style)}'",
+            "img-src data: blob:",
+            "base-uri 'none'",
+            "form-action 'none'",
+        )
+    )
+
+
+def digest(content: str) -> str:
+    """The digest by which a policy names a script or a style sheet."""
+    return f"sha256-{base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()}"
 
 
 def table(chosen: Shipped) -> dict[str, Any]:
@@ -123,7 +175,6 @@ def table(chosen: Shipped) -> dict[str, Any]:
         "count": chosen.count,
         "low": chosen.low,
         "high": chosen.high,
-        "command": chosen.command,
     }
 
 
@@ -152,11 +203,6 @@ def title(structure: Structure) -> str:
     signs = {"D1": "D₁", "D2": "D₂", "mu": "μ", "kappa": "κ"}
     told = ", ".join(f"{signs.get(name, name)} = {value:g}" for name, value in ratios.items())
     return f"A delaminated beam in a shaken box: {told}"
-
-
-def as_json(value: Any) -> str:
-    """JSON that may stand inside HTML."""
-    return json.dumps(value).replace("<", "\\u003c")
 
 
 def packed(content: bytes) -> str:

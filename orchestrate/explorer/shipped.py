@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 EXPECTED = "expected a result of orchestrate.sweep along eta or frequency"
 SWEPT = ("eta", "frequency")
 SETTINGS = ("transient", "samples", "tolerance")
+READING = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)  # of a file
+MOST_PERIODS = 1_000_000  # of a response that a page computes within seconds
 PAPER = (0.1, 8.0)  # frequency ratios of Figure 6
 
 
@@ -38,8 +41,6 @@ class Shipped:
         Number of responses in a direction.
     low, high : float
         Ends of the frequency ratios.
-    command : str
-        How it was computed.
     source : str
         What computed it.
     """
@@ -51,14 +52,13 @@ class Shipped:
     count: int
     low: float
     high: float
-    command: str
     source: str
 
 
 def nothing(structure: Structure) -> Shipped:
     """No sweep: the page computes its first diagram itself, over the paper's frequency ratios."""
     settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
-    return Shipped(structure, ("up",), settings, np.empty(0), 0, *PAPER, "", "")
+    return Shipped(structure, ("up",), settings, np.empty(0), 0, *PAPER, "")
 
 
 def shipped(data: xr.Dataset) -> Shipped:
@@ -74,7 +74,18 @@ def shipped(data: xr.Dataset) -> Shipped:
     InputError
         Where it is something else.
     """
-    direction = check(data)
+    try:
+        return read(data, check(data))
+    except InputError:
+        raise
+    except READING as error:
+        raise InputError(
+            f"sweep: a part is missing or of another kind ({str(error)[:200]}); {EXPECTED}"
+        ) from None
+
+
+def read(data: xr.Dataset, direction: str) -> Shipped:
+    """What the page needs of a sweep that seems to be one."""
     structure = structure_of(data)
     directions = ("up", "down") if direction == "both" else (direction,)
     (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
@@ -85,17 +96,32 @@ def shipped(data: xr.Dataset) -> Shipped:
         lane = data.sel(direction=way) if "direction" in data.dims else data
         ends = lane.end_state.transpose(parameter, "coordinate").values * scale
         rows.append(starts(ends, numbers_of(data.attrs["start"]), way))
+    if any(row.dtype.kind != "f" for row in rows):
+        raise TypeError("texts among the numbers")
+    numbers = np.concatenate([row.ravel() for row in rows])
+    if not np.isfinite(numbers).all() or not float(data.eta.min()) > 0.0:
+        raise ValueError("numbers that are not finite, or a frequency ratio that is not above 0")
     return Shipped(
         structure=structure,
         directions=directions,
-        settings={name: float(data.attrs[name]) for name in SETTINGS},
-        numbers=np.concatenate([row.ravel() for row in rows]),
+        settings=settings_of(data),
+        numbers=numbers,
         count=data.sizes[parameter],
         low=float(data.eta.min()),
         high=float(data.eta.max()),
-        command=str(data.attrs["call"]),
         source=f"{data.attrs['source']}, {data.attrs['fmu_model']} {data.attrs['fmu_guid']}",
     )
+
+
+def settings_of(data: xr.Dataset) -> dict[str, float]:
+    """How the sweep was computed."""
+    found = {name: float(data.attrs[name]) for name in SETTINGS}
+    transient, samples, tolerance = found.values()
+    if not (transient.is_integer() and samples.is_integer() and transient >= 0 and samples >= 1):
+        raise ValueError(f"transient = {transient}, samples = {samples}")
+    if not (0.0 < tolerance < math.inf and transient + samples <= MOST_PERIODS):
+        raise ValueError(f"tolerance = {tolerance}, {transient + samples} periods")
+    return found
 
 
 def check(data: xr.Dataset) -> str:
@@ -103,10 +129,14 @@ def check(data: xr.Dataset) -> str:
     needed = {"eta", "frequency", "amplitude", "impacts_per_period", "end_state"}
     missing = needed - {str(name) for name in data.variables}
     direction = str(data.attrs.get("direction"))
-    if missing or not {*SETTINGS, "start", "m1", "call"} <= set(data.attrs):
+    if missing or not {*SETTINGS, "start", "m1"} <= set(data.attrs):
         raise InputError(f"{data.attrs.get('title', 'data')!r}: no sweep; {EXPECTED}")
     if not set(SWEPT) & {str(name) for name in data.impacts_per_period.dims}:
         raise InputError(f"sweep over {data.impacts_per_period.dims[-1]}: {EXPECTED}")
+    if direction not in ("up", "down", "both", "given"):
+        raise InputError(f"sweep with direction {direction!r}: {EXPECTED}")
+    if (direction == "both") != ("direction" in data.impacts_per_period.dims):
+        raise InputError(f"sweep with direction {direction!r}, of other dimensions: {EXPECTED}")
     if direction == "given" or data.sizes[str(data.impacts_per_period.dims[-1])] < 2:
         raise InputError("sweep of single frequencies: expected a range, up, down or both")
     return direction
@@ -116,12 +146,18 @@ def structure_of(data: xr.Dataset) -> Structure:
     """The structure that a dataset is about."""
     names = ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma")
     given: dict[str, Any] = {name: float(data.attrs[name]) for name in names}
-    return Structure(**given, bonded=bool(data.attrs["bonded"]))
+    bonded = float(data.attrs["bonded"])
+    if bonded not in (0.0, 1.0):
+        raise ValueError(f"bonded = {bonded}")
+    return Structure(**given, bonded=bool(bonded))
 
 
 def numbers_of(text: Any) -> NDArray[np.float64]:
     """Numbers of an attribute, a text such as ``[0.0, 1.0]``."""
-    return np.array([float(part) for part in str(text).strip("[]").split(",")])
+    found = np.array([float(part) for part in str(text).strip("[]").split(",")])
+    if found.shape != (4,):
+        raise ValueError(f"start = {text}")
+    return found
 
 
 def scales(data: xr.Dataset, structure: Structure) -> NDArray[np.float64]:

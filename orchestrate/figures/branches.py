@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..errors import InputError
 from .labels import EXCITATION, about, meanings, symbol
 from .marks import Marks, draw_samples
 from .orbit_diagram import scale
@@ -34,11 +35,19 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
     *branches : xarray.Dataset
         Of :func:`orchestrate.branch`, all along the same parameter.
     responses : xarray.Dataset, optional
-        Of :func:`orchestrate.sweep` along it, in one direction.
+        Of :func:`orchestrate.sweep` along it, in one direction or both.
     title : str
+
+    Raises
+    ------
+    InputError
+        Where they are along another parameter.
     """
     figure, (plane,) = panels(1, 1, (9.6, 5.8))
     name = str(branches[0].attrs["over"])
+    if responses is not None and name not in responses.xi_rel.dims:
+        along = ", ".join(map(str, responses.xi_rel.dims))
+        raise InputError(f"responses along {along}: expected a result of sweep along {name}")
     gaps = np.concatenate([found.xi_rel.values.ravel() for found in branches])
     scale(plane, gaps if responses is None else np.append(gaps, responses.xi_rel.values.ravel()))
     unit, label = unit_of(branches[0], name)
@@ -48,8 +57,8 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
     plane.set(xlabel=label, ylabel=rf"{XI_REL}$(nT)$", xlim=(low - edge, high + edge))
     plane.set_title(title or about(branches[0], EXCITATION))
     if responses is not None:
-        samples = responses.xi_rel.transpose(name, "sample").values
-        draw_samples(plane, responses[name].values / unit, samples, Marks(GREY))
+        gaps_of = responses.xi_rel.stack(of_all=[d for d in responses.xi_rel.dims if d != name])
+        draw_samples(plane, responses[name].values / unit, gaps_of.values, Marks(GREY))
     shown: set[str] = set()
     for found in branches:
         draw_branch(plane, found, name, unit)

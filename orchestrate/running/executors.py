@@ -13,7 +13,6 @@ import logging
 import os
 import signal
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,6 +24,8 @@ from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
 from ..errors import InputError, WorkerError
+from ..files import write_whole
+from ..temporary import process_folder
 from .identity import changed, code_of
 from .job import Job, Table, last_entries
 
@@ -92,11 +93,10 @@ def unpacked(model: str, content: bytes) -> Path:
 
 @functools.lru_cache(maxsize=16)
 def kept(model: str, digest: str, content: bytes) -> Path:
-    """Write an FMU into a folder of this process, once."""
-    folder = Path(tempfile.mkdtemp(prefix=f"vibroimpact-{os.getpid()}-"))
-    path = folder / f"{model}.fmu"
-    path.write_bytes(content)
-    return path
+    """Write an FMU into the temporary folder of this process, once."""
+    folder = process_folder() / f"sent-{digest[:32]}"
+    folder.mkdir(exist_ok=True)
+    return write_whole(folder / f"{model}.fmu", lambda place: place.write_bytes(content))
 
 
 class Workers(Protocol):
@@ -151,7 +151,8 @@ class Processes:
 
     remote = False
     losses: ClassVar[Mapping[type[BaseException], str]] = {
-        BrokenProcessPool: "a worker process ended without a word (killed, or out of memory)"
+        BrokenProcessPool: "a worker process ended without a word (an FMU has crashed or ended "
+        "it, it was killed, or out of memory)"
     }
 
     def __init__(self, count: int) -> None:

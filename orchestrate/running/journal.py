@@ -26,9 +26,9 @@ ENDINGS = ("", "-wal", "-shm")  # files of a database
 ANEW = "remove it to begin anew"
 
 
-def journal_path(result: Path) -> Path:
-    """Where the journal of a result lies."""
-    return result.with_name(f"{result.name}.journal")
+def journal_path(result: Path, anew: bool = False) -> Path:
+    """Where the journal of a result lies; another one where a finished result is computed anew."""
+    return result.with_name(f"{result.name}{'.anew' * anew}.journal")
 
 
 def discard(path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import logging
 import os
+import re
 import time
 from abc import ABC, abstractmethod
 from contextlib import suppress
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import InputError, StaleError, StoreError
-from ..files import open_folder, write_whole
+from ..files import check_name, open_folder, write_whole
 from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
@@ -26,13 +27,29 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 COMPRESSED = 10_000  # values from which a variable is worth compressing
+LAST_SECOND = 253_402_300_799  # of the year 9999
 LEVEL = 1  # of zlib: the last digits of numbers do not shrink, however long it tries
 
 
+STARTED: set[Path] = set()  # journals with chunks that this process has seen or written
+FINISHED: set[Path] = set()  # results, likewise; both for who says what an interruption costs
+
+
 def now() -> str:
-    """The time as ISO 8601; SOURCE_DATE_EPOCH in the environment fixes it, for equal bytes."""
-    seconds = float(os.environ.get("SOURCE_DATE_EPOCH") or time.time())
-    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(seconds))
+    """The time as ISO 8601; SOURCE_DATE_EPOCH in the environment fixes it, for equal bytes.
+
+    Raises
+    ------
+    InputError
+        Where that is no such number.
+    """
+    fixed = os.environ.get("SOURCE_DATE_EPOCH")
+    if fixed and not (re.fullmatch("[0-9]{1,12}", fixed) and int(fixed) <= LAST_SECOND):
+        raise InputError(
+            f"SOURCE_DATE_EPOCH = {fixed!r} in the environment: expected a whole number of seconds "
+            f"since 1970, up to {LAST_SECOND}"
+        )
+    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(int(fixed) if fixed else time.time()))
 
 
 class Store(ABC):
@@ -118,7 +135,7 @@ class Disk(Store):
     Parameters
     ----------
     path : Path
-        The NetCDF file.
+        The NetCDF file. Where it is computed anew, it stays as it is until the new one is whole.
     identity : dict
         What it answers.
     options : RunOptions
@@ -129,10 +146,14 @@ class Disk(Store):
         Where another question's result or journal is there.
     StaleError
         Where it answers this question, but was made by other code or another FMU.
+    StoreError
+        Where a file stands there that is no result of this project.
     """
 
     def __init__(self, path: Path, identity: Identity, options: RunOptions) -> None:
         self.path, self.identity, self.options = path, identity, options
+        check_name(path)
+        self.begun = now()
         open_folder(path.parent)
         if path.is_dir():
             raise InputError(
@@ -141,26 +162,31 @@ class Disk(Store):
         self._lock = Lock(path)
         self._journal: Journal | None = None
         self._found: xr.Dataset | None = None
-        self.begun = ""
         try:
             if path.exists() and options.force:
-                path.unlink()
-                discard(journal_path(path))
-            if path.exists():
+                read_identity(path)  # of another's file there is nothing to replace
+                self._open(journal_path(path, anew=True))
+            elif path.exists():
                 identity = read_identity(path)
                 self._found = load(path)  # first of all, or damage is taken for another question
                 self.check(identity, path)
+                FINISHED.add(path)
                 discard(journal_path(path))  # where the process was killed before it did so
             else:
-                self._journal = self.open_journal()
-                self.begun = self._journal.begun
+                self._open(journal_path(path))
         except BaseException:
             self.close()
             raise
 
-    def open_journal(self) -> Journal:
+    def _open(self, path: Path) -> None:
+        """Open the journal that this run goes on with."""
+        self._journal = self.open_journal(path)
+        self.begun = self._journal.begun
+        if not self._journal.is_empty():
+            STARTED.add(path)
+
+    def open_journal(self, path: Path) -> Journal:
         """The journal of this job, begun where there is none."""
-        path = journal_path(self.path)
         journal: Journal | None = None
         try:
             journal = Journal(path, self.identity, now())
@@ -214,15 +240,19 @@ class Disk(Store):
     def put(self, index: int, table: Table) -> None:
         """Keep a chunk."""
         self.journal.put(index, table)
+        STARTED.add(self.journal.path)
 
     def drop(self, index: int, reason: str) -> None:
         """Forget a chunk."""
         self.journal.drop(index, reason)
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Keep the result and drop the chunks."""
+        """Keep the result, in place of the one that was there, and drop the chunks."""
         write_netcdf(dataset, self.path)
+        FINISHED.add(self.path)
+        STARTED.discard(self.journal.path)
         self.journal.remove()
+        discard(journal_path(self.path))  # of a run that was killed as it finished
         self._journal = None
         self._found = load(self.path)
         return self._found
@@ -255,6 +285,7 @@ def load(path: Path) -> xr.Dataset:
     """
     import xarray as xr
 
+    check_name(path)
     try:
         data = xr.load_dataset(path, engine="netcdf4")
         told = data.attrs.pop(ATTRIBUTE, None)
@@ -295,11 +326,12 @@ def read_identity(path: Path) -> Identity:
     try:
         with netCDF4.Dataset(path) as found:
             identity: Identity = json.loads(found.getncattr("identity"))
-            return identity
+        identity["question"]  # or it is another's attribute of the same name
+        return identity
     except Exception as error:
         raise StoreError(
-            f"{path}: not a result of this project ({first_line(error)}); expected a "
-            "place that is free or holds one"
+            f"{path}: not a result of this project, or damaged ({first_line(error)}); "
+            f"choose another place, or {ANEW}"
         ) from error
 
 

@@ -31,6 +31,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
+from ..files import read_text, write_whole
 from .drive import Drive
 from .excitation import Excitation
 from .ranges import DRIVE, STRUCTURE, one_of
@@ -135,9 +136,7 @@ def parse(path: Path) -> dict[str, Any]:
     else:
         import tomli as tomllib
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise ValueError(f"{path.stat().st_size} bytes, at most {MOST_BYTES}")
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(read_text(path, MOST_BYTES))
     except OSError as error:
         reason = error.strerror or str(error)
     except ValueError as error:  # of the syntax, or of the encoding
@@ -171,8 +170,6 @@ def write(
     StoreError
         Where it cannot be written; what stood there before still does.
     """
-    from ..files import write_whole
-
     tables: dict[str, Mapping[str, float | bool]] = {}
     if structure is not None:
         tables["structure"] = structure.parameters()

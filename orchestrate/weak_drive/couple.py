@@ -544,6 +544,11 @@ def couple_job(
     hold = float(hold)
     job = CoupleJob(f"couple_{name}", structure, drive, schedule, scheme, start, hold, control)
     steps = schedule.duration / scheme.h
+    if steps <= MOST_STEPS and job.steps() < 1:
+        raise InputError(
+            f"duration = {schedule.duration:g} s: expected one communication step or more, "
+            f"duration >= {scheme.h:g}"
+        )
     if not steps <= MOST_STEPS:
         raise InputError(
             f"{steps:.2g} steps of {scheme.h:g} s in {schedule.duration:g} s: "

@@ -9,11 +9,13 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from itertools import pairwise
 from os import PathLike
-from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputError
+from ..files import read_text
+
+MOST_BYTES = 1 << 22  # of a file: some hundred thousand rows
 
 
 def check(
@@ -241,8 +243,8 @@ class Course(Schedule):
         InputError
         """
         try:
-            lines = Path(path).read_text(encoding="utf-8").splitlines()
-        except (OSError, UnicodeDecodeError) as error:
+            lines = read_text(path, MOST_BYTES).splitlines()
+        except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
             raise InputError(f"{path}: cannot be read ({reason}); expected a CSV file") from None
         rows: list[list[float]] = []

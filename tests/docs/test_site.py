@@ -6,6 +6,7 @@ Slow: it takes half a minute, most of it the tutorial's own questions.
 from __future__ import annotations
 
 import re
+import runpy
 import subprocess
 import sys
 import zlib
@@ -62,6 +63,12 @@ def test_nothing_comes_from_elsewhere(site):
     outside = re.compile(r'(?:<script[^>]* src|<link[^>]* href|<img[^>]* src)="(https?:[^"]*)"')
     for page in site.rglob("*.html"):
         assert outside.findall(page.read_text(encoding="utf-8")) == [], page.name
+
+
+def test_notebooks_ask_for_no_scripts_of_others():
+    """Of widgets, where their package is installed: they come from two other hosts by default."""
+    settings = runpy.run_path(str(DOCS / "conf.py"))
+    assert settings.get("nb_ipywidgets_js") == {}
 
 
 def test_functions_of_the_theory_are_there():

@@ -169,7 +169,8 @@ class Grids(Campaign):
         "pythonfmu form, WebAssembly; "
         "nor on the platform: each 25th set by the 64-bit ARM binary under an emulator. Parameter "
         "sets are drawn from twelve adversarial classes; that a set is refused, or not finished, "
-        "may not depend on the grid either. One differing bit is a finding."
+        "may not depend on the grid either, up to the limit of work of one step: a step that has "
+        "more to do gives up, where several would not. One differing bit is a finding."
     )
     unit, target, batch = "parameter sets", 10_000, 250
 

@@ -47,6 +47,35 @@ def toml(place: Path, chance: random.Random) -> None:
     place.write_bytes(data)
 
 
+def course(place: Path, chance: random.Random) -> None:
+    """A file of voltages over time."""
+    count, digits = chance.choice((1000, 1_000_000)), chance.choice((400, 100_000))
+    texts = (
+        "0,1\n" * count,
+        "0," + "9" * digits + "\n1,1\n",
+        "0,1e" + "9" * digits + "\n1,1\n",
+        "0,1\n1,nan\n",
+        "0,1\n1,inf\n",
+        "0,1\n-1,1\n",
+        "0,1\n1\n",
+        "0,1\n1,2,3\n",
+        "," * count,
+        f"0,1\n{MARKUP}\n",
+        f"0,1\n1,{LINES}\n",
+        "0,1\n1,=cmd|' /C calc'!A0\n",
+        "time,voltage\n" * count,
+        "#" * count,
+        "0,1\r1,2\r",
+        "\ufeff0,1\n1,2\n",
+        "\0" * count,
+        "",
+    )
+    data = chance.choice(texts).encode("utf-8", "surrogatepass")
+    if chance.random() < 0.2:
+        data = chance.randbytes(chance.randrange(1000))
+    place.write_bytes(data)
+
+
 def result(place: Path, chance: random.Random, good: Path) -> None:
     """A file of results."""
     (damage if chance.random() < 0.4 else forged)(place, chance, good)

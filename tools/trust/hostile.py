@@ -7,11 +7,13 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from . import archives, documents
+from . import archives, documents, pages
 from .campaign import Campaign, Outcome
 from .children import Child, Ended, import_all, in_little_memory
+from .pages import Window, window
 
 SLOW = 30.0  # s
+WRONG = 0.2  # of the forged results have numbers that make no sense too
 LONG = 2000  # letters of a line that a person reads
 
 
@@ -21,15 +23,18 @@ class Hostile(Campaign):
     name = "hostile"
     title = "Malicious input"
     asks = (
-        "FMU archives with paths that lead out, links, bombs, crowds of files, entities that grow "
-        "or read other files, names that are paths or markup, two files of one name; TOML that is "
-        "nested, huge or full of control characters; NetCDF cut short, forged, with dimensions of "
-        "terabytes or attributes that are markup. Each is refused in one line that begins with "
-        "`error:`, with an exit code, without a traceback, within 30 s and 2 GiB, and nothing is "
-        "written outside of the temporary folder; or it is taken, where it does no harm. "
-        "No command reads CSV."
+        "FMU archives with paths that lead out, links, bombs, crowds of files, entities that grow"
+        " or read other files, names that are paths or markup, two files of one name; TOML that "
+        "is nested, huge or full of control characters; CSV of voltages; NetCDF cut short, "
+        "forged, with dimensions of terabytes or attributes that are markup. Each is refused in "
+        "one line that begins with `error:`, with an exit code, without a traceback, within 30 s "
+        "and 2 GiB, and nothing is written outside of the temporary folder; or it is taken, where"
+        " it does no harm. Every second input is a whole result, or a branch, whose texts are "
+        "markup; the command makes a page of it, which Chromium opens: no script of the file "
+        "runs, no address in it is asked, and the page works. Of a fifth of them numbers are "
+        "changed too: such a file is refused, or its page works."
     )
-    unit, target, batch = "inputs", 1000, 50
+    unit, target, batch = "inputs", 2600, 50
     package = True
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
@@ -40,30 +45,61 @@ class Hostile(Campaign):
         import_all()
         for model in MODELS:
             web_kernel(model)  # or the first page would compile it
-        chance, counts, notes = random.Random(seed), {"refused:": 0, "taken:": 0}, []
-        with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder:
+        chance, notes = random.Random(seed), []
+        counts = {"refused:": 0, "taken:": 0, "pages in Chromium:": 0}
+        with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder, window() as seen:
             folder = Path(holder)
-            good = good_result(folder)
+            good, branch = good_results(folder)
             for number in range(count):
-                kind, arguments = prepare(folder, fmu, good, chance, number)
-                ended, strays = hand(arguments, folder)
-                reason = verdict(ended, strays)
+                if number % 2:
+                    kind, (ended, reason) = "page", opened(folder, good, branch, chance, seen)
+                    counts["pages in Chromium:"] += ended.code == 0
+                else:
+                    kind, arguments = prepare(folder, fmu, good, chance, number // 2)
+                    ended, strays = hand(arguments, folder)
+                    reason = verdict(ended, strays)
                 if reason:
                     notes.append(f"seed {seed}, input {number} ({kind}): {reason}")
                 counts["taken:" if ended.code == 0 else "refused:"] += 1
         return Outcome(count, len(notes), counts=counts, notes=tuple(notes))
 
 
-def good_result(folder: Path) -> Path:
-    """A result to be damaged."""
+def good_results(folder: Path) -> tuple[Path, Path]:
+    """A sweep and a branch, to be damaged and forged."""
     import orchestrate
 
-    place = folder / "good.nc"
-    structure = orchestrate.Structure.nondimensional()
-    orchestrate.sweep(
-        structure, eta=[1.0, 1.1], transient=2, samples=4, store=place, jobs=1, progress=False
-    )
-    return place
+    places = folder / "good.nc", folder / "branch.nc"
+    structure, usual = orchestrate.Structure.nondimensional(), {"jobs": 1, "progress": False}
+    orchestrate.sweep(structure, eta=[1.0, 1.1], transient=2, samples=4, store=places[0], **usual)
+    start = orchestrate.orbit(structure, eta=2.6, **usual)
+    orchestrate.branch(structure, start=start, limits=(2.45, 2.62), store=places[1], **usual)
+    return places
+
+
+def opened(
+    folder: Path, good: Path, branch: Path, chance: random.Random, seen: Window
+) -> tuple[Ended, str]:
+    """Forge a result that becomes a page, and open that; what is wrong, empty where nothing is."""
+    from orchestrate.running.store import load
+
+    result, branches, page = (folder / name for name in ("f.nc", "b.nc", "page.html"))
+    pages.forged(result, chance, load(good), seen.address)
+    wrong = chance.random() < WRONG
+    if wrong:
+        pages.with_wrong_numbers(result, chance)
+    command = ["explore", str(result), "--no-open", "--output", str(page)]
+    if chance.random() < 0.3:
+        pages.forged_branch(branches, chance, load(branch), seen.address)
+        command += ["--branches", str(branches)]
+    ended = Child(command, folder / "temporary", in_little_memory).wait(2.0 * SLOW)
+    reason = verdict(ended, [])
+    if not reason:
+        fragment = pages.fragment(chance, seen.address)
+        made = ended.code == 0
+        lost = "" if wrong else f"no page: {' / '.join(ended.lines)[:200]}"
+        reason = seen.verdict(page, fragment) if made else lost
+    pages.clean_up(result, branches, page)
+    return ended, reason
 
 
 def prepare(
@@ -78,6 +114,11 @@ def prepare(
         archives.KINDS[kind](fmu, place, chance)
         command = ["simulate", "--eta", "1", "--periods", "2", "--plot", "none"]
         return kind, [*command, "--output", str(folder / "results"), "--fmu", str(place)]
+    if turn == 2 and number % 8 == 2:
+        place = folder / "input.csv"
+        documents.course(place, chance)
+        command = ["couple", "--only", "delaminated", "--one-way", "--plot", "none"]
+        return "CSV", [*command, "--output", str(folder / "results"), "--course", str(place)]
     if turn == 2:
         place = folder / "input.toml"
         documents.toml(place, chance)
@@ -99,10 +140,7 @@ def hand(arguments: list[str], folder: Path) -> tuple[Ended, list[str]]:
     ended = Child(arguments, temporary, in_little_memory).wait(2.0 * SLOW)
     strays = [str(path) for path in outside(folder) if path.exists() and path not in before]
     left = [path.name for path in temporary.iterdir()] if temporary.exists() else []
-    page = folder / "page.html"
-    if page.exists() and "<script>alert(1)" in page.read_text("utf-8", "replace"):
-        left.append("markup in the page")
-    page.unlink(missing_ok=True)
+    pages.clean_up(folder / "page.html")
     shutil.rmtree(temporary, ignore_errors=True)
     shutil.rmtree(folder / "results", ignore_errors=True)
     return ended, strays + left

@@ -11,6 +11,7 @@ from . import programs
 from .campaign import Campaign, Outcome
 from .children import import_all
 
+FEWEST = 5000  # frequencies: of less, what a process takes once is more than what they hold
 PER_STEP = 1000  # steps for each instance, and for each frequency of the sweep
 LARGEST = (
     2000.0  # bytes that a frequency may hold: it has a state and a dozen numbers in the result
@@ -27,7 +28,7 @@ class Leaks(Campaign):
         "another one that stays, natively: after the first tenth the heap does not grow by a "
         "byte. And for each thousand steps a sweep has a frequency: the greatest memory of its "
         "process, against that of a sweep of a tenth, grows by less than 2,000 bytes a frequency, "
-        "about what the result holds."
+        "about what the result holds; there are 5,000 frequencies at least."
     )
     unit, target, batch = "steps", 100_000_000, 10_000_000
     measures = "bytes a frequency"
@@ -42,13 +43,14 @@ class Leaks(Campaign):
             if value > 0
         ]
         import_all()
-        few, many = (peak(fmu, part) for part in (number // 10, number))
-        each = max(0.0, (many - few) / (number - number // 10))
+        along = max(FEWEST, number)
+        few, many = (peak(fmu, part) for part in (along // 10, along))
+        each = max(0.0, (many - few) / (along - along // 10))
         if each > LARGEST:
             notes.append(f"a frequency: {each:.0f} bytes")
         if failed:
             notes.append(f"{failed} steps failed")
-        counts = {"instances:": number, "frequencies:": number}
+        counts = {"instances:": number, "frequencies:": along}
         return Outcome(count, len(notes), each, counts, tuple(notes))
 
 

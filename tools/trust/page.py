@@ -18,7 +18,9 @@ HEAD = f"""\
 What is promised is attacked: by campaigns that draw their attacks from a seed and say what they
 found. This page is made from their records, [`trust.jsonl`]({REPOSITORY}/docs/trust.jsonl), by
 `python -m tools.trust page`; a test keeps both together. A campaign's figures are the sum of its
-runs on the FMU (or, where the package is attacked, its sources) that was attacked last. Each run is
+runs on the FMU (or, where the package is attacked, its sources) that was attacked last; of several
+runs with one seed and the same campaigns, that with the most batches counts, and all that any of
+them found. Every run has its line, also where it repeats another. Each is
 repeated by its command, in a clone; `python -m tools.trust list` names the campaigns.
 
 What a campaign finds becomes a test, then is mended. A short form of each campaign is among the
@@ -30,16 +32,32 @@ TABLE = ["| campaign | target | reached | findings |", "|---|---|---|---|"]
 
 
 def together(records: Sequence[Record], campaign: Campaign) -> list[Record]:
-    """A campaign's runs on what it attacked last."""
+    """A campaign's runs on what it attacked last, of each seed the longest."""
+    return longest(all_of(records, campaign))
+
+
+def all_of(records: Sequence[Record], campaign: Campaign) -> list[Record]:
+    """All of a campaign's runs on what it attacked last."""
     own = [record for record in records if record.campaign == campaign.name]
-    return longest([record for record in own if same(record, own[-1])])
+    return [record for record in own if same(record, own[-1])]
+
+
+def batches(record: Record) -> tuple[str, int, str, str]:
+    """What decides on the batches of a run, but for how many there are."""
+    return record.campaign, record.seed, subject(record), record.campaigns
+
+
+def findings(records: Sequence[Record]) -> int:
+    """What was found, of runs of the same batches the most that one of them has found."""
+    most: dict[tuple[str, int, str, str], int] = {}
+    for record in records:
+        most[batches(record)] = max(most.get(batches(record), 0), record.findings)
+    return sum(most.values())
 
 
 def longest(records: Sequence[Record]) -> list[Record]:
     """Of each seed, on what was attacked, the run that has the batches of the others."""
-    found = {
-        (r.campaign, r.seed, subject(r)): r for r in sorted(records, key=lambda one: one.budget)
-    }
+    found = {batches(r): r for r in sorted(records, key=lambda one: one.budget)}
     return [record for record in records if any(record is other for other in found.values())]
 
 
@@ -62,18 +80,19 @@ def summary(records: Sequence[Record]) -> list[str]:
     """A table, a campaign a row."""
     lines = list(TABLE)
     for campaign in CAMPAIGNS.values():
-        runs = together(records, campaign)
-        done, found = sum(r.done for r in runs), sum(r.findings for r in runs)
+        done = sum(r.done for r in together(records, campaign))
+        found = findings(all_of(records, campaign))
         target = f"{number(campaign.target)} {campaign.unit}"
         link = f"[{campaign.title}](#trust-{campaign.name})"
         lines.append(f"| {link} | {target} | {number(done)} | {number(found)} |")
     return lines
 
 
-def reached(campaign: Campaign, runs: Sequence[Record], before: Sequence[Record]) -> list[str]:
+def reached(campaign: Campaign, every: Sequence[Record], before: Sequence[Record]) -> list[str]:
     """How much was done, what was found, and how long what is missing would take."""
+    runs = longest(every)
     done, seconds = sum(r.done for r in runs), sum(r.seconds for r in runs)
-    found = sum(r.findings for r in runs)
+    found = findings(every)
     lines = [
         f"{number(done)} {campaign.unit} of {number(campaign.target)} wanted; "
         f"{number(found)} findings.",
@@ -83,10 +102,10 @@ def reached(campaign: Campaign, runs: Sequence[Record], before: Sequence[Record]
         hours = (campaign.target - done) / done * seconds / 3600.0
         lines.append(f"What is missing would take {hours:.1f} hours of one core at this rate.")
     if before:
-        found = sum(record.findings for record in before)
+        done = sum(record.done for record in longest(before))
         lines.append(
-            f"Before, on other sources: {number(sum(r.done for r in before))} {campaign.unit}, "
-            f"{number(found)} findings."
+            f"Before, on other sources: {number(done)} {campaign.unit}, "
+            f"{number(findings(before))} findings."
         )
     if campaign.measures:
         worst = max(runs, key=lambda record: record.worst)
@@ -106,7 +125,7 @@ def section(campaign: Campaign, runs: Sequence[Record], before: Sequence[Record]
     if not runs:
         return [*lines, "Not run yet.", ""]
     lines += [*reached(campaign, runs, before), ""]
-    lines += [f"- {note}" for record in runs for note in record.notes]
+    lines += [f"- {note}" for note in dict.fromkeys(n for record in runs for n in record.notes)]
     if lines[-1]:
         lines.append("")
     lines += ["| command | done | findings | date | version |", "|---|---|---|---|---|"]
@@ -130,8 +149,8 @@ def text(records: Sequence[Record]) -> str:
     """The whole page."""
     lines = [*summary(records), ""]
     for campaign in CAMPAIGNS.values():
-        runs = together(records, campaign)
+        runs = all_of(records, campaign)
         own = [record for record in records if record.campaign == campaign.name]
-        before = longest([record for record in own if not same(record, runs[-1])])
+        before = [record for record in own if not same(record, runs[-1])]
         lines += section(campaign, runs, before)
     return HEAD + "\n".join([*lines, *about(records)])

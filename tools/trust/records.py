@@ -1,4 +1,7 @@
-"""What was done: a line of JSON a run, in ``docs/trust.jsonl``; lines are added, never changed."""
+"""What was done: a line of JSON a run, in ``docs/trust.jsonl``; lines are added, never changed.
+
+Every run has its line, also where the same command was run before: it may have found something.
+"""
 
 from __future__ import annotations
 
@@ -17,8 +20,19 @@ import xarray as xr
 
 from orchestrate.version import __version__
 
-PACKAGE = Path(__file__).resolve().parents[2] / "orchestrate"
-RECORDS = Path(__file__).resolve().parents[2] / "docs" / "trust.jsonl"
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "orchestrate"
+RECORDS = ROOT / "docs" / "trust.jsonl"
+SOURCES = (
+    ".py",
+    ".c",
+    ".h",
+    ".js",
+    ".css",
+    ".j2",
+    ".html",
+    ".toml",
+)  # a program's
 
 
 @dataclass(frozen=True)
@@ -41,7 +55,9 @@ class Record:
     seconds : float
         Of the processor.
     date, version, fmu, package, machine : str
-        ``fmu`` is the GUID of the FMU, ``package`` a digest of the sources of ``orchestrate``.
+        ``fmu`` is the GUID of the FMU, ``package`` a digest of the sources of ``orchestrate``,
+    campaigns : str
+        and this one of the campaigns' own; empty in records from before there was one.
     """
 
     campaign: str
@@ -59,6 +75,7 @@ class Record:
     fmu: str
     package: str
     machine: str
+    campaigns: str = ""
 
     def command(self) -> str:
         """What does it again."""
@@ -66,10 +83,9 @@ class Record:
             f"python -m tools.trust run {self.campaign} --seed {self.seed} --budget {self.budget}"
         )
 
-    def is_again(self, other: Record) -> bool:
-        """Whether another record is of the same run: then it says nothing new."""
-        names = ("campaign", "seed", "budget", "fmu", "package")
-        return all(getattr(self, name) == getattr(other, name) for name in names)
+    def is_copy(self, other: Record) -> bool:
+        """Whether another record is of this very run, its stored result read once more."""
+        return {**asdict(self), "date": ""} == {**asdict(other), "date": ""}
 
 
 def record_of(campaign: str, seed: int, budget: int, found: xr.Dataset) -> Record:
@@ -92,17 +108,19 @@ def record_of(campaign: str, seed: int, budget: int, found: xr.Dataset) -> Recor
         date=time.strftime("%Y-%m-%d", time.gmtime()),
         version=__version__,
         fmu=str(found.attrs["fmu_guid"]),
-        package=package(),
+        package=digest(PACKAGE),
         machine=machine(),
+        campaigns=str(found.attrs["sources"]),
     )
 
 
-def package() -> str:
-    """A digest of the package's sources."""
-    digest = hashlib.sha256()
-    for path in sorted(PACKAGE.rglob("*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+def digest(folder: Path) -> str:
+    """A digest of a program's sources, with their names."""
+    found = hashlib.sha256()
+    for path in sorted(path for path in folder.rglob("*") if path.suffix in SOURCES):
+        content = path.read_bytes()
+        found.update(f"{path.relative_to(folder).as_posix()} {len(content)}\n".encode() + content)
+    return found.hexdigest()[:16]
 
 
 def machine() -> str:
@@ -123,8 +141,8 @@ def read(path: Path = RECORDS) -> list[Record]:
 
 
 def append(record: Record, path: Path = RECORDS) -> bool:
-    """Add a record; false where one of the same run is there."""
-    if any(record.is_again(other) for other in read(path)):
+    """Add a run's record; false where it is there already."""
+    if any(record.is_copy(other) for other in read(path)):
         return False
     row: dict[str, Any] = asdict(record)
     with path.open("a", encoding="utf-8") as file:

@@ -15,7 +15,7 @@ import { load } from "./payload.js";
 import { Regions } from "./regions.js";
 import { USUAL } from "./response.js";
 import { shown } from "./scale.js";
-import { pointAt, sameStructure } from "./structure.js";
+import { pointAt, sameStructure, titleOf } from "./structure.js";
 import { diagramCsv, driveCsv, impactsCsv, motionCsv, sectionCsv, spectrumCsv } from "./tables.js";
 
 /**
@@ -203,6 +203,7 @@ export class App {
     Object.assign(input("forth"), { disabled: place >= seen.length - 1 });
     Object.assign(input("eta"), { min: diagram.low, max: diagram.high, step: (diagram.high - diagram.low) / 2000 });
     if (Number.isFinite(this.eta)) input("eta").value = String(this.eta);
+    at("structure").textContent = titleOf(this.structure);
     at("command").textContent = diagramCommand(diagram, this.table.usual);
     this.regions.view.picture.describe(`Orbit diagram, gap over frequency ratio from ${shown(diagram.low, 6)} to ${shown(diagram.high, 6)}, ${count} responses. Arrow keys choose a frequency, plus and minus zoom, b and f go back and forth.`);
     this.write();

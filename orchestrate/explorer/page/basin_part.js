@@ -38,7 +38,10 @@ export class BasinPart {
     list.replaceChildren(
       ...this.view.words().map(({ colour, text }) => {
         const row = document.createElement("li");
-        row.innerHTML = `<span class="key" style="background:${colour}"></span>${text}`;
+        const key = document.createElement("span");
+        key.className = "key";
+        key.style.background = colour;
+        row.append(key, text);
         return row;
       }),
     );

@@ -91,7 +91,7 @@ export class BasinView {
     const total = this.labels.reduce((sum, one) => sum + (one >= 0 ? 1 : 0), 0) || 1;
     return this.attractors.map(({ multiplicity, impacts }, number) => {
       const share = this.labels.reduce((sum, one) => sum + (one === number ? 1 : 0), 0) / total;
-      const kind = multiplicity ? `period ${multiplicity}` : "irregular";
+      const kind = multiplicity ? `period ${multiplicity}` : "not periodic";
       return { colour: colourOf(number), text: `${kind}, ${shown(impacts, 3)} impacts per period: ${(100 * share).toFixed(1)} %` };
     });
   }

@@ -46,14 +46,16 @@ export class Controls {
   slider({ name, label, low, high, step }) {
     const row = document.createElement("div");
     row.className = "slider";
-    row.innerHTML = `<label for="${name}">${label}</label>
-      <input type="range" id="${name}" min="${low}" max="${high}" step="${step}">
-      <input type="number" id="${name}-number" min="${low}" max="${high}" step="any" aria-label="${label}, number">`;
-    const inputs = [...row.querySelectorAll("input")];
+    const inputs = [
+      inputOf({ type: "range", id: name, min: low, max: high, step }),
+      inputOf({ type: "number", id: `${name}-number`, min: low, max: high, step: "any" }),
+    ];
+    inputs[1].ariaLabel = `${label}, number`;
+    row.append(labelOf(name, label), ...inputs);
     this.inputs.set(name, inputs);
-    for (const input of inputs) {
-      input.addEventListener("input", () => this.set(name, input, low, high));
-    }
+    inputs[0].addEventListener("input", () => this.set(name, inputs[0], low, high));
+    // not while it is typed: 1.7 begins with 1
+    inputs[1].addEventListener("change", () => this.set(name, inputs[1], low, high));
     return row;
   }
 
@@ -61,9 +63,10 @@ export class Controls {
   entry(name, unit, [low, high]) {
     const row = document.createElement("div");
     row.className = "entry";
-    row.innerHTML = `<label for="${name}">${name[0]}<sub>${name[1]}</sub>, ${unit}</label>
-      <input type="number" id="${name}" step="any" min="${low}" max="${high}">`;
-    const input = /** @type {HTMLInputElement} */ (row.querySelector("input"));
+    const index = document.createElement("sub");
+    index.textContent = name[1];
+    const input = inputOf({ type: "number", id: name, step: "any", min: low, max: high });
+    row.append(labelOf(name, name[0], index, `, ${unit}`), input);
     this.inputs.set(name, [input]);
     input.addEventListener("change", () => this.set(name, input, low, high));
     return row;
@@ -74,7 +77,10 @@ export class Controls {
     const value = input.valueAsNumber;
     const good = Number.isFinite(value) && value >= low && value <= high && this.structure;
     input.setCustomValidity(good ? "" : `expected ${low} to ${high}`);
-    if (!good || !this.structure) return;
+    if (!good || !this.structure) {
+      input.reportValidity();
+      return;
+    }
     const both = name === "D" ? ["D1", "D2"] : [name];
     const changed = both.reduce((structure, one) => withRatio(structure, one, value), this.structure);
     this.show(changed, input);
@@ -93,6 +99,21 @@ export class Controls {
       }
     }
   }
+}
+
+/** @param {Record<string, string | number>} attributes */
+function inputOf(attributes) {
+  const input = document.createElement("input");
+  for (const [name, value] of Object.entries(attributes)) input.setAttribute(name, String(value));
+  return input;
+}
+
+/** @param {string} name of its input @param {(string | Node)[]} parts */
+function labelOf(name, ...parts) {
+  const label = document.createElement("label");
+  label.htmlFor = name;
+  label.append(...parts);
+  return label;
 }
 
 /** Frequency in Hz of a frequency ratio, and back. */

@@ -12,7 +12,7 @@ import { lengthOf, pointAt } from "./structure.js";
  * @typedef {{direction: "up" | "down", found: (Found | undefined)[], starts: Float64Array | null, from: number[] | null}} Lane
  *   `starts`: where each response begins, if that is known beforehand; `from`: where a chain does
  * @typedef {{structure: Structure, direction: Direction, low: number, high: number, points: Point[],
- *   lanes: Lane[], settings: import("./response.js").Settings, origin: string}} Diagram
+ *   lanes: Lane[], settings: import("./response.js").Settings}} Diagram
  */
 
 export const LOWEST = 1e-5; // gaps below are drawn in the strip of zero
@@ -56,7 +56,7 @@ export function empty(structure, { low, high, direction }, count, settings) {
     starts: null,
     from: null,
   }));
-  return { structure, direction, low, high, points, lanes, settings, origin: "" };
+  return { structure, direction, low, high, points, lanes, settings };
 }
 
 /** Index of the frequency nearest to `eta`. @param {Diagram} diagram @param {number} eta */

@@ -1,6 +1,7 @@
 /** The chosen response: its motion, section, spectrum, sound; each asked of the workers. */
 
 import { Animation } from "./animation.js";
+import { axisAround } from "./chart.js";
 import { historyChart, motionPictures, numbersOf, phaseChart, sectionChart, spectrumChart, columnsOf } from "./motion_view.js";
 import { shown } from "./scale.js";
 import { Sound } from "./sound.js";
@@ -109,6 +110,7 @@ export class Inspector {
       const look = /** @type {const} */ ({ colour: "soft", label: "bonded", width: 2, alpha: 0.8 });
       history.series.unshift({ x: turns, y: x1, ...look });
       phase.series.unshift({ x: x1, y: v1, ...look });
+      for (const chart of [history, phase]) widen(chart);
     }
     const words = `at frequency ratio ${point.eta}`;
     this.pictures.show("history", history, `Time histories of both masses ${words}: ${motion.impactTime.length} impacts in ${this.periods} periods, permanent contact in ${history.spans?.length ?? 0} spans`);
@@ -143,7 +145,9 @@ export class Inspector {
   /** @param {any} part */
   takeSpectra(part) {
     if (part.exponent !== undefined) {
-      const verdict = part.exponent > 0.005 ? " (chaotic)" : part.exponent < -0.002 ? " (regular)" : "";
+      const repeats = this.found?.response.multiplicity;
+      const settles = repeats ? " (regular)" : " (it converges, but has not repeated yet)";
+      const verdict = part.exponent > 0.005 ? " (chaotic)" : part.exponent < -0.002 ? settles : "";
       this.at("exponent").textContent = `${shown(part.exponent, 3)}${verdict}`;
       return;
     }
@@ -162,6 +166,13 @@ export class Inspector {
       this.told();
     });
   }
+}
+
+/** Let the axes of a chart hold all of its curves; time stays as it is. @param {import("./chart.js").Chart} chart */
+function widen(chart) {
+  const curves = chart.series.filter(({ dots }) => !dots);
+  chart.y = axisAround(curves.map(({ y }) => y), chart.y.label ?? "");
+  if (!chart.spans) chart.x = axisAround(curves.map(({ x }) => x), chart.x.label ?? "");
 }
 
 /** @param {string} tag @param {string} text */

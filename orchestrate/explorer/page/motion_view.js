@@ -12,6 +12,7 @@ import { lengthOf, omegaOf } from "./structure.js";
  * @typedef {import("./chart.js").Chart} Chart
  */
 
+const GRAVITY = 9.80665; // m/s²
 const WAIT = "click the orbit diagram";
 
 /** @param {(id: string) => HTMLElement} at the page's elements */
@@ -136,13 +137,25 @@ export function spectrumChart({ delaminated, bonded }) {
   };
 }
 
+/** The same in Hz, mm and g, of a structure that is not the paper's of 1 rad/s. @param {import("./response.js").Response} response @param {Point} point @returns {Record<string, string>} */
+function inUnits({ peak }, { structure, eta, frequency, amplitude }) {
+  if (Math.abs(omegaOf(structure) - 1) < 1e-9) return {};
+  return {
+    "frequency, Hz": shown(frequency / (2 * Math.PI), 6),
+    "amplitude of the box, mm": shown(1e3 * amplitude),
+    "acceleration of the box, g": shown((amplitude * frequency * frequency) / GRAVITY),
+    "largest gap, mm": shown(1e3 * peak * amplitude * eta * eta),
+  };
+}
+
 /** Numbers of a response for people. @param {import("./response.js").Response} response @param {Point} point */
 export function numbersOf(response, point) {
   return {
     "frequency ratio η": String(point.eta),
     "impacts per period": shown(response.impacts),
-    multiplicity: response.multiplicity ? String(response.multiplicity) : "0 (irregular)",
+    multiplicity: response.multiplicity ? String(response.multiplicity) : "0 (does not repeat)",
     "largest gap ξ": shown(response.peak, 6),
+    ...inUnits(response, point),
     "permanent contact": response.contact ? "yes" : "no",
   };
 }

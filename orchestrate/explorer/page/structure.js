@@ -24,6 +24,14 @@ export function ratiosOf(s) {
   };
 }
 
+/** A structure in a few words. @param {Structure} s */
+export function titleOf(s) {
+  const { D1, D2, mu, kappa } = ratiosOf(s);
+  const ratios = { e: s.e, "D₁": D1, "D₂": D2, "μ": mu, "κ": kappa };
+  const told = Object.entries(ratios).map(([name, value]) => `${name} = ${Number(value.toPrecision(6))}`);
+  return `A ${s.bonded ? "bonded" : "delaminated"} beam in a shaken box: ${told.join(", ")}`;
+}
+
 /**
  * A structure that differs in one of the paper's numbers; `mu` keeps the damping ratios.
  * @param {Structure} s

@@ -7,7 +7,7 @@ import signal
 import sys
 
 from orchestrate.access import Instance
-from orchestrate.access.unpacked import process_folder
+from orchestrate.temporary import process_folder
 
 
 def work(path: str) -> None:

@@ -7,6 +7,8 @@ import shutil
 import subprocess
 import sys
 import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -281,3 +283,27 @@ def test_two_at_once_see_whole_files_alone(tmp_path, python_fmu):
     assert [one.returncode for one in both] == [0, 0], errors
     assert len(seen) > 5 and set(seen) == {OSCILLATOR}
     assert [item.name for item in path.parent.iterdir()] == [path.name]
+
+
+def test_who_waits_for_an_export_does_not_make_it_again(maker, places, monkeypatch):
+    quick, met = exported.sources.export, threading.Barrier(2, timeout=10.0)
+    check = exported.up_to_date
+
+    def slow(*arguments):
+        time.sleep(0.5)
+        return quick(*arguments)
+
+    def both_find_nothing(*arguments):
+        there = check(*arguments)
+        if not there and len(seen) < 2:
+            seen.append(there)
+            met.wait()
+        return there
+
+    seen = []
+    monkeypatch.setattr(exported.sources, "export", slow)
+    monkeypatch.setattr(exported, "up_to_date", both_find_nothing)
+    with ThreadPoolExecutor(2) as threads:
+        found = list(threads.map(lambda _: find(OSCILLATOR).path, range(2)))
+    assert found == [places[0] / "fmi3" / f"{OSCILLATOR}.fmu"] * 2
+    assert len(maker.asked) == 1

@@ -11,8 +11,9 @@ import pytest
 
 from fmu_src.version import VERSION
 from orchestrate.access import Instance, describe
-from orchestrate.access.unpacked import PREFIX, process_folder, unpacked
+from orchestrate.access.unpacked import unpacked
 from orchestrate.errors import InputError, StoreError
+from orchestrate.temporary import PREFIX, process_folder
 
 from .altered import altered_fmu
 

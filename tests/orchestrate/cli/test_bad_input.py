@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import socket
+import sys
 
 import netCDF4
 import pytest
@@ -393,3 +395,46 @@ def test_a_result_whose_identity_is_damaged(ask, tmp_path):
     with netCDF4.Dataset(path, "w") as file:
         file.setncattr("identity", "[")
     ask("border", "--start", path, *PAIRS).complaint("identity is damaged")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of any bytes")
+def test_a_path_that_is_not_utf_8_is_refused_before_anything_is_computed(ask, tmp_path):
+    name = tmp_path / os.fsdecode(b"results-\xff")
+    done = ask("sweep", "--eta", "1", *QUICK, output=name)
+    done.complaint("results-\\udcff", "not UTF-8")
+    ask("sweep", "--eta", "1", *QUICK, "--store", name / "a.nc").complaint("not UTF-8")
+    copy = name.with_suffix(".nc")
+    ask("sweep", "--eta", "1:1.1:0.1", *QUICK, "--store", tmp_path / "a.nc")
+    copy.write_bytes((tmp_path / "a.nc").read_bytes())
+    ask("explore", copy, "--no-open", output=tmp_path / "page.html").complaint("not UTF-8")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.nc", "a.png", copy.name]
+
+
+@pytest.mark.parametrize("value", ["abc", "1.5", "-1", "1e400", "9" * 30, " 1", "\u0661"])
+def test_a_time_of_the_environment_that_is_none_is_refused(ask, monkeypatch, value):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", value)
+    done = ask("sweep", "--eta", "1", *QUICK)
+    done.complaint("SOURCE_DATE_EPOCH", "whole number of seconds")
+
+
+def test_an_fmu_of_gigabytes_is_not_read(ask, tmp_path):
+    path = tmp_path / "large.fmu"
+    with path.open("wb") as file:
+        file.truncate(8 << 30)
+    ask("sweep", "--eta", "1", "--fmu", path).complaint(path, f"{8 << 30} bytes, at most")
+
+
+RECOMMENDED = [
+    (("map", "--hz", "8:20:4", "--over", "e", "--values", "0.3,0.5"), "--amplitude in m with it"),
+    (("map", "--hz", "8:20:4", "--over", "g", "--values", "0.3,0.5"), "--over g: a response"),
+    (("map", "--hz", "8", "--over", "hz", "--values", "1,2"), "--over hz: expected --hz VALUES"),
+    (("branch", "--over", "hz", "--limits", "20:30", "--hz", "20"), "--amplitude in m with it"),
+    (("branch", "--over", "hz", "--limits", "20:30"), "--over hz: expected --amplitude in m"),
+    (("branch", "--over", "g", "--limits", "1:2", "--hz", "20"), "expected --over amplitude"),
+]
+
+
+@pytest.mark.parametrize(("asked", "words"), RECOMMENDED)
+def test_nothing_is_recommended_that_is_refused_then(ask, asked, words):
+    line = ask(*asked, "--structure", "beam").complaint(words)
+    assert "--g with it" not in line and "--g in" not in line

@@ -25,12 +25,16 @@ Dask = tuple[subprocess.Popen[bytes], IO[str]]
 Nodes = tuple[str, list[Dask]]
 
 
-def start(folder: Path, name: str, *arguments: str) -> Dask:
-    """A process of Dask, and its log."""
+def start(folder: Path, name: str, *arguments: str, temporary: Path | None = None) -> Dask:
+    """A process of Dask, and its log; its temporary files in a folder of their own."""
     log = (folder / f"{name}.log").open("w+")
     command = [sys.executable, "-m", "dask", *arguments]
     streams = {"stdout": log, "stderr": subprocess.STDOUT}
-    return subprocess.Popen(command, cwd=ROOT, start_new_session=True, **streams), log
+    surroundings = {**os.environ, **({"TMPDIR": str(temporary)} if temporary else {})}
+    process = subprocess.Popen(
+        command, cwd=ROOT, env=surroundings, start_new_session=True, **streams
+    )
+    return process, log
 
 
 def read(dask: Dask, pattern: str) -> str:
@@ -87,3 +91,37 @@ def test_a_scheduler_that_ends_is_told_in_one_line(commands, cluster):
     read(scheduler, "Receive client connection")
     os.kill(scheduler[0].pid, signal.SIGKILL)
     end(process).complaint("scheduler", "has ended", "the same call goes on", code=1)
+
+
+QUESTION = """
+import sys
+from orchestrate import Structure, sweep
+sweep(Structure(), eta=[1.0, 1.1], transient=2, samples=2, cluster=sys.argv[1], progress=False)
+"""
+
+
+@pytest.mark.parametrize("nanny", ["--nanny", pytest.param("--no-nanny", marks=pytest.mark.slow)])
+def test_workers_leave_no_fmu_behind(tmp_path, nanny):
+    pytest.importorskip("distributed")
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    place = ("--nthreads", "1", nanny, "--no-dashboard", "--local-directory", str(tmp_path))
+    started = [start(tmp_path, "scheduler", "scheduler", *options)]
+    try:
+        address = read(started[0], r"tcp://127\.0\.0\.1:\d+")
+        started.append(start(tmp_path, "one", "worker", address, *place, temporary=temporary))
+        read(started[1], "Registered to")
+        command = [sys.executable, "-c", QUESTION, address]
+        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+        assert list(temporary.iterdir()), "the worker had no FMU"
+        started[1][0].send_signal(signal.SIGTERM)
+        started[1][0].wait(60.0)
+        left = [path.name for path in temporary.iterdir() if "vibroimpact" in path.name]
+        assert left == []
+    finally:
+        for process, log in started:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            log.close()

@@ -15,7 +15,8 @@ from orchestrate.cli import main
 from .commands import all_end, below, end, kill, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups and /proc")
-INTERRUPTED = "interrupted: nothing computed is lost, the same command goes on from here"
+INTERRUPTED = "interrupted: what was stored is kept, the same command goes on from there"
+BEGINS_ANEW = "interrupted: nothing was stored, the same command begins anew"
 RUNS = {  # long enough to be ended by force, chaotic, so that a wrong start is seen
     "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "2000", "--samples", "20"),
     "couple": (
@@ -90,10 +91,44 @@ def test_ctrl_c_is_one_line_and_leaves_nothing_behind(commands):
     assert [path.name for path in commands.temporary.iterdir()] == []
 
 
+def interrupt(*_, **__):
+    raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize(
+    ("place", "line"),
+    [
+        ("orchestrate.response.sweep.SweepJob.work", BEGINS_ANEW),
+        ("orchestrate.running.store.Disk.finish", INTERRUPTED),
+        (
+            "orchestrate.cli.question.Files.write",
+            "interrupted: the result is stored, the same command (without --force) goes on from "
+            "there",
+        ),
+    ],
+)
+def test_an_interrupted_command_says_whether_there_is_anything_to_go_on_from(
+    tmp_path, capsys, monkeypatch, place, line
+):
+    for _ in range(2):  # the second time in a process that has stored something
+        asked = ["sweep", "--eta", "1:1.1:0.1", "--transient", "5", "--plot", "none"]
+        with monkeypatch.context() as patch:
+            patch.setattr(place, interrupt)
+            assert main([*asked, "--output", str(tmp_path)]) == 130
+        assert capsys.readouterr().err.splitlines()[-1] == line
+        assert main([*asked, "--output", str(tmp_path / "other")]) == 0
+
+
+def test_an_interrupted_command_without_a_store_says_so(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("orchestrate.explorer.page.page", interrupt)
+    assert main(["explore", "--no-open", "--output", str(tmp_path / "page.html")]) == 130
+    assert capsys.readouterr().err.splitlines() == [BEGINS_ANEW]
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
 def test_no_worker_outlives_the_main_process(commands, number):
     process = commands.start(*RUNS["sweep"], "--jobs", "2", "--transient", "20000")
-    wait_for(lambda: len(list(below(process.pid))) >= 2, process, "workers were there")
+    wait_for(lambda: len(list(below(process.pid))) >= 3, process, "workers were there")
     workers = list(below(process.pid))
     os.kill(process.pid, number)
     process.wait()

@@ -163,3 +163,27 @@ TRIVIAL = [
 def test_what_is_trivial_is_said(ask, words, said):
     done = ask(*words, "--plot", "none")
     assert done.code == 0 and said in done.out, done.err
+
+
+def test_frequencies_in_hertz_are_told_whose_structure_they_meet(ask, caplog):
+    short = ("--periods", "1", "--plot", "none")
+    done = ask("simulate", "--hz", "47", "--g", "0.5", *short)
+    assert "structure: the paper's, omega = 1 rad/s, 0.1592 Hz (--structure names" in done.out
+    assert caplog.messages[-1].startswith(
+        "frequencies of 295 times the structure's 0.1592 Hz are far from it"
+    )
+    caplog.clear()
+    done = ask("simulate", "--hz", "12", "--g", "0.02", "--structure", "beam", *short)
+    assert "structure:" not in done.out
+    done = ask("simulate", "--eta", "30", *short)
+    assert "structure:" not in done.out and caplog.messages == []
+    low = ("resonance", "--structure", "beam", "--hz", "0.1,12", "--amplitude", "1e-3")
+    ask(*low, "--transient", "1", "--samples", "1", "--plot", "none")
+    assert caplog.messages[-1].startswith("frequencies of 0.00838 to 1.01 times")
+
+
+def test_a_file_s_name_has_one_unit_of_frequency(ask, tmp_path):
+    branch = ("branch", "--structure", "beam", "--over", "hz", "--limits", "60:60.2", "--hz", "60")
+    assert ask(*branch, "--amplitude", "1e-4", "--plot", "none").code == 0
+    (path,) = (tmp_path / "results").glob("*.nc")
+    assert "_60Hz_60-60.2Hz_" in path.name and "376" not in path.name

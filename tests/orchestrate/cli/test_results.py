@@ -92,8 +92,32 @@ def test_a_file_of_ones_own_is_not_replaced_by_another_question(ask, folder):
     assert sorted(before) == ["mine.nc", "mine.png"]
     ask(*SWEEP, "--samples", "13", "--store", own).complaint(own, "another question", "force")
     own.unlink()
-    ask(*SWEEP, "--store", own).complaint("mine.png", "--store", "--force")
+    for force in ([], ["--force"]):
+        ask(*SWEEP, "--store", own, *force).complaint("mine.png", "another --store, or remove it")
     assert fingerprint(folder) == {"mine.png": before["mine.png"]}
+
+
+def test_an_interrupted_force_leaves_the_result_that_was_there(ask, folder, monkeypatch):
+    assert ask(*SWEEP).code == 0
+    before = fingerprint(folder)
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("orchestrate.response.sweep.SweepJob.work", interrupt)
+        assert ask(*SWEEP, "--force").code == 130
+    assert fingerprint(folder) == before
+    assert "complete already" in ask(*SWEEP).out
+
+
+def test_a_file_of_others_stays_whatever_is_forced(ask, folder):
+    folder.mkdir()
+    own = folder / "mine.nc"
+    own.write_text("my notes")
+    for force in ([], ["--force"]):
+        ask(*SWEEP, "--store", own, *force).complaint("mine.nc", "remove it", code=1)
+    assert own.read_text() == "my notes" and len(fingerprint(folder)) == 1
 
 
 def test_a_failed_picture_is_drawn_by_the_same_command(ask, folder):

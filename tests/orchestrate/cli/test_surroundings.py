@@ -127,7 +127,7 @@ def test_sigterm_at_random_moments_leaves_nothing(commands):
     chance = random.Random(1)
     for _ in range(4):
         process = commands.start(*LONG)
-        wait_for(lambda pid=process.pid: len(list(below(pid))) >= 2, process, "workers were there")
+        wait_for(lambda pid=process.pid: len(list(below(pid))) >= 3, process, "workers were there")
         time.sleep(chance.uniform(0.0, 3.0))
         workers = list(below(process.pid))
         os.kill(process.pid, signal.SIGTERM)

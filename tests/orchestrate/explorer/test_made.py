@@ -1,6 +1,8 @@
 """What a page is made of, and what it refuses."""
 
 import re
+from collections import Counter
+from html.parser import HTMLParser
 
 import numpy as np
 import pytest
@@ -16,6 +18,8 @@ from orchestrate.explorer.page import explore, modules
 from orchestrate.explorer.shipped import shipped
 from orchestrate.running.store import load
 
+from .conftest import ETAS
+
 
 def test_the_page_is_one_small_file_without_network(page):
     text = page.read_text(encoding="utf-8")
@@ -23,6 +27,60 @@ def test_the_page_is_one_small_file_without_network(page):
     assert not re.search(r'(?:src|href)="(?!data:|#|\$)', text)
     assert not re.search(r"\b(?:fetch|XMLHttpRequest|WebSocket|cookie|localStorage)\b", text)
     assert set(re.findall(r"https?://[^\s\"'`]+", text)) <= {"http://www.w3.org/2000/svg"}
+
+
+MARKUP = "</script></p><script>window.forged = 1</script><img src=x onerror='window.forged = 2'>"
+
+
+class Elements(HTMLParser):
+    """Elements of a page by name, and the attributes by which elements run scripts."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.names, self.handlers = Counter(), []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.names[tag] += 1
+        self.handlers += [name for name, _ in attributes if name.startswith("on")]
+
+
+@pytest.fixture(scope="module")
+def forged(swept, tmp_path_factory):
+    """A page of a file whose every text is markup."""
+    path = tmp_path_factory.mktemp("forged") / "page.html"
+    kept = ("start", "direction", "bonded")
+    texts = {name for name, value in swept.attrs.items() if isinstance(value, str)} - {*kept}
+    assert {"source", "fmu_model", "fmu_guid", "call"} <= texts
+    return explore(swept.assign_attrs(dict.fromkeys(texts, MARKUP)), output=path)
+
+
+def test_what_a_file_says_is_text_on_its_page_and_no_markup(page, forged):
+    clean, other = (Elements(path.read_text(encoding="utf-8")) for path in (page, forged))
+    assert other.names == clean.names and other.names["script"] == 6
+    assert other.handlers == []
+    assert MARKUP not in forged.read_text(encoding="utf-8")
+
+
+def test_no_script_of_a_file_runs_and_none_that_is_added_to_its_page(window, forged):
+    window.open(forged)
+    assert MARKUP in window.run("return document.querySelector('footer').textContent")
+    for add in (
+        "const one = document.createElement('script'); one.textContent = 'window.forged = 3';"
+        "document.body.append(one)",
+        "document.body.insertAdjacentHTML('beforeend', '<img src=x onerror=\"forged = 4\">')",
+    ):
+        window.run(add)
+    window.run("setTimeout(() => { window.later = true; }, 300)")
+    window.until("return window.later")
+    assert window.run("return window.forged ?? null") is None
+    assert len(window.console()) >= 2  # what the policy has kept from running
+
+
+def test_no_module_of_the_page_makes_elements_of_text():
+    ways = r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\b|new Function"
+    found = [name for name, text in modules().items() if re.search(ways, text)]
+    assert found == []
 
 
 def test_each_module_imports_in_the_form_that_is_joined_and_is_used():
@@ -76,6 +134,72 @@ def test_what_is_no_sweep_along_the_frequency_is_refused(tmp_path):
     with pytest.raises(InputError, match="branches over nothing: expected"):
         explore(output=tmp_path / "page.html", branches=xr.Dataset())
     assert not list(tmp_path.glob("*.html"))
+
+
+def test_a_page_is_replaced_and_no_other_file(tmp_path):
+    path = tmp_path / "notes.html"
+    path.write_text("<title>Notes</title>")
+    with pytest.raises(InputError, match="no page of the explorer; expected a name that is free"):
+        explore(output=path)
+    assert path.read_text() == "<title>Notes</title>"
+    path.unlink()
+    inodes = {explore(output=path).stat().st_ino for _ in range(2)}
+    assert len(inodes) == 2 and [one.name for one in tmp_path.iterdir()] == ["notes.html"]
+
+
+def test_a_branch_of_no_numbers_is_refused(swept, tmp_path):
+    numbers = {"stable": ("point", [1, 1]), "xi_rel": (("sample", "point"), [[1.0, 2.0]])}
+    good = xr.Dataset({**numbers, "eta": ("point", [1.0, 1.1])}, attrs={"over": "eta"})
+    explore(swept, output=tmp_path / "page.html", branches=good)
+    for wrong in ([1.0, np.nan], [1.0, np.inf], ["a", "b"]):
+        with pytest.raises(InputError, match="branches: .*; expected a result"):
+            branches = good.assign(eta=("point", wrong))
+            explore(swept, output=tmp_path / "other.html", branches=branches)
+    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+
+
+WRONG = {
+    "m1": ["heavy", 0.0, -1.0, np.nan, np.inf, np.array([1.0, 2.0])],
+    "tolerance": ["small", np.nan, 0.0, np.array([1e-2, 1e-3])],
+    "transient": ["long", 0.5, -1.0, 1e300, np.inf],
+    "samples": ["many", 0.0, np.nan],
+    "start": ["[a, b, c, d]", "[0.0]", "", "[nan, 0, 0, 0]", 5.0],
+    "bonded": ["no", 2.0],
+    "direction": ["sideways", "both"],
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [(name, value) for name, values in WRONG.items() for value in values]
+)
+def test_a_file_with_a_wrong_attribute_is_refused_in_one_line(swept, tmp_path, name, value):
+    with pytest.raises(InputError, match="expected"):
+        explore(swept.assign_attrs({name: value}), output=tmp_path / "page.html")
+    assert not list(tmp_path.iterdir())
+
+
+STATE = ("eta", "coordinate")
+SHAPES = {
+    "a state of texts": {"end_state": (STATE, np.full((211, 4), "x"))},
+    "a state of three numbers": {"end_state": (("eta", "three"), np.zeros((211, 3)))},
+    "a state that is not a number": {"end_state": (STATE, np.full((211, 4), np.nan))},
+    "a single state": {"end_state": ((), 1.0)},
+    "a single answer": {"impacts_per_period": ((), 1.0)},
+    "answers over another dimension": {"impacts_per_period": ("other", np.zeros(5))},
+    "frequencies of texts": {"frequency": ("eta", np.full(211, "x"))},
+    "frequencies of zero": {"frequency": ("eta", np.zeros(211))},
+    "amplitudes below zero": {"amplitude": ("eta", np.full(211, -1.0))},
+    "an amplitude without end": {"amplitude": ("eta", np.full(211, np.inf))},
+    "frequency ratios below zero": {"eta": ("eta", -ETAS)},
+    "frequency ratios of texts": {"eta": ("eta", ETAS.astype(str))},
+}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_a_file_of_another_shape_is_refused_in_one_line(swept, tmp_path, name):
+    with pytest.raises(InputError, match="expected"):
+        explore(swept.assign(SHAPES[name]), output=tmp_path / "page.html")
+    assert not list(tmp_path.iterdir())
 
 
 def test_the_command_writes_a_page(tmp_path, capsys, swept):

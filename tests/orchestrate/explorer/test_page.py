@@ -275,3 +275,115 @@ def test_a_sweep_in_hertz_and_metres_is_looked_into(window, tmp_path, capsys):
     row = data.isel(frequency=int(np.abs(data.eta.values - near["eta"]).argmin()))
     assert peak == pytest.approx(float(row.xi_rel_max), rel=0.05)
     assert window.console() == []
+
+
+TURNS = [2.0 * np.pi * hertz for hertz in (12.0, 12.25, 12.5)]
+EXCITATIONS = {  # an excitation, and what the command has of it; the last has no range
+    "metres": (TURNS, [1e-3] * 3, "--hz 12:12.5:0.25 --amplitude 0.001"),
+    "g": (TURNS, [0.02 * 9.80665 / turn**2 for turn in TURNS], "--hz 12:12.5:0.25 --g 0.02"),
+    "rad/s": ([75.0, 75.5, 76.0], [1e-3] * 3, "--frequency 75:76:0.5 --amplitude 0.001"),
+    "any": ([75.0, 75.1, 80.3], [1e-3, 2e-3, 1e-3], ""),
+}
+
+
+@pytest.mark.parametrize("kind", EXCITATIONS)
+def test_the_commands_of_an_own_beam_compute_what_is_shown(window, tmp_path, kind, capsys):
+    frequency, amplitude, words = EXCITATIONS[kind]
+    beam = orchestrate.Structure.from_file("beam")
+    asked = {"frequency": frequency, "amplitude": amplitude, "direction": "up", "transient": 20}
+    data = orchestrate.sweep(beam, **asked, samples=5, progress=False)
+    window.open(explore(data, output=tmp_path / "page.html"))
+    command = window.text("command")
+    assert words in command
+    if words:
+        place = tmp_path / "sweep"
+        assert cli.main([*shlex.split(command)[3:], "--output", str(place)]) == 0
+        (path,) = place.glob("*.nc")
+        again = xr.load_dataset(path)
+    else:
+        again = eval(command, {"orchestrate": orchestrate})
+    assert again.xi_rel.values.tobytes() == data.xi_rel.values.tobytes()
+    assert window.console() == []
+
+
+def test_the_motion_of_an_own_beam_is_computed_by_its_command(window, tmp_path, capsys):
+    beam = orchestrate.Structure.from_file("beam")
+    window.open(explore(beam, output=tmp_path / "page.html"), "#from=1&to=1.2&eta=1.1")
+    window.chosen()
+    command = shlex.split(window.text("motion-command"))
+    assert cli.main([*command[3:], "--output", str(tmp_path)]) == 0, capsys.readouterr().err
+    (path,) = tmp_path.glob("*.nc")
+    with xr.open_dataset(path) as motion:
+        states = window.numbers(f"{MOTION}.states").reshape(-1, 4)
+        assert states[:, 0].tobytes() == motion.x1.values.tobytes()
+    numbers = window.text("numbers")
+    point = window.run("return explorer.inspector.choice.point")
+    assert f"frequency, Hz{point['frequency'] / (2 * np.pi):.6g}" in numbers
+    for words in ("amplitude of the box, mm", "acceleration of the box, g", "largest gap, mm"):
+        assert words in numbers
+    assert window.console() == []
+
+
+def typed(browser, name, text):
+    """Type into an input as a hand does, letter by letter, and leave it."""
+    from selenium.webdriver.common.keys import Keys
+
+    browser.run("const at = document.getElementById(arguments[0]); at.focus(); at.select()", name)
+    browser.keys(*text)
+    browser.keys(Keys.TAB)
+
+
+def test_a_number_counts_when_it_has_been_typed(browser):
+    browser.open(page_of(browser), "#from=1.1&to=1.3&direction=up")
+    browser.run(
+        "window.seen = []; const old = explorer.change.bind(explorer);"
+        "explorer.change = (s, shown) => { seen.push(s.m2); old(s, shown); }"
+    )
+    typed(browser, "mu-number", "1.7")
+    assert browser.run("return seen") == [1.7]
+    typed(browser, "e-number", "1.7")  # beyond its range: nothing of it counts
+    assert browser.run("return explorer.structure.e") == 0.7
+    assert browser.run("return document.getElementById('e-number').validationMessage") == (
+        "expected 0 to 1"
+    )
+
+
+def test_the_subtitle_is_of_the_structure_that_is_shown(browser):
+    assert "e = 0.7, " in browser.text("structure")
+    browser.open(page_of(browser), "#from=1.1&to=1.3&direction=up&e=0.55")
+    assert "e = 0.55, " in browser.text("structure")
+    browser.click("reset")
+    assert "e = 0.7, " in browser.text("structure")
+
+
+def test_bonded_curves_are_inside_their_axes(browser):
+    browser.run("explorer.choose(1.0484, true)")  # near the resonance of the bonded structure
+    browser.chosen()
+    browser.until("return explorer.inspector.bonded")
+    charts = """
+    const kept = {};
+    const old = explorer.inspector.pictures.show;
+    explorer.inspector.pictures.show = (name, chart, words) => {
+      kept[name] = chart;
+      old(name, chart, words);
+    };
+    document.getElementById("beside").click();
+    return ["history", "phase"].map((name) => {
+      const { x, y, series } = kept[name];
+      const [bonded] = series.filter(({ label }) => label === "bonded");
+      const ends = (values) => [Math.min(...values), Math.max(...values)];
+      return [x.low, x.high, y.low, y.high, ...ends(bonded.x), ...ends(bonded.y)];
+    });
+    """
+    for left, right, low, high, first, last, least, most in browser.run(charts):
+        assert left <= first and last <= right and low < least and most < high
+
+
+def test_no_response_is_called_regular_and_irregular(browser):
+    """At 2.95 the response does not repeat within the samples; whatever its exponent."""
+    browser.run("explorer.choose(2.95)")
+    browser.chosen()
+    for exponent, words in ((-0.01, "has not repeated yet"), (0.1, "chaotic")):
+        browser.run("explorer.inspector.takeSpectra({ exponent: arguments[0] })", exponent)
+        told = browser.text("numbers")
+        assert words in told and "does not repeat" in told and "regular" not in told

@@ -41,6 +41,7 @@ def test_it_needs_no_network(exported, tmp_path):
     text = page(tmp_path, FULL)
     text = text.replace('xmlns="http://www.w3.org/1998/Math/MathML"', "")  # a name, not a place
     assert "http://" not in text and "https://" not in text
+    assert "content=\"default-src 'none'; style-src 'unsafe-inline'; img-src data:;" in text
     assert base64.b64encode(PICTURE).decode() in text
     assert 'width="1560" height="1040"' in text
     assert "Figure 5" in text and "Reduced resolution" not in text

@@ -156,6 +156,58 @@ def test_another_fmu_makes_a_result_stale(find: Find, tmp_path):
     assert anew.attrs["fmu_guid"] == "{2}"
 
 
+def stopped_at(item, monkeypatch, job, options, find):
+    """Ask, with a Ctrl-C when that item is computed."""
+    work = type(job).work
+
+    def stop(self, fmus, items, carry):
+        if item in items:
+            raise KeyboardInterrupt
+        return work(self, fmus, items, carry)
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(type(job), "work", stop)
+        answer(job, {**options, "jobs": 1}, find)
+
+
+def test_a_result_stays_until_the_one_computed_anew_is_whole(find, tmp_path, monkeypatch):
+    job, path = Squares("squares"), tmp_path / "squares.nc"
+    answer(job, {"store": path}, find)
+    before, inode = path.read_bytes(), path.stat().st_ino
+    stopped_at(7, monkeypatch, job, {"store": path, "force": True}, find)
+    assert path.read_bytes() == before
+    assert answer(job, {"store": path}, find).square.values.tolist()[-1] == 81.0
+    asked, work = [], Squares.work
+
+    def noted(self, fmus, items, carry):
+        asked.extend(items)
+        return work(self, fmus, items, carry)
+
+    monkeypatch.setattr(Squares, "work", noted)
+    answer(job, {"store": path, "force": True, "jobs": 1}, find)
+    assert asked == [6, 7, 8, 9], "the chunks from before the Ctrl-C were not taken"
+    assert path.stat().st_ino != inode
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
+    answer(job, {"store": path, "force": True, "jobs": 1}, find)
+    assert asked[4:] == list(range(10))
+
+
+@pytest.mark.parametrize("kind", ["NetCDF", "NetCDF with an identity", "text", "empty"])
+def test_a_file_of_others_is_never_replaced(find, tmp_path, kind):
+    path = tmp_path / "squares.nc"
+    if kind.startswith("NetCDF"):
+        attributes = {"identity": '{"mine": 1}'} if kind.endswith("identity") else {}
+        xr.Dataset({"measured": ("x", [1.0, 2.0])}, attrs=attributes).to_netcdf(path)
+    else:
+        path.write_text("notes" * (kind == "text"))
+    before = path.read_bytes()
+    for force in (False, True):
+        with pytest.raises(StoreError, match=r"squares\.nc: .*remove it to begin anew"):
+            answer(Squares("squares"), {"store": path, "force": force}, find)
+        assert path.read_bytes() == before
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
+
+
 def test_a_damaged_chunk_is_computed_anew(find, tmp_path, monkeypatch):
     path = tmp_path / "squares.nc"
     with pytest.raises(AssertionError, match="as it was told to"):

@@ -174,6 +174,8 @@ def test_a_finished_result_is_read(tmp_path):
         ({"speed_start": float("inf")}, ["speed_start = inf", "finite"]),
         ({"algorithm": "euler"}, ["euler", "jacobi", "rollback"]),
         ({"tolerance": -1.0}, ["tolerance", ">= 0"]),
+        ({"voltage": 1.5, "duration": 1e-10}, ["duration = 1e-10 s", "one communication step"]),
+        ({"voltage": 1.5, "duration": 0.0}, ["duration = 0 s", "duration >= "]),
         ({"voltage": 0.001, "duration": 10.0}, ["not one revolution", "expected a voltage"]),
         ({"fmu": {SHAKER: "nowhere.fmu"}}, ["nowhere.fmu: no such file"]),
     ],

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from orchestrate import InputError, couple, passage, waterfall
+from orchestrate import InputError, capture, couple, passage, waterfall
 
 from .coupled import QUICK
 
@@ -92,3 +92,11 @@ def test_mistakes():
         passage(*QUICK, **FAST, around=0.0)
     with pytest.raises(InputError, match="no angle in the dataset: expected one of passage"):
         waterfall(xr.Dataset({"x1": ("time", [0.0])}))
+
+
+@pytest.mark.parametrize("duration", [1e-10, 0.0, 1e-300])
+def test_a_run_of_no_step_is_refused(duration):
+    with pytest.raises(InputError, match="duration = .* one communication step or more"):
+        passage(*QUICK, voltage=1.5, duration=duration, progress=False)
+    with pytest.raises(InputError, match="one communication step or more|0 < time"):
+        capture(*QUICK, voltage=(1.4, 1.6), count=2, time=duration, progress=False)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import itertools
 import random
+import shutil
 import sys
 
 import pytest
 
 from orchestrate.access import OSCILLATOR, find
-from tools.trust import bits, mutants, parameter_sets
+from tools.trust import bits, mutants, pages, parameter_sets
 from tools.trust.bits import Grids
 from tools.trust.clusters import Clusters
 from tools.trust.faults import Faults
@@ -24,6 +25,18 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Li
 @pytest.fixture(scope="module")
 def fmu(exported):
     return find(OSCILLATOR).path
+
+
+def without_chromium():
+    return not (shutil.which("chromium") and shutil.which("chromedriver"))
+
+
+@pytest.fixture(scope="module")
+def seen():
+    if without_chromium():
+        pytest.skip("no chromium with chromedriver here")
+    with pages.window() as window:
+        yield window
 
 
 def clean(found, count):
@@ -58,8 +71,25 @@ def test_another_bit_would_be_seen(fmu, monkeypatch):
     assert any(line.startswith("wasm") for line in bits.differences(drawn, False))
 
 
+@pytest.mark.skipif(without_chromium(), reason="no chromium with chromedriver here")
 def test_a_few_malicious_inputs(fmu):
     clean(Hostile().run(fmu, 1, 4), 4)
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ("<script>window.explorer = {}</script>", ""),
+        ("<script>window.explorer = {}; window.canary = 1</script>", "a script of the file ran"),
+        ("<script>window.explorer = {}; alert(1)</script>", "the browser: unexpected alert"),
+        ("<script>window.explorer = {}</script><img src=ADDRESS>", "the page asked /canary"),
+    ],
+)
+def test_a_script_that_ran_would_be_seen(seen, tmp_path, body, expected):
+    page = tmp_path / "page.html"
+    page.write_text(f"<!doctype html>{body}".replace("ADDRESS", seen.address))
+    verdict = seen.verdict(page)
+    assert verdict.startswith(expected) and bool(verdict) == bool(expected)
 
 
 def test_memory_stays_flat(fmu, monkeypatch):
@@ -67,6 +97,11 @@ def test_memory_stays_flat(fmu, monkeypatch):
     found = Leaks().run(fmu, 1, 100_000)
     clean(found, 100_000)
     assert found.worst == 400.0
+
+
+def test_a_short_run_finds_no_leak_where_there_is_none(fmu):
+    """What a process takes once was shared out among ten frequencies."""
+    clean(Leaks().run(fmu, 1, 10_000), 10_000)
 
 
 def test_a_few_faults(fmu, monkeypatch):

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import shutil
 
 import pytest
 
 from tools.trust import __main__ as ledger
 from tools.trust import page, records
-from tools.trust.campaign import Campaign, Outcome, batch_seed
+from tools.trust.campaign import HERE, Campaign, Outcome, batch_seed, sources
 from tools.trust.registry import CAMPAIGNS
 
 
@@ -35,10 +36,10 @@ def test_page_and_records_belong_together():
     assert page.PAGE.read_text("utf-8") == page.text(records.read())
 
 
-def test_every_record_is_of_a_campaign_and_none_is_there_twice():
+def test_every_record_is_of_a_campaign_and_no_run_is_there_twice():
     found = records.read()
     assert {record.campaign for record in found} <= set(CAMPAIGNS)
-    assert not any(one.is_again(other) for i, one in enumerate(found) for other in found[:i])
+    assert not any(one.is_copy(other) for i, one in enumerate(found) for other in found[:i])
     assert all(record.done > 0 and record.seconds > 0.0 for record in found)
 
 
@@ -54,6 +55,42 @@ def test_a_run_is_recorded_once_and_goes_on_where_it_was(counting, tmp_path, mon
     assert len(place.read_text().splitlines()) == 1
     assert records.read(place) == [first]
     assert "home" not in place.read_text() and json.loads(place.read_text())["fmu"]
+
+
+def test_every_run_has_its_line_and_what_it_found_counts(counting, tmp_path):
+    """The same command found nothing at first; a later run of it does."""
+    place = tmp_path / "trust.jsonl"
+    later = ledger.run(Count(), 3, 25, tmp_path, jobs=1, progress=False)
+    first = dataclasses.replace(later, findings=0, notes=[], seconds=0.5)
+    shorter = dataclasses.replace(later, budget=10, done=10, findings=3, notes=["a third"])
+    for record in (first, later, shorter):
+        assert records.append(record, place)
+    found = records.read(place)
+    assert found == [first, later, shorter]
+    text = page.text(found)
+    assert "25 numbers of 100 wanted; 3 findings." in text
+    assert "| 100 numbers | 25 | 3 |" in text
+    assert text.count("- a seventh") == 1 and "- a third" in text
+    assert text.count("`python -m tools.trust run count --seed 3") == 3
+
+
+@pytest.mark.parametrize("name", ["weak_drive/compiled.c", "explorer/page/app.js", "errors.py"])
+def test_what_was_attacked_is_known_by_all_of_its_sources(tmp_path, name):
+    folder = tmp_path / "orchestrate"
+    shutil.copytree(records.PACKAGE, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    before = records.digest(folder)
+    assert before == records.digest(records.PACKAGE)
+    (folder / name).write_text((folder / name).read_text() + "\n")
+    changed = records.digest(folder)
+    (folder / name).rename(folder / f"other{(folder / name).suffix}")
+    assert len({before, changed, records.digest(folder)}) == 3
+
+
+def test_a_record_says_by_which_campaigns(counting, tmp_path):
+    record = ledger.run(Count(), 3, 25, tmp_path, jobs=1, progress=False)
+    assert record.campaigns == sources() == records.digest(HERE)
+    other = dataclasses.replace(record, campaigns="another")
+    assert page.together([record, other], Count()) == [record, other]
 
 
 def test_the_page_says_what_is_missing(counting, tmp_path):

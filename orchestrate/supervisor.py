@@ -1,0 +1,228 @@
+"""A command in a process of its own, and one beside it that sees how it ends.
+
+An FMU and a library may hang, spin, abort or call ``exit``, and Python hears no signal then. So the
+command runs in a child; this process waits, hands signals on, and ends the child where it does not
+end by itself: at a second signal, or some seconds after the first one.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import shutil
+import signal
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+FAILURE = 1
+HEARD = 0.3  # s in which a signal that went to all processes has reached the child too
+DEAF = 5.0  # s after which a child that has not heard a signal is ended
+GRACE = 20.0  # s that one that has heard it has for ending
+POLL = 0.25  # s
+KEPT = "what was stored before is kept"
+UNPACKED = "vibroimpact-fmu-"  # temporary folders begin so (`temporary`), then comes the process
+TOLD, HEEDED = b"D", b"S"  # what the child says: it has done its work; it has heard a signal
+PR_SET_PDEATHSIG = 1  # of Linux
+
+_child: int | None = None  # in the child: where it says so
+
+
+def supervised(work: Callable[[], int]) -> int:
+    """What ``work`` returns, computed in a child; in the child as in its parent.
+
+    Where there is no fork, and where there is no room for another process, it is computed here.
+
+    Parameters
+    ----------
+    work : callable
+        Returns an exit code, or raises ``SystemExit``.
+    """
+    pipes: list[int] = []
+    parent = os.getpid()
+    try:
+        fill_descriptors()
+        pipes += os.pipe()
+        pipes += os.pipe()
+        child = os.fork()
+    except (AttributeError, OSError):  # a system without fork, or no room for more
+        for number in pipes:
+            os.close(number)
+        return work()
+    reader, writer, wake_reader, wake_writer = pipes
+    if child == 0:
+        for number in (reader, wake_reader, wake_writer):
+            os.close(number)
+        return carried_out(work, writer, parent)
+    os.close(writer)
+    return Supervisor(child, reader).run(wake_reader, wake_writer)
+
+
+def carried_out(work: Callable[[], int], writer: int, parent: int) -> int:
+    """Do the work in the child, and say that it was done."""
+    global _child
+    _child = writer
+    end_with(parent)
+    try:
+        return work()
+    finally:
+        say(TOLD)
+
+
+def heeded() -> None:
+    """Say that a signal was heard, and that this process ends by itself."""
+    say(HEEDED)
+
+
+def say(word: bytes) -> None:
+    """Say a word to the parent, where there is one."""
+    if _child is not None:
+        with contextlib.suppress(OSError):
+            os.write(_child, word)
+
+
+def fill_descriptors() -> None:
+    """Open what was closed of the first three files, or a database would be the error output."""
+    while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
+        os.set_inheritable(number, True)
+    os.close(number)
+
+
+def end_with(parent: int) -> None:
+    """End this process when its parent ends, whatever it does then."""
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+        if os.getppid() != parent:
+            os._exit(FAILURE)
+        return
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(FAILURE)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+class Supervisor:
+    """Waits for a child.
+
+    Parameters
+    ----------
+    child : int
+        Its process id.
+    reader : int
+        Where it says what it does.
+    """
+
+    def __init__(self, child: int, reader: int) -> None:
+        self.child, self.reader = child, reader
+        self.words = b""
+        self.signals: list[tuple[int, float]] = []  # number and time
+        self.handed_on = self.forced = False
+
+    def run(self, wake_reader: int, wake_writer: int) -> int:
+        """Wait; returns the exit code. A signal is written into a pipe, so that it wakes this."""
+        os.set_blocking(wake_writer, False)
+        signal.set_wakeup_fd(wake_writer, warn_on_full_buffer=False)
+        for heard, usual in (
+            (signal.SIGINT, signal.default_int_handler),
+            (signal.SIGTERM, signal.SIG_DFL),
+        ):
+            if signal.getsignal(heard) == usual:  # not ignored, as behind nohup
+                signal.signal(heard, self.note)
+        listened = [self.reader, wake_reader]
+        while (status := self.ended()) is None:
+            for number in select.select(listened, [], [], POLL)[0]:
+                said = os.read(number, 64)
+                if number == self.reader:
+                    self.words += said
+                    if not said:
+                        listened.remove(number)
+            self.act()
+        with contextlib.suppress(BlockingIOError):  # what it said at last
+            os.set_blocking(self.reader, False)
+            self.words += os.read(self.reader, 64)
+        return self.verdict(status)
+
+    def note(self, number: int, _: object) -> None:
+        """Remember a signal."""
+        self.signals.append((number, time.monotonic()))
+
+    def ended(self) -> int | None:
+        """The child's status where it has ended."""
+        pid, status = os.waitpid(self.child, os.WNOHANG)
+        return status if pid else None
+
+    def act(self) -> None:
+        """Hand a signal on, or end the child."""
+        if not self.signals:
+            return
+        asked, first = self.signals[0]
+        waited, heard = time.monotonic() - first, HEEDED in self.words
+        if waited > HEARD and not heard and not self.handed_on:
+            self.handed_on = True
+            os.kill(self.child, asked)
+        again = any(when - first > HEARD for _, when in self.signals)
+        if again or waited > (GRACE if heard else DEAF):
+            self.force()
+
+    def force(self) -> None:
+        """End the child and all that it has started, and remove what it cannot any more."""
+        pids = [self.child, *below(self.child)]
+        for pid in pids:
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGKILL)
+        self.forced = True
+
+    def verdict(self, status: int) -> int:
+        """The exit code, and a line where the child did not end by itself."""
+        code = os.waitstatus_to_exitcode(status)
+        if TOLD in self.words and code >= 0:
+            return code
+        remove_unpacked(self.child)
+        if self.signals:
+            asked = self.signals[0][0]
+            word = "terminated" if asked == signal.SIGTERM else "interrupted"
+            why = "; what ran did not answer and was ended by force" if self.forced else ""
+            tell(f"{word}{why}; {KEPT}")
+            return 128 + asked
+        if code < 0:
+            name = signal.Signals(-code).name
+            why = (
+                "by somebody, or for want of memory"
+                if -code == signal.SIGKILL
+                else ("an FMU or a library has crashed")
+            )
+            tell(f"error: the command was ended by {name}: {why}; {KEPT}")
+        else:
+            ended = f"an FMU or a library has ended the command, with exit code {code}"
+            tell(f"error: {ended}; expected an answer; {KEPT}")
+        return FAILURE
+
+
+def tell(line: str) -> None:
+    """A line on the error output, below a progress bar."""
+    with contextlib.suppress(OSError):
+        os.write(2, f"{line}\n".encode())
+
+
+def below(pid: int) -> Iterator[int]:
+    """Processes that a process has started, and those of these; Linux says so."""
+    for place in Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):
+            for child in map(int, place.read_text().split()):
+                yield child
+                yield from below(child)
+
+
+def remove_unpacked(pid: int) -> None:
+    """Remove the FMUs that a process has unpacked."""
+    for folder in Path(tempfile.gettempdir()).glob(f"{UNPACKED}{pid}-*"):
+        shutil.rmtree(folder, ignore_errors=True)

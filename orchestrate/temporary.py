@@ -1,0 +1,60 @@
+"""The temporary folder of a process, with the FMUs that it has unpacked or was sent.
+
+It is removed at the end of the process, a worker's too; where that was killed, at the start of
+another one.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import os
+import re
+import shutil
+import sys
+import tempfile
+from multiprocessing.util import Finalize
+from pathlib import Path
+
+from .files import alive, check_name
+
+PREFIX = "vibroimpact-fmu-"  # by which the supervisor of a command knows them too
+_folders: dict[int, Path] = {}  # by process: a forked child makes its own
+
+
+def process_folder() -> Path:
+    """The folder of this process, made at the first call."""
+    pid = os.getpid()
+    folder = _folders.get(pid)
+    if folder is None or not folder.is_dir():
+        check_name(tempfile.gettempdir())
+        remove_leftovers()
+        folder = _folders[pid] = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{pid}-"))
+        atexit.register(remove, folder, pid)
+        # processes of multiprocessing, such as Dask's workers, know nothing of atexit
+        Finalize(None, remove, (folder, pid), exitpriority=0)
+    return folder
+
+
+def remove(folder: Path, pid: int) -> None:
+    """Remove a folder at the end of the process that made it, not of one forked from it."""
+    if os.getpid() == pid:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def remove_leftovers() -> None:
+    """Remove this user's folders whose processes are gone: killed ones do not clean up."""
+    for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
+        match = re.match(rf"{PREFIX}(\d+)-", folder.name)
+        with contextlib.suppress(OSError):
+            if match and is_mine(folder) and not alive(int(match[1])):
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def is_mine(folder: Path) -> bool:
+    """Whether it is a folder, not a link to one, and this user's."""
+    return (
+        folder.is_dir()
+        and not folder.is_symlink()
+        and (sys.platform == "win32" or folder.lstat().st_uid == os.getuid())
+    )

@@ -1,0 +1,201 @@
+"""Forged results that become pages, and a browser that sees whether a script of theirs runs."""
+
+from __future__ import annotations
+
+import contextlib
+import http.server
+import json
+import math
+import random
+import shutil
+import tempfile
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from orchestrate.errors import InputError
+
+CANARY = "window.canary = 1; document.title = 'canary'; alert(1)"
+KEPT = ("start", "direction", "over")  # texts that have to be what they are, or there is no page
+CALM = 0.15  # s that what has been started has for running
+READY = "return Boolean(window.explorer)"
+
+
+def payloads(address: str) -> list[str]:
+    """Texts that run the canary, or ask ``address``, where a page takes them for markup."""
+    beacon = f"fetch('{address}')"
+    return [
+        f"</script><script>{CANARY}</script>",
+        f"<script>{CANARY}</script>",
+        f'<img src=x onerror="{CANARY.replace(chr(34), chr(39))}">',
+        f'<svg onload="{CANARY}"></svg>',
+        f"--></style></title></textarea><script>{CANARY}</script>",
+        f'" autofocus onfocus="{CANARY}',
+        f"' onmouseover='{CANARY}' '",
+        f'<iframe srcdoc="<script>parent.{CANARY}</script>"></iframe>',
+        f'<iframe src="javascript:parent.{CANARY}"></iframe>',
+        f'<script src="{address}"></script>',
+        f"<script>{beacon}</script>",
+        f'<img src="{address}">',
+        f"<style>@import '{address}';</style>",
+        f'<link rel=stylesheet href="{address}">',
+        f'<meta http-equiv=refresh content="0;url={address}">',
+        f'<base href="{address}">',
+        f'<object data="{address}"></object>',
+        f"<!--<script>{CANARY}",
+        f"&lt;/script&gt;&lt;script&gt;{CANARY}&lt;/script&gt;",
+        f"\\u003c/script\\u003e\\u003cscript\\u003e{CANARY}\\u003c/script\\u003e",
+        f"{{{{ ''.__class__ }}}}{{% print 7 %}}<script>{CANARY}</script>",
+        f"`${{{CANARY}}}`",
+        f"\u2028{CANARY}\u2029\0<script>{CANARY}</script>",
+        f"<scr<script>ipt>{CANARY}</scr</script>ipt>",
+    ]
+
+
+def forged(place: Path, chance: random.Random, good: Any, address: str) -> None:
+    """A whole result of a sweep in which some texts, or all, are markup.
+
+    Parameters
+    ----------
+    place : Path
+    chance : random.Random
+    good : xarray.Dataset
+        Of a sweep.
+    address : str
+        That nobody is to ask.
+    """
+    bad = payloads(address)
+    data = good.copy()
+    texts = [str(name) for name, value in data.attrs.items() if isinstance(value, str)]
+    texts = [name for name in texts if name not in KEPT]
+    chosen = texts if chance.random() < 0.3 else chance.sample(texts, chance.randint(1, 4))
+    data.attrs.update({name: wrapped(chance, bad) for name in chosen if name != "identity"})
+    if "identity" in chosen:
+        data.attrs["identity"] = json.dumps({"question": wrapped(chance, bad)})
+    for array in data.variables.values():
+        array.attrs.update({name: wrapped(chance, bad) for name in array.attrs})
+    if chance.random() < 0.5:
+        letters = (letter for letter in wrapped(chance, bad) if letter.isprintable())
+        data.attrs["x" + "".join(letters).replace("/", "|").strip()[:200]] = "a name that is markup"
+    data.to_netcdf(place, engine="netcdf4", encoding={name: {} for name in data.variables})
+
+
+def with_wrong_numbers(place: Path, chance: random.Random) -> None:
+    """An attribute or a variable of a forged result changed to what makes no sense."""
+    import xarray as xr
+
+    wrong = ("heavy", math.nan, math.inf, -1.0, 0.0, 1e308, 5e-324, [1.0, 2.0], "[nan, 0, 0, 0]")
+    data = xr.load_dataset(place, engine="netcdf4")
+    if chance.random() < 0.6:
+        names = ("m1", "m2", "k1", "d2", "e", "gamma", "bonded", "transient", "samples")
+        data.attrs[chance.choice((*names, "tolerance", "start", "direction"))] = chance.choice(
+            wrong
+        )
+    else:
+        name = chance.choice(("eta", "frequency", "amplitude", "end_state"))
+        value = chance.choice(wrong[:7])
+        data = data.assign({name: (data[name].dims, np.full(data[name].shape, value))})
+    data.to_netcdf(place, engine="netcdf4", encoding={name: {} for name in data.variables})
+
+
+def forged_branch(place: Path, chance: random.Random, good: Any, address: str) -> None:
+    """A branch whose kinds of bifurcation are markup."""
+    bad = payloads(address)
+    data = good.copy()
+    kinds = data.bifurcation_kind
+    words = [wrapped(chance, bad).replace(" ", "\t") for _ in np.atleast_1d(kinds.flag_values)]
+    kinds.attrs["flag_meanings"] = " ".join("\xa0".join(word.split()) for word in words)
+    data.attrs.update({name: wrapped(chance, bad) for name in ("call", "source", "history")})
+    data.to_netcdf(place, engine="netcdf4", encoding={name: {} for name in data.variables})
+
+
+def wrapped(chance: random.Random, bad: Sequence[str]) -> str:
+    """One of the texts, alone or inside another."""
+    text = chance.choice(bad).replace("\0", "")
+    return chance.choice((text, f"vibroimpact 0.2.0{text}", f"{text}{chance.choice(bad)[:80]}"))
+
+
+class Window:
+    """Headless Chromium with a server beside it that nobody is to ask."""
+
+    def __init__(self, driver: Any, address: str, asked: list[str]) -> None:
+        self.driver, self.address, self.asked = driver, address, asked
+
+    def verdict(self, page: Path, fragment: str = "") -> str:
+        """What is wrong with a page; empty where it works and nothing of the file ran."""
+        from selenium.common.exceptions import WebDriverException
+        from selenium.webdriver.support.ui import WebDriverWait
+
+        self.asked.clear()
+        try:
+            self.driver.get("about:blank")
+            self.driver.get(page.as_uri() + fragment)
+            WebDriverWait(self.driver, 30.0, 0.02).until(lambda one: one.execute_script(READY))
+            wait = "setTimeout(arguments[1], arguments[0])"
+            self.driver.execute_async_script(wait, 1000.0 * CALM)
+            canary = "return window.canary || document.title === 'canary'"
+            ran = self.driver.execute_script(canary)
+        except WebDriverException as error:  # a dialog of the canary, or a page that is broken
+            return f"the browser: {(error.msg or type(error).__name__).splitlines()[0]}"
+        if ran:
+            return "a script of the file ran"
+        return f"the page asked {self.asked[0]}" if self.asked else ""
+
+
+@contextmanager
+def window() -> Iterator[Window]:
+    """A browser as long as it is needed."""
+    programs = shutil.which("chromium"), shutil.which("chromedriver")
+    if None in programs:
+        raise InputError("pages are opened in Chromium: expected chromium and chromedriver")
+    from tests.orchestrate.explorer.chromium import Chromium
+
+    with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as folder, server() as asked:
+        browser = Chromium(*programs, Path(folder))
+        try:
+            yield Window(browser.driver, *asked)
+        finally:
+            browser.quit()
+
+
+@contextmanager
+def server() -> Iterator[tuple[str, list[str]]]:
+    """A server on this machine: its address, and the paths that it was asked for."""
+    asked: list[str] = []
+
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            asked.append(self.path)
+            self.send_response(204)
+            self.end_headers()
+
+        def log_message(self, format: str, *arguments: object) -> None:
+            pass
+
+    listening = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    threading.Thread(target=listening.serve_forever, daemon=True).start()
+    try:
+        yield f"http://127.0.0.1:{listening.server_port}/canary", asked
+    finally:
+        listening.shutdown()
+        listening.server_close()
+
+
+def fragment(chance: random.Random, address: str) -> str:
+    """What may stand behind the # of a link to a page."""
+    from urllib.parse import quote
+
+    text = quote(chance.choice(payloads(address)))
+    name = chance.choice(("direction", "e", "eta", "from", "start", "m1"))
+    return chance.choice(("", f"#{text}", f"#eta=1.05&{name}={text}"))
+
+
+def clean_up(*paths: Path) -> None:
+    """Remove files."""
+    for path in paths:
+        with contextlib.suppress(FileNotFoundError):
+            path.unlink()
