@@ -80,7 +80,7 @@ def test_sample_count_out_of_range(fmus, native_fmu, count):
         fmu.start()
         setter = "setInt32" if fmu.third else "setInteger"
         message = fmu.refused(setter, [fmu.variables["sample_count"].valueReference], [count])
-        assert f"sample_count = {count}.0" in message
+        assert f"sample_count = {count}:" in message
         assert f"{ROOM}" in message
 
 
