@@ -9,7 +9,7 @@ from orchestrate.access import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.dynamics.continuation import NoConvergenceError
 from orchestrate.dynamics.families import Setting
 from orchestrate.dynamics.guesses import from_state
-from orchestrate.dynamics.orbit_search import repeats_earlier, solve, why_no_motion
+from orchestrate.dynamics.orbit_search import least_periods, solve, why_no_motion
 from orchestrate.dynamics.turning_points import phase_zero
 from orchestrate.response.multiplicity import (
     IRREGULAR,
@@ -289,7 +289,7 @@ def newton(instance, point, state, periods):
     away = np.abs(phase_zero(ring)[0] - np.array(state) / point.scale).max()
     if why_no_motion(ring) or away > 1e-3 * np.abs(ring.nodes).max():
         return None
-    return repeats_earlier(ring), bool(np.abs(ring.multipliers()).max() < 1.0)
+    return least_periods(ring), bool(np.abs(ring.multipliers()).max() < 1.0)
 
 
 def checked_by_newton(points, transient, samples):
