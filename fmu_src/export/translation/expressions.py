@@ -165,15 +165,14 @@ class Expressions(ABC):
         if not isinstance(whole.type, tuple):
             raise self.refuse(node, ast.unparse(node), "a slot or a part of a tuple")
         if isinstance(node.slice, ast.Slice):
-            ends = (node.slice.lower, node.slice.upper, node.slice.step)
-            first, last, step = (end and ast.literal_eval(end) for end in ends)
-            places = range(len(whole.type))[slice(first, last, step)]
             simple = whole if is_simple(whole) else self.keep(whole)
-            return self.grouped([simple.item(place) for place in places])
-        place = node.slice.value if isinstance(node.slice, ast.Constant) else None
-        if not isinstance(place, int):
+            ends = [getattr(node.slice, end) for end in ("lower", "upper", "step")]
+            wanted = slice(*(end and ast.literal_eval(end) for end in ends))
+            return self.grouped(simple.items()[wanted])
+        index = node.slice.value if isinstance(node.slice, ast.Constant) else None
+        if not isinstance(index, int):
             raise self.refuse(node, ast.unparse(node), "a constant index of a tuple")
-        return whole.item(place)
+        return whole.item(index)
 
     # -- what is computed --
 

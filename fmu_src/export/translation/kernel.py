@@ -16,7 +16,7 @@ from typing import Any
 
 from ..errors import CannotExport
 from .expressions import TAKEN
-from .functions import Body, Unit
+from .functions import Body, Unit, wrapped
 from .values import C_TYPES, MEMORY, REAL, Type
 
 HEAD = """\
@@ -130,7 +130,7 @@ class Translation:
         structures = []
         for kind, name in self.structures.items():
             parts = " ".join(f"{self.c_type(part)} i{i};" for i, part in enumerate(kind))
-            structures.append(f"typedef struct {{ {parts} }} {name};")
+            structures += wrapped(f"typedef struct {{ {parts} }} {name};", "", "    ")
         return [
             "\n".join(["enum {", *(f"    {name} = {number}," for number, name in whole), "};\n"]),
             "".join(f"static const double {name} = {literal(n)};\n" for name, n in real),

@@ -56,7 +56,9 @@ def named(module: ModuleType, name: str) -> object:
 @functools.cache
 def imports(module: ModuleType) -> dict[str, tuple[str, str]]:
     """Module and name that each imported name was defined under."""
-    known = {}
+    known: dict[str, tuple[str, str]] = {}
+    if not getattr(module, "__file__", "").endswith(".py"):  # written in C, as math
+        return known
     for node in ast.parse(inspect.getsource(module)).body:
         if isinstance(node, ast.ImportFrom) and node.level:
             package = module.__name__.split(".")[: -node.level]
