@@ -37,7 +37,7 @@ def export(source: Path, platform: str) -> bytes:
     if platform not in PLATFORMS:
         raise CannotExport(f"platform {platform}: expected one of {', '.join(PLATFORMS)}")
     header = f'#define TOKEN "{guid(source)}"\n'.encode()
-    return link(platform, {source.name: source.read_bytes(), "token.h": header})
+    return link(platform, source.stem, {source.name: source.read_bytes(), "token.h": header})
 
 
 def file_name(source: Path, platform: str) -> str:

@@ -51,13 +51,15 @@ def compiler(name: str) -> list[str]:
     )
 
 
-def link(name: str, files: Mapping[str, bytes]) -> bytes:
+def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
     """A shared library.
 
     Parameters
     ----------
     name : str
         Platform.
+    title : str
+        The library's own name, which dylibs and DLLs bear inside.
     files : mapping of str to bytes
         Sources, headers and object files by file name.
 
@@ -66,7 +68,7 @@ def link(name: str, files: Mapping[str, bytes]) -> bytes:
     CannotExport
         Where there is no compiler, or it fails.
     """
-    target = f"library{PLATFORMS[name].suffix}"
+    target = f"{title}{PLATFORMS[name].suffix}"
     units = [file for file in files if file.endswith((".c", ".o"))]
     command = [*compiler(name), *FLAGS, "-o", target, *units]
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
@@ -81,13 +83,17 @@ def link(name: str, files: Mapping[str, bytes]) -> bytes:
         return (folder / target).read_bytes()
 
 
-def link_all(objects: Mapping[str, bytes], files: Mapping[str, bytes]) -> dict[str, bytes]:
+def link_all(
+    objects: Mapping[str, bytes], title: str, files: Mapping[str, bytes]
+) -> dict[str, bytes]:
     """The same library for every platform this machine can link for; what is left out is said.
 
     Parameters
     ----------
     objects : mapping of str to bytes
         The compiled kernel by platform.
+    title : str
+        The library's own name.
     files : mapping of str to bytes
         Sources and headers.
 
@@ -104,7 +110,7 @@ def link_all(objects: Mapping[str, bytes], files: Mapping[str, bytes]) -> dict[s
     made, reasons = {}, []
     for name in objects:
         try:
-            made[name] = link(name, {**files, "kernel.o": objects[name]})
+            made[name] = link(name, title, {**files, "kernel.o": objects[name]})
         except CannotExport as reason:
             reasons.append(reason)
     if not made:

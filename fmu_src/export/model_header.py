@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ..runtime.table import Model, Variable
+from .description import LOG_CATEGORIES
 from .description_fmi3 import ARRAY_BASE, CLOCK_REFERENCE
 
 TYPES = """\
@@ -14,7 +15,7 @@ typedef struct {
     Type type;
     int calculated, fixed;
     double start, minimum, maximum;
-    int input_derivatives, rate, element;
+    int input_derivatives, polynomial, rate, element;
 } Variable;
 typedef struct { unsigned first, size; } Array;"""
 
@@ -46,6 +47,7 @@ def c_variable(variable: Variable, model: Model) -> str:
         c_number(minimum),
         c_number(maximum),
         str(variable.input_derivatives),
+        str(int(variable.slot in model.polynomial)),
         str(model.rate_slot(variable)),
         str(int(bool(variable.series))),
     ]
@@ -65,6 +67,7 @@ def definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
         "SKIP_COUNT": str(model.written_only[1]),
         "TIME_SLOT": str(model.time_slot),
         "STOP_SLOT": str(model.stop_slot),
+        "SET_SLOT": str(model.set_slot),
         "VARIABLE_COUNT": f"{len(model.variables)}u",
         "REFRESH": str(int(model.refresh is not None)),
         "COAST": str(int(model.coast is not None)),
@@ -74,6 +77,8 @@ def definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
         "ARRAY_BASE": f"{ARRAY_BASE}u",
         "ARRAY_COUNT": f"{len(model.arrays)}u",
         "MESSAGE_COUNT": str(max(model.messages) + 1),
+        "CATEGORY_COUNT": str(len(LOG_CATEGORIES)),
+        "CATEGORY_NAMES": c_string(" or ".join(LOG_CATEGORIES)),
         "INPUT_DERIVATIVES": c_string(", ".join(inputs) or "none"),
     }
 
@@ -107,6 +112,7 @@ def model_header(model: Model, token: str, digest: str) -> bytes:
         "static const Array ARRAYS[] = {",
         *(arrays or ["    {0, 0},"]),
         "};",
+        f"static const char *const CATEGORIES[] = {{{', '.join(map(c_string, LOG_CATEGORIES))}}};",
         "static const char *const MESSAGES[] = {",
         *(f"    [{code}] = {c_string(text)}," for code, text in sorted(model.messages.items())),
         "};",

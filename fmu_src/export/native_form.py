@@ -106,7 +106,7 @@ def export(
     units = {**shim_sources(version), **fmi_headers(version), **header}
     told = plain(model) if is_plain else model
     files = {"modelDescription.xml": XML[version](told, token)}
-    made = link_all(compile_objects(folder, platforms or usual()), units)
+    made = link_all(compile_objects(folder, platforms or usual()), model.name, units)
     files.update(binaries(version, model.name, made))
     form = f"{version}-plain" if is_plain else version
     files.update(documentation_files(folder, digest, form))

@@ -110,7 +110,7 @@ def libraries(folder: str, model: Model) -> Files:
     entry = known + (ROOT / "runtime" / "native" / "library.c").read_bytes()
     try:
         platforms = tuple(dict.fromkeys(platform for platform, _ in LIBRARIES.values()))
-        made = link_all(compile_objects(folder, platforms), {"library.c": entry})
+        made = link_all(compile_objects(folder, platforms), "kernel", {"library.c": entry})
     except CannotExport as reason:
         say_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")
         return {}

@@ -90,9 +90,15 @@ def guid_inside(module: bytes) -> str:
 
 
 def slots(folder: str) -> dict[str, int]:
-    """Size of a model's memory and the place of each of its variables: series by their first."""
+    """Size of a model's memory and the place of each of its variables: series by their first.
+
+    ``SET`` is the flag to be raised when an input between ``CUBIC`` and before ``CUBIC_END`` is
+    set.
+    """
     model = load(folder)
     found = {"SIZE": model.memory_size, "TIME": model.time_slot, "STOP": model.stop_slot}
+    cubic = model.polynomial
+    found |= {"SET": model.set_slot, "CUBIC": cubic.start, "CUBIC_END": cubic.stop}
     for variable in model.variables:
         name, _, element = variable.name.partition("[")
         if element in ("", "1]"):

@@ -60,7 +60,9 @@ def state_problem(variable: Variable, value: float) -> str:
         fits = value in (0.0, 1.0)
     else:  # FMI's integers have 32 bits
         fits = abs(value) < 2.0**31 and value == int(value)
-    return "" if fits else f"{variable.name} = {value!r}: expected {variable.range_text()}"
+    if fits:
+        return ""
+    return f"{variable.name} = {variable.text(value)}: expected {variable.range_text()}"
 
 
 class Slave:
@@ -290,11 +292,13 @@ class Slave:
                 self.refuse(problem)
         for reference, value in zip(references, values):
             self._memory[reference] = float(value)
+            if reference in self.model.polynomial:
+                self._memory[self.model.set_slot] = 1.0
         self._stale = True
 
     def write_problem(self, variable: Variable, value: float) -> str:
         """Why a variable cannot be set now, or not to that; an empty string where it can."""
-        given = f"{variable.name} = {value!r}"
+        given = f"{variable.name} = {variable.text(value)}"
         if variable.calculated:
             return f"{given}: an output cannot be set, expected a parameter or an input"
         if variable.fixed and self._phase > INITIALIZING:

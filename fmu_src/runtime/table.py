@@ -43,7 +43,8 @@ class Variable:
     initial_dependencies : tuple of str
         The variables known at the start that the calculated initial value depends on.
     input_derivatives : int
-        How many of the variables that follow in the table are its time derivatives.
+        How many of the variables that follow in the table are its time derivatives: together they
+        are a polynomial in time, which begins where one of them is set.
     series : str
         Name of the array it is an element of, where FMI 3.0 has the array alone.
     slot : int
@@ -79,6 +80,14 @@ class Variable:
         """Whether the variable can be set before the end of initialisation only."""
         return self.variability == "fixed"
 
+    def text(self, value: float) -> str:
+        """A value as people write it: Integers without a fraction, Booleans as words."""
+        if self.type == BOOLEAN and value in (0.0, 1.0):
+            return "true" if value else "false"
+        if self.type == INTEGER and isfinite(value) and value == int(value):
+            return str(int(value))
+        return repr(float(value))
+
     def problem(self, value: float) -> str:
         """Why ``value`` cannot be the variable's, as one line; an empty string where it can."""
         if self.type == BOOLEAN:
@@ -88,7 +97,7 @@ class Variable:
         if isfinite(value) and low and high:
             return ""
         unit = f" {self.unit}" if self.unit not in ("", "1") else ""
-        return f"{self.name} = {value!r}{unit}: expected {self.range_text()}"
+        return f"{self.name} = {self.text(value)}{unit}: expected {self.range_text()}"
 
     def range_text(self) -> str:
         """The expected range in words."""
@@ -208,9 +217,9 @@ class Model:
     written_only : tuple of int
         First slot and number of slots that a step writes and never reads: a step that fails need
         not put them back.
-    time_slot, stop_slot : int
-        Slots of the communication point reached, and of the flag that ends a step at its first
-        event.
+    time_slot, stop_slot, set_slot : int
+        Slots of the communication point reached, of the flag that ends a step at its first event,
+        and of the flag to be raised when one of ``polynomial`` is set, to whatever value.
     initialize, advance : callable
         The kernel's entry points, ``(memory, time) -> code``; 0 is success.
     differentiate : callable
@@ -248,6 +257,7 @@ class Model:
     written_only: tuple[int, int]
     time_slot: int
     stop_slot: int
+    set_slot: int
     initialize: Entry
     advance: Entry
     differentiate: Entry
@@ -269,6 +279,12 @@ class Model:
             return -1
         first = next(other.slot for other in self.variables if other.causality == "output")
         return self.rates + variable.slot - first
+
+    @property
+    def polynomial(self) -> range:
+        """Slots of the input that has derivatives, and of these."""
+        (value,) = (v for v in self.variables if v.input_derivatives)
+        return range(value.slot, value.slot + 1 + value.input_derivatives)
 
     @property
     def entries(self) -> dict[str, Entry]:
@@ -296,12 +312,19 @@ def with_slots(messages: Mapping[int, str], memory: ModuleType) -> dict[int, str
 def explain(model: Model, memory: Sequence[float], code: int) -> str:
     """What a return code of the kernel says, as one line.
 
-    In a message ``{12}`` stands for the number in slot 12, ``{12:flight|contact}`` for one of the
-    words, chosen by it. The native FMU fills in the same texts.
+    In a message ``{12}`` stands for the value in slot 12, ``{12:0}`` for the whole number next to
+    it, ``{12:flight|contact}`` for one of the words, chosen by it. The native FMU fills in the same
+    texts.
     """
 
     def fill(match: re.Match[str]) -> str:
-        value = memory[int(match.group(1))]
-        return match.group(2)[1:].split("|")[int(value)] if match.group(2) else repr(float(value))
+        slot, how = int(match.group(1)), match.group(2)
+        value = float(memory[slot])
+        if how == ":0":
+            return f"{value:.0f}"
+        if how:
+            return str(how[1:].split("|")[int(value)])
+        known = slot < len(model.variables)
+        return model.variables[slot].text(value) if known else repr(value)
 
     return re.sub(r"\{(\d+)(:[^}]*)?\}", fill, model.messages[code])

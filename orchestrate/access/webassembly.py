@@ -30,8 +30,9 @@ class WebKernel:
     module : bytes
         The WebAssembly module.
     slots : dict of str to int
-        Place of each variable in an instance's memory, and ``SIZE``, ``TIME`` and ``STOP``, the
-        place of the flag that ends a step at its first event.
+        Place of each variable in an instance's memory, and ``SIZE``, ``TIME``, ``STOP``, the place
+        of the flag that ends a step at its first event, and ``SET``, that of the flag to be raised
+        when an input from the places ``CUBIC`` to ``CUBIC_END`` is set, the last not included.
     starts : dict of str to float
         Start values of variables, where they are not zero.
     guid : str

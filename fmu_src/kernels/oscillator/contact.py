@@ -50,7 +50,7 @@ def first_derivative(m, x, v, lowest):
         The derivative, 0 where all vanish.
     """
     sine, cosine = m[at.SINE], m[at.COSINE]
-    cubic = cubic_at(m, m[at.SEGMENT_AGE])
+    cubic = cubic_at(m, m[at.CUBIC_AGE])
     twice = 2.0 * m[at.BRANCH_3 + at.DAMPING]
     square = m[at.BRANCH_3 + at.OMEGA_SQUARED]
     low, low_size, high, high_size = x, abs(x), v, abs(v)

@@ -1,8 +1,8 @@
 """The box's motion over one segment: right-hand side of (6), a harmonic plus a cubic in time.
 
-A segment lasts as long as the inputs stay as they are. With a jerk, snap or crackle set, that is
-one communication step. Relative to the box a mass is driven by minus the box's acceleration: ``a
-Omega^2 sin(phase)`` minus the cubic.
+A segment lasts as long as the inputs stay as they are. The cubic begins where one of its inputs was
+set, and runs on over communication steps and segments until one is set again. Relative to the box a
+mass is driven by minus the box's acceleration: ``a Omega^2 sin(phase)`` minus the cubic.
 """
 
 from ..numerics.elementary import TWO_PI
@@ -13,7 +13,7 @@ from .secular import set_secular
 
 def inputs_changed(m):
     """Whether the present inputs call for a new segment."""
-    if m[at.CUBIC_ON] != 0.0:
+    if m[at.CUBIC_ON] != 0.0 and m[at.CUBIC_SET] != 0.0:
         return True
     for i in range(6):
         if m[at.SEGMENT_INPUTS + i] != m[at.BOX_AMPLITUDE + i]:
@@ -21,8 +21,22 @@ def inputs_changed(m):
     return False
 
 
+def cubic_begins(m):
+    """Whether the present inputs call for a new cubic: one was set, or has another value."""
+    if m[at.CUBIC_SET] != 0.0:
+        return True
+    for i in range(2, 6):
+        if m[at.SEGMENT_INPUTS + i] != m[at.BOX_AMPLITUDE + i]:
+            return True
+    return False
+
+
 def begin_segment(m):
-    """Take the present inputs over into the excitation constants."""
+    """Take the present inputs over into the excitation constants; the cubic goes on where its
+    inputs were not set.
+    """
+    if cubic_begins(m):
+        begin_cubic(m)
     for i in range(6):
         m[at.SEGMENT_INPUTS + i] = m[at.BOX_AMPLITUDE + i]
     scale = 1.0 / m[at.OMEGA]
@@ -30,6 +44,16 @@ def begin_segment(m):
     m[at.ETA] = eta
     m[at.ETA_TURNS] = eta / TWO_PI
     m[at.FORCING] = m[at.BOX_AMPLITUDE] * eta * eta
+    set_grid(m)
+    set_secular(m)
+    set_harmonic(m, at.BRANCH_1, at.HARMONIC_1)
+    set_harmonic(m, at.BRANCH_2, at.HARMONIC_2)
+    set_harmonic(m, at.BRANCH_3, at.HARMONIC_3)
+
+
+def begin_cubic(m):
+    """Let the present inputs' cubic begin at the present state's start."""
+    scale = 1.0 / m[at.OMEGA]
     unit = scale * scale
     m[at.CUBIC_ON] = 0.0
     m[at.CUBIC_PRESENT] = 0.0
@@ -41,12 +65,7 @@ def begin_segment(m):
             m[at.CUBIC_PRESENT] = 1.0
             if i > 0:
                 m[at.CUBIC_ON] = 1.0
-    m[at.SEGMENT_AGE] = 0.0
-    set_grid(m)
-    set_secular(m)
-    set_harmonic(m, at.BRANCH_1, at.HARMONIC_1)
-    set_harmonic(m, at.BRANCH_2, at.HARMONIC_2)
-    set_harmonic(m, at.BRANCH_3, at.HARMONIC_3)
+    m[at.CUBIC_AGE] = 0.0
 
 
 def set_harmonic(m, b, harmonic):
@@ -64,12 +83,24 @@ def set_harmonic(m, b, harmonic):
 
 
 def cubic_at(m, age):
-    """Value and three derivatives of the forcing's cubic, ``age`` after the segment's start."""
+    """Value and three derivatives of the forcing's cubic, ``age`` after it began, in tau."""
     p0, p1, p2, p3 = m[at.CUBIC], m[at.CUBIC + 1], m[at.CUBIC + 2], m[at.CUBIC + 3]
     q2 = p2 + p3 * age
     q1 = p1 + age * (p2 + 0.5 * age * p3)
     q0 = p0 + age * (p1 + 0.5 * age * (p2 + age * p3 / 3.0))
     return q0, q1, q2, p3
+
+
+def box_derivative(m, order, age):
+    """Derivative of the acceleration that the inputs' cubic is, ``age`` after it began, in tau; SI.
+
+    A constant keeps its bits.
+    """
+    time = age / m[at.OMEGA]
+    value = 0.0
+    for i in range(3, order - 1, -1):
+        value = m[at.SEGMENT_INPUTS + 2 + i] + value * time / (i - order + 1)
+    return value
 
 
 def set_cubic_response(m, b, response, cubic):

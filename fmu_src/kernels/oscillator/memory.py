@@ -98,10 +98,9 @@ HARMONIC_1 = slot(2)  # a eta^2 (a_i, b_i) of (11), cosine and sine; 0 where the
 HARMONIC_2 = slot(2)
 HARMONIC_3 = slot(2)
 SEGMENT_INPUTS = slot(6)  # the inputs the segment was made of
-# the cubic has more than its constant: to be set anew at each communication point
-CUBIC_ON = slot()
-CUBIC = slot(4)  # value and three derivatives of the forcing's cubic at the segment's start
-SEGMENT_AGE = slot()  # tau since the segment's start, at the present state's start
+CUBIC_ON = slot()  # the cubic has more than its constant: it matters where it began
+CUBIC = slot(4)  # value and three derivatives of the forcing's cubic where it began
+CUBIC_AGE = slot()  # tau since then, at the present state's start
 SPACING = slot()  # of the nodes, in tau; a few bits long, so that ages of nodes are exact
 HALF_SPACING = slot()
 HERMITE = slot(3)  # h/5, h^2/20, h^6/28800
@@ -165,6 +164,8 @@ SERIES_GAP = slot(2 * SERIES_LONGEST + 9)  # and of the gap between them; zeros 
 SERIES_BOUND = slot()  # of the gap's fifth derivative
 STEP = slot()  # length of the last step, s
 RATES = slot(CONTACT_COUNT - X1)  # of the outputs, in their order, where they were asked for
+# set from outside: an input of the cubic was set, to whatever value; the cubic begins there
+CUBIC_SET = slot()
 SIZE = slot.used
 
 # -- return codes of the entry points --------------------------------------------------------------

@@ -65,7 +65,7 @@ def brief_contact(m, tau):
     """
     twice, square = 2.0 * m[at.BRANCH_3 + at.DAMPING], m[at.BRANCH_3 + at.OMEGA_SQUARED]
     drive, eta = m[at.FORCING] * m[at.SINE], m[at.ETA]
-    cubic = cubic_at(m, m[at.SEGMENT_AGE])
+    cubic = cubic_at(m, m[at.CUBIC_AGE])
     x, v = m[at.BEGIN], m[at.BEGIN + 1]
     x2 = (drive + cubic[0]) - (twice * v + square * x)
     x3 = (m[at.FORCING] * eta * m[at.COSINE] + cubic[1]) - (twice * x2 + square * v)
@@ -120,7 +120,7 @@ def advance_origin(m, tau):
     low = m[at.ORIGIN_LOW] + error
     m[at.ORIGIN] = total + low
     m[at.ORIGIN_LOW] = low - (m[at.ORIGIN] - total)
-    m[at.SEGMENT_AGE] += tau
+    m[at.CUBIC_AGE] += tau
 
 
 def move_to_end(m):
@@ -201,7 +201,7 @@ def begin_flight(m, x1, v1, x2, v2):
     m[at.MODE] = at.FLIGHT
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:
-        cubic = cubic_at(m, m[at.SEGMENT_AGE])
+        cubic = cubic_at(m, m[at.CUBIC_AGE])
         set_cubic_response(m, at.BRANCH_1, at.CUBIC_A, cubic)
         set_cubic_response(m, at.BRANCH_2, at.CUBIC_B, cubic)
     set_free(m, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
@@ -224,7 +224,7 @@ def begin_common(m, mode, x, v):
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:
-        set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.SEGMENT_AGE]))
+        set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.CUBIC_AGE]))
     set_free(m, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
     set_contact_force(m)
     open_end(m, x, v, x, v)

@@ -3,7 +3,7 @@
 from ..numerics.elementary import TWO_PI, fraction, sincos_turns
 from . import memory as at
 from .contact import contact_force
-from .excitation import cubic_at
+from .excitation import box_derivative, cubic_at
 from .motion import state_and_phase_at
 
 LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the range of numbers
@@ -66,8 +66,8 @@ def total(seen):
 
 
 def written(m, age):
-    """The point that was written last, ``age`` after the segment began, in tau: x1, x2, v1, v2,
-    force on the box, cosine and sine of the phase, and the age.
+    """The point that was written last, ``age`` after the cubic began, in tau: x1, x2, v1, v2, force
+    on the box, cosine and sine of the phase, and the age.
     """
     motion = m[at.X1], m[at.X2], m[at.V1], m[at.V2]
     return motion, m[at.BOX_FORCE], (m[at.PHASE_COSINE], m[at.PHASE_SINE]), age
@@ -75,7 +75,7 @@ def written(m, age):
 
 def found(m, seen, tau):
     """The same of what :func:`look` has found, ``tau`` after the present state's start."""
-    return seen[0][:4], seen[0][9], seen[2], m[at.SEGMENT_AGE] + tau
+    return seen[0][:4], seen[0][9], seen[2], m[at.CUBIC_AGE] + tau
 
 
 def accelerations(m, point):
@@ -149,7 +149,7 @@ def impulse(m, h, left, reached):
     if m[at.CUBIC_PRESENT] != 0.0:
         power = h
         for i in range(4):  # integrals of tau^i/i! and of tau^(i+1)/i!
-            derivative = m[at.SEGMENT_INPUTS + 2 + i]
+            derivative = box_derivative(m, i, left[3])
             drive -= derivative * power / (i + 1)
             drive_moment -= derivative * power * h / (i + 2)
             power *= h / (i + 1)

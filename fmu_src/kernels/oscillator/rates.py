@@ -17,7 +17,7 @@ def differentiate(m, time):
     int
         OK.
     """
-    a1, a2 = accelerations(m, written(m, m[at.SEGMENT_AGE] + local_time(m, m[at.TIME])))
+    a1, a2 = accelerations(m, written(m, m[at.CUBIC_AGE] + local_time(m, m[at.TIME])))
     omega = m[at.OMEGA]
     v1, v2, v_rel = m[at.V1], m[at.V2], m[at.V_REL]
     unit = unit_of_length(m)

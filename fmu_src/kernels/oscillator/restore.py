@@ -11,7 +11,7 @@ from ..numerics.elementary import sincos_turns
 from . import memory as at
 from .contact import first_derivative
 from .event_function import evaluate, rounding, set_values
-from .excitation import begin_segment
+from .excitation import begin_cubic, begin_segment
 from .motion import begin_common, begin_flight, set_turn
 from .nodes import BLOCK, LONGEST, seek
 from .parameters import derive
@@ -85,7 +85,7 @@ def clear_scratch(m):
 def may_be_infinite(m, slot):
     """Whether a slot may have no finite number: it is made anew, or has none in a sound state."""
     if at.OMEGA <= slot <= at.NODE_SINE and not (
-        at.SEGMENT_INPUTS <= slot < at.CUBIC_ON or slot == at.SEGMENT_AGE
+        at.SEGMENT_INPUTS <= slot < at.CUBIC_ON or slot == at.CUBIC_AGE
     ):
         return True
     if at.SERIES_X <= slot < at.STEP:
@@ -94,18 +94,21 @@ def may_be_infinite(m, slot):
 
 
 def restored_segment(m):
-    """The excitation's constants from the inputs that the segment was made of."""
+    """The excitation's constants from the inputs that the segment was made of; whether an input of
+    the cubic was set since stays as it was.
+    """
     for i in range(6):
         value = m[at.SEGMENT_INPUTS + i]
         if abs(value) > MOST_INPUT or (i == 1 and (value < 0.0 or value > 1e30)):
             return refused(m, at.SEGMENT_INPUTS + i, at.NO_INPUT)
-    age = m[at.SEGMENT_AGE]
+    age = m[at.CUBIC_AGE]
     if age < 0.0 or age > (1.0 + SLACK) * m[at.ORIGIN]:
-        return refused(m, at.SEGMENT_AGE, at.NO_AGE)
+        return refused(m, at.CUBIC_AGE, at.NO_AGE)
     inputs = swap_inputs(m, current_inputs(m))
+    begin_cubic(m)
     begin_segment(m)
     swap_inputs(m, inputs)
-    m[at.SEGMENT_AGE] = age
+    m[at.CUBIC_AGE] = age
     return at.OK
 
 
@@ -133,6 +136,8 @@ def whole_numbers(m):
     """Mode, counts and orders."""
     if not is_whole(m, at.MODE, 2.0) or (m[at.MODE] == at.GLUED) != (m[at.BONDED] != 0.0):
         return refused(m, at.MODE, at.NO_MODE)
+    if not is_whole(m, at.CUBIC_SET, 1.0):
+        return refused(m, at.CUBIC_SET, at.NO_COUNT)
     if not is_whole(m, at.END_KIND, 2.0):
         return refused(m, at.END_KIND, at.NO_END_KIND)
     if m[at.SERIES] != 0.0 and m[at.SERIES] != 8.0 and m[at.SERIES] != at.SERIES_LONGEST:

@@ -48,7 +48,9 @@ def initialize(m, time):
     ):
         return at.START_BONDED
     set_turn(m, m[at.PHASE_START] / TWO_PI)
+    m[at.CUBIC_SET] = 1.0
     begin_segment(m)
+    m[at.CUBIC_SET] = 0.0
     m[at.WORK_LIMIT] = WORK_BASE
     m[at.MODE] = at.GLUED if m[at.BONDED] != 0.0 else at.CONTACT
     begin(
@@ -97,7 +99,7 @@ def advance(m, time):
         now = 0.0
         m[at.PHASE_COSINE] = m[at.COSINE]
         m[at.PHASE_SINE] = m[at.SINE]
-    left, mode, impacts = written(m, m[at.SEGMENT_AGE] + now), m[at.MODE], m[at.IMPACT_COUNT]
+    left, mode, impacts = written(m, m[at.CUBIC_AGE] + now), m[at.MODE], m[at.IMPACT_COUNT]
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     tau = run_samples(m, before, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:
@@ -126,7 +128,7 @@ def coast(m, time):
         highest = m[at.X_REL]
         if not is_without_summit(m, now, tau):
             return at.UNFINISHED
-    return arrive(m, time, tau, written(m, m[at.SEGMENT_AGE] + now), highest, True)
+    return arrive(m, time, tau, written(m, m[at.CUBIC_AGE] + now), highest, True)
 
 
 def lasts(m, tau):
@@ -169,6 +171,7 @@ def arrive(m, time, tau, left, highest, same):
     if code == at.OK:
         m[at.TIME] = time
         m[at.STEP] = h
+        m[at.CUBIC_SET] = 0.0
         write(m, seen)
         m[at.BOX_IMPULSE] = force
         m[at.BOX_IMPULSE_MOMENT] = moment
@@ -184,7 +187,7 @@ def finite(sum_of_outputs):
 def renew_segment(m, now):
     """Begin a segment with the present inputs, ``now`` after the present state's start.
 
-    Positions and phase are continuous.
+    Positions and phase are continuous; so is the cubic, where none of its inputs was set.
     """
     x1, v1, x2, v2 = state_at(m, now)
     goes_on = now > 0.0 and m[at.MODE] != at.GLUED and (x2 > x1 or inside(m, now))

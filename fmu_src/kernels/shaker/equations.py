@@ -16,11 +16,26 @@ MOST_TURNS = 1e9  # of a stage: beyond, it is a failed try,
 NO_NUMBER = 1e400 - 1e400  # and the sub-step is tried again
 
 
+def begin_force(m):
+    """Let the force's cubic begin at the communication point, where one of its inputs was set."""
+    if m[at.FORCE_SET] != 0.0:
+        m[at.FORCE_TIME] = m[at.TIME]
+        m[at.FORCE_SET] = 0.0
+
+
 def force(m, t):
-    """Force on the box, N, ``t`` after the communication step's beginning."""
+    """Force on the box, N, ``t`` after it was set."""
     return m[at.BOX_FORCE] + t * (
         m[at.BOX_FORCE_1] + 0.5 * t * (m[at.BOX_FORCE_2] + t * m[at.BOX_FORCE_3] / 3.0)
     )
+
+
+def force_now(m):
+    """Force on the box at the communication point, N, and two time derivatives."""
+    t = m[at.TIME] - m[at.FORCE_TIME]
+    second = m[at.BOX_FORCE_2] + t * m[at.BOX_FORCE_3]
+    first = m[at.BOX_FORCE_1] + t * (m[at.BOX_FORCE_2] + 0.5 * t * m[at.BOX_FORCE_3])
+    return force(m, t), first, second
 
 
 def static_current(m, speed):
@@ -46,7 +61,7 @@ def rates(m, stage, t):
     m : flat memory
     stage : int
     t : float
-        Time since the communication step's beginning, s.
+        Time since the force was set, s.
     """
     turn = m[at.TURN] + m[at.STAGE + at.ROTATION] / TWO_PI
     position, velocity = m[at.STAGE + at.POSITION], m[at.STAGE + at.VELOCITY]

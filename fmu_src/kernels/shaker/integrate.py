@@ -1,8 +1,8 @@
 """A communication step in sub-steps of the formula, as long as its error estimate allows.
 
-Sub-steps begin anew at each communication point, because the force on the box is a new cubic there;
-only the length that the tolerance allowed is remembered. Everything remembered is part of the
-state, so a run that is resumed gives the same bits.
+Sub-steps begin anew at each communication point, because the force on the box may be a new cubic
+there; only the length that the tolerance allowed is remembered. Everything remembered is part of
+the state, so a run that is resumed gives the same bits.
 """
 
 import math
@@ -38,7 +38,7 @@ TINY, MANY = 1e-300, 1e6
 def stages(m, t, h):
     """All stages of a sub-step of length ``h``; its end is in NEXT.
 
-    It begins ``t`` after the communication step did.
+    It begins ``t`` after the force was set.
     """
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s]
@@ -154,7 +154,7 @@ def through(m, length):
     int
         OK, or why it cannot be done; REPORT then is how far it came, s.
     """
-    t = 0.0
+    t, age = 0.0, m[at.TIME] - m[at.FORCE_TIME]
     while t < length:
         left = length - t
         fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(
@@ -169,7 +169,7 @@ def through(m, length):
         m[at.REPORT] = t
         if m[at.WORK] >= m[at.WORK_LIMIT]:
             return at.UNFINISHED
-        stages(m, t, h)
+        stages(m, age + t, h)
         ratio = error(m, h)
         if ratio <= 1.0:
             accept(m)

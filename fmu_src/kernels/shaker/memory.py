@@ -67,6 +67,9 @@ STATE = slot(STATES)  # at the communication point (its ROTATION is 0)
 TURN = slot()  # the angle in turns, [0, 1)
 ANGLE_LOW = slot()  # what the sum ANGLE has lost to rounding
 HINT = slot()  # length of sub-step that the tolerance allows, s; 0: not known yet
+FORCE_TIME = slot()  # when the force on the box was set, s: there its cubic begins
+# set from outside: an input of the force was set, to whatever value; its cubic begins now
+FORCE_SET = slot()
 UNBALANCE = slot()  # S, product of mass and radius
 WORK = slot()  # evaluations spent
 WORK_LIMIT = slot()  # and allowed in this step
@@ -79,4 +82,4 @@ SIZE = slot.used
 # -- return codes of the entry points --------------------------------------------------------------
 OK, UNFINISHED, NOT_FINITE, INERTIA = 0, 1, 2, 3
 FORGED = 100  # a saved state that this model never had; which slot, and why:
-NOT_A_NUMBER, NO_PHASE, NO_TIME = 0, 1, 2
+NOT_A_NUMBER, NO_PHASE, NO_TIME, NO_FLAG = 0, 1, 2, 3

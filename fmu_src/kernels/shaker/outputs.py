@@ -1,11 +1,11 @@
 """What an importer sees at a communication point.
 
-The states reached, and what follows from them with the inputs as set now.
+The states reached, and what follows from them with the inputs as they are now.
 """
 
 from ..numerics.elementary import sincos_turns
 from . import memory as at
-from .equations import accelerations, static_current
+from .equations import accelerations, force_now, static_current
 
 
 def write(m):
@@ -19,7 +19,7 @@ def write(m):
     torque = m[at.MOTOR_CONSTANT] * current
     unbalance = m[at.UNBALANCE]
     p = unbalance * speed * speed * sine - m[at.BOX_DAMPING] * velocity
-    p = p - m[at.BOX_STIFFNESS] * position + m[at.BOX_FORCE]
+    p = p - m[at.BOX_STIFFNESS] * position + force_now(m)[0]
     box, rotor = accelerations(m, sine, cosine, p, torque)
     m[at.BOX_POSITION] = position
     m[at.BOX_VELOCITY] = velocity
@@ -56,11 +56,7 @@ def jerks(m, sine, cosine, box, rotor):
     The equations differentiated once, with the voltage constant.
     """
     unbalance, speed = m[at.UNBALANCE], m[at.STATE + at.ROTATION_SPEED]
-    p = (
-        m[at.BOX_FORCE_1]
-        - m[at.BOX_DAMPING] * box
-        - m[at.BOX_STIFFNESS] * m[at.STATE + at.VELOCITY]
-    )
+    p = force_now(m)[1] - m[at.BOX_DAMPING] * box - m[at.BOX_STIFFNESS] * m[at.STATE + at.VELOCITY]
     p += unbalance * speed * (3.0 * rotor * sine + speed * speed * cosine)
     q = m[at.MOTOR_CONSTANT] * current_rate(m, rotor) + unbalance * box * speed * sine
     return accelerations(m, sine, cosine, p, q)

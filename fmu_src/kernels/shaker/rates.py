@@ -1,8 +1,8 @@
-"""Time derivatives of the outputs, from the equations, with the inputs as set now."""
+"""Time derivatives of the outputs, from the equations, with the inputs as they are now."""
 
 from ..numerics.elementary import sincos_turns
 from . import memory as at
-from .equations import accelerations
+from .equations import accelerations, force_now
 from .outputs import current_rate, jerks
 
 
@@ -20,7 +20,7 @@ def differentiate(m, time):
     current = current_rate(m, rotor)
     torque = m[at.MOTOR_CONSTANT] * current
     damping = m[at.BOX_DAMPING] * m[at.BOX_VELOCITY] * m[at.BOX_VELOCITY]
-    work = m[at.BOX_FORCE] * m[at.BOX_VELOCITY]
+    work = force_now(m)[0] * m[at.BOX_VELOCITY]
     to = at.OUTPUT_RATES - at.BOX_POSITION
     m[to + at.BOX_POSITION] = m[at.BOX_VELOCITY]
     m[to + at.BOX_VELOCITY] = box
@@ -42,7 +42,7 @@ def right_hand_side(m, sine):
     """Right-hand side of the box's equation at the communication point, N."""
     speed = m[at.SPEED]
     p = m[at.UNBALANCE] * speed * speed * sine - m[at.BOX_DAMPING] * m[at.BOX_VELOCITY]
-    return p - m[at.BOX_STIFFNESS] * m[at.BOX_POSITION] + m[at.BOX_FORCE]
+    return p - m[at.BOX_STIFFNESS] * m[at.BOX_POSITION] + force_now(m)[0]
 
 
 def rotor_acceleration(m, sine, cosine):
@@ -62,7 +62,7 @@ def snap(m, sine, cosine, b):
         current = -(resistance * current_rate(m, b) + constant * b) / m[at.ARMATURE_INDUCTANCE]
     else:
         current = -constant * b_dot / resistance
-    p = m[at.BOX_FORCE_2] - m[at.BOX_DAMPING] * a_dot - m[at.BOX_STIFFNESS] * a
+    p = force_now(m)[2] - m[at.BOX_DAMPING] * a_dot - m[at.BOX_STIFFNESS] * a
     p += unbalance * (
         (3.0 * b * b - w * w * w * w) * sine + 6.0 * w * w * b * cosine + 4.0 * w * b_dot * sine
     )

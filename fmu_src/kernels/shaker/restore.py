@@ -5,6 +5,7 @@ finite; all that follows from it or from the parameters is computed anew.
 """
 
 from . import memory as at
+from .equations import begin_force
 from .outputs import write
 from .stepper import REGULAR, finite
 
@@ -20,7 +21,8 @@ def refused(m, slot, complaint):
 def restore(m, time):
     """Check and make whole a memory that was read; it began at ``time`` (s).
 
-    The variables have been checked against their ranges. Outputs are those for the inputs as set.
+    The variables have been checked against their ranges. Outputs are those for the inputs as they
+    are.
 
     Returns
     -------
@@ -46,9 +48,14 @@ def restore(m, time):
         return refused(m, at.TURN, at.NO_PHASE)
     if m[at.STATE + at.ROTATION] != 0.0:
         return refused(m, at.STATE + at.ROTATION, at.NO_PHASE)
+    if not time <= m[at.FORCE_TIME] <= m[at.TIME]:
+        return refused(m, at.FORCE_TIME, at.NO_TIME)
+    if m[at.FORCE_SET] != 0.0 and m[at.FORCE_SET] != 1.0:
+        return refused(m, at.FORCE_SET, at.NO_FLAG)
     if m[at.HINT] < 0.0:
         return refused(m, at.HINT, at.NO_TIME)
     if abs(m[at.ANGLE_LOW]) > 1e-9 * (1.0 + abs(m[at.ANGLE])):
         return refused(m, at.ANGLE_LOW, at.NO_PHASE)
+    begin_force(m)
     write(m)
     return finite(m)

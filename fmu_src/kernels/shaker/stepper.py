@@ -7,6 +7,7 @@ import math
 
 from ..numerics.elementary import TWO_PI, fraction
 from . import memory as at
+from .equations import begin_force
 from .integrate import through
 from .outputs import write
 
@@ -29,6 +30,7 @@ def initialize(m, time):
     for i in range(at.BOX_POSITION, at.SIZE):
         m[i] = 0.0
     m[at.TIME] = time
+    m[at.FORCE_TIME] = time
     m[at.TARGET] = time
     unbalance = m[at.UNBALANCE_MASS] * m[at.UNBALANCE_RADIUS]
     m[at.UNBALANCE] = unbalance
@@ -54,6 +56,7 @@ def advance(m, time):
         OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be
         thrown away.
     """
+    begin_force(m)
     before = m[at.TIME]
     length = time - before
     fastest = math.sqrt(m[at.BOX_STIFFNESS] / m[at.BOX_MASS]) + abs(m[at.STATE + at.ROTATION_SPEED])
@@ -89,13 +92,14 @@ def fastest_decay(m):
 
 
 def refresh(m, time):
-    """Outputs for the inputs as set now; ``time`` is not used.
+    """Outputs for the inputs as they are now; ``time`` is not used.
 
     Returns
     -------
     int
         OK, or NOT_FINITE.
     """
+    begin_force(m)
     write(m)
     return finite(m)
 

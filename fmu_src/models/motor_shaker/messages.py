@@ -6,12 +6,13 @@ from ...runtime.table import with_slots
 EXPECTED = {  # of a saved state, by complaint
     at.NOT_A_NUMBER: "a finite number",
     at.NO_PHASE: "an angle in turns from 0 to 1, of which the rest is small",
-    at.NO_TIME: "a time not before the start",
+    at.NO_TIME: "a time not before the start, nor after the communication point",
+    at.NO_FLAG: "0 or 1",
 }
 MESSAGES = with_slots(
     {
-        at.UNFINISHED: "the step to time = {TARGET} s cannot finish: it needs at least {WORK} "
-        "evaluations (at most {WORK_LIMIT}), and reached {REPORT} s; a time constant is too "
+        at.UNFINISHED: "the step to time = {TARGET} s cannot finish: it needs at least {WORK:0} "
+        "evaluations (at most {WORK_LIMIT:0}), and reached {REPORT} s; a time constant is too "
         "short for such a step: armature_inductance = {ARMATURE_INDUCTANCE} H over "
         "armature_resistance = {ARMATURE_RESISTANCE} Ohm (expected 0 H, or more), "
         "rotor_inertia = {ROTOR_INERTIA} kg.m2 with motor_constant = {MOTOR_CONSTANT} N.m/A, "
@@ -23,7 +24,7 @@ MESSAGES = with_slots(
         "unbalance_mass = {UNBALANCE_MASS} kg, unbalance_radius = {UNBALANCE_RADIUS} m and "
         "box_mass = {BOX_MASS} kg: expected rotor_inertia >= {REPORT} kg.m2, "
         "a little more than (unbalance_mass unbalance_radius)^2 / box_mass",
-        at.FORGED: "a saved state that this FMU never had: {TARGET} in slot {WORK}, expected "
+        at.FORGED: "a saved state that this FMU never had: {TARGET} in slot {WORK:0}, expected "
         f"{{REPORT:{'|'.join(EXPECTED.values())}}}",
     },
     at,

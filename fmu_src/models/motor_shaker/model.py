@@ -19,6 +19,7 @@ MODEL = Model(
     written_only=(at.RATES, at.STATE - at.RATES),
     time_slot=at.TIME,
     stop_slot=at.STOP,
+    set_slot=at.FORCE_SET,
     initialize=stepper.initialize,
     advance=stepper.advance,
     differentiate=rates.differentiate,

@@ -70,14 +70,15 @@ INPUTS = (
     given(
         "box_force",
         "N",
-        "Force on the box over the step: value at its beginning",
+        "Force on the box: value when it was set; runs on as the cubic with box_force_1, "
+        "box_force_2 and box_force_3",
         input_derivatives=3,
     ),
-    given("box_force_1", "N/s", "First time derivative of box_force at the beginning of the step"),
+    given("box_force_1", "N/s", "First time derivative of box_force when one of the four was set"),
     given(
-        "box_force_2", "N/s2", "Second time derivative of box_force at the beginning of the step"
+        "box_force_2", "N/s2", "Second time derivative of box_force when one of the four was set"
     ),
-    given("box_force_3", "N/s3", "Third time derivative of box_force at the beginning of the step"),
+    given("box_force_3", "N/s3", "Third time derivative of box_force when one of the four was set"),
 )
 NOW: dict[str, Any] = {"dependencies": ("voltage", "box_force")}
 JERK: dict[str, Any] = {"dependencies": ("voltage", *FORCE)}
@@ -101,14 +102,14 @@ OUTPUTS = (
     output(
         "box_acceleration",
         "m/s2",
-        "Acceleration of the box, with the inputs as set now",
+        "Acceleration of the box, with the inputs as they are now",
         (*ALL, "box_force"),
         **NOW,
     ),
     output(
         "box_jerk",
         "m/s3",
-        "Time derivative of box_acceleration, with the inputs as set now",
+        "Time derivative of box_acceleration, with the inputs as they are now",
         (*ALL, *FORCE),
         nominal=100.0,
         **JERK,

@@ -6,7 +6,7 @@ from ...runtime.table import with_slots
 EXPECTED = {  # of a saved state, by complaint
     at.NOT_A_NUMBER: "a finite number",
     at.NO_INPUT: "an input in its range",
-    at.NO_AGE: "an age of the segment from 0 to that of the present state's beginning",
+    at.NO_AGE: "an age of the inputs' cubic from 0 to that of the present state's beginning",
     at.NO_MODE: "0 in flight, 1 in permanent contact, 2 where bonded",
     at.NO_END_KIND: "0, 1 or 2",
     at.NO_SERIES: "0, or 8 or 12 in a short flight",
@@ -20,8 +20,8 @@ EXPECTED = {  # of a saved state, by complaint
 
 MESSAGES = with_slots(
     {
-        at.UNFINISHED: "the step to time = {TARGET} s cannot finish: {WORK} evaluations (at most "
-        "{WORK_LIMIT}) reached only {REPORT} s, in "
+        at.UNFINISHED: "the step to time = {TARGET} s cannot finish: {WORK:0} evaluations (at most "
+        "{WORK_LIMIT:0}) reached only {REPORT} s, in "
         "{MODE:flight|permanent contact|bonded motion} after {IMPACT_COUNT} impacts; "
         "e = {E} and gamma = {GAMMA} decide how many impacts chattering has",
         at.NOT_FINITE: "the motion leaves the range of floating-point numbers in the step to "
@@ -32,7 +32,7 @@ MESSAGES = with_slots(
         at.START_BONDED: "bonded = true with x2_start = {X2_START} m, v2_start = {V2_START} m/s: "
         "expected x2_start = x1_start = {X1_START} m and "
         "v2_start = v1_start = {V1_START} m/s",
-        at.FORGED: "a saved state that this FMU never had: {TARGET} in slot {WORK}, expected "
+        at.FORGED: "a saved state that this FMU never had: {TARGET} in slot {WORK:0}, expected "
         f"{{REPORT:{'|'.join(EXPECTED.values())}}}",
     },
     at,

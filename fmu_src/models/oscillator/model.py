@@ -22,6 +22,7 @@ MODEL = Model(
     written_only=(at.X1_SAMPLE, 4 * at.SAMPLES),
     time_slot=at.TIME,
     stop_slot=at.STOP_AT_IMPACT,
+    set_slot=at.CUBIC_SET,
     initialize=stepper.initialize,
     advance=stepper.advance,
     coast=stepper.coast,

@@ -29,6 +29,26 @@ static void append_number(char *text, double value) {
     append(text, digits);
 }
 
+/* The whole number next to a value. */
+static void append_whole(char *text, double value) {
+    char digits[320];  /* the largest double has 309 */
+    if (!isfinite(value)) { append_number(text, value); return; }
+    snprintf(digits, sizeof digits, "%.0f", value);
+    append(text, digits);
+}
+
+/* Whether a number is one of FMI's integers, of 32 bits; without the mathematical library. */
+static bool is_whole(double value) {
+    return fabs(value) < 2147483648.0 && (double)(int32_t)value == value;
+}
+
+/* A value as people write it: Integers without a fraction, Booleans as words. */
+static void append_value(char *text, const Variable *variable, double value) {
+    if (variable->type == BOOLEAN && (value == 0 || value == 1)) append(text, value ? "true" : "false");
+    else if (variable->type == INTEGER && is_whole(value)) append_whole(text, value);
+    else append_number(text, value);
+}
+
 Status refuse(Instance *instance, const char *call, const char *reason) {
     char text[TEXT] = "";
     append(text, call);
@@ -57,7 +77,21 @@ static char *copy(const char *text) {
     return made;
 }
 
-Instance *instance_new(const char *name, const char *token, Report report, void *environment, void *logger) {
+Status check_categories(Instance *instance, const char *call, size_t count, const char *const categories[]) {
+    if (count && !categories) return refuse(instance, call, "a null pointer for an array that is not empty");
+    for (size_t i = 0; i < count; i++) {
+        bool known = false;
+        for (unsigned k = 0; categories[i] && k < CATEGORY_COUNT; k++) known = known || strcmp(categories[i], CATEGORIES[k]) == 0;
+        if (known) continue;
+        char text[TEXT] = "log category ";
+        append(text, categories[i] ? categories[i] : "NULL");
+        append(text, ": expected " CATEGORY_NAMES);
+        return refuse(instance, call, text);
+    }
+    return OK;
+}
+
+Instance *instance_new(const char *call, const char *name, const char *token_name, const char *token, Report report, void *environment, void *logger) {
     Instance *instance = calloc(1, sizeof *instance);
     if (!instance) return NULL;
     instance->report = report;
@@ -66,7 +100,11 @@ Instance *instance_new(const char *name, const char *token, Report report, void 
     instance->name = copy(name ? name : "");
     if (!instance->name) { free(instance); return NULL; }
     if (!token || strcmp(token, MODEL_TOKEN) != 0) {
-        refuse(instance, "instantiate", "the GUID is not that of this FMU: expected " MODEL_TOKEN);
+        char text[TEXT] = "";
+        append(text, token_name);
+        append(text, ": expected that of this FMU, " MODEL_TOKEN ", not ");
+        append(text, token ? token : "a null pointer");
+        refuse(instance, call, text);
         instance_free(instance);
         return NULL;
     }
@@ -89,7 +127,7 @@ void instance_reset(Instance *instance) {
     instance->stop_time = INFINITY;
 }
 
-/* A kernel's message with its slots filled in: {12}, or {12:one|two}. */
+/* A kernel's message with its slots filled in: {12}, {12:0} as a whole number, or {12:one|two}. */
 static void explain(char *text, const double *memory, int code) {
     const char *from = code > 0 && code < MESSAGE_COUNT && MESSAGES[code] ? MESSAGES[code] : "failed inside";
     text[0] = 0;
@@ -97,15 +135,20 @@ static void explain(char *text, const double *memory, int code) {
         char piece[2] = {*from, 0};
         if (*from != '{') { append(text, piece); from++; continue; }
         char *rest;
-        double value = memory[strtol(from + 1, &rest, 10)];
-        if (*rest == ':') {
+        unsigned slot = (unsigned)strtol(from + 1, &rest, 10);
+        double value = memory[slot];
+        if (strncmp(rest, ":0}", 3) == 0) {
+            append_whole(text, value);
+            from = rest + 3;
+        } else if (*rest == ':') {
             const char *word = rest + 1;
             for (double skip = value; skip > 0.5 && strchr(word, '|'); skip--) word = strchr(word, '|') + 1;
             while (*word != '|' && *word != '}') { piece[0] = *word++; append(text, piece); }
             while (*word != '}') word++;
             from = word + 1;
         } else {
-            append_number(text, value);
+            if (slot < VARIABLE_COUNT) append_value(text, &VARIABLES[slot], value);
+            else append_number(text, value);
             from = rest + 1;
         }
     }
@@ -259,11 +302,6 @@ const Variable *find(Instance *instance, const char *call, unsigned reference, T
     return NULL;
 }
 
-/* Whether a number is one of FMI's integers, of 32 bits; without the mathematical library. */
-static bool is_whole(double value) {
-    return fabs(value) < 2147483648.0 && (double)(int32_t)value == value;
-}
-
 static bool in_range(const Variable *variable, double value) {
     return variable->type == BOOLEAN || (isfinite(value) && value >= variable->minimum && value <= variable->maximum);
 }
@@ -277,7 +315,7 @@ Status may_set(Instance *instance, const char *call, const Variable *variable, d
     char text[TEXT] = "";
     append(text, variable->name);
     append(text, " = ");
-    append_number(text, value);
+    append_value(text, variable, value);
     if (reason) {
         append(text, reason);
         return refuse(instance, call, text);
@@ -286,6 +324,13 @@ Status may_set(Instance *instance, const char *call, const Variable *variable, d
     append(text, ": expected ");
     append(text, variable->range);
     return refuse(instance, call, text);
+}
+
+void set(Instance *instance, unsigned reference, double value) {
+    State *state = &instance->state;
+    state->memory[reference] = value;
+    if (VARIABLES[reference].polynomial) state->memory[SET_SLOT] = 1.0;
+    state->stale = true;
 }
 
 /* FNV-1a: a state damaged on its way is refused. */
@@ -313,9 +358,9 @@ static bool unpack(State *state, const char *bytes, size_t size) {
     if (size != STATE_BYTES || memcmp(bytes, header, STATE_HEADER) != 0) return false;
     memcpy(&hash, bytes + STATE_BYTES - sizeof hash, sizeof hash);
     if (hash != checksum(bytes)) return false;
+    memset(state, 0, sizeof *state);
     memcpy(head, bytes + STATE_HEADER, sizeof head);
     memcpy(state->memory, bytes + STATE_HEADER + sizeof head, sizeof state->memory);
-    state->phase = 0;
     for (int phase = 1; phase <= TERMINATED; phase *= 2) if (head[0] == phase) state->phase = phase;
     if (!state->phase || !isfinite(head[1]) || !(head[2] == 0 || head[2] == 1 || head[2] == 2 || head[2] == 3)) return false;
     state->start_time = head[1];
@@ -336,7 +381,7 @@ static Status restored(Instance *instance, const char *call, State *state) {
         if (is_value(&VARIABLES[i], state->memory[i])) continue;
         append(text, VARIABLES[i].name);
         append(text, " = ");
-        append_number(text, state->memory[i]);
+        append_value(text, &VARIABLES[i], state->memory[i]);
         append(text, ": expected ");
         append(text, VARIABLES[i].range);
         return refuse(instance, call, text);

@@ -27,6 +27,7 @@ typedef struct Instance Instance;
 typedef void (*Report)(Instance *, Status, const char *text);
 
 typedef struct {  /* what saving an instance has to keep */
+    double zero;  /* always 0.0: importers exist that free a state by a pointer to it, not to its handle (fmusim 0.0.39); then NULL is what is freed */
     double memory[MEMORY_SIZE];
     double start_time;
     int phase;
@@ -44,13 +45,17 @@ struct Instance {
     char *name;
 };
 
-Instance *instance_new(const char *name, const char *token, Report report, void *environment, void *logger);
+/* `call` and `token_name` are for the message where the token is not MODEL_TOKEN. */
+Instance *instance_new(const char *call, const char *name, const char *token_name, const char *token, Report report, void *environment, void *logger);
 void instance_free(Instance *);
 void instance_reset(Instance *);
 
 /* Fail with a message; %s only, and numbers through `number`. */
 Status refuse(Instance *, const char *call, const char *text);
 bool in_phase(Instance *, const char *call, int phases);
+
+/* Whether all categories are those of modelDescription.xml. */
+Status check_categories(Instance *, const char *call, size_t count, const char *const categories[]);
 
 /* `stop_time` is INFINITY where none is defined. */
 Status set_experiment(Instance *, const char *call, double start_time, double stop_time);
@@ -61,6 +66,9 @@ Status step(Instance *, const char *call, double current, double size);
 /* Find the variable of a reference, of a type; NULL after a refusal. */
 const Variable *find(Instance *, const char *call, unsigned reference, Type type);
 Status may_set(Instance *, const char *call, const Variable *, double value);
+
+/* Set a variable that may be set: a polynomial input begins here. */
+void set(Instance *, unsigned reference, double value);
 Status refresh(Instance *);
 
 Status may_get(Instance *, const char *call, const Variable *);

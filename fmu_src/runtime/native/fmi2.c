@@ -41,17 +41,19 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     (void)resources;
     (void)visible;
     (void)logging;
-    if (type != fmi2CoSimulation) guid = NULL;  /* refused with the same message */
-    return instance_new(name, guid, report, callbacks ? callbacks->componentEnvironment : NULL, (void *)callbacks);
+    static const char *const call = "fmi2Instantiate";
+    Instance *instance = instance_new(call, name, "GUID", guid, report, callbacks ? callbacks->componentEnvironment : NULL, (void *)callbacks);
+    if (!instance || type == fmi2CoSimulation) return instance;
+    refuse(instance, call, "fmuType: expected fmi2CoSimulation, this FMU is for co-simulation only");
+    instance_free(instance);
+    return NULL;
 }
 
 void fmi2FreeInstance(fmi2Component c) { instance_free(c); }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
     (void)on;
-    (void)count;
-    (void)categories;
-    return c ? fmi2OK : fmi2Error;
+    return c ? (fmi2Status)check_categories(c, "fmi2SetDebugLogging", count, categories) : fmi2Error;
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start, fmi2Boolean stop_defined, fmi2Real stop) {
@@ -106,8 +108,7 @@ GETTER(fmi2GetBoolean, fmi2Boolean, BOOLEAN, value != 0 ? fmi2True : fmi2False)
             const Variable *variable = find(instance, #NAME, refs[i], KIND);                                                     \
             if (!variable || may_set(instance, #NAME, variable, EXPRESSION) != OK) return fmi2Error;                             \
         }                                                                                                                        \
-        for (size_t i = 0; i < count; i++) instance->state.memory[refs[i]] = EXPRESSION;                                         \
-        instance->state.stale = true;                                                                                            \
+        for (size_t i = 0; i < count; i++) set(instance, refs[i], EXPRESSION);                                                   \
         return fmi2OK;                                                                                                           \
     }
 
@@ -205,10 +206,9 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
             if (!input->input_derivatives || orders[i] < 1 || orders[i] > input->input_derivatives)
                 return refuse2(instance, call, "expected " INPUT_DERIVATIVES);
             const Variable *derivative = input + orders[i];  /* the derivatives of an input follow it in the table */
-            if (write) instance->state.memory[refs[i] + (unsigned)orders[i]] = values[i];
+            if (write) set(instance, refs[i] + (unsigned)orders[i], values[i]);
             else if (may_set(instance, call, derivative, values[i]) != OK) return fmi2Error;
         }
-    instance->state.stale = true;
     return fmi2OK;
 }
 

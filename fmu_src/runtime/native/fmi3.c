@@ -28,9 +28,7 @@ const char *fmi3GetVersion(void) { return fmi3Version; }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count, const fmi3String categories[]) {
     (void)on;
-    (void)count;
-    (void)categories;
-    return c ? fmi3OK : fmi3Error;
+    return c ? (fmi3Status)check_categories(c, "fmi3SetDebugLogging", count, categories) : fmi3Error;
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
@@ -38,7 +36,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
                                          size_t intermediate_count, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
                                          fmi3IntermediateUpdateCallback update) {
     (void)resources, (void)visible, (void)logging, (void)intermediate, (void)intermediate_count, (void)update;
-    Instance *instance = instance_new(name, token, report, environment, (void *)(size_t)log);
+    Instance *instance = instance_new("fmi3InstantiateCoSimulation", name, "instantiation token", token, report, environment, (void *)(size_t)log);
     if (!instance) return NULL;
     instance->event_mode = event_mode;
     instance->early_return = event_mode && early_return && EVENT_CLOCK;
@@ -131,8 +129,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
         const Variable *variable = find(instance, call, refs[i], REAL);
         if (!variable || may_set(instance, call, variable, values[i]) != OK) return fmi3Error;
     }
-    for (size_t i = 0; i < count; i++) instance->state.memory[refs[i]] = values[i];
-    instance->state.stale = true;
+    for (size_t i = 0; i < count; i++) set(instance, refs[i], values[i]);
     return fmi3OK;
 }
 
@@ -160,8 +157,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference refs[], size_
             const Variable *variable = find(instance, call, refs[i], KIND);                                                                      \
             if (!variable || may_set(instance, call, variable, TO_MEMORY) != OK) return fmi3Error;                                               \
         }                                                                                                                                        \
-        for (size_t i = 0; i < count; i++) instance->state.memory[refs[i]] = TO_MEMORY;                                                          \
-        instance->state.stale = true;                                                                                                            \
+        for (size_t i = 0; i < count; i++) set(instance, refs[i], TO_MEMORY);                                                                    \
         return fmi3OK;                                                                                                                           \
     }
 
@@ -210,6 +206,10 @@ fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState from) {
     Instance *instance = c;
     if (!instance || !from) return refuse3(instance, "fmi3SetFMUState", "a null pointer");
     memcpy(&instance->state, from, sizeof(State));
+    if (!instance->event_mode) {  /* saved by an instance that has event mode: here the event is done with */
+        if (instance->state.phase == EVENT) instance->state.phase = STEPPING;
+        instance->state.clock = false;
+    }
     return fmi3OK;
 }
 

@@ -14,14 +14,14 @@ static fmi3Instance other_kind(fmi3InstanceEnvironment environment, fmi3LogMessa
 fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
                                           fmi3InstanceEnvironment environment, fmi3LogMessageCallback log) {
     (void)name, (void)token, (void)resources, (void)visible, (void)logging;
-    return other_kind(environment, log, "fmi3InstantiateModelExchange: expected co-simulation");
+    return other_kind(environment, log, "fmi3InstantiateModelExchange: this FMU is for co-simulation only");
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
                                                fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, fmi3ClockUpdateCallback update,
                                                fmi3LockPreemptionCallback lock, fmi3UnlockPreemptionCallback unlock) {
     (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)update, (void)lock, (void)unlock;
-    return other_kind(environment, log, "fmi3InstantiateScheduledExecution: expected co-simulation");
+    return other_kind(environment, log, "fmi3InstantiateScheduledExecution: this FMU is for co-simulation only");
 }
 
 /* Types no variable has. */

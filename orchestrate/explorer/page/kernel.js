@@ -1,7 +1,8 @@
 /** Kernels in WebAssembly: an instance each, driven as the FMU drives it. */
 
 /**
- * @typedef {{SIZE: number, TIME: number, STOP: number, [name: string]: number}} Slots
+ * @typedef {{SIZE: number, TIME: number, STOP: number, SET: number, CUBIC: number, CUBIC_END: number,
+ *   [name: string]: number}} Slots
  * @typedef {{module: WebAssembly.Module, slots: Slots, starts: Record<string, number>}} Compiled
  * @typedef {[number, number, number, number]} State x1, x2 in m, v1, v2 in m/s
  * @typedef {import("./structure.js").Point} Point
@@ -32,9 +33,14 @@ export class Instance {
     return this.memory[this.slots[name]];
   }
 
-  /** @param {Record<string, number>} values by variable */
+  /** As the FMU's setters do: a cubic input begins where it is set. @param {Record<string, number>} values by variable */
   set(values) {
-    for (const name in values) this.memory[this.slots[name]] = values[name];
+    const { SET, CUBIC, CUBIC_END } = this.slots;
+    for (const name in values) {
+      const slot = this.slots[name];
+      this.memory[slot] = values[name];
+      if (CUBIC <= slot && slot < CUBIC_END) this.memory[SET] = 1;
+    }
   }
 
   /** Reset and initialise at time 0. @param {Record<string, number>} values by variable */

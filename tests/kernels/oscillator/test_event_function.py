@@ -35,7 +35,7 @@ def contact_and_pull(values, state):
     """A contact's memory and minus the force f (18) by Newton's law; pressed together or not."""
     x, v = state[0], state[1]
     m = started(**values)
-    m[at.TURN], m[at.SEGMENT_AGE] = values["phase_start"] / 6.283185307179586 % 1.0, 0.0
+    m[at.TURN], m[at.CUBIC_AGE] = values["phase_start"] / 6.283185307179586 % 1.0, 0.0
     begin_common(m, at.CONTACT, x, v)
     full = {**DEFAULTS, **values}
     _, push = truth.together(full, x, v, mp.mpf(values["phase_start"]))

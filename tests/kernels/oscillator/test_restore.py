@@ -119,7 +119,7 @@ def test_what_is_derived_is_not_read():
     m = started(0.0, e=0.5)
     stepper.advance(m, 20.0)
     spoilt = list(m)
-    for slot in (*range(at.OMEGA, at.SEGMENT_INPUTS), *range(at.CUBIC, at.SEGMENT_AGE)):
+    for slot in (*range(at.OMEGA, at.SEGMENT_INPUTS), *range(at.CUBIC, at.CUBIC_AGE)):
         spoilt[slot] = float("nan")
     assert restore.restore(spoilt, 0.0) == at.OK
     assert bits(spoilt[at.OMEGA : at.END]) == bits(m[at.OMEGA : at.END])

@@ -36,6 +36,8 @@ class Web:
         for name, value in values.items():
             place = self.address + 8 * self.slots[name]
             self.exports["memory"].write(self.store, np.float64(value).tobytes(), place)
+            if self.slots["CUBIC"] <= self.slots[name] < self.slots["CUBIC_END"]:
+                self.set(SET=1.0)
 
     def begin(self, **values):
         size = 8 * self.slots["SIZE"]
