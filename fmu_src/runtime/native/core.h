@@ -46,6 +46,7 @@ struct Instance {
 };
 
 /* `call` and `token_name` are for the message where the token is not MODEL_TOKEN. */
+bool has_right_bits(double *memory);  /* of an instance that has been reset, and is to be reset after it */
 Instance *instance_new(const char *call, const char *name, const char *token_name, const char *token, Report report, void *environment, void *logger);
 void instance_free(Instance *);
 void instance_reset(Instance *);
