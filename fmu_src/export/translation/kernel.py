@@ -44,6 +44,10 @@ HEAD = """\
 #else
 #define RESTRICT restrict
 #endif
+
+#if defined(__GNUC__) && !defined(_WIN32)
+#pragma GCC visibility push(hidden)
+#endif
 """
 HELPERS = """\
 /* The larger and the smaller number, as Python chooses them: the first one of equal ones. */
