@@ -94,6 +94,7 @@ class Slave:
         self._start_time = 0.0
         self._stop_time = float("inf")  # of the experiment, not of the state
         self._stale = True  # outputs do not belong to the values set yet (initialisation mode)
+        self._polynomial = self.model.polynomial
         self._checked: dict[str, Any] = {REAL: None, INTEGER: None, BOOLEAN: None}
 
     def _choose_kernel(self, resources: str) -> None:
@@ -292,7 +293,7 @@ class Slave:
                 self.refuse(problem)
         for reference, value in zip(references, values):
             self._memory[reference] = float(value)
-            if reference in self.model.polynomial:
+            if reference in self._polynomial:
                 self._memory[self.model.set_slot] = 1.0
         self._stale = True
 

@@ -6,13 +6,15 @@ import dataclasses
 import hashlib
 import io
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
 from .archive import check_archive, check_identifier
+
+SI = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,8 @@ class Description:
         Whether it needs a tool of its own, such as a Python.
     identifier : str
         Name of its binary for co-simulation; empty where it has none.
+    units : mapping of str to mapping of str to int
+        Exponents of SI units, by name of the unit; those that are not 0.
     digest : str
         Of the file's bytes.
     """
@@ -41,6 +45,7 @@ class Description:
     variables: Mapping[str, Any]
     needs_tool: bool = False
     identifier: str = ""
+    units: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     digest: str = ""
 
     @property
@@ -96,6 +101,12 @@ def describe(path: str | PathLike[str], model: str | None = None) -> Description
     return found
 
 
+def exponents(base: Any) -> dict[str, int]:
+    """Exponents of SI units in FMPy's base unit, those that are not 0."""
+    found = {name: int(getattr(base, name)) for name in SI} if base else {}
+    return {name: exponent for name, exponent in found.items() if exponent}
+
+
 _known: dict[str, Description] = {}  # by digest: validation takes long
 
 
@@ -119,6 +130,7 @@ def read_description(path: Path) -> Description:
             variables={v.name: v for v in found.modelVariables},
             needs_tool=bool(slave and slave.needsExecutionTool),
             identifier=slave.modelIdentifier if slave else "",
+            units={unit.name: exponents(unit.baseUnit) for unit in found.unitDefinitions},
             digest=digest,
         )
     return dataclasses.replace(_known[digest], path=path)

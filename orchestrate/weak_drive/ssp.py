@@ -17,6 +17,7 @@ from os import PathLike
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
+from ..access.description import Description, describe
 from ..access.models import OSCILLATOR, SHAKER
 from ..files import write_whole
 from ..structures.drive import Drive
@@ -63,8 +64,23 @@ def ssv(component: str) -> str:
     return f"resources/{component}.ssv"
 
 
-def add_component(elements: ET.Element, name: str) -> None:
-    """A component with its connectors and its parameters."""
+def units_of(fmus: Mapping[str, Description], name: str) -> list[str]:
+    """Units of a component's connectors: of its inputs, then of its outputs."""
+    ports = (*INPUTS[name], *OUTPUTS[name])
+    return [str(fmus[name].variable(port).unit) for port in ports]
+
+
+def add_units(root: ET.Element, fmus: Mapping[str, Description]) -> None:
+    """What the connectors' units are in SI, each once."""
+    parent = ET.SubElement(root, tag("ssd", "Units"))
+    used = {unit: fmus[name].units[unit] for name in MODELS for unit in units_of(fmus, name)}
+    for unit, powers in sorted(used.items()):
+        element = ET.SubElement(parent, tag("ssc", "Unit"), name=unit)
+        ET.SubElement(element, tag("ssc", "BaseUnit"), {k: str(v) for k, v in powers.items()})
+
+
+def add_component(elements: ET.Element, name: str, units: Sequence[str]) -> None:
+    """A component with its connectors, in their units, and its parameters."""
     source, kind = f"resources/{MODELS[name]}.fmu", "application/x-fmu-sharedlibrary"
     component = ET.SubElement(
         elements, tag("ssd", "Component"), name=name, type=kind, source=source
@@ -73,20 +89,22 @@ def add_component(elements: ET.Element, name: str) -> None:
     ports = [("input", port) for port in INPUTS[name]] + [
         ("output", port) for port in OUTPUTS[name]
     ]
-    for kind, port in ports:
+    for (kind, port), unit in zip(ports, units, strict=True):
         connector = ET.SubElement(connectors, tag("ssd", "Connector"), name=port, kind=kind)
-        ET.SubElement(connector, tag("ssc", "Real"))
+        ET.SubElement(connector, tag("ssc", "Real"), unit=unit)
     bindings = ET.SubElement(component, tag("ssd", "ParameterBindings"))
     ET.SubElement(bindings, tag("ssd", "ParameterBinding"), source=ssv(name))
 
 
-def system_description(description: str, stop_time: float) -> bytes:
+def system_description(
+    description: str, stop_time: float, fmus: Mapping[str, Description]
+) -> bytes:
     """``SystemStructure.ssd``."""
     root = ET.Element(tag("ssd", "SystemStructureDescription"), name="WeakDrive", version="1.0")
     system = ET.SubElement(root, tag("ssd", "System"), name="WeakDrive", description=description)
     elements = ET.SubElement(system, tag("ssd", "Elements"))
     for name in MODELS:
-        add_component(elements, name)
+        add_component(elements, name, units_of(fmus, name))
     links = ET.SubElement(system, tag("ssd", "Connections"))
     for start, end, port in CONNECTIONS:
         places = {
@@ -96,6 +114,7 @@ def system_description(description: str, stop_time: float) -> bytes:
             "endConnector": port,
         }
         ET.SubElement(links, tag("ssd", "Connection"), places)
+    add_units(root, fmus)
     ET.SubElement(root, tag("ssd", "DefaultExperiment"), startTime="0.0", stopTime=repr(stop_time))
     return document(root)
 
@@ -184,10 +203,12 @@ def write_ssp(
         "shaker": {**drive.parameters(), "speed_start": speed, "voltage": voltage},
     }
     text = f"Motor and box with a {state} structure, at {voltage:g} V"
-    files = {"SystemStructure.ssd": system_description(text, float(stop))}
+    paths = [Path(fmu) for fmu in fmus or exported()]
+    known = {name: describe(fmu) for name, fmu in zip(MODELS, paths, strict=True)}
+    files = {"SystemStructure.ssd": system_description(text, float(stop), known)}
     files |= {ssv(name): parameter_values(values) for name, values in starts.items()}
-    for model, fmu in zip(MODELS.values(), fmus or exported(), strict=True):
-        files[f"resources/{model}.fmu"] = Path(fmu).read_bytes()
+    for model, fmu in zip(MODELS.values(), paths, strict=True):
+        files[f"resources/{model}.fmu"] = fmu.read_bytes()
     return write_whole(path, lambda temporary: write_archive(temporary, files))
 
 

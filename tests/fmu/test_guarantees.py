@@ -30,6 +30,14 @@ def test_communication_grid_does_not_matter_after_inputs_changed(fmu, tmp_path):
     assert found[0] == found[1] == found[2]
 
 
+def test_cubic_inputs_run_on_over_steps(fmu, tmp_path):
+    """Until one of them is set, to whatever value; in every form, after a restored state too."""
+    found, cubic, untouched = run("guarantees.cubic_inputs_run_on_over_steps", fmu, cwd=tmp_path)
+    assert found[0] == found[1] == found[2]
+    assert found[0][2] == cubic
+    assert found[0][1] != untouched
+
+
 STROBOSCOPIC = [
     ({"box_frequency": 5.720780758293891, "box_amplitude": 0.03055549976383381, "e": 0.3}, 59, 59),
     (

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from fmu_src.export import compile_kernel, forms
+from fmu_src.export import compile_kernel, forms, linking
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.platforms import ALL, PLATFORMS, chosen, this_machine, universal, usual
 
@@ -30,6 +30,7 @@ define i32 @kernel_advance(ptr %memory, double %time) {
   ret i32 0
 }
 """
+EXPORTED = b'__attribute__((visibility("default"))) int one(void) { return 1; }'
 FUSED = r"\s(v?fn?m(add|sub|la|ls)\S*)\s"  # fmadd, fmsub, fnmadd, fnmsub, fmla, fmls; vfmadd...
 ARM_LIBRARIES = Path("/usr/aarch64-linux-gnu")  # Debian's libc6-arm64-cross
 FOLDERS = {
@@ -42,7 +43,7 @@ RUNS = {  # outputs, inputs, and one output that shows that something went on
     "TwoMassImpactOscillator": (COMMON, harmonic(1.13), "impact_count", 500),
     "MotorShaker": (["box_position", "speed", "angle"], {"voltage": 5.0}, "angle", 1e5),
 }
-CODE_SIGNATURE, LOAD_COMMANDS = 0x1D, 32  # of a Mach-O file: a command, and where they begin
+CODE_SIGNATURE, ID_DYLIB, LOAD_COMMANDS = 0x1D, 0xD, 32  # of a Mach-O file: where they begin
 
 
 def assembly(text, name):
@@ -82,16 +83,37 @@ def test_a_universal_library_holds_both():
     assert slices(universal([one, other])) == {0x01000007: one, 0x0100000C: other}
 
 
-def is_signed(library):
-    """Whether a Mach-O file has a code signature, which macOS on ARM asks for."""
+def load_commands(library):
+    """The load commands of a Mach-O file by their number."""
     (count,) = struct.unpack_from("<I", library, 16)
-    place = LOAD_COMMANDS
+    place, found = LOAD_COMMANDS, {}
     for _ in range(count):
         command, size = struct.unpack_from("<II", library, place)
-        if command == CODE_SIGNATURE:
-            return True
+        found[command] = library[place : place + size]
         place += size
-    return False
+    return found
+
+
+def is_signed(library):
+    """Whether a Mach-O file has a code signature, which macOS on ARM asks for."""
+    return CODE_SIGNATURE in load_commands(library)
+
+
+def install_name(library):
+    """What a Mach-O library calls itself."""
+    command = load_commands(library)[ID_DYLIB]
+    (offset,) = struct.unpack_from("<I", command, 8)
+    return command[offset:].split(b"\0", 1)[0].decode()
+
+
+@pytest.mark.parametrize("platform", ["x86_64-darwin", "aarch64-darwin"])
+def test_a_dylib_bears_the_name_it_is_given(platform):
+    """Libraries of one name are one to macOS's loader: the model's keeps them apart."""
+    try:
+        library = linking.link(platform, "MotorShaker", {"one.c": EXPORTED})
+    except CannotExport as reason:
+        pytest.skip(str(reason))
+    assert install_name(library).rsplit("/", 1)[-1] == "MotorShaker.dylib"
 
 
 @pytest.mark.slow
@@ -144,6 +166,7 @@ def test_every_platform_has_its_binary(everywhere, form, name):
     kinds = {struct.unpack_from("<H", d, at + 4)[0] for d, at in zip(pe, places, strict=True)}
     assert kinds == {0x8664, 0xAA64}
     assert is_signed(found["aarch64-darwin"])
+    assert install_name(found["aarch64-darwin"]).rsplit("/", 1)[-1] == f"{name}.dylib"
     if form == "fmi2":
         both = slices(found["darwin64"])
         assert set(both) == {0x01000007, 0x0100000C}

@@ -40,14 +40,10 @@ class ParameterSet:
     def grids(self) -> Iterator[list[float]]:
         """Communication points of grids that all end at the same time: one step, two, uneven
         ones, 24 equal ones.
-
-        One step alone where an input has derivatives: they belong to the beginning of a step, so
-        that other steps make another motion.
         """
         start, end = self.start_time, self.start_time + self.duration
         cuts = (), (0.5,), (0.001, 0.7, 0.7000001, 0.95), tuple(i / 24 for i in range(1, 24))
-        same = not any(self.values.get(name) for name in ("box_jerk", "box_snap", "box_crackle"))
-        for parts in cuts if same else cuts[:1]:
+        for parts in cuts:
             inside = (start + part * self.duration for part in parts)
             yield [time for time in inside if start < time < end] + [end]
 

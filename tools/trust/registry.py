@@ -11,11 +11,12 @@ from .fuzzing import Fuzzing
 from .hostile import Hostile
 from .leaks import Leaks
 from .mutants import Mutants
+from .restores import Restores
 
 CAMPAIGNS: dict[str, Campaign] = {
     campaign.name: campaign
     for campaign in (
-        *(Impacts(), Roots(), Grids(), Energy(), Fuzzing()),
+        *(Impacts(), Roots(), Grids(), Restores(), Energy(), Fuzzing()),
         *(Faults(), Clusters(), Hostile(), Mutants(), Leaks()),
     )
 }

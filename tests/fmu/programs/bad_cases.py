@@ -124,7 +124,7 @@ CASES = {
     "fixed Boolean after initialisation": (
         running(),
         lambda f: f.set(bonded=True),
-        ["bonded = 1.0", "fixed parameter"],
+        ["bonded = true", "fixed parameter"],
     ),
     "fixed parameter after the end": (
         ended,

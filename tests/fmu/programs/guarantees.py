@@ -6,6 +6,8 @@ import random
 
 from driver import harmonic, open_fmu
 
+OF_THE_STEP = ("box_impulse", "box_impulse_moment", "x_rel_max")
+
 
 def grids(path, eta, end):
     """Outputs at the end of different communication grids.
@@ -53,16 +55,39 @@ def communication_grid_does_not_matter_after_inputs_changed(path):
             for k in range(1, pieces + 1):
                 f.step(begin + ticks * k // pieces * 2.0**-20)
             f.step(end + 0.0)
-        found.append(
-            f.outputs(
-                [
-                    n
-                    for n in f.output_names
-                    if n not in ("box_impulse", "box_impulse_moment", "x_rel_max")
-                ]
-            )
-        )
+        found.append(f.outputs([n for n in f.output_names if n not in OF_THE_STEP]))
     return found
+
+
+def cubic_inputs_run_on_over_steps(path):
+    """Outputs in the middle and at the end by several grids, a state restored on the way; at the
+    middle the jerk is set to the value that it has, in one way of doing it before the state was
+    saved, else after it was restored.
+    """
+    cubic = {
+        "box_acceleration": 0.1,
+        "box_jerk": -0.03,
+        "box_snap": 0.02,
+        "box_crackle": -0.003,
+    }
+    found = []
+    for pieces in (1, 7, 256):
+        f = open_fmu(path).start(**harmonic(1.13), **cubic)
+        for k in range(1, pieces + 1):
+            f.step(int(8 * 2**20) * k // pieces * 2.0**-20)
+        names = [n for n in f.output_names if n not in OF_THE_STEP]
+        rows = [f.outputs(names)]
+        if pieces == 7:
+            f.set(box_jerk=-0.03)
+            f = open_fmu(path).restore(*f.save())
+        else:
+            f = open_fmu(path).restore(*f.save())
+            f.set(box_jerk=-0.03)
+        for k in range(1, pieces + 1):
+            f.step(8.0 + int(4 * 2**20) * k // pieces * 2.0**-20)
+        found.append([*rows, f.outputs(names), [f.get(name)[0] for name in cubic]])
+    untouched = open_fmu(path).start(**harmonic(1.13), **cubic).step(12.0)
+    return [found, list(cubic.values()), untouched.outputs(names)]
 
 
 def steps_of_a_period_end_where_one_step_ends(path, values, periods, pieces):

@@ -20,7 +20,6 @@ from .kernel import (
     examples,
     least_work,
     pieces,
-    set_inputs,
     sizes,
     started,
     structures,
@@ -48,9 +47,6 @@ def summit(gap, start, stop):
 def test_over_a_piece_of_flight(values, state, start, length):
     names = ("x1_start", "v1_start", "x2_start", "v2_start")
     m = started(**values, **dict(zip(names, state, strict=True)))
-    # else the cubic begins anew at the step
-    values = {**values, "box_jerk": 0.0, "box_snap": 0.0, "box_crackle": 0.0}
-    set_inputs(m, box_jerk=0.0, box_snap=0.0, box_crackle=0.0)
     advanced(m, start, start + length)
     first, second = truth.apart({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
     gap = second - first

@@ -6,12 +6,14 @@ import sys
 import zipfile
 from pathlib import Path
 
+import fmpy
 import pytest
 from fmpy.ssp.ssd import read_ssd, read_ssv
+from lxml import etree
 
 from orchestrate.errors import InputError, StoreError
 from orchestrate.weak_drive.master import Scheme
-from orchestrate.weak_drive.ssp import write_ssp
+from orchestrate.weak_drive.ssp import NAMESPACES, write_ssp
 
 from .coupled import QUICK, master, rest
 
@@ -88,6 +90,31 @@ def test_it_says_which_structure_it_is_for(tmp_path):
         assert word in read_ssd(str(path)).system.description
         assert ("delaminated" in description) == (word == "delaminated")
         assert path.read_bytes() == write(tmp_path, system, "again.ssp").read_bytes()
+
+
+def test_connectors_have_the_units_of_the_variables(case):
+    """Each is declared, by its powers of SI units, and the document is valid."""
+    path, _ = case
+    tree = etree.fromstring(zipfile.ZipFile(path).read("SystemStructure.ssd"))
+    schema = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureDescription.xsd"
+    etree.XMLSchema(etree.parse(str(schema))).assertValid(tree)
+    space = {"ssd": NAMESPACES["ssd"], "ssc": NAMESPACES["ssc"]}
+    declared = {
+        unit.get("name"): dict(unit.find("ssc:BaseUnit", space).attrib)
+        for unit in tree.findall("ssd:Units/ssc:Unit", space)
+    }
+    used = {
+        (component.get("name"), connector.get("name")): connector.find("ssc:Real", space).get(
+            "unit"
+        )
+        for component in tree.iterfind(".//ssd:Component", space)
+        for connector in component.iterfind("ssd:Connectors/ssd:Connector", space)
+    }
+    assert len(used) == 14
+    assert set(used.values()) == set(declared)
+    assert used["oscillator", "box_force"] == used["shaker", "box_force"] == "N"
+    assert used["oscillator", "box_jerk"] == used["shaker", "box_jerk"] == "m/s3"
+    assert declared["N"] == {"kg": "1", "m": "1", "s": "-2"}
 
 
 def test_mistakes(tmp_path):

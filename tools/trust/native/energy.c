@@ -53,7 +53,7 @@ static long run(void *it, Flight f, long wanted, Worst *worst, long *failed) {
         }
         Flight before = f;
         double was = lost;
-        go_on(it, &f, &lost);
+        go_on(it, &f, reached - time, &lost);
         seen++;
         if (known) ours += balance(&before, reached - time, &f, touching(it), worst, &whole);
         else begun += lost - was; /* after a contact whose end is not an event */

@@ -233,8 +233,18 @@ static double fly(void *it, double time, double target, bool *impact) {
     return reached;
 }
 
-/* The state after an impact as the beginning of the next flight; the inputs begin anew. */
-static void go_on(void *it, Flight *f, double *lost) {
+/* The cubic a time later: it runs on where nobody sets it. */
+static void run_on(double box[BOX], double t) {
+    for (int i = 0; i < BOX; i++) {
+        double value = 0.0;
+        for (int k = BOX - 1; k >= i; k--) value = box[k] + value * t / (k - i + 1);
+        box[i] = value;
+    }
+}
+
+/* The state after an impact as the beginning of the next flight, which comes ``elapsed`` after that of the present one. */
+static void go_on(void *it, Flight *f, double elapsed, double *lost) {
+    run_on(f->box, elapsed);
     double state[STATE];
     fmi.GetFloat64(it, get_references, STATE, state, STATE);
     f->x1 = state[0], f->x2 = state[1], f->v1 = state[2], f->v2 = state[3], f->phase = state[4];

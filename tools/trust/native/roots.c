@@ -100,7 +100,7 @@ static void follow(void *it, Flight f, long verdicts[VERDICTS], bool shown) {
         verdicts[verdict]++;
         if (shown || verdict == MISSED || verdict == NOT_A_ROOT) show(&f, reached - time, impact, verdict);
         if (reached < 0.0 || !impact) return;
-        go_on(it, &f, &lost);
+        go_on(it, &f, reached - time, &lost);
         bool stuck = touching(it);
         end_event(it);
         if (stuck) return;

@@ -1,0 +1,315 @@
+"""States saved and restored at every turn of a run: the numbers are those of an undisturbed one."""
+
+from __future__ import annotations
+
+import functools
+import random
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.access.events import EventInstance
+from orchestrate.errors import FmuError, InputError
+
+from . import parameter_sets
+from .bits import STATE, STEP, Bits, hexadecimal
+from .campaign import Campaign, Outcome
+
+STEPS = 40  # of a course
+LONGEST = 60.0  # rad of the slower mass that a course lasts at most
+MANY = 500.0  # impacts of a course, from which on no importer stops at each of them
+PYTHON_EVERY, SHAKER_EVERY = 12, 5  # courses
+CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
+FORCE = ("box_force", "box_force_1", "box_force_2", "box_force_3")
+POINT = {  # outputs of a point of time, and of the step before it
+    OSCILLATOR: STATE,
+    SHAKER: (
+        *("box_position", "box_velocity", "box_acceleration", "box_jerk", "angle", "speed"),
+        *("motor_current", "motor_torque", "motor_energy", "box_force_work", "stored_energy"),
+    ),
+}
+OF_STEP = {OSCILLATOR: STEP, SHAKER: ()}
+Values = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Course:
+    """What an undisturbed run does: start values, then inputs to be set and a time to step to."""
+
+    model: str
+    values: Values
+    start_time: float
+    steps: tuple[tuple[Values, float], ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Outputs that are compared; those of a point of time first."""
+        return (*POINT[self.model], *OF_STEP[self.model])
+
+
+@functools.cache
+def path_of(model: str, form: str) -> Path:
+    """An FMU of the present sources, looked for once."""
+    return find(model, form).path
+
+
+def drawn_course(seed: int, number: int) -> Course:
+    """The course of a number under a seed."""
+    rng = random.Random(f"{seed} {number}")
+    if number % SHAKER_EVERY == 0:
+        values = {"voltage": rng.uniform(2.0, 12.0), "armature_inductance": rng.choice((0.0, 0.05))}
+        values |= force(rng)
+        return Course(SHAKER, values, 0.0, steps_of(rng, 0.0, rng.uniform(0.1, 4.0), motor(rng)))
+    drawn = parameter_sets.draw(seed, number)
+    values = {**drawn.values, "x_rel_max_on": float(rng.random() < 0.7)}
+    slower = min(parameter_sets.omegas(drawn.values))
+    duration = min(drawn.duration, LONGEST * rng.uniform(0.1, 1.0) / slower)
+    scale = values["box_amplitude"] * values["box_frequency"] ** 2 or 1.0
+    size = [scale * slower**i for i in range(4)]
+    inputs = [
+        {name: rng.uniform(-0.2, 0.2) * size[i] * rng.choice((0.0, 1.0, 1.0))}
+        for i, name in enumerate(CUBIC)
+    ]
+    for name in ("box_amplitude", "box_frequency"):
+        inputs += [{name: values[name] * rng.uniform(0.5, 1.5)}, {name: values[name]}]
+    if rng.random() < 0.7:
+        values |= inputs[rng.randrange(4)]
+    return Course(
+        OSCILLATOR, values, drawn.start_time, steps_of(rng, drawn.start_time, duration, inputs)
+    )
+
+
+def force(rng: random.Random) -> Values:
+    """A force on the shaker's box, as a cubic."""
+    return {name: rng.uniform(-2.0, 2.0) * 5.0**i for i, name in enumerate(FORCE)}
+
+
+def motor(rng: random.Random) -> list[Values]:
+    """What may be set of the shaker on the way."""
+    single = [{name: value} for name, value in force(rng).items()]
+    return [*single, force(rng), {"voltage": rng.uniform(2.0, 12.0)}]
+
+
+def steps_of(
+    rng: random.Random, start: float, duration: float, inputs: Sequence[Values]
+) -> tuple[tuple[Values, float], ...]:
+    """Steps of any length, before one in three of which something is set; the same again, too."""
+    parts = sorted(rng.random() for _ in range(STEPS))
+    return tuple(
+        (rng.choice(inputs) if rng.random() < 0.35 else {}, start + duration * part)
+        for part in parts
+    )
+
+
+def given(values: Values) -> dict[str, Any]:
+    """Values as the FMU takes them."""
+    flags = {name: bool(values[name]) for name in ("bonded", "x_rel_max_on") if name in values}
+    return {**values, **flags}
+
+
+def advance(instance: Instance, time: float, target: float) -> None:
+    """To a time: with early returns where there are any; a step of no length is one, too."""
+    if isinstance(instance, EventInstance) and target > time:
+        instance.advance(time, target)
+    else:
+        instance.step(time, target)
+
+
+def undisturbed(course: Course, path: Path) -> list[Bits]:
+    """Outputs after each step; up to the first that cannot be done."""
+    rows: list[Bits] = []
+    with Instance(path) as instance:
+        try:
+            instance.initialize(course.start_time, **given(course.values))
+            time = course.start_time
+            for inputs, target in course.steps:
+                instance.set(**inputs)
+                instance.step(time, target)
+                time = target
+                rows.append(outputs(instance, course.names))
+        except (FmuError, InputError):
+            pass
+    return rows
+
+
+def outputs(instance: Instance, names: Sequence[str]) -> Bits:
+    """Outputs, to the last bit."""
+    return hexadecimal([float(value) for value in instance.get(*names)])
+
+
+def wander(rng: random.Random, instance: Instance, course: Course, time: float) -> None:
+    """Do what is to leave no trace: other inputs, other steps, or another run."""
+    try:
+        if rng.random() < 0.1:
+            instance.reset()
+            instance.initialize(course.start_time)
+            time = course.start_time
+        for _ in range(rng.randrange(3)):
+            inputs, target = rng.choice(course.steps)
+            instance.set(**inputs)
+            if target >= time:
+                advance(instance, time, time + (target - time) * rng.random() ** 4)
+                return
+    except (FmuError, InputError):
+        pass
+
+
+def in_event_mode(rng: random.Random, instance: EventInstance, course: Course) -> None:
+    """Save and restore a state in event mode, where the instance is."""
+    data = instance.save_state()
+    instance.call("updateDiscreteStates")
+    instance.call("enterStepMode")
+    wander(rng, instance, course, float("inf"))
+    instance.restore_state(data)
+
+
+def advance_disturbed(
+    rng: random.Random, instance: EventInstance, course: Course, time: float, end: float
+) -> int:
+    """To ``end`` with early returns, and with states restored in event mode; says how many were.
+
+    -1 where no step size of 53 bits leads from an impact to ``end``: another time is not compared.
+    Where the clock's last digit puts an impact at ``end``, a step of no length follows: an early
+    return shows the state at the impact.
+    """
+    restored, event = 0, True
+    while event or time < end:
+        if time + (end - time) != end:
+            return -1
+        event, _, _, time = instance.call("doStep", time, end - time)
+        if event:
+            instance.call("enterEventMode")
+            if not restored or rng.random() < 0.02:
+                in_event_mode(rng, instance, course)
+                restored += 1
+            instance.call("updateDiscreteStates")
+            instance.call("enterStepMode")
+    return restored
+
+
+def in_memory(rng: random.Random, instance: Instance, course: Course, time: float) -> None:
+    """Save, go astray, and back; not serialised."""
+    get, _, _, put, free = instance.state_calls()
+    state = instance.call(get)
+    try:
+        wander(rng, instance, course, time)
+        instance.call(put, state)
+    finally:
+        instance.call(free, state)
+
+
+def moved(
+    rng: random.Random, instance: Instance, others: Sequence[Instance], course: Course, time: float
+) -> Instance:
+    """Save, go astray, and back; in the same instance, or, serialised, in another one."""
+    if rng.random() < 0.4:
+        in_memory(rng, instance, course, time)
+        return instance
+    data = instance.save_state()
+    wander(rng, instance, course, time)
+    taken = rng.choice(others)
+    taken.restore_state(data)
+    return taken
+
+
+def disturbed(
+    rng: random.Random, course: Course, rows: Sequence[Bits], pool: Sequence[Instance]
+) -> tuple[int, str]:
+    """Restores of a run with a restored state before each step, and what is wrong with it."""
+    here, time, restored = pool[0], course.start_time, 0
+    here.initialize(course.start_time, **given(course.values))
+    for number, ((inputs, target), row) in enumerate(zip(course.steps, rows, strict=False)):
+        pending = rng.random() < 0.5
+        if pending:  # a state in which inputs are set that no step has seen yet
+            here.set(**inputs)
+        here = moved(rng, here, pool, course, time)
+        restored += 1
+        if not pending:
+            here.set(**inputs)
+        end, stops = time + (target - time), 0  # where a step ends, to the last bit
+        if isinstance(here, EventInstance) and end > time:
+            data = here.save_state()
+            stops = 1 + advance_disturbed(rng, here, course, time, end)
+            restored += stops
+            if not stops:
+                here = pool[0]
+                here.restore_state(data)
+        if not stops:
+            here.step(time, target)
+        names = POINT[course.model] if stops else course.names
+        found = outputs(here, names)
+        if found != row[: len(names)]:
+            wrong = [name for name, a, b in zip(names, found, row, strict=False) if a != b]
+            return restored, f"step {number}: {', '.join(wrong)}"
+        time = target
+    return restored, ""
+
+
+def pools(course: Course, number: int, rows: Sequence[Bits]) -> list[list[tuple[type, str]]]:
+    """Kinds of instances among which states may wander."""
+    native: list[tuple[type, str]] = [(Instance, "fmi3"), (Instance, "fmi2"), (Instance, "fmi3")]
+    if course.model == OSCILLATOR:
+        impacts = float.fromhex(rows[-1][STATE.index("impact_count")])
+        native += [(EventInstance, "fmi3")] * (impacts < MANY)
+    found = [native]
+    if number % PYTHON_EVERY == 1:
+        found.append([(Instance, "fmi2-python")] * 2)
+    return found
+
+
+class Restores(Campaign):
+    """Saved states."""
+
+    name = "restores"
+    title = "Saved and restored states"
+    asks = (
+        "A run is recorded undisturbed: steps of any length, before some of which inputs are set, "
+        "of cubics too, and to the values that they have. Then it is done once more, with a state "
+        "saved before each step, at half of them after inputs were set; the instance goes astray, "
+        "is stepped, set or reset; and the state is restored, from memory or from bytes, in the "
+        "same instance or in another one, of FMI 2.0, of FMI 3.0 or in event mode with early "
+        "returns, and in event mode itself. After each restore all outputs at the end of the step "
+        "are compared with the undisturbed run's. Parameter sets are those of the campaign on "
+        "bits; each fifth course is MotorShaker's, each twelfth is done by the pythonfmu form "
+        "too. One differing bit, or a state that is refused, is a finding."
+    )
+    unit, target, batch = "restores", 1_000_000, 5_000
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """Restore, and compare."""
+        done, findings, number, notes = 0, 0, 0, []
+        counts = {"courses:": 0, "in the pythonfmu form:": 0, "of MotorShaker:": 0}
+        while done < count:
+            course = drawn_course(seed, number)
+            rows = undisturbed(course, path_of(course.model, "fmi3"))
+            for kinds in pools(course, number, rows) if rows else ():
+                restored, wrong = self.compare(seed, number, course, rows, kinds)
+                done += restored
+                counts["courses:"] += 1
+                counts["in the pythonfmu form:"] += restored * (kinds[0][1] == "fmi2-python")
+                counts["of MotorShaker:"] += restored * (course.model == SHAKER)
+                if wrong:
+                    findings += 1
+                    notes.append(f"seed {seed}, course {number}, {kinds[0][1]}: {wrong}")
+            number += 1
+        return Outcome(done, findings, counts=counts, notes=tuple(notes))
+
+    def compare(
+        self,
+        seed: int,
+        number: int,
+        course: Course,
+        rows: Sequence[Bits],
+        kinds: Sequence[tuple[type, str]],
+    ) -> tuple[int, str]:
+        """Restores of a course by a pool of instances, and what is wrong."""
+        rng = random.Random(f"{seed} {number} {kinds[0][1]}")
+        with ExitStack() as stack:
+            pool = [stack.enter_context(k(path_of(course.model, form))) for k, form in kinds]
+            try:
+                return disturbed(rng, course, rows, pool)
+            except (FmuError, InputError) as error:
+                return 1, f"refused: {error}"
