@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
 from ..runtime.table import Model, Variable
@@ -23,7 +24,12 @@ NATIVE = {
 }
 
 
-def fmi2_xml(model: Model, guid: str, capabilities: dict[str, str] = NATIVE) -> bytes:
+def fmi2_xml(
+    model: Model,
+    guid: str,
+    capabilities: dict[str, str] = NATIVE,
+    sources: Sequence[str] = (),
+) -> bytes:
     """The model description, as bytes that depend on nothing but the arguments.
 
     Parameters
@@ -32,9 +38,16 @@ def fmi2_xml(model: Model, guid: str, capabilities: dict[str, str] = NATIVE) -> 
     guid : str
     capabilities : dict of str to str
         Of the co-simulation.
+    sources : sequence of str
+        Names of the C files in ``sources/`` that make its library.
     """
     root = description.root(model, fmiVersion="2.0", guid=guid, numberOfEventIndicators="0")
-    ET.SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **capabilities})
+    attributes = {"modelIdentifier": model.name, **capabilities}
+    simulation = ET.SubElement(root, "CoSimulation", attributes)
+    if sources:
+        files = ET.SubElement(simulation, "SourceFiles")
+        for name in sources:
+            ET.SubElement(files, "File", name=name)
     variables = description.add_frame(root, model)
     for variable in model.variables:
         add_variable(variables, variable)

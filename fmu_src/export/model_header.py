@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ..runtime.table import Model, Variable
+from . import self_test
 from .description import LOG_CATEGORIES
 from .description_fmi3 import ARRAY_BASE, CLOCK_REFERENCE
 
@@ -99,6 +100,7 @@ def model_header(model: Model, token: str, digest: str) -> bytes:
         "MODEL_TOKEN": c_string(token),
         "STATE_MAGIC": c_string(f"vibroimpact state {digest}"),
         **definitions(model, slots),
+        **self_test.definitions(model),
     }
     arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]
     lines = [

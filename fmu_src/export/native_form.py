@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
@@ -17,6 +16,7 @@ from .errors import require
 from .linking import link_all
 from .model_header import model_header
 from .platforms import binaries, usual
+from .source_code import source_files, units
 from .sources import (
     Files,
     check_unedited,
@@ -27,16 +27,23 @@ from .sources import (
     read,
     texts,
 )
+from .translation.kernel import translate
 
 HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
     "fmi3": ("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h"),
 }
 SHIM = {
-    "fmi2": ("core.h", "core.c", "fmi2.c"),
-    "fmi3": ("core.h", "core.c", "fmi3.c", "fmi3_absent.c"),
+    "fmi2": ("core.h", "core.c", "self_test.c", "fmi2.c"),
+    "fmi3": ("core.h", "core.c", "self_test.c", "fmi3.c", "fmi3_absent.c"),
 }
-XML: dict[str, Callable[[Model, str], bytes]] = {"fmi2": fmi2_xml, "fmi3": fmi3_xml}
+
+
+def description(model: Model, token: str, version: str, sources: Files) -> bytes:
+    """``modelDescription.xml``; FMI 2.0's names the sources, FMI 3.0 has a file of its own."""
+    if version == "fmi2":
+        return fmi2_xml(model, token, sources=units(sources))
+    return fmi3_xml(model, token)
 
 
 def shim_sources(version: str) -> Files:
@@ -103,10 +110,12 @@ def export(
     model, digest = load(folder), model_digest(folder)
     token = guid(folder, version, is_plain)
     header = {"model.h": model_header(model, token, digest)}
-    units = {**shim_sources(version), **fmi_headers(version), **header}
+    shim = {**shim_sources(version), **fmi_headers(version), **header}
     told = plain(model) if is_plain else model
-    files = {"modelDescription.xml": XML[version](told, token)}
-    made = link_all(compile_objects(folder, platforms or usual()), model.name, units)
+    sources = {**shim, "kernel.c": translate(model.entries).encode()}
+    files = source_files(model.name, version, sources)
+    files["modelDescription.xml"] = description(told, token, version, sources)
+    made = link_all(compile_objects(folder, platforms or usual()), model.name, shim)
     files.update(binaries(version, model.name, made))
     form = f"{version}-plain" if is_plain else version
     files.update(documentation_files(folder, digest, form))

@@ -109,6 +109,12 @@ Instance *instance_new(const char *call, const char *name, const char *token_nam
         return NULL;
     }
     instance_reset(instance);
+    if (!has_right_bits(instance->state.memory)) {
+        refuse(instance, call, "this library's numbers differ from the model's in their last digits: compile it with -ffp-contract=off and without -ffast-math");
+        instance_free(instance);
+        return NULL;
+    }
+    instance_reset(instance);
     return instance;
 }
 

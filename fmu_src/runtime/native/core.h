@@ -10,6 +10,11 @@
 
 #include "model.h"
 
+#if defined(__GNUC__) && !defined(_WIN32)
+/* names of this library alone, whatever options compile it: the C library, too, has a function step */
+#pragma GCC visibility push(hidden)
+#endif
+
 /* The compiled kernel. */
 int kernel_initialize(double *memory, double time);
 int kernel_advance(double *memory, double time);
@@ -46,6 +51,7 @@ struct Instance {
 };
 
 /* `call` and `token_name` are for the message where the token is not MODEL_TOKEN. */
+bool has_right_bits(double *memory);  /* of an instance that has been reset, and is to be reset after it */
 Instance *instance_new(const char *call, const char *name, const char *token_name, const char *token, Report report, void *environment, void *logger);
 void instance_free(Instance *);
 void instance_reset(Instance *);
@@ -87,5 +93,9 @@ void state_to_bytes(const State *, char *bytes);
 
 /* Read a state and compute anew what follows from other numbers in it; FAILED after a refusal. */
 Status state_from_bytes(Instance *, const char *call, State *, const char *bytes, size_t size);
+
+#if defined(__GNUC__) && !defined(_WIN32)
+#pragma GCC visibility pop
+#endif
 
 #endif

@@ -1,0 +1,59 @@
+"""The C sources inside a native FMU: for targets it has no binary for, and for who reads them."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree as ET
+
+from . import description
+from .sources import Files
+
+OPTION = "-ffp-contract=off"  # the one that a compiler needs
+CMAKE = """\
+# The FMU's library, for the machine and compiler at hand: cmake -B build && cmake --build build
+cmake_minimum_required(VERSION 3.10)
+project({name} C)
+set(CMAKE_C_STANDARD 99)
+if(NOT CMAKE_BUILD_TYPE)
+    set(CMAKE_BUILD_TYPE Release)
+endif()
+add_library({name} SHARED {units})
+set_target_properties({name} PROPERTIES PREFIX "")
+if(NOT MSVC)
+    target_compile_options({name} PRIVATE {option})
+endif()
+"""
+
+
+def units(files: Files) -> list[str]:
+    """The files that are compiled, in a fixed order."""
+    return sorted(name for name in files if name.endswith(".c"))
+
+
+def source_files(name: str, version: str, files: Files) -> Files:
+    """What lies in an FMU's ``sources/``, by path in the FMU.
+
+    Parameters
+    ----------
+    name : str
+        The model's.
+    version : str
+        ``"fmi2"`` or ``"fmi3"``.
+    files : dict of str to bytes
+        C files and headers.
+    """
+    cmake = CMAKE.format(name=name, units=" ".join(units(files)), option=OPTION)
+    inside = {**files, "CMakeLists.txt": cmake.encode()}
+    if version == "fmi3":
+        inside["buildDescription.xml"] = build_description(name, units(files))
+    return {f"sources/{file}": content for file, content in inside.items()}
+
+
+def build_description(name: str, sources: list[str]) -> bytes:
+    """FMI 3.0's list of what to compile, and how."""
+    root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
+    configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=name)
+    attributes = {"language": "C99", "compilerOptions": OPTION}
+    several = ET.SubElement(configuration, "SourceFileSet", attributes)
+    for source in sources:
+        ET.SubElement(several, "SourceFile", name=source)
+    return description.text(root)

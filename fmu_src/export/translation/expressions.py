@@ -1,0 +1,321 @@
+"""An expression of the kernel in C.
+
+Operations keep their order. Where C leaves the order of evaluation open, and one part may change
+the memory that another one reads, the parts are kept in variables before.
+"""
+
+from __future__ import annotations
+
+import ast
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from types import FunctionType, ModuleType
+from typing import Any
+
+from ..errors import CannotExport
+from .subset import named, origin, writes_memory
+from .values import (
+    AND,
+    ATOM,
+    BITS,
+    CHOICE,
+    EQUALITY,
+    LONG,
+    MEMORY,
+    OR,
+    PRODUCT,
+    REAL,
+    RELATION,
+    SUM,
+    TRUTH,
+    UNARY,
+    WHOLE,
+    Type,
+    Value,
+    common_type,
+)
+
+OPERATORS: Mapping[type, tuple[str, int]] = {
+    ast.Add: ("+", SUM),
+    ast.Sub: ("-", SUM),
+    ast.Mult: ("*", PRODUCT),
+    ast.Div: ("/", PRODUCT),
+    ast.Mod: ("%", PRODUCT),
+    ast.BitAnd: ("&", BITS),
+}
+COMPARISONS: Mapping[type, tuple[str, int]] = {
+    ast.Eq: ("==", EQUALITY),
+    ast.NotEq: ("!=", EQUALITY),
+    ast.Lt: ("<", RELATION),
+    ast.LtE: ("<=", RELATION),
+    ast.Gt: (">", RELATION),
+    ast.GtE: (">=", RELATION),
+}
+BUILT_IN = {  # of <math.h>, or a helper of the C file
+    "abs": "fabs",
+    "math.sqrt": "sqrt",
+    "math.floor": "floored",
+    "max": "larger",
+    "min": "smaller",
+    "int": "(int)",
+}
+# C's own words, what <math.h> may declare, and the helpers
+TAKEN = """
+auto break case char const continue default do double else enum extern float for goto if inline int
+long register restrict return short signed sizeof static struct switch typedef union unsigned void
+volatile while finite isinf isnan signbit larger smaller floored
+"""
+
+
+class Expressions(ABC):
+    """Translates expressions of one module's functions.
+
+    Attributes
+    ----------
+    module : module
+    types : dict of str to Type
+        Of the variables known so far.
+    may_keep : bool
+        Whether values can be kept in variables before the present statement: not where C evaluates
+        an expression only if another one is true, or again.
+    """
+
+    module: ModuleType
+    types: dict[str, Type]
+    may_keep: bool
+
+    @abstractmethod
+    def refuse(self, node: ast.AST, what: str, expected: str) -> CannotExport:
+        """The error that names a line outside the subset."""
+
+    @abstractmethod
+    def keep(self, value: Value) -> Value:
+        """A value in a variable of its own, before the present statement."""
+
+    @abstractmethod
+    def constant(self, module: ModuleType, name: str) -> str:
+        """The name in C of a module's number."""
+
+    @abstractmethod
+    def function(self, function: FunctionType, kinds: tuple[Type, ...]) -> tuple[str, Type]:
+        """The name in C of a function for arguments of these types, and its result's type."""
+
+    @abstractmethod
+    def c_type(self, kind: Type) -> str:
+        """The name in C of a type."""
+
+    def expression(self, node: ast.expr) -> Value:
+        """One expression."""
+        known: Mapping[type, Callable[[Any], Value]] = {
+            ast.Constant: self.literal,
+            ast.Name: self.read,
+            ast.Attribute: self.read,
+            ast.Subscript: self.part,
+            ast.BinOp: self.operation,
+            ast.UnaryOp: self.unary,
+            ast.BoolOp: self.junction,
+            ast.Compare: self.comparison,
+            ast.IfExp: self.choice,
+            ast.Call: self.call,
+            ast.Tuple: lambda node: self.grouped(self.operands(node.elts)),
+        }
+        if type(node) not in known:
+            raise self.refuse(node, ast.unparse(node), "numbers, slots, + - * / and calls")
+        return known[type(node)](node)
+
+    # -- what is read --
+
+    def literal(self, node: ast.Constant) -> Value:
+        """A number, or a truth value."""
+        if isinstance(node.value, bool):
+            return Value(str(int(node.value)), TRUTH)
+        if isinstance(node.value, (int, float)):
+            return Value(repr(node.value), WHOLE if isinstance(node.value, int) else REAL)
+        raise self.refuse(node, repr(node.value), "a number")
+
+    def read(self, node: ast.Name | ast.Attribute) -> Value:
+        """A variable, or a constant of a module."""
+        if isinstance(node, ast.Name) and node.id in self.types:
+            return Value(in_c(node.id), self.types[node.id])
+        thing, module, name = self.resolved(node)
+        if isinstance(thing, bool) or not isinstance(thing, (int, float)):
+            raise self.refuse(node, ast.unparse(node), "a number")
+        return Value(self.constant(module, name), WHOLE if isinstance(thing, int) else REAL)
+
+    def resolved(self, node: ast.expr) -> tuple[object, ModuleType, str]:
+        """What a name stands for, and the module and name that it was defined under."""
+        name = ast.unparse(node)
+        thing = named(self.module, name)
+        if thing is None:
+            raise self.refuse(node, f"{name} is not known here", "a variable or a constant")
+        if isinstance(node, ast.Attribute):
+            module = named(self.module, ast.unparse(node.value))
+            assert isinstance(module, ModuleType)
+            return thing, *origin(module, node.attr)
+        return thing, *origin(self.module, name)
+
+    def part(self, node: ast.Subscript) -> Value:
+        """A slot of the memory; a part of a tuple, or several."""
+        whole = self.expression(node.value)
+        if whole.type == MEMORY:
+            place = self.expression(node.slice)
+            if place.type != WHOLE:
+                raise self.refuse(node, ast.unparse(node), "a whole number as the slot")
+            return Value(f"{whole.text}[{place.text}]", REAL)
+        if not isinstance(whole.type, tuple):
+            raise self.refuse(node, ast.unparse(node), "a slot or a part of a tuple")
+        if isinstance(node.slice, ast.Slice):
+            simple = whole if is_simple(whole) else self.keep(whole)
+            ends = [getattr(node.slice, end) for end in ("lower", "upper", "step")]
+            wanted = slice(*(end and ast.literal_eval(end) for end in ends))
+            return self.grouped(simple.items()[wanted])
+        index = node.slice.value if isinstance(node.slice, ast.Constant) else None
+        if not isinstance(index, int):
+            raise self.refuse(node, ast.unparse(node), "a constant index of a tuple")
+        return whole.item(index)
+
+    # -- what is computed --
+
+    def operation(self, node: ast.BinOp) -> Value:
+        """``a + b`` and the like."""
+        if type(node.op) not in OPERATORS:
+            raise self.refuse(node, ast.unparse(node), "one of + - * / % &")
+        sign, rank = OPERATORS[type(node.op)]
+        one, other = self.operands([node.left, node.right])
+        kind = common_type([one.type, other.type, WHOLE])
+        if sign in "%&" and kind == REAL:
+            raise self.refuse(node, ast.unparse(node), "whole numbers")
+        if sign == "/" and kind != REAL:  # Python's division of whole numbers is a real number
+            one, kind = Value(f"(double){one.within(UNARY)}", REAL, UNARY), REAL
+        one, other = one.converted(kind), other.converted(kind)
+        return Value(f"{one.within(rank)} {sign} {other.within(rank + 1)}", kind, rank)
+
+    def unary(self, node: ast.UnaryOp) -> Value:
+        """``-a`` and ``not a``."""
+        if isinstance(node.op, ast.Not):
+            return Value(f"!{self.truth(node.operand).within(UNARY)}", TRUTH, UNARY)
+        if not isinstance(node.op, ast.USub):
+            raise self.refuse(node, ast.unparse(node), "- or not")
+        value = self.expression(node.operand)
+        text = value.within(UNARY)
+        return Value(f"-({text})" if text.startswith("-") else f"-{text}", value.type, UNARY)
+
+    def truth(self, node: ast.expr) -> Value:
+        """An expression that is true or false."""
+        value = self.expression(node)
+        if value.type != TRUTH:
+            raise self.refuse(node, ast.unparse(node), "a comparison")
+        return value
+
+    def junction(self, node: ast.BoolOp) -> Value:
+        """``a and b``, ``a or b``."""
+        sign, rank = ("&&", AND) if isinstance(node.op, ast.And) else ("||", OR)
+        first, *others = node.values
+        values = [self.truth(first), *self.conditional(others, self.truth)]
+        # C's compilers ask for parentheses around && within ||
+        return Value(f" {sign} ".join(value.within(BITS) for value in values), TRUTH, rank)
+
+    def comparison(self, node: ast.Compare) -> Value:
+        """``a < b``, ``a < b < c``."""
+        first, *others = self.operands([node.left, *node.comparators])
+        middle = [v if is_simple(v) or "(" not in v.text else self.keep(v) for v in others[:-1]]
+        values = [first, *middle, others[-1]]
+        pairs = []
+        for operator, one, other in zip(node.ops, values[:-1], values[1:], strict=True):
+            sign, rank = COMPARISONS[type(operator)]
+            kind = common_type([one.type, other.type])
+            left, right = (value.converted(kind).within(rank + 1) for value in (one, other))
+            pairs.append(Value(f"{left} {sign} {right}", TRUTH, rank))
+        if len(pairs) == 1:
+            return pairs[0]
+        return Value(" && ".join(pair.text for pair in pairs), TRUTH, AND)
+
+    def choice(self, node: ast.IfExp) -> Value:
+        """``a if b else c``."""
+        test = self.truth(node.test)
+        one, other = self.conditional([node.body, node.orelse], self.expression)
+        kind = common_type([one.type, other.type])
+        parts = (one.converted(kind).within(OR), other.converted(kind).within(CHOICE))
+        return Value(f"{test.within(OR)} ? {parts[0]} : {parts[1]}", kind, CHOICE)
+
+    def conditional(
+        self, nodes: Sequence[ast.expr], read: Callable[[ast.expr], Value]
+    ) -> list[Value]:
+        """Expressions that are evaluated only where a test says so: nothing is kept before."""
+        before, self.may_keep = self.may_keep, False
+        values = [read(node) for node in nodes]
+        self.may_keep = before
+        return values
+
+    def grouped(self, parts: Sequence[Value]) -> Value:
+        """A structure of values."""
+        kind = tuple(part.type for part in parts)
+        return Value(f"({self.c_type(kind)}){{{', '.join(part.text for part in parts)}}}", kind)
+
+    def call(self, node: ast.Call) -> Value:
+        """A call of a kernel's function, or of one that C has."""
+        name = ast.unparse(node.func)
+        if node.keywords:
+            raise self.refuse(node, ast.unparse(node), "arguments without names")
+        if name in BUILT_IN:
+            return self.built_in(node, name)
+        thing, _, _ = self.resolved(node.func)
+        if not isinstance(thing, FunctionType):
+            raise self.refuse(node, name, f"a function of the kernel, or {', '.join(BUILT_IN)}")
+        values = self.operands(node.args)
+        known, result = self.function(thing, tuple(value.type for value in values))
+        return Value(f"{known}({', '.join(value.text for value in values)})", result)
+
+    def built_in(self, node: ast.Call, name: str) -> Value:
+        """Functions that every C has, and the helpers of the C file."""
+        values = self.operands(node.args)
+        kind = common_type([value.type for value in values])
+        if name == "int":
+            return Value(f"(int){values[0].within(UNARY)}", WHOLE, UNARY)
+        if name in ("max", "min", "abs") and kind != REAL:
+            raise self.refuse(node, ast.unparse(node), "real numbers")
+        text = values[0].converted(REAL).text
+        if name not in ("max", "min"):
+            return Value(f"{BUILT_IN[name]}({text})", LONG if name == "math.floor" else REAL)
+        for other in values[1:]:
+            text = f"{BUILT_IN[name]}({text}, {other.converted(REAL).text})"
+        return Value(text, REAL)
+
+    # -- the order of evaluation --
+
+    def operands(self, nodes: Sequence[ast.expr]) -> list[Value]:
+        """Expressions that Python evaluates in this order, and C in any."""
+        readers = [self.may_read(node) for node in nodes]
+        if sum(readers) < 2 or not any(self.may_write(node) for node in nodes):
+            return [self.expression(node) for node in nodes]
+        values = []
+        for node, reads in zip(nodes, readers, strict=True):
+            value = self.expression(node)
+            values.append(self.keep(value) if reads else value)
+        return values
+
+    def may_read(self, node: ast.expr) -> bool:
+        """Whether an expression looks at the memory, or hands it on to a function."""
+        parents = [part for part in ast.walk(node) if isinstance(part, (ast.Subscript, ast.Call))]
+        inside = [
+            part
+            for parent in parents
+            for part in (parent.args if isinstance(parent, ast.Call) else [parent.value])
+        ]
+        return any(isinstance(p, ast.Name) and self.types.get(p.id) == MEMORY for p in inside)
+
+    def may_write(self, node: ast.expr) -> bool:
+        """Whether evaluating an expression may change the memory."""
+        calls = [part.func for part in ast.walk(node) if isinstance(part, ast.Call)]
+        things = [named(self.module, ast.unparse(function)) for function in calls]
+        return any(isinstance(thing, FunctionType) and writes_memory(thing) for thing in things)
+
+
+def in_c(name: str) -> str:
+    """A variable's name in C."""
+    return f"{name}_" if name in TAKEN.split() else name
+
+
+def is_simple(value: Value) -> bool:
+    """Whether an expression is a variable, or a part of one."""
+    return value.rank == ATOM and all(part.isidentifier() for part in value.text.split("."))

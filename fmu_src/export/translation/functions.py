@@ -1,0 +1,326 @@
+"""A function of the kernel in C: its statements, and where its variables are declared.
+
+A body is read until the types of its variables no longer change, and then once more for its text.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import FunctionType, ModuleType
+from typing import Any, Protocol
+
+from ..errors import CannotExport
+from .expressions import OPERATORS, Expressions, in_c, is_simple
+from .subset import Block, assigned_in, comments_of, depends, may_declare, names_in, owners, parsed
+from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Value, common_type
+
+WIDTH = 100
+INDENT = "    "
+
+
+@dataclass
+class Unit:
+    """One function with the types of its arguments.
+
+    Attributes
+    ----------
+    function : function
+    kinds : tuple of Type
+        Of its arguments.
+    name : str
+        In C.
+    result : Type
+    text : str
+        Its definition in C.
+    """
+
+    function: FunctionType
+    kinds: tuple[Type, ...]
+    name: str
+    result: Type = NOTHING
+    text: str = ""
+
+
+class Kernel(Protocol):
+    """What a function has to know of the others."""
+
+    def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
+        """Another function, translated."""
+
+    def constant(self, module: ModuleType, name: str) -> str:
+        """The name in C of a module's number."""
+
+    def c_type(self, kind: Type) -> str:
+        """The name in C of a type."""
+
+
+class Body(Expressions):
+    """Translates one function.
+
+    Parameters
+    ----------
+    kernel : Kernel
+    unit : Unit
+        Gets its result and its text from :meth:`translate`.
+    """
+
+    def __init__(self, kernel: Kernel, unit: Unit) -> None:
+        self.kernel, self.unit = kernel, unit
+        self.module = sys.modules[unit.function.__module__]
+        self.tree, self.first, source = parsed(unit.function)
+        self.comments = comments_of(source)
+        self.parameters = [argument.arg for argument in self.tree.args.args]
+        if len(self.parameters) != len(unit.kinds):
+            raise self.refuse(self.tree, "a call with other arguments", "all of them")
+        self.types = dict(zip(self.parameters, unit.kinds, strict=True))
+        self.results: list[Type] = []
+        self.may_keep, self.is_final = True, False
+        self.begin()
+
+    def begin(self) -> None:
+        """Nothing has been written."""
+        self.lines: list[str] = []
+        self.declared, self.count_of_kept, self.depth = set(self.parameters), 0, 1
+
+    def translate(self) -> None:
+        """Set the unit's result and text."""
+        body = self.tree.body[1:] if ast.get_docstring(self.tree) else self.tree.body
+        known: dict[str, Type] = {}
+        while known != self.types:  # a variable may turn out to be real after its first use
+            known, self.results = dict(self.types), []
+            self.begin()
+            self.block(body)
+        self.unit.result = common_type(self.results) if self.results else NOTHING
+        self.is_final = True
+        self.begin()
+        self.declare_first(body)
+        self.block(body)
+        self.unit.text = "\n".join([*self.head(), "{", *self.lines, "}"])
+
+    def head(self) -> list[str]:
+        """What the function is for, in the words of its docstring, and its declaration."""
+        summary = " ".join((ast.get_docstring(self.tree) or "").partition("\n\n")[0].split())
+        comment = f"/* {summary.replace('``', '').replace(':func:', '').replace('`', '')} */"
+        parameters = [f"{self.c_type(self.types[name])} {in_c(name)}" for name in self.parameters]
+        line = f"static {self.c_type(self.unit.result)} {self.unit.name}({', '.join(parameters)})"
+        return [*wrapped(comment, "", "   "), *wrapped(line, "", INDENT)]
+
+    # -- what expressions ask for --
+
+    def refuse(self, node: ast.AST, what: str, expected: str) -> CannotExport:
+        """The error that names a line outside the subset."""
+        line = self.first + getattr(node, "lineno", 1) - 1
+        return CannotExport(f"{self.module.__file__}, line {line}: {what}; expected {expected}")
+
+    def keep(self, value: Value) -> Value:
+        """A value in a variable of its own, before the present statement."""
+        if not self.may_keep:
+            instead = "it in a statement of its own before"
+            raise self.refuse(self.tree, f"{value.text} would be evaluated too early", instead)
+        self.count_of_kept += 1
+        name = f"part_{self.count_of_kept}"
+        self.line(f"{self.c_type(value.type)} {name} = {value.text};")
+        return Value(name, value.type)
+
+    def constant(self, module: ModuleType, name: str) -> str:
+        """The name in C of a module's number."""
+        return self.kernel.constant(module, name)
+
+    def function(self, function: FunctionType, kinds: tuple[Type, ...]) -> tuple[str, Type]:
+        """The name in C of another function, and its result's type."""
+        unit = self.kernel.unit(function, kinds)
+        return unit.name, unit.result
+
+    def c_type(self, kind: Type) -> str:
+        """The name in C of a type."""
+        return self.kernel.c_type(kind)
+
+    # -- lines --
+
+    def line(self, text: str) -> None:
+        """One line of C at the present depth."""
+        indent = INDENT * self.depth
+        self.lines += wrapped(text, indent, indent + INDENT)
+
+    def block(self, statements: Block) -> None:
+        """Statements in their order, each after the comments beside it."""
+        for statement in statements:
+            if self.is_final:
+                for line in [line for line in sorted(self.comments) if line <= statement.lineno]:
+                    self.line(f"/* {self.comments.pop(line)} */")
+            self.statement(statement)
+
+    def inner(self, statements: Block) -> None:
+        """A block inside another."""
+        self.depth += 1
+        self.block(statements)
+        self.depth -= 1
+
+    def declare_first(self, body: Block) -> None:
+        """Declare the variables that no assignment can declare, and name unused arguments."""
+        used = set().union(*map(names_in, body))
+        for name in [name for name in self.parameters if name not in used]:
+            self.line(f"(void){in_c(name)};")
+        several: dict[Type, list[str]] = {}
+        for name, owner in owners(body).items():
+            first = next(statement for statement in owner if name in names_in(statement))
+            if name not in self.declared and not may_declare(first, name):
+                self.declared.add(name)
+                several.setdefault(self.types[name], []).append(name)
+        for kind, names in several.items():
+            zero = "{0}" if isinstance(kind, tuple) else "0.0" if kind == REAL else "0"
+            self.line(f"{self.c_type(kind)} {', '.join(f'{in_c(n)} = {zero}' for n in names)};")
+
+    # -- statements --
+
+    def statement(self, node: ast.stmt) -> None:
+        """One statement."""
+        known: Mapping[type, Callable[[Any], None]] = {
+            ast.Assign: self.assign,
+            ast.AugAssign: self.change,
+            ast.Expr: self.call_alone,
+            ast.Return: self.give,
+            ast.If: self.decide,
+            ast.For: self.count,
+            ast.While: self.repeat,
+            ast.Break: lambda node: self.line("break;"),
+        }
+        if type(node) not in known:
+            line = ast.unparse(node).splitlines()[0]
+            raise self.refuse(node, line, "=, if, for, while, break, return or a call")
+        known[type(node)](node)
+
+    def assign(self, node: ast.Assign) -> None:
+        """``a = b``, ``a = b = c``, ``a, b = c, d``, ``a, b = f(m)``."""
+        target = node.targets[0]
+        if isinstance(target, ast.Tuple) and len(node.targets) == 1:
+            self.assign_parts(target.elts, node.value)
+            return
+        value = self.expression(node.value)
+        if len(node.targets) > 1 and not is_simple(value):
+            value = self.keep(value)
+        for one in node.targets:
+            if isinstance(one, ast.Subscript) and self.may_read(one.slice):
+                value = self.keep(value)  # Python asks for the slot after it
+            self.set(one, value)
+
+    def assign_parts(self, targets: Sequence[ast.expr], source: ast.expr) -> None:
+        """A tuple's parts to several names or slots."""
+        if isinstance(source, ast.Tuple):
+            parts = self.operands(source.elts)
+            if depends(targets, source.elts):
+                parts = [self.keep(part) for part in parts]
+        else:
+            whole = self.expression(source)
+            if not isinstance(whole.type, tuple):
+                raise self.refuse(source, ast.unparse(source), f"a tuple of {len(targets)}")
+            parts = (whole if is_simple(whole) else self.keep(whole)).items()
+        if len(parts) != len(targets):
+            raise self.refuse(source, f"{len(parts)} values", f"{len(targets)} of them")
+        for target, part in zip(targets, parts, strict=True):
+            if not (isinstance(target, ast.Name) and target.id == "_"):
+                self.set(target, part)
+
+    def set(self, target: ast.expr, value: Value) -> None:
+        """A value into a variable or a slot."""
+        if isinstance(target, ast.Subscript):
+            self.line(f"{self.part(target).text} = {value.converted(REAL).text};")
+            return
+        if not isinstance(target, ast.Name):
+            raise self.refuse(target, ast.unparse(target), "a name or a slot of the memory")
+        name, before = target.id, self.types.get(target.id, value.type)
+        if before == MEMORY or isinstance(before, tuple) != isinstance(value.type, tuple):
+            raise self.refuse(target, f"{name} with another type", "a name of its own")
+        kind = self.types[name] = common_type([before, value.type])
+        declaration = "" if name in self.declared else f"{self.c_type(kind)} "
+        self.declared.add(name)
+        self.line(f"{declaration}{in_c(name)} = {value.converted(kind).text};")
+
+    def change(self, node: ast.AugAssign) -> None:
+        """``a += b``."""
+        if type(node.op) not in OPERATORS:
+            raise self.refuse(node, ast.unparse(node), "+=, -=, *= or /=")
+        sign = OPERATORS[type(node.op)][0]
+        value = self.expression(node.value)
+        if isinstance(node.target, ast.Name):
+            name = node.target.id
+            kind = self.types[name] = common_type([self.types[name], value.type])
+            self.line(f"{in_c(name)} {sign}= {value.converted(kind).text};")
+            return
+        if self.may_write(node.value):  # Python reads the slot first
+            raise self.refuse(node, ast.unparse(node), "the call in a statement of its own before")
+        self.line(f"{self.expression(node.target).text} {sign}= {value.converted(REAL).text};")
+
+    def call_alone(self, node: ast.Expr) -> None:
+        """A call for what it does to the memory."""
+        if not isinstance(node.value, ast.Call):
+            raise self.refuse(node, ast.unparse(node), "a call")
+        self.line(f"{self.expression(node.value).text};")
+
+    def give(self, node: ast.Return) -> None:
+        """``return``, with or without a value."""
+        if node.value is None:
+            self.results.append(NOTHING)
+            self.line("return;")
+            return
+        value = self.expression(node.value)
+        self.results.append(value.type)
+        kind = self.unit.result if self.is_final else value.type
+        self.line(f"return {value.converted(kind).text};")
+
+    def decide(self, node: ast.If) -> None:
+        """``if``, ``elif`` and ``else``."""
+        self.line(f"if ({self.truth(node.test).text}) {{")
+        self.inner(node.body)
+        if node.orelse:
+            self.line("} else {")
+            self.inner(node.orelse)
+        self.line("}")
+
+    def count(self, node: ast.For) -> None:
+        """``for i in range(...)``."""
+        loop, target = node.iter, node.target
+        is_range = isinstance(loop, ast.Call) and ast.unparse(loop.func) == "range"
+        ends = loop.args if is_range and isinstance(loop, ast.Call) else []
+        if not ends or not isinstance(target, ast.Name) or node.orelse:
+            raise self.refuse(node, "this loop", "for NAME in range(...)")
+        values = [self.expression(end) for end in ends]
+        first, last = (Value("0", WHOLE), *values) if len(values) == 1 else values[:2]
+        step = ast.literal_eval(ends[2]) if len(values) == 3 else 1
+        changed = {one.id for one in assigned_in(node.body) if isinstance(one, ast.Name)}
+        if last.text in changed or not (is_simple(last) or last.text.isdigit()):
+            last = self.keep(last)  # Python asks for it once
+        name = "round" if target.id == "_" else in_c(target.id)
+        self.types[target.id] = WHOLE
+        declaration = "" if target.id in self.declared else "int "
+        while_in = f"{name} {'<' if step > 0 else '>'} {last.text}"
+        further = {1: f"{name}++", -1: f"{name}--"}.get(step, f"{name} += {step}")
+        before = set(self.declared)
+        self.declared.add(target.id)
+        self.line(f"for ({declaration}{name} = {first.text}; {while_in}; {further}) {{")
+        self.inner(node.body)
+        self.line("}")
+        self.declared = before
+
+    def repeat(self, node: ast.While) -> None:
+        """``while``."""
+        (test,) = self.conditional([node.test], self.truth)
+        self.line(f"while ({test.text}) {{")
+        self.inner(node.body)
+        self.line("}")
+
+
+def wrapped(text: str, first: str, later: str) -> list[str]:
+    """A line of C, broken where it is long."""
+    return textwrap.wrap(
+        text,
+        WIDTH,
+        initial_indent=first,
+        subsequent_indent=later,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

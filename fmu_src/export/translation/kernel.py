@@ -1,0 +1,179 @@
+"""The kernel in C: its subset of Python, translated function by function to readable C99.
+
+Every function is translated once for each tuple of argument types it is called with, under its own
+name and with the first line of its docstring; constants and slots keep their names. Operations keep
+their order, so that a compiler that neither contracts nor reorders floating-point operations makes
+the bits that Python makes. What lies outside the subset is refused, with file, line and what to
+write instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import FunctionType, ModuleType
+from typing import Any
+
+from ..errors import CannotExport
+from .expressions import TAKEN
+from .functions import Body, Unit, wrapped
+from .values import C_TYPES, MEMORY, REAL, Type
+
+HEAD = """\
+/* Translated from the Python in documentation/kernels, where the reasons are.
+
+   Every number of this model has the same bits on every machine, if the compiler does what the
+   lines say: it must not fuse a multiplication and an addition, nor reorder sums. */
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT OFF
+#if defined(__FAST_MATH__)
+#error "the kernel needs floating-point numbers by IEEE 754: compile without -ffast-math"
+#endif
+#elif defined(__GNUC__)
+/* its vectoriser of straight lines reorders and fuses in spite of -ffp-contract=off */
+#pragma GCC optimize ("fp-contract=off", "no-tree-slp-vectorize", "no-fast-math")
+#elif defined(_MSC_VER)
+#pragma fp_contract (off)
+#pragma float_control (precise, on)
+#endif
+
+#include <math.h>
+
+#if defined(_MSC_VER)
+#define RESTRICT __restrict
+#else
+#define RESTRICT restrict
+#endif
+
+#if defined(__GNUC__) && !defined(_WIN32)
+#pragma GCC visibility push(hidden)
+#endif
+"""
+HELPERS = """\
+/* The larger and the smaller number, as Python chooses them: the first one of equal ones. */
+static double larger(double one, double other)
+{
+    return other > one ? other : one;
+}
+
+static double smaller(double one, double other)
+{
+    return other < one ? other : one;
+}
+
+/* The largest whole number that is not larger. */
+static long long floored(double value)
+{
+    long long whole = (long long)value;
+    return (double)whole > value ? whole - 1 : whole;
+}
+"""
+
+
+@dataclass
+class Translation:
+    """All that has been translated so far.
+
+    Attributes
+    ----------
+    units : dict
+        By function and types of the arguments; those come first that others call.
+    constants : dict of str to float
+        Those used, by their names in C.
+    structures : dict of Type to str
+        Names in C of the tuples used.
+    names : dict of str to object
+        What each name in C stands for.
+    """
+
+    units: dict[tuple[FunctionType, tuple[Type, ...]], Unit] = field(default_factory=dict)
+    constants: dict[str, float] = field(default_factory=dict)
+    structures: dict[Type, str] = field(default_factory=dict)
+    names: dict[str, object] = field(default_factory=dict)
+
+    def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
+        """A function for arguments of these types, translated where it was not yet."""
+        key = function, kinds
+        if key not in self.units:
+            unit = Unit(function, kinds, self.own_name(function.__name__, key, function.__module__))
+            Body(self, unit).translate()
+            self.units[key] = unit
+        return self.units[key]
+
+    def own_name(self, name: str, thing: object, module: str) -> str:
+        """A name of one thing alone: with its module's before it, where another one has it."""
+        place = module.rpartition(".")[2]
+        longer = f"{place.upper() if name.isupper() else place}_{name}"
+        for known in (name, longer, *(f"{longer}_{number}" for number in range(2, 100))):
+            if known not in TAKEN.split() and self.names.setdefault(known, thing) == thing:
+                return known
+        raise CannotExport(f"{name}: too many things of this name")
+
+    def constant(self, module: ModuleType, name: str) -> str:
+        """The name in C of a module's number."""
+        known = self.own_name(name, (module.__name__, name), module.__name__)
+        self.constants[known] = getattr(module, name)
+        return known
+
+    def c_type(self, kind: Type) -> str:
+        """The name in C of a type; that of a tuple says how many numbers it has, if no more."""
+        if isinstance(kind, str):
+            return C_TYPES[kind]
+        if kind not in self.structures:
+            for part in kind:
+                self.c_type(part)
+            reals = all(part == REAL for part in kind)
+            name = f"Reals{len(kind)}" if reals else f"Group{len(self.structures)}"
+            self.structures[kind] = name
+        return self.structures[kind]
+
+    def declarations(self) -> list[str]:
+        """Slots and other whole numbers, real constants, and structures."""
+        whole = sorted((n, name) for name, n in self.constants.items() if isinstance(n, int))
+        real = [(name, n) for name, n in self.constants.items() if not isinstance(n, int)]
+        structures = []
+        for kind, name in self.structures.items():
+            parts = " ".join(f"{self.c_type(part)} i{i};" for i, part in enumerate(kind))
+            structures += wrapped(f"typedef struct {{ {parts} }} {name};", "", "    ")
+        return [
+            "\n".join(["enum {", *(f"    {name} = {number}," for number, name in whole), "};\n"]),
+            "".join(f"static const double {name} = {literal(n)};\n" for name, n in real),
+            "\n".join(structures) + "\n",
+        ]
+
+
+def literal(number: float) -> str:
+    """A constant to the last bit, and how people write it."""
+    known = {"inf": "INFINITY", "-inf": "-INFINITY", "nan": "NAN"}
+    text = repr(number)
+    return known.get(text) or f"{number.hex()} /* {text} */"
+
+
+def translate(entries: Mapping[str, Callable[[Any, float], int]]) -> str:
+    """Translate a kernel.
+
+    Parameters
+    ----------
+    entries : mapping of str to function
+        The entry points by name: each takes the flat memory and a time, and returns a code.
+
+    Returns
+    -------
+    str
+        A C99 file of its own with a function ``kernel_NAME`` for each entry point; of the C library
+        it needs ``sqrt`` and ``fabs``.
+
+    Raises
+    ------
+    CannotExport
+        Where a line is outside the subset.
+    """
+    done = Translation()
+    exits = []
+    for name, function in entries.items():
+        assert isinstance(function, FunctionType)
+        inner = done.unit(function, (MEMORY, REAL)).name
+        head = f"int kernel_{name}(double *memory, double time)"
+        exits.append(f"{head};\n{head}\n{{\n    return {inner}(memory, time);\n}}\n")
+    bodies = [f"{unit.text}\n" for unit in done.units.values()]
+    return "\n".join([HEAD, *done.declarations(), HELPERS, *bodies, *exits])

@@ -1,0 +1,75 @@
+"""Types of the kernel's values, and expressions in C that have one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from ..errors import CannotExport
+
+MEMORY, REAL, WHOLE, LONG, TRUTH, NOTHING = "memory", "real", "whole", "long", "truth", "nothing"
+Type: TypeAlias = "str | tuple[Type, ...]"  # one of these; of a tuple, the types of its parts
+C_TYPES = {
+    MEMORY: "double *RESTRICT",
+    REAL: "double",
+    WHOLE: "int",
+    LONG: "long long",
+    TRUTH: "int",
+    NOTHING: "void",
+}
+NUMBERS = (TRUTH, WHOLE, LONG, REAL)  # each is converted to those after it
+# how closely C's operators bind
+ATOM, UNARY, PRODUCT, SUM, RELATION, EQUALITY, BITS, AND, OR, CHOICE = range(16, 6, -1)
+
+
+@dataclass(frozen=True)
+class Value:
+    """An expression in C.
+
+    Attributes
+    ----------
+    text : str
+    type : Type
+    rank : int
+        How closely its outermost operator binds.
+    """
+
+    text: str
+    type: Type
+    rank: int = ATOM
+
+    def within(self, rank: int) -> str:
+        """Its text as an operand of an operator that binds so closely."""
+        return self.text if self.rank >= rank else f"({self.text})"
+
+    def item(self, place: int) -> Value:
+        """A part of a tuple."""
+        assert isinstance(self.type, tuple)
+        return Value(f"{self.within(ATOM)}.i{place}", self.type[place])
+
+    def items(self) -> list[Value]:
+        """All parts of a tuple."""
+        return [self.item(place) for place in range(len(self.type))]
+
+    def converted(self, kind: Type) -> Value:
+        """The value as another type; only what C would convert with a loss is written out."""
+        if self.type == LONG and kind == REAL:
+            return Value(f"(double){self.within(UNARY)}", REAL, UNARY)
+        return self
+
+
+def common_type(kinds: Sequence[Type]) -> Type:
+    """The type that can hold values of all types.
+
+    Raises
+    ------
+    CannotExport
+        Where there is none.
+    """
+    if all(kind == kinds[0] for kind in kinds):
+        return kinds[0]
+    numbers = [kind for kind in kinds if isinstance(kind, str) and kind in NUMBERS]
+    if len(numbers) == len(kinds):
+        return max(numbers, key=NUMBERS.index)
+    raise CannotExport(f"values of the types {', '.join(map(str, kinds))}; expected one type")

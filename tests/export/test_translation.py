@@ -1,0 +1,129 @@
+"""The translator: what its C computes against what the Python computes, and what it refuses."""
+
+import ctypes
+import shutil
+import subprocess
+import textwrap
+from importlib import util
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fmu_src.export.errors import CannotExport
+from fmu_src.export.sources import load
+from fmu_src.export.translation.kernel import translate
+
+from . import kernel_like
+from . import kernel_like_slots as at
+
+CC = shutil.which("gcc") or shutil.which("cc") or shutil.which("clang")
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror")
+
+
+def library(folder, text, *flags):
+    """C as a loaded library; no warning is left."""
+    (folder / "kernel.c").write_text(text, "utf-8")
+    target = folder / f"kernel{'_'.join(flags)}.so"
+    command = [CC, *STRICT, *flags, "-shared", "-fPIC", "kernel.c", "-o", target, "-lm"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return ctypes.CDLL(str(target))
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory):
+    if CC is None:
+        pytest.skip("no C compiler on this machine")
+    return library(tmp_path_factory.mktemp("c"), translate(kernel_like.ENTRIES))
+
+
+numbers = st.floats(-50.0, 50.0).map(lambda x: round(x * 64) / 64) | st.floats(-2.0, 2.0)
+
+
+@pytest.mark.parametrize("name", kernel_like.ENTRIES)
+@settings(max_examples=100, deadline=None)
+@given(x=numbers, begin=st.lists(numbers, min_size=at.SIZE, max_size=at.SIZE))
+def test_memory_is_the_same_after_both(compiled, name, x, begin):
+    """All slots to the last bit: order of evaluation, loops, tuples, conversions, choices."""
+    memory = (ctypes.c_double * at.SIZE)(*begin)
+    entry = getattr(compiled, f"kernel_{name}")
+    entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
+    assert entry(memory, x) == 0
+    expected = list(begin)
+    kernel_like.ENTRIES[name](expected, x)
+    assert [v.hex() for v in memory] == [float(v).hex() for v in expected]
+
+
+def module_of(folder, body):
+    """A module with one entry point of these lines."""
+    text = "import math\nLIMIT = 2.0\n\n\ndef helper(m, x):\n    m[0] += x\n    return m[0]\n\n\n"
+    text += "def entry(m, time):\n" + textwrap.indent(textwrap.dedent(body), "    ")
+    path = folder / "outside.py"
+    path.write_text(text, "utf-8")
+    spec = util.spec_from_file_location("outside", path)
+    module = util.module_from_spec(spec)
+    import sys
+
+    sys.modules["outside"] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize(
+    ("body", "line", "text"),
+    [
+        ("return m[0] ** 2", 11, "expected one of"),
+        ("m[0] = math.sin(time)\nreturn 0", 11, "math.sin; expected a function of the kernel"),
+        ("try:\n    return 0\nexcept ValueError:\n    return 1", 11, "expected =, if"),
+        ("for x in m:\n    m[0] = x\nreturn 0", 11, "expected for NAME in range"),
+        ("m[0] = unknown\nreturn 0", 11, "unknown is not known here"),
+        ("m[time] = 0.0\nreturn 0", 11, "expected a whole number as the slot"),
+        ("if time:\n    return 1\nreturn 0", 11, "time; expected a comparison"),
+        ("a, b = time\nreturn 0", 11, "expected a tuple of 2"),
+        ("m[0] += helper(m, time)\nreturn 0", 11, "expected the call in a statement of its own"),
+        ("m[0] = max(1, 2)\nreturn 0", 11, "expected real numbers"),
+        ("m[0] = helper(m, x=time)\nreturn 0", 11, "expected arguments without names"),
+        ("m[0] = 'text'\nreturn 0", 11, "'text'; expected a number"),
+    ],
+)
+def test_what_is_outside_the_subset_is_refused(tmp_path, body, line, text):
+    """In one line, with the file, the line and what to write instead."""
+    module = module_of(tmp_path, body)
+    with pytest.raises(CannotExport) as caught:
+        translate({"entry": module.entry})
+    told = str(caught.value)
+    assert f"outside.py, line {line}: " in told and text in told and "\n" not in told
+
+
+def test_what_would_be_evaluated_too_early_is_refused(tmp_path):
+    """Two calls that change the memory, of which a test decides whether they are made."""
+    body = "x = helper(m, 1.0) - helper(m, 2.0) if time > 0.0 else 0.0\nm[0] = x\nreturn 0"
+    with pytest.raises(CannotExport, match="would be evaluated too early"):
+        translate({"entry": module_of(tmp_path, body).entry})
+
+
+@pytest.mark.parametrize("folder", ["oscillator", "motor_shaker"])
+def test_kernels_compile_without_a_warning(tmp_path, folder):
+    """As C99, and by what they say need nothing but sqrt and fabs of the C library."""
+    if CC is None:
+        pytest.skip("no C compiler on this machine")
+    model = load(folder)
+    library(tmp_path, translate(model.entries), "-O1")
+    undefined = subprocess.run(
+        ["nm", "-u", "kernel-O1.so"], cwd=tmp_path, capture_output=True, text=True, check=True
+    ).stdout.split()
+    called = {name.partition("@")[0] for name in undefined if name not in "Uw"}
+    allowed = {"sqrt", "fabs", "memset", "memcpy"}
+    assert {name for name in called if not name.startswith("_")} <= allowed
+
+
+def test_kernel_reads_like_the_paper():
+    """Functions and slots keep their names, equations their numbers, comments their places."""
+    text = translate(load("oscillator").entries)
+    assert "static Reals4 state_at(double *RESTRICT m, double tau)" in text
+    assert "/* Displacements and velocities tau after the state's start, (10). */" in text
+    assert "m[BRANCH_3 + OMEGA_SQUARED]" in text
+    assert "static const double BRIEF = 0x1.0c6f7a0b5ed8dp-20 /* 1e-06 */;" in text
+    assert "/* exactly what the state began with: a start from rest is at rest */" in text
+    assert max(map(len, text.splitlines())) <= 100

@@ -1,0 +1,134 @@
+"""The C inside the FMUs: what a bare compiler makes of it, and that it defends its bits."""
+
+import platform
+import shutil
+import subprocess
+import sys
+import zipfile
+from xml.etree import ElementTree as ET
+
+import fmpy
+import pytest
+from fmpy.build import build_platform_binary
+
+from ..fresh import run_fresh
+from .slave import COMMON, harmonic
+from .test_bit_identity import PROGRAMS
+
+GCC = shutil.which("gcc")
+BARE = ("-O2", "-std=c99", "-ffp-contract=off")
+FOLDERS = {"fmi2": "linux64", "fmi3": "x86_64-linux"}
+pytestmark = pytest.mark.skipif(
+    GCC is None or (sys.platform, platform.machine()) != ("linux", "x86_64"),
+    reason="expected Linux on x86-64 with gcc",
+)
+
+
+def unpacked(fmu, folder):
+    """The FMU's files without its binaries."""
+    with zipfile.ZipFile(fmu) as archive:
+        archive.extractall(folder)
+    shutil.rmtree(folder / "binaries")
+    return folder
+
+
+def compiled(folder, version, name, *flags, compiler=(GCC,)):
+    """The folder as an FMU with a library made of its own sources."""
+    target = folder / "binaries" / FOLDERS[version] / f"{name}.so"
+    target.parent.mkdir(parents=True)
+    sources = sorted(map(str, (folder / "sources").glob("*.c")))
+    command = [*compiler, *flags, "-shared", "-fPIC", *sources, "-o", str(target)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    fmu = folder.with_suffix(".fmu")
+    shutil.make_archive(str(folder), "zip", folder)
+    folder.with_suffix(".zip").rename(fmu)
+    return fmu, done.stderr
+
+
+def rows(fmu, folder):
+    """Common outputs through chaos, as hexadecimal numbers."""
+    folder.mkdir()
+    arguments = (fmu, 2048.0, 32, {**harmonic(1.13), "e": 0.7, "d1": 0.01, "d2": 0.01}, COMMON)
+    found, _ = run_fresh(PROGRAMS, "bits.simulate", *arguments, cwd=folder)
+    return found["rows"]
+
+
+@pytest.fixture(scope="module")
+def reference(fmus, tmp_path_factory):
+    return rows(fmus["fmi2"], tmp_path_factory.mktemp("reference") / "run")
+
+
+@pytest.mark.parametrize("version", FOLDERS)
+def test_a_bare_compiler_makes_the_bits_of_the_binary(fmus, version, tmp_path, reference):
+    """And no name is exported that is not FMI's: the C library has functions of the same names."""
+    folder = unpacked(fmus[version], tmp_path / "fmu")
+    fmu, warnings = compiled(folder, version, "TwoMassImpactOscillator", *BARE, "-Wall", "-Wextra")
+    assert warnings == ""
+    library = folder / "binaries" / FOLDERS[version] / "TwoMassImpactOscillator.so"
+    table = subprocess.run(["nm", "-D", "--defined-only", library], capture_output=True, text=True)
+    names = [line.split()[-1] for line in table.stdout.splitlines()]
+    assert names and all(name.startswith(version) for name in names)
+    assert rows(fmu, tmp_path / "run") == reference
+
+
+@pytest.mark.parametrize("flags", [("-O0",), ("-O3", "-march=native"), ("-Ofast", "-mfma")])
+def test_fast_options_change_no_bit(fmus, flags, tmp_path, reference):
+    """The sources say what gcc may not do."""
+    folder = unpacked(fmus["fmi2"], tmp_path / "fmu")
+    fmu, _ = compiled(folder, "fmi2", "TwoMassImpactOscillator", *flags)
+    assert rows(fmu, tmp_path / "run") == reference
+
+
+@pytest.mark.parametrize("flags", [("-O2",), ("-O3", "-march=x86_64_v3")])
+def test_clang_makes_the_same_bits(fmus, flags, tmp_path, reference):
+    """The one of ziglang."""
+    pytest.importorskip("ziglang")
+    folder, clang = unpacked(fmus["fmi2"], tmp_path / "fmu"), (sys.executable, "-m", "ziglang", "cc")
+    fmu, _ = compiled(folder, "fmi2", "TwoMassImpactOscillator", *flags, compiler=clang)
+    assert rows(fmu, tmp_path / "run") == reference
+
+
+@pytest.mark.parametrize("version", FOLDERS)
+def test_other_bits_are_refused_at_instantiation(fmus, version, tmp_path):
+    """A compiler that is asked to be fast, and does not know what the sources say to gcc."""
+    folder = unpacked(fmus[version], tmp_path / "fmu")
+    kernel = folder / "sources" / "kernel.c"
+    lines = kernel.read_text("utf-8").splitlines(keepends=True)
+    kernel.write_text("".join(line for line in lines if "GCC optimize" not in line), "utf-8")
+    fmu, _ = compiled(folder, version, "TwoMassImpactOscillator", "-Ofast", "-mfma")
+    told = []
+    with pytest.raises(Exception, match="nstantiate"):
+        fmpy.simulate_fmu(str(fmu), logger=lambda *arguments: told.append(arguments[-1]))
+    text = " ".join(part.decode() if isinstance(part, bytes) else str(part) for part in told)
+    assert "numbers differ from the model's in their last digits: compile it with" in text
+
+
+def test_the_description_names_the_sources(fmus):
+    """All that is compiled, and nothing else: FMI 2.0 in the model description, 3.0 beside it."""
+    with zipfile.ZipFile(fmus["fmi2"]) as archive:
+        root = ET.fromstring(archive.read("modelDescription.xml"))
+        told = [file.get("name") for file in root.iter("File")]
+        inside = [name for name in archive.namelist() if name.startswith("sources/")]
+    assert told == sorted(name.partition("/")[2] for name in inside if name.endswith(".c"))
+    with zipfile.ZipFile(fmus["fmi3"]) as archive:
+        root = ET.fromstring(archive.read("sources/buildDescription.xml"))
+        inside = [name for name in archive.namelist() if name.startswith("sources/")]
+    told = [file.get("name") for file in root.iter("SourceFile")]
+    assert told == sorted(name.partition("/")[2] for name in inside if name.endswith(".c"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("version", FOLDERS)
+def test_fmpy_and_cmake_make_libraries(fmus, version, tmp_path, reference):
+    """FMPy's own way through CMake, and the CMakeLists.txt inside."""
+    if shutil.which("cmake") is None:
+        pytest.skip("no cmake")
+    folder = unpacked(fmus[version], tmp_path / "fmu")
+    subprocess.run(["cmake", "-S", folder / "sources", "-B", tmp_path / "made"], check=True)
+    subprocess.run(["cmake", "--build", tmp_path / "made"], check=True)
+    assert (tmp_path / "made" / "TwoMassImpactOscillator.so").is_file()
+    build_platform_binary(folder, fmpy.platform)
+    shutil.make_archive(str(folder), "zip", folder)
+    fmu = folder.with_suffix(".zip").rename(folder.with_suffix(".fmu"))
+    assert rows(fmu, tmp_path / "run") == reference
