@@ -84,7 +84,10 @@ def test_fast_options_change_no_bit(fmus, flags, tmp_path, reference):
 def test_clang_makes_the_same_bits(fmus, flags, tmp_path, reference):
     """The one of ziglang."""
     pytest.importorskip("ziglang")
-    folder, clang = unpacked(fmus["fmi2"], tmp_path / "fmu"), (sys.executable, "-m", "ziglang", "cc")
+    folder, clang = (
+        unpacked(fmus["fmi2"], tmp_path / "fmu"),
+        (sys.executable, "-m", "ziglang", "cc"),
+    )
     fmu, _ = compiled(folder, "fmi2", "TwoMassImpactOscillator", *flags, compiler=clang)
     assert rows(fmu, tmp_path / "run") == reference
 
