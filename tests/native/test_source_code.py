@@ -100,11 +100,14 @@ def test_other_bits_are_refused_at_instantiation(fmus, version, tmp_path):
     lines = kernel.read_text("utf-8").splitlines(keepends=True)
     kernel.write_text("".join(line for line in lines if "GCC optimize" not in line), "utf-8")
     fmu, _ = compiled(folder, version, "TwoMassImpactOscillator", "-Ofast", "-mfma")
-    told = []
-    with pytest.raises(Exception, match="nstantiate"):
-        fmpy.simulate_fmu(str(fmu), logger=lambda *arguments: told.append(arguments[-1]))
-    text = " ".join(part.decode() if isinstance(part, bytes) else str(part) for part in told)
-    assert "numbers differ from the model's in their last digits: compile it with" in text
+    # in a process of its own: gcc lets such a library flush small numbers to 0 in the whole process
+    program = (
+        "import fmpy, sys; fmpy.simulate_fmu(sys.argv[1], logger=lambda *args: print(args[-1]))"
+    )
+    command = [sys.executable, "-c", program, str(fmu)]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode != 0 and "nstantiate" in done.stderr
+    assert "numbers differ from the model's in their last digits: compile it with" in done.stdout
 
 
 def test_the_description_names_the_sources(fmus):

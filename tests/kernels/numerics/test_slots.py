@@ -55,6 +55,6 @@ def test_no_slot_lies_in_another():
     """Each name has its own place; offsets inside a branch count from 0 on their own."""
     assert oscillator.BRANCH_2 - oscillator.BRANCH_1 == oscillator.STEP_GROWTH + 4
     outputs = oscillator.CONTACT_COUNT - oscillator.X1
-    assert oscillator.RATES + outputs == oscillator.SIZE
+    assert oscillator.RATES + outputs == oscillator.CUBIC_SET == oscillator.SIZE - 1
     outputs = shaker.TIME - shaker.BOX_POSITION
     assert shaker.OUTPUT_RATES + outputs == shaker.SIZE
