@@ -23,7 +23,10 @@ from .campaign import Campaign, Outcome
 STARTS = 16  # random ones at each of two neighbouring frequencies
 NEIGHBOUR = 1.003  # ratio of these
 RETURNS = 1e-6  # of the motion's size: an orbit's state after its periods
-DIFFERS = 1e-5  # of the motion's size: its states after fewer periods, and another orbit's
+DIFFERS = 1e-5  # of the motion's size: another orbit's state
+# of the motion's size, or of the distance at which an orbit closes after all its periods: its state
+# after fewer of them, which next to a period doubling is as near as that doubling is narrow
+EARLIER, TIMES = 1e-9, 100.0
 TURNS = 3  # times through an orbit, whose impacts are counted
 Floats = NDArray[np.float64]
 
@@ -96,10 +99,11 @@ class Motion:
     def wrong(self) -> Iterator[str]:
         """What is wrong with what is told of it."""
         n = self.periods
-        if self.away(self.states[n], self.states[0]) > RETURNS:
+        closes = self.away(self.states[n], self.states[0])
+        if closes > RETURNS:
             yield f"the FMU does not return after {n} T"
         for part in (part for part in range(1, n) if n % part == 0):
-            if self.away(self.states[part], self.states[0]) < DIFFERS:
+            if self.away(self.states[part], self.states[0]) < max(EARLIER, TIMES * closes):
                 yield f"the FMU returns after {part} T already, not {n} T"
         if abs(self.impacts - round(self.impacts)) > 1e-9:
             yield f"{self.impacts!r} impacts in {n} T are no whole number"
