@@ -11,8 +11,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from filelock import FileLock, Timeout
-
 from .errors import InputError, StoreError
 
 log = logging.getLogger(__name__)
@@ -60,6 +58,8 @@ def made_once(path: Path) -> Iterator[None]:
         Where its folder cannot be written.
     """
     open_folder(path.parent)
+    from filelock import FileLock, Timeout  # brings asyncio: describing a structure is to be quick
+
     lock = FileLock(path.with_name(f".{path.name}.lock"))
     try:
         lock.acquire(timeout=0.0)
