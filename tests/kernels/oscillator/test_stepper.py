@@ -33,6 +33,27 @@ def test_the_communication_grid_leaves_no_trace(name, grid, time):
     assert often[at.ETA : at.END_KIND + 1] == once[at.ETA : at.END_KIND + 1]
 
 
+CUBIC = {"box_frequency": 1.1, "box_acceleration": 0.1, "box_jerk": -2e-3, "box_crackle": 1e-6}
+
+
+@examples(25)
+@given(grid=GRIDS)
+def test_nor_does_it_where_a_cubic_input_runs_on(grid):
+    assert outputs(advanced(started(**CUBIC), *grid)) == outputs(advanced(started(**CUBIC), STOP))
+
+
+def test_a_cubic_begins_anew_where_it_was_set():
+    """To the same values too: its acceleration is the first one again."""
+    ran_on, set_anew = (advanced(started(**CUBIC), 40.0) for _ in range(2))
+    set_anew[at.CUBIC_SET] = 1.0
+    advanced(ran_on, 40.5)
+    advanced(set_anew, 40.5)
+    force = set_anew[at.BOX_IMPULSE] - ran_on[at.BOX_IMPULSE]
+    assert outputs(ran_on) != outputs(set_anew)
+    assert abs(force) > 1e-3
+    assert set_anew[at.CUBIC_SET] == 0.0
+
+
 @pytest.mark.parametrize("name", RUNS)
 def test_nor_do_thousands_of_steps(name):
     once, often = started(**RUNS[name]), started(**RUNS[name])
