@@ -21,6 +21,7 @@ from .compiled import load_compiled
 from .table import BOOLEAN, INTEGER, REAL, Model, Variable, explain
 
 PHASES = INSTANTIATED, INITIALIZING, STEPPING, TERMINATED = 0.0, 1.0, 2.0, 3.0
+ERRORS, ALL = "logStatusError", "logAll"  # categories of messages
 STATE_MAGIC = b"vibroimpact state "
 STATE_HEAD, CHECKSUM = 64, 8  # bytes
 
@@ -29,21 +30,65 @@ class FmuError(Exception):
     """A user's mistake or an unfinished step, as one line."""
 
 
+class Callbacks(ctypes.Structure):
+    """The importer's ``fmi2CallbackFunctions``."""
+
+    LOG = ctypes.CFUNCTYPE(  # componentEnvironment, instanceName, status, category, message
+        None, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p
+    )
+    _fields_ = (
+        ("log", LOG),
+        ("allocate", ctypes.c_void_p),
+        ("free", ctypes.c_void_p),
+        ("step_finished", ctypes.c_void_p),
+        ("environment", ctypes.c_void_p),
+    )
+
+
+class Text(ctypes.Structure):
+    """A ``std::string``: a pointer (libstdc++), or short texts in its place (Microsoft's)."""
+
+    _fields_ = (("words", ctypes.c_uint64 * 2), ("length", ctypes.c_uint64 * 2))
+
+    def read(self) -> bytes:
+        """The characters."""
+        if os.name == "nt":
+            length, capacity = self.length
+            start = self.words[0] if capacity > 15 else ctypes.addressof(self)
+        else:
+            start, length = self.words
+        return ctypes.string_at(start, length)
+
+
 class Logger(ctypes.Structure):
     """pythonfmu's logger, whose address a slave is given: what of it says who hears a message.
 
     The C++ object of the library that travels in this very FMU: virtual table, a flag that the
-    importer switches logging on with, instance name (a ``std::string``), and the categories it
-    wants (a ``std::vector``: begin and end; empty for all of them).
+    importer switches logging on with, instance name, the categories it wants (a ``std::vector``:
+    begin, end and capacity; empty for all of them), and the importer's functions.
     """
 
     _fields_ = (
         ("table", ctypes.c_void_p),
         ("on", ctypes.c_bool),
-        ("name", ctypes.c_uint64 * 4),
+        ("name", Text),
         ("begin", ctypes.c_uint64),
         ("end", ctypes.c_uint64),
+        ("capacity", ctypes.c_uint64),
+        ("functions", ctypes.POINTER(Callbacks)),
     )
+
+    def categories(self) -> list[str]:
+        """The categories that the importer wants; none for all of them."""
+        places = range(self.begin, self.end, ctypes.sizeof(Text))
+        return [Text.from_address(place).read().decode() for place in places]
+
+    def hand_over(self, category: str, text: str) -> None:
+        """Give the importer an error's message at once."""
+        functions = self.functions.contents
+        message = text.replace("%", "%%").encode()  # it is a printf format
+        name, status = self.name.read(), 3  # fmi2Error
+        functions.log(functions.environment, name, status, category.encode(), message)
 
 
 def keep(thing: Any) -> None:
@@ -130,21 +175,39 @@ class Slave:
 
     def refuse(self, text: str) -> NoReturn:
         """Give the call an error status, with ``text`` as its message."""
-        on, everything = self.listening()
-        if on and not everything:  # an exception is logged without a category
-            self.complain(text)
-        else:
-            self.report(text)
+        self.report(text)
+        self.hand_over(text)
         for kept in (type(self), self, self.log_queue):
             keep(kept)
         raise FmuError(text.replace("%", "%%"))  # the text ends up as a printf format
+
+    def hand_over(self, text: str) -> None:
+        """Tell an importer that asked for the category of errors what an exception will not.
+
+        pythonfmu logs an exception without a category. It would empty its own queue of messages
+        while the exception is set, and from Python 3.13 on an importer's callback written in
+        Python fails then.
+        """
+        on, everything = self.listening()
+        if on and not everything:
+            logger = Logger.from_address(self._logger)
+            category = self.category()
+            if category in logger.categories():
+                logger.hand_over(category, text)
+
+    def category(self) -> str:
+        """Under which category the importer hears of errors."""
+        if not self._logger:
+            return ERRORS
+        wanted = Logger.from_address(self._logger).categories()
+        return ALL if ALL in wanted and ERRORS not in wanted else ERRORS
 
     def complain(self, text: str) -> None:
         """Log an error without raising."""
         from pythonfmu.enums import Fmi2Status
 
         self.report(text)
-        self.log(text.replace("%", "%%"), Fmi2Status.error, "logStatusError")
+        self.log(text.replace("%", "%%"), Fmi2Status.error, self.category())
 
     # -- life cycle --------------------------------------------------------------------------------
 

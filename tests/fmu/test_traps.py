@@ -117,10 +117,14 @@ def test_discarded_step_is_noticed(tmp_path):
     assert "the step to time = " in line and "10000000" in line
 
 
-def test_log_category_that_the_description_offers(tmp_path):
+@pytest.mark.parametrize(
+    "categories", [["logStatusError"], ["logAll"], ["logStatusError", "logAll"]]
+)
+def test_log_categories_that_the_description_offers(fmu, tmp_path, categories):
     """An exception is logged without a category; who asks for a category hears of it too."""
-    messages = run("traps.log_category", PYTHON, cwd=tmp_path)
+    messages, done = run_with_output("traps.log_category", fmu, categories, cwd=tmp_path)
     assert ["m1 = -1.0 kg" in message for message in messages] == [True] * 300
+    assert "SystemError" not in done.stderr
 
 
 def test_own_access_leaves_other_importers_their_messages(tmp_path):

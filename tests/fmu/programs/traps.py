@@ -153,9 +153,9 @@ def working_folder_and_paths(path, folder):
     return open_fmu(path, folder=folder).start().step(50.0).outputs()
 
 
-def log_category(path):
+def log_category(path, categories):
     f = open_fmu(path)
-    f.slave.setDebugLogging(True, ["logStatusError"])
+    f.slave.setDebugLogging(True, categories)
     texts = []
     for _ in range(300):
         try:
