@@ -28,6 +28,8 @@ QUANTITIES = """quantities:
   omega = sqrt(k1/m1)   unit of frequency, rad/s
   mu = m2/m1, kappa = k2/k1
   D1 = d1/(2 omega m1), D2 = d2/(2 omega m2); D sets both
+  f1 f2, zeta1 zeta2    of each half alone: natural frequency Hz, damping ratio at it (0.007 is
+                        0.7 %)
   Omega = 2 pi Hz = 2 pi rpm/60 rad/s; the box moves by a sin(Omega t), T = 2 pi/Omega
   eta = Omega/omega     frequency ratio
   g                     a Omega^2 over 9.80665 m/s2: the box's peak acceleration
@@ -104,8 +106,8 @@ def add_structure(parser: argparse.ArgumentParser, default: str = "paper") -> No
     )
     add_set(
         group,
-        "one of its parameters, SI (m1 m2 k1 k2 d1 d2 e gamma) or the paper's (mu kappa "
-        "D D1 D2 omega); may be repeated",
+        "one of its parameters, SI (m1 m2 k1 k2 d1 d2 e gamma), of each half (f1 f2 in Hz, "
+        "zeta1 zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
     )
 
 

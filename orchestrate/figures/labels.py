@@ -34,9 +34,15 @@ SYMBOLS = {
     "x_rel": "gap $x_2 - x_1$ in m",
     "v_rel": r"gap velocity $\dot{x}_2 - \dot{x}_1$ in m/s",
     "phase": "phase of the box in rad",
+    "f1": "$f_1$ in Hz",
+    "f2": "$f_2$ in Hz",
+    "zeta1": r"$\zeta_1$",
+    "zeta2": r"$\zeta_2$",
 }
 USUAL = {"mu": 1.0, "kappa": 1.2, "gamma": 1e-4, "omega": 1.0}  # what a title leaves out
 EXCITATION = ("eta", "frequency", "amplitude")
+OF_HALVES = {"m1", "m2", "k1", "k2", "d1", "d2", "mu", "kappa", "omega", "D", "D1", "D2"}
+OF_HALVES |= {"f1", "f2", "zeta1", "zeta2"}
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -57,6 +63,9 @@ def parameters_text(values: Mapping[str, float]) -> str:
 def about(data: xr.Dataset, beside: Iterable[str] = ()) -> str:
     r"""A dataset's structure and excitation for a title: e, D, and what is not usual.
 
+    A structure that is not in the paper's units is described by its halves: frequencies in Hz,
+    damping ratios at them in per cent.
+
     Parameters
     ----------
     data : xarray.Dataset
@@ -72,11 +81,15 @@ def about(data: xr.Dataset, beside: Iterable[str] = ()) -> str:
     known = {name: float(value) for name, value in data.attrs.items() if is_number(value)}
     told = {*map(str, data.dims), *beside}
     found = {"e": known["e"]} if "e" in known else {}
-    found |= ratios(known)
+    by_halves = is_real(known) and not told & OF_HALVES
+    found |= {} if by_halves else ratios(known)
+    found |= {"gamma": known["gamma"]} if "gamma" in known else {}
     usual = {name for name, value in USUAL.items() if found.get(name) == value}
     moved = {"D", "D1", "D2"} if "D" in told else set()
     left_out = told | usual | moved
     text = parameters_text({name: value for name, value in found.items() if name not in left_out})
+    if by_halves:
+        text = ", ".join(filter(None, [halves_text(known), text]))
     shaken = [words for name, words in excitation(data, known).items() if name not in told]
     return ", ".join(filter(None, [text, "bonded" if known.get("bonded") else "", *shaken]))
 
@@ -127,8 +140,30 @@ def ratios(known: Mapping[str, float]) -> dict[str, float]:
     omega = math.sqrt(k1 / m1)
     D1, D2 = (round(known[d] / (2.0 * omega * m), 12) for d, m in (("d1", m1), ("d2", m2)))
     damping = {"D": D1} if D1 == D2 else {"D1": D1, "D2": D2}
-    found = {**damping, "mu": m2 / m1, "kappa": k2 / k1, "omega": omega}
-    return found | ({"gamma": known["gamma"]} if "gamma" in known else {})
+    return {**damping, "mu": m2 / m1, "kappa": k2 / k1, "omega": omega}
+
+
+def is_real(known: Mapping[str, float]) -> bool:
+    """Whether a structure has a frequency of its own: the paper's unit of frequency is 1 rad/s."""
+    return ratios(known).get("omega", 1.0) != 1.0
+
+
+def halves_text(known: Mapping[str, float]) -> str:
+    r"""Natural frequency and damping ratio of each half alone, and the ratio of the masses.
+
+    Examples
+    --------
+    >>> halves_text(dict(m1=1.5, m2=1.5, k1=8437.5, k2=8437.5, d1=1.125, d2=2.25))
+    '$f_1$ = 11.94 Hz, $f_2$ = 11.94 Hz, $\\zeta_1$ = 0.5 %, $\\zeta_2$ = 1 %'
+    """
+    frequencies, damping = [], []
+    for half in "12":
+        m, k, d = (known[letter + half] for letter in "mkd")
+        frequencies.append(f"$f_{half}$ = {math.sqrt(k / m) / (2.0 * math.pi):.4g} Hz")
+        damping.append(rf"$\zeta_{half}$ = {50.0 * d / math.sqrt(k * m):.4g} %")
+    mu = known["m2"] / known["m1"]
+    masses = [] if mu == USUAL["mu"] else [parameters_text({"mu": mu})]
+    return ", ".join([*frequencies, *damping, *masses])
 
 
 def kind_of(multiplicity: int) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -33,6 +34,7 @@ TO_RAD_S: dict[str, Callable[[float], float]] = {
 COMMON = ("e", "gamma", "bonded")
 SI_STRUCTURE = ("m1", "m2", "k1", "k2", "d1", "d2")
 OMEGAS = tuple(f"omega_{unit}" for unit in TO_RAD_S)
+HALVES = ("f1_hz", "f2_hz", "zeta1", "zeta2")
 RATIOS = ("mu", "kappa", "D", "D1", "D2", *OMEGAS)
 FREQUENCIES = (*(f"frequency_{unit}" for unit in TO_RAD_S), "eta")
 AMPLITUDES = ("amplitude", "acceleration_g")
@@ -54,6 +56,8 @@ QUANTITIES = {
         name: Quantity(name, unit, "", SMALLEST, LARGEST)
         for name, unit in zip(SHEET[:2] + SHEET[-1:], ("V", "N.m", "s"), strict=True)
     },
+    "f1_hz": dataclasses.replace(NUMBERS["f1"], name="f1_hz"),
+    "f2_hz": dataclasses.replace(NUMBERS["f2"], name="f2_hz"),
     "acceleration_g": Quantity("acceleration_g", "1", "", 0.0, LARGEST),
 }
 Described = TypeVar("Described")
@@ -136,13 +140,19 @@ class Section:
 
 def read_structure(section: Section) -> Structure:
     """The structure of ``[structure]``."""
-    section.allow(*COMMON, *SI_STRUCTURE, *RATIOS)
+    section.allow(*COMMON, *SI_STRUCTURE, *HALVES, *RATIOS)
     values: dict[str, Any] = section.numbers(("e", "gamma"))
     if "bonded" in section.values:
         try:
             values["bonded"] = check_flag("bonded", section.values["bonded"])
         except InputError as error:
             raise InputError(f"{section.path}: {section.name}.{error}") from None
+    if section.given(HALVES):
+        section.either(HALVES, (*SI_STRUCTURE[2:], *RATIOS))
+        section.need(("m1", "m2", *HALVES))
+        values |= section.numbers(("m1", "m2", *HALVES))
+        frequencies = {name: values.pop(f"{name}_hz") for name in ("f1", "f2")}
+        return section.make(lambda: Structure.from_halves(**frequencies, **values))
     if not section.either(SI_STRUCTURE[1:], RATIOS):
         values |= section.numbers(SI_STRUCTURE)
         return section.make(lambda: Structure(**values))

@@ -13,20 +13,63 @@ from .ranges import NUMBERS, STRUCTURE, check_flag, made_of, one_of, recover
 
 SI = tuple(STRUCTURE)
 RATIOS = ("mu", "kappa", "D", "D1", "D2", "omega")
-PARAMETERS = (*SI, *RATIOS)
-ALTERNATIVES = {
+HALVES = ("f1", "f2", "zeta1", "zeta2")
+PARAMETERS = (*SI, *RATIOS, *HALVES)
+ALTERNATIVES = {  # names that set the same value
     "mu": ("m2",),
     "kappa": ("k2",),
     "omega": ("k1",),
     "D": ("D1", "D2", "d1", "d2"),
     "D1": ("d1",),
     "D2": ("d2",),
+    "f1": ("k1", "omega"),
+    "f2": ("k2", "kappa"),
+    "zeta1": ("d1", "D", "D1"),
+    "zeta2": ("d2", "D", "D2"),
 }
+
+
+def stiffness(f: float, mass: float) -> float:
+    """The spring of a mass whose natural frequency is ``f``, Hz: k = m (2 pi f)^2."""
+    omega = 2.0 * math.pi * f
+    return mass * (omega * omega)
 
 
 def damping(ratio: float, omega: float, mass: float) -> float:
     """The damper of a damping ratio, d = 2 D omega m (8)."""
     return 2.0 * ratio * omega * mass
+
+
+def natural_frequency(spring: float, mass: float) -> float:
+    """The frequency that :func:`stiffness` turns into ``spring``, Hz."""
+    guess = math.sqrt(spring / mass) / (2.0 * math.pi)
+    return recover(guess, lambda f: stiffness(f, mass), spring)
+
+
+def damping_ratio(damper: float, f: float, mass: float) -> float:
+    """The ratio of a damper, N s/m, to critical damping at a frequency ``f``, Hz."""
+    omega = 2.0 * math.pi * f
+    ratio = damper / (2.0 * omega * mass)
+    return recover(ratio, lambda guess: damping(guess, omega, mass), damper)
+
+
+def check_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:
+    """Give two thicknesses as floats.
+
+    Raises
+    ------
+    InputError
+        Where they are not two numbers above zero.
+    """
+    try:
+        h1, h2 = (float(h) for h in thicknesses)
+        share = h1 / (h1 + h2)
+    except (TypeError, ValueError, ZeroDivisionError, OverflowError):
+        share = math.nan
+    if not (0.0 < share < 1.0 and h1 > 0.0):
+        text = "expected two numbers > 0, of layers 1 and 2"
+        raise InputError(f"thicknesses = {thicknesses!r}: {text}")
+    return h1, h2
 
 
 def short(value: float) -> str:
@@ -61,6 +104,8 @@ class Structure:
     See Also
     --------
     Structure.nondimensional : the same by the paper's numbers.
+    Structure.from_halves : the same by natural frequencies and damping ratios.
+    Structure.from_bonded : from a measurement of the undamaged beam.
 
     Examples
     --------
@@ -144,6 +189,135 @@ class Structure:
         )
 
     @classmethod
+    def from_halves(
+        cls,
+        *,
+        m1: float,
+        m2: float,
+        f1: float,
+        f2: float,
+        zeta1: float = 0.0,
+        zeta2: float = 0.0,
+        e: float = STRUCTURE["e"].default,
+        gamma: float = STRUCTURE["gamma"].default,
+        bonded: bool = False,
+    ) -> Structure:
+        """Make a structure from natural frequency and damping ratio of each half alone.
+
+        Parameters
+        ----------
+        m1, m2 : float
+            Masses, kg.
+        f1, f2 : float
+            Undamped natural frequencies sqrt(k_i/m_i)/(2 pi) of each half alone, Hz.
+        zeta1, zeta2 : float
+            Damping ratios d_i/(2 sqrt(k_i m_i)) of each half at its own frequency; 0.007 is 0.7 %.
+            The paper's ``D_i`` (8) refer to the frequency of mass 1 instead: ``D1`` is ``zeta1``,
+            ``D2`` is ``zeta2 f2/f1``.
+        e, gamma, bonded
+            As in :class:`Structure`.
+
+        Raises
+        ------
+        InputError
+            Where a value is no number in its range, or makes one that is not.
+
+        Examples
+        --------
+        >>> beam = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007)
+        >>> beam.f2, beam.zeta2, round(beam.D2, 6)
+        (55.0, 0.007, 0.009167)
+        """
+        given = {"f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
+        v = {name: NUMBERS[name].check(value) for name, value in given.items()}
+        m1, m2 = STRUCTURE["m1"].check(m1), STRUCTURE["m2"].check(m2)
+        return made_of(
+            {"m1": m1, "m2": m2, **v},
+            lambda: cls(
+                m1=m1,
+                m2=m2,
+                k1=stiffness(v["f1"], m1),
+                k2=stiffness(v["f2"], m2),
+                d1=damping(v["zeta1"], 2.0 * math.pi * v["f1"], m1),
+                d2=damping(v["zeta2"], 2.0 * math.pi * v["f2"], m2),
+                e=e,
+                gamma=gamma,
+                bonded=bonded,
+            ),
+        )
+
+    @classmethod
+    def from_bonded(
+        cls,
+        *,
+        mass: float,
+        f: float,
+        zeta: float = 0.0,
+        thicknesses: tuple[float, float],
+        e: float = STRUCTURE["e"].default,
+        gamma: float = STRUCTURE["gamma"].default,
+        bonded: bool = False,
+    ) -> Structure:
+        """Split the measured mode of the undamaged beam between two layers.
+
+        A layer of a beam of one material and width has its share of the thickness in the mass, and
+        of the cubes of the thicknesses in the bending stiffness E b h^3/12 (Timoshenko and Gere,
+        Mechanics of Materials, beam of rectangular section), whatever the supports. Both layers
+        together have the measured mass, frequency and damping, which is split like the stiffness
+        (a material's viscous damping). So ``as_bonded()`` is the beam that was measured, and
+        f2/f1 = h2/h1.
+
+        Bonded layers are stiffer than the two that slide on each other, by (h1 + h2)^3 against
+        h1^3 + h2^3 where the delamination takes the whole length. How much of it a shorter one
+        takes depends on its place: where the frequency of the delaminated beam is known, use
+        :meth:`from_halves`.
+
+        Parameters
+        ----------
+        mass : float
+            Modal mass of the undamaged beam, kg.
+        f : float
+            Its natural frequency, Hz.
+        zeta : float
+            Its damping ratio.
+        thicknesses : tuple of float
+            Of the layers 1 and 2, in any unit: their ratio counts.
+        e, gamma, bonded
+            As in :class:`Structure`.
+
+        Raises
+        ------
+        InputError
+            Where a value is no number in its range, or makes one that is not.
+
+        Examples
+        --------
+        >>> beam = Structure.from_bonded(mass=2.0, f=50.0, zeta=0.01, thicknesses=(3.0, 2.0))
+        >>> round(beam.m1, 12), round(beam.f2 / beam.f1, 12), round(beam.omega_3 * beam.f1, 12)
+        (1.2, 0.666666666667, 50.0)
+        """
+        mass, f = STRUCTURE["m1"].check(mass), NUMBERS["f1"].check(f)
+        zeta = NUMBERS["zeta1"].check(zeta)
+        h1, h2 = check_thicknesses(thicknesses)
+        share = h1 / (h1 + h2)
+        stiff = h1**3 / (h1**3 + h2**3)
+        k, d = stiffness(f, mass), damping(zeta, 2.0 * math.pi * f, mass)
+        return made_of(
+            {"mass": mass, "f": f, "zeta": zeta},
+            lambda: cls(
+                m1=share * mass,
+                m2=(1.0 - share) * mass,
+                k1=stiff * k,
+                k2=(1.0 - stiff) * k,
+                d1=stiff * d,
+                d2=(1.0 - stiff) * d,
+                e=e,
+                gamma=gamma,
+                bonded=bonded,
+            ),
+        )
+
+    @classmethod
     def from_file(cls, path: str | PathLike[str]) -> Structure:
         """The ``[structure]`` of a TOML file or of a set that comes with the package.
 
@@ -190,6 +364,26 @@ class Structure:
             lambda ratio: damping(ratio, omega, m1) * mu,
             self.d2,
         )
+
+    @property
+    def f1(self) -> float:
+        """The natural frequency of mass 1 alone, Hz."""
+        return natural_frequency(self.k1, self.m1)
+
+    @property
+    def f2(self) -> float:
+        """The natural frequency of mass 2 alone, Hz."""
+        return natural_frequency(self.k2, self.m2)
+
+    @property
+    def zeta1(self) -> float:
+        """The damping ratio of mass 1 alone at its own frequency, d1/(2 sqrt(k1 m1))."""
+        return damping_ratio(self.d1, self.f1, self.m1)
+
+    @property
+    def zeta2(self) -> float:
+        """The damping ratio of mass 2 alone at its own frequency, d2/(2 sqrt(k2 m2))."""
+        return damping_ratio(self.d2, self.f2, self.m2)
 
     @property
     def D3(self) -> float:
@@ -248,7 +442,8 @@ class Structure:
         **changes
             SI names leave all other SI values as they are. Of the paper's numbers, ``mu`` keeps m1
             and the damping ratios, ``omega`` keeps m1 and all ratios, the others change one SI
-            value each; ``D`` sets D1 and D2. SI names are taken first.
+            value each; ``D`` sets D1 and D2. Of the halves, ``f1`` and ``f2`` keep the half's mass
+            and damping ratio ``zeta``. SI names are taken first, the halves' last.
 
         Examples
         --------
@@ -265,11 +460,31 @@ class Structure:
         ratios = {
             name: NUMBERS[name].check(changes.pop(name)) for name in RATIOS if name in changes
         }
+        halves = {
+            name: NUMBERS[name].check(changes.pop(name)) for name in HALVES if name in changes
+        }
         fixed = dataclasses.replace(self, **changes)
-        if not ratios:
-            return fixed
-        new = {k: v for k, v in fixed._by_ratios(ratios).items() if k not in changes}
-        return made_of(ratios, lambda: dataclasses.replace(fixed, **new))
+        if ratios:
+            new = {k: v for k, v in fixed._by_ratios(ratios).items() if k not in changes}
+            fixed = made_of(ratios, lambda: dataclasses.replace(fixed, **new))
+        if halves:
+            by_halves = fixed._by_halves(halves)
+            new = {k: v for k, v in by_halves.items() if k not in changes}
+            fixed = made_of(halves, lambda: dataclasses.replace(fixed, **new))
+        return fixed
+
+    def _by_halves(self, given: dict[str, float]) -> dict[str, float]:
+        """The SI values that change where frequencies and damping ratios of halves are set."""
+        new = {}
+        for half, mass in (("1", self.m1), ("2", self.m2)):
+            f, zeta = f"f{half}", f"zeta{half}"
+            if f in given:
+                new[f"k{half}"] = stiffness(given[f], mass)
+            if f in given or zeta in given:
+                ratio = given.get(zeta, getattr(self, zeta))
+                omega = 2.0 * math.pi * given.get(f, getattr(self, f))
+                new[f"d{half}"] = damping(ratio, omega, mass)
+        return new
 
     def _by_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
         """The SI values that change where the paper's numbers ``ratios`` are set."""
@@ -294,6 +509,16 @@ class Structure:
         """The FMU's start values."""
         return dict(vars(self))
 
+    def _pair(self, letter: str) -> str:
+        """A parameter of both halves, for a name."""
+        one, two = (short(self.get(f"{letter}{half}")) for half in (1, 2))
+        return f"{letter}{one}-{two}"
+
+    def _is_by_halves(self) -> bool:
+        """Whether frequencies and damping ratios of the halves give it to the last bit."""
+        numbers = {name: self.get(name) for name in HALVES}
+        return all(getattr(self, name) == value for name, value in self._by_halves(numbers).items())
+
     def label(self) -> str:
         """A short name for files and titles; structures that differ have different ones."""
         default = type(self)()
@@ -302,10 +527,10 @@ class Structure:
             parts = [f"e{short(self.e)}", f"D{'-'.join(damping_ratios)}"]
             names: tuple[str, ...] = ("mu", "kappa", "gamma")
         else:
-            pairs = (("m", "m1", "m2"), ("k", "k1", "k2"), ("d", "d1", "d2"))
-            values = [(letter, self.get(one), self.get(two)) for letter, one, two in pairs]
-            parts = [f"{letter}{short(one)}-{short(two)}" for letter, one, two in values]
-            parts.insert(0, f"e{short(self.e)}")
+            masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
+            halves = [self._pair(letter) for letter in ("f", "zeta")]
+            shorter = self._is_by_halves() and len("".join(halves)) < len("".join(si))
+            parts = [f"e{short(self.e)}", masses, *(halves if shorter else si)]
             names = ("gamma",)
         for name in names:
             if self.get(name) != default.get(name):

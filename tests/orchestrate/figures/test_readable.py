@@ -26,6 +26,7 @@ from orchestrate.figures import (
     spectra,
     style,
 )
+from orchestrate.structures import Structure
 
 BEAM = {"m1": 1.5, "m2": 1.4, "k1": 8437.5, "k2": 9450.0, "d1": 1.125, "d2": 1.95}
 PAPER = {"m1": 1.0, "m2": 1.0, "k1": 1.0, "k2": 1.2, "d1": 0.01, "d2": 0.01}
@@ -221,8 +222,8 @@ def test_every_axis_is_named_and_every_picture_says_what_it_shows(name):
         if axes.get_label() != "<colorbar>" and shown:
             assert axes.get_xlabel(), axes
     texts = " ".join(words(figure, renderer))
-    assert r"$\omega$ = 75 rad/s" in texts  # not usual, so it is told
-    assert "D_2" in texts and r"$\mu$" in texts and r"$\gamma$" in texts
+    assert "$f_1$ = 11.94 Hz" in texts  # not the usual scale, so it is told
+    assert r"\zeta_2" in texts and r"$\mu$" in texts and r"$\gamma$" in texts
     if name not in ("basin", "map", "motion"):
         assert " in Hz" in texts
 
@@ -387,6 +388,16 @@ def test_titles_tell_what_is_not_usual():
     assert labels.about(shaken).endswith(r"$\Omega/2\pi$ = 10 Hz, $a$ = 25 µm")
     held = sweep(si=True).assign_coords(amplitude=lambda data: 3.0 / data.frequency**2)
     assert labels.about(held).endswith(r"$a\,\Omega^2$ = 3 m/s$^2$ (0.306 g)")
+
+
+def test_titles_of_a_real_beam_tell_hertz_and_per_cent():
+    halves = {"f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
+    beam = Structure.from_halves(m1=1.5, m2=1.2, **halves)
+    data = xr.Dataset(attrs=beam.parameters())
+    told = r"$f_1$ = 42 Hz, $f_2$ = 55 Hz, $\zeta_1$ = 0.7 %, $\zeta_2$ = 0.7 %, $\mu$ = 0.8"
+    assert labels.about(data) == f"{told}, $e$ = 0.7"
+    swept = data.assign_coords(kappa=[1.0, 2.0])  # what varies is no half's
+    assert r"\zeta" not in labels.about(swept) and "$D_1$ = 0.007" in labels.about(swept)
 
 
 DEUTERAN = np.array([[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]])

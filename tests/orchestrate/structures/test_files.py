@@ -277,6 +277,41 @@ def test_mistakes_in_a_datasheet(file, more, words):
     assert all(word in line for word in words), line
 
 
+HALVES = """
+[structure]
+m1 = 1.5
+m2 = 1.2
+f1_hz = 42.0
+f2_hz = 55.0
+zeta1 = 0.007
+zeta2 = 0.01
+e = 0.6
+"""
+
+
+def test_halves_by_frequency_and_damping_ratio(file):
+    numbers = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.01}
+    assert read(file(HALVES))["structure"] == Structure.from_halves(**numbers, e=0.6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("f2_hz = 55.0", "", ["structure.f2_hz", "missing", "m1, m2, f1_hz, f2_hz, zeta1, zeta2"]),
+        ("f2_hz = 55.0", "k2 = 5.0", ["structure.k2 = 5.0", "beside f1_hz", "one kind"]),
+        ("zeta2 = 0.01", "D2 = 0.01", ["structure.D2 = 0.01", "beside f1_hz"]),
+        ("f1_hz = 42.0", "f1 = 42.0", ["structure.f1 = 42.0", "no key", "did you mean f1_hz"]),
+        ("f1_hz = 42.0", "f1_hz = -1", ["structure.f1_hz = -1.0 Hz", "expected 1e-30 <="]),
+    ],
+)
+def test_mistakes_in_halves(file, old, new, words):
+    with pytest.raises(InputError) as error:
+        read(file(HALVES.replace(old, new)))
+    line = str(error.value)
+    assert "\n" not in line and "expected" in line
+    assert all(word in line for word in words), line
+
+
 @pytest.mark.parametrize(("text", "words"), WRONG, ids=[repr(text) for text, _ in WRONG])
 def test_mistakes_are_one_line(file, text, words):
     path = file(text)

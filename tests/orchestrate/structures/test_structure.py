@@ -17,7 +17,7 @@ from orchestrate.structures import PARAMETERS, Structure
 from orchestrate.structures.ranges import NUMBERS as RANGES
 from orchestrate.structures.ranges import STRUCTURE
 
-from .strategies import NUMBERS, SCALE, SMALL, STRUCTURES
+from .strategies import NUMBERS, RATIO, SCALE, SMALL, STRUCTURES
 
 
 def near(value, expected):
@@ -229,3 +229,64 @@ def test_an_input_error_is_a_value_error():
 
 def test_ranges_of_ratios_are_wide():
     assert RANGES["mu"].minimum == STRUCTURE["m2"].minimum
+
+
+@given(SCALE, SCALE, SMALL, SMALL, RATIO, RATIO)
+def test_halves_to_si_and_back(m1, m2, f1, f2, zeta1, zeta2):
+    """Each half alone is the damped oscillator of its frequency and damping ratio."""
+    halves = {"f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
+    structure = Structure.from_halves(m1=m1, m2=m2, **halves)
+    for name, value in halves.items():
+        assert near(structure.get(name), value), name
+    for f, zeta, m, k, d in ((f1, zeta1, m1, "k1", "d1"), (f2, zeta2, m2, "k2", "d2")):
+        roots = np.roots([m, structure.get(d), structure.get(k)])
+        assert near(abs(np.prod(roots)), (2.0 * math.pi * f) ** 2)
+        assert math.isclose(-roots.sum().real, 4.0 * math.pi * f * zeta, rel_tol=1e-9)
+    assert near(structure.D2, zeta2 * f2 / f1)
+
+
+def test_halves_come_back_as_they_were_written():
+    halves = {"f1": 42.0, "f2": 55.1, "zeta1": 0.007, "zeta2": 0.013}
+    structure = Structure.from_halves(m1=1.5, m2=1.2, **halves)
+    assert {name: structure.get(name) for name in halves} == halves
+    assert structure.label() == "e0.7_m1.5-1.2_f42-55.1_zeta0.007-0.013"
+    assert structure.replace(k1=1e5).label() != structure.label()
+
+
+@given(STRUCTURES, SMALL)
+def test_a_half_s_frequency_keeps_its_damping_ratio_and_the_other_half(structure, f):
+    other = structure.replace(f2=f)
+    assert near(other.f2, f) and math.isclose(other.zeta2, structure.zeta2, rel_tol=1e-9)
+    assert (other.m1, other.k1, other.d1) == (structure.m1, structure.k1, structure.d1)
+    assert other.m2 == structure.m2
+
+
+@given(SCALE, SMALL, RATIO, SMALL, SMALL)
+def test_layers_together_are_the_beam_that_was_measured(mass, f, zeta, h1, h2):
+    structure = Structure.from_bonded(mass=mass, f=f, zeta=zeta, thicknesses=(h1, h2))
+    m, k, d = (structure.get(x + "1") + structure.get(x + "2") for x in "mkd")
+    assert near(m, mass) and near(math.sqrt(k / m), 2.0 * math.pi * f)
+    assert near(d, 2.0 * zeta * math.sqrt(k * m))
+    # Timoshenko and Gere: k of E b h^3/12, m of b h
+    assert math.isclose(structure.f2 / structure.f1, h2 / h1, rel_tol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"f1": 1.0, "k1": 2.0}, "f1 and k1: expected one of them"),
+        ({"zeta2": 0.1, "D": 0.1}, "zeta2 and D: expected one of them"),
+        ({"f2": 0.0}, "f2 = 0.0 Hz: expected 1e-30 <= f2"),
+        ({"f1": 1e29}, "f1 = 1e+29: they make k1 = "),
+    ],
+)
+def test_mistakes_in_halves(changes, words):
+    with pytest.raises(InputError) as error:
+        Structure().replace(**changes)
+    assert words in str(error.value)
+
+
+@pytest.mark.parametrize("thicknesses", [(0.0, 1.0), (1.0, -2.0), (1.0,), 3.0, (1.0, math.nan)])
+def test_thicknesses_are_two_numbers_above_zero(thicknesses):
+    with pytest.raises(InputError, match="thicknesses = .*expected two numbers > 0"):
+        Structure.from_bonded(mass=1.0, f=10.0, thicknesses=thicknesses)
