@@ -13,6 +13,8 @@ What is described
 What is asked
     :func:`simulate`, :func:`resonance`, :func:`sweep`, :func:`spectra`; :func:`map`,
     :func:`lyapunov`, :func:`attractors`, :func:`basin`, :func:`impact_statistics`;
+    :func:`shake` as in the laboratory, by a :class:`SweptSine`, :class:`Random` vibration, a
+    :class:`Shock` or :class:`Sampled` acceleration;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
     :func:`couple_all`,
     :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
@@ -43,6 +45,11 @@ if TYPE_CHECKING:
     from .dynamics.orbits import orbit
     from .dynamics.parameter_map import map
     from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
+    from .laboratory.random_vibration import Random
+    from .laboratory.sampled import Sampled
+    from .laboratory.shake import shake
+    from .laboratory.shock import Shock
+    from .laboratory.swept_sine import SweptSine
     from .response.resonance import resonance
     from .response.simulate import simulate
     from .response.spectra import spectra
@@ -65,11 +72,15 @@ __all__ = [
     "Excitation",
     "FmuError",
     "InputError",
+    "Random",
+    "Sampled",
+    "Shock",
     "SpeedControl",
     "SpeedGradient",
     "StaleError",
     "StoreError",
     "Structure",
+    "SweptSine",
     "VibroimpactError",
     "WorkerError",
     "__version__",
@@ -89,6 +100,7 @@ __all__ = [
     "orbit",
     "passage",
     "resonance",
+    "shake",
     "simulate",
     "spectra",
     "sweep",
@@ -101,6 +113,11 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
         *("FmuError", "InputError", "StaleError", "StoreError"),
         *("VibroimpactError", "WorkerError"),
     ),
+    "laboratory.random_vibration": ("Random",),
+    "laboratory.sampled": ("Sampled",),
+    "laboratory.shock": ("Shock",),
+    "laboratory.swept_sine": ("SweptSine",),
+    "laboratory.shake": ("shake",),
     "response.simulate": ("simulate",),
     "response.resonance": ("resonance",),
     "response.sweep": ("sweep",),

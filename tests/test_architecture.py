@@ -32,10 +32,11 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "running": GROUND,
     "response": BELOW_ANSWERS,
     "dynamics": BELOW_ANSWERS | {"response"},
+    "laboratory": BELOW_ANSWERS | {"response"},
     "weak_drive": BELOW_ANSWERS | {"response", "dynamics"},
     "figures": GROUND,
     "paper": BELOW_ANSWERS | {"response", "dynamics", "weak_drive", "figures"},
-    "__init__": BELOW_ANSWERS | {"response", "dynamics", "weak_drive"},
+    "__init__": BELOW_ANSWERS | {"response", "dynamics", "laboratory", "weak_drive"},
     "explorer": BELOW_ANSWERS,
     "cli": BELOW_ANSWERS
     | {"__init__", "weak_drive", "figures", "paper", "explorer"}

@@ -11,6 +11,7 @@ module                idea
 :mod:`.instance`      a co-simulation instance: set, step, read, save its state
 :mod:`.events`        a motion impact by impact
 :mod:`.begin`         how a motion begins, and its states at equal times
+:mod:`.play`          a motion under an acceleration of the box that is given as cubics
 :mod:`.channel`       fast calls on one instance, for co-simulation masters
 :mod:`.c_library`     C sources of the package compiled, and found
 :mod:`.webassembly`   the kernels for web pages: the same
@@ -25,6 +26,7 @@ from .events import STATE, EventInstance, Impacts
 from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, up_to_date
 from .instance import Instance
 from .models import OSCILLATOR, SHAKER
+from .play import PLAYED, Played, play
 from .webassembly import build_web_kernels
 
 __all__ = [
@@ -32,6 +34,7 @@ __all__ = [
     "MODELS",
     "OSCILLATOR",
     "PLAIN_FORMS",
+    "PLAYED",
     "REST",
     "SHAKER",
     "STATE",
@@ -40,6 +43,7 @@ __all__ = [
     "EventInstance",
     "Impacts",
     "Instance",
+    "Played",
     "begin",
     "build",
     "build_libraries",
@@ -48,6 +52,7 @@ __all__ = [
     "find",
     "finder",
     "last_samples",
+    "play",
     "room_for_samples",
     "sampled",
     "up_to_date",

@@ -105,7 +105,7 @@ class EventInstance(Instance):
 
         The inner loop of all that follows, so it calls the binary itself.
         """
-        stuck, step, handle = self.flag("in_contact"), self._stepper(), self._event_handler()
+        stuck, step, handle = self.flag("in_contact"), self.stepper(), self.event_handler()
         times, rows, contacts = [], [], []
         while time < target:
             event, time = step(time, target - time)
@@ -117,7 +117,7 @@ class EventInstance(Instance):
         table = np.array(rows).reshape(-1, len(EVENT_OUTPUTS))
         return Impacts(np.array(times), table[:, :4], table[:, 4], np.array(contacts, dtype=bool))
 
-    def _stepper(self) -> Callable[[float, float], tuple[bool, float]]:
+    def stepper(self) -> Callable[[float, float], tuple[bool, float]]:
         """``fmi3DoStep``: time and length of a step to whether there was an event, and when."""
         event, last = c_bool(), c_double()
         answers = byref(event), byref(c_bool()), byref(c_bool()), byref(last)
@@ -130,7 +130,7 @@ class EventInstance(Instance):
 
         return step
 
-    def _event_handler(self) -> Callable[[], None]:
+    def event_handler(self) -> Callable[[], None]:
         """:meth:`handle_event` without FMPy's part."""
         news = [*(byref(c_bool()) for _ in range(5)), byref(c_double())]
         enter, leave = self.prepared("fmi3EnterEventMode"), self.prepared("fmi3EnterStepMode")

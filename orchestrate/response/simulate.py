@@ -86,8 +86,7 @@ class SimulateJob(Question):
             rows, touching, impacts = recorded(instance, grid)
         found = dict(zip(OUTPUTS, rows.T, strict=True))
         found["in_contact"] = touching
-        found |= {"impact_time": impacts.time, "impact_velocity": impacts.closing}
-        found |= {"impulse": impacts.impulse(self.structure), "sticks": impacts.sticks}
+        found |= impact_columns(impacts, self.structure)
         return {**found, **self.accelerations(rows, touching)}
 
     def accelerations(
@@ -112,22 +111,11 @@ class SimulateJob(Question):
             {
                 **{name: variable("time", table[name], *IN_TIME[name]) for name in IN_TIME},
                 "in_contact": yes_or_no("time", table["in_contact"], contact),
-                **self.impacts(table),
+                **impact_variables(table),
             },
             self.coordinates(),
             {"title": f"Motion in time: {self.structure.label()}"},
         )
-
-    def impacts(self, table: Table) -> dict[str, Variable]:
-        """The impacts of the time kept."""
-        closing, impulse = table["impact_velocity"], table["impulse"]
-        text = "whether permanent contact follows the impact (17)"
-        return {
-            "impact_time": variable("impact", table["impact_time"], "s", "time of the impact"),
-            "impact_velocity": variable("impact", closing, "m/s", "closing speed before it"),
-            "impulse": variable("impact", impulse, "N.s", "impulse on each mass (15)"),
-            "sticks": yes_or_no("impact", table["sticks"], text),
-        }
 
     def coordinates(self) -> dict[str, Variable]:
         """Time in seconds, in units of 1/omega, and in periods."""
@@ -138,6 +126,28 @@ class SimulateJob(Question):
             "tau": variable("time", tau, "1", "time in units of 1/omega (4)"),
             "periods_done": variable("time", turns, "1", "time in excitation periods"),
         }
+
+
+def impact_variables(table: Table) -> dict[str, Variable]:
+    """The impacts of the time kept."""
+    closing, impulse = table["impact_velocity"], table["impulse"]
+    text = "whether permanent contact follows the impact (17)"
+    return {
+        "impact_time": variable("impact", table["impact_time"], "s", "time of the impact"),
+        "impact_velocity": variable("impact", closing, "m/s", "closing speed before it"),
+        "impulse": variable("impact", impulse, "N.s", "impulse on each mass (15)"),
+        "sticks": yes_or_no("impact", table["sticks"], text),
+    }
+
+
+def impact_columns(impacts: Impacts, structure: Structure) -> Table:
+    """Impacts as columns of a table."""
+    return {
+        "impact_time": impacts.time,
+        "impact_velocity": impacts.closing,
+        "impulse": impacts.impulse(structure),
+        "sticks": impacts.sticks,
+    }
 
 
 def recorded(

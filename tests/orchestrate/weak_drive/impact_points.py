@@ -41,7 +41,7 @@ class ImpactPoints(Counting):
         super().__init__(*arguments)
         instance = self.oscillator.instance
         instance.call("enterStepMode")
-        self.advance, self.handle = instance._stepper(), instance._event_handler()
+        self.advance, self.handle = instance.stepper(), instance.event_handler()
         self.least, self.length = least * self.scheme.h, self.scheme.h
 
     def step(self, voltage, h=None):

@@ -1,0 +1,123 @@
+"""A box acceleration as cubic pieces: the FMU's input is one cubic after the other, exactly.
+
+A smooth signal is interpolated on each piece at the four Chebyshev points. The error is at most
+``h^4/3072`` times the largest fourth derivative on a piece of length h (Davis, Interpolation and
+Approximation, theorem 3.3.1); the pieces need not join, a jump of that size does not matter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+CHEBYSHEV = np.cos(np.pi * (2.0 * np.arange(4) + 1.0) / 8.0)  # in [-1, 1]
+POINTS = 0.5 * (1.0 + CHEBYSHEV)  # the same in [0, 1], parts of a piece
+MONOMIALS = np.linalg.inv(np.vander(POINTS, 4, increasing=True))  # values -> coefficients
+FACTORIALS = np.array([1.0, 1.0, 2.0, 6.0])
+ERROR = 3072.0  # 4! 2^7: over it, h^4 max|a''''|
+
+
+def phase_step(accuracy: float) -> float:
+    """The longest piece of a sine, rad, whose cubic has a relative error of ``accuracy``."""
+    return float((ERROR * accuracy) ** 0.25)
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Cubics, each over its own part of the time.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n + 1,)
+        Where they begin, and where the last one ends, s.
+    derivatives : ndarray, shape (n, 4)
+        Of each at its beginning: acceleration, jerk, snap and crackle, m/s2 to m/s5.
+    error : float
+        Bound of the distance to the signal that they stand for, m/s2.
+    """
+
+    nodes: Floats
+    derivatives: Floats
+    error: float
+
+    @classmethod
+    def from_values(cls, nodes: Floats, values: Floats, error: float) -> Pieces:
+        """Interpolate.
+
+        Parameters
+        ----------
+        nodes : ndarray, shape (n + 1,)
+        values : ndarray, shape (n, 4)
+            Of the signal at the four points ``POINTS`` of each piece, m/s2.
+        error : float
+            Bound, m/s2.
+        """
+        powers = np.diff(nodes)[:, None] ** np.arange(4)
+        return cls(nodes, values @ MONOMIALS.T * FACTORIALS / powers, error)
+
+    @classmethod
+    def interpolate(cls, nodes: Floats, signal: Callable[[Floats], Floats], error: float) -> Pieces:
+        """Interpolate a function of the time."""
+        lengths = np.diff(nodes)[:, None]
+        return cls.from_values(nodes, signal(nodes[:-1, None] + POINTS * lengths), error)
+
+    @property
+    def duration(self) -> float:
+        """Where the last one ends, s."""
+        return float(self.nodes[-1])
+
+    def __call__(self, times: Floats) -> Floats:
+        """The acceleration at times, m/s2; zero after the end."""
+        return self.taylor(times)[:, 0]
+
+    def taylor(self, times: Floats) -> Floats:
+        """Value and derivatives at times, of the piece that begins there or before.
+
+        Returns
+        -------
+        ndarray, shape (n, 4)
+        """
+        last = len(self.derivatives) - 1
+        index = np.clip(np.searchsorted(self.nodes, times, side="right") - 1, 0, last)
+        t = times - self.nodes[index]
+        a, b, c, d = self.derivatives[index].T
+        shifted = [
+            a + t * (b + t * (0.5 * c + t * d / 6.0)),
+            b + t * (c + 0.5 * t * d),
+            c + t * d,
+            d,
+        ]
+        over = times >= self.nodes[-1]
+        return np.where(over, 0.0, np.array(shifted)).T
+
+    def __add__(self, other: Pieces) -> Pieces:
+        """Both together, over the longer of the two."""
+        nodes = np.union1d(self.nodes, other.nodes)
+        starts = nodes[:-1]
+        total = self.taylor(starts) + other.taylor(starts)
+        return Pieces(nodes, total, self.error + other.error)
+
+
+def divided(first: float, last: float, longest: float) -> Floats:
+    """Nodes of equal pieces that are at most ``longest``."""
+    count = max(1, math.ceil((last - first) / longest))
+    return first + (last - first) * np.arange(count + 1) / count
+
+
+def subdivided(nodes: Floats, parts: NDArray[np.int_]) -> Floats:
+    """Nodes of pieces, each cut into equal parts.
+
+    Examples
+    --------
+    >>> subdivided(np.array([0.0, 1.0, 2.0]), np.array([2, 1]))
+    array([0. , 0.5, 1. , 2. ])
+    """
+    piece = np.repeat(np.arange(len(parts)), parts)
+    part = np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)
+    inner = nodes[piece] + np.diff(nodes)[piece] * (part / parts[piece])
+    return np.append(inner, nodes[-1])

@@ -1,0 +1,122 @@
+"""Stationary random vibration of a given power spectral density."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .pieces import ERROR, POINTS, Floats, Pieces, phase_step
+from .signals import (
+    DENSITY,
+    MOST_PIECES,
+    SECONDS,
+    TURN,
+    ExcitationSignal,
+    Profile,
+    along_profile,
+    checked,
+    checked_profile,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Random(ExcitationSignal):
+    """Stationary Gaussian-like vibration of a given power spectral density.
+
+    The sum of sines at all multiples of 1/duration, each with the amplitude that its share of the
+    density asks for, and a random phase (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 1991): the
+    periodogram over the duration is the profile exactly, and nothing lies outside its band, so the
+    box's velocity and displacement stay bounded.
+
+    Parameters
+    ----------
+    psd : sequence of (float, float)
+        One-sided density as break points (Hz, (m/s2)^2/Hz), straight between them in log-log
+        scales.
+    duration : float
+        s.
+    seed : int
+        Of the phases.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> shaking = Random(psd=[(20.0, 0.5), (200.0, 0.5)], duration=8.0, seed=1)
+    >>> round(shaking.rms, 3)  # m/s2, sqrt(0.5 (200 - 20))
+    9.494
+    """
+
+    psd: Profile
+    duration: float
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        put(self, "psd", checked_profile("psd", self.psd, DENSITY))
+        put(self, "duration", checked(SECONDS, "duration", self.duration))
+        whole = isinstance(self.seed, (int, np.integer)) and not isinstance(self.seed, bool)
+        if not whole or self.seed < 0:
+            raise InputError(f"seed = {self.seed!r}: expected a whole number >= 0")
+        if not self._amplitudes().any():
+            band = f"{self.psd[0][0]:g} to {self.psd[-1][0]:g} Hz"
+            text = f"no multiple of 1/duration lies within {band}; expected a longer one"
+            raise InputError(f"duration = {self.duration!r} s: {text}")
+
+    @property
+    def usual_rate(self) -> float:
+        """Ten samples in the shortest period, Hz."""
+        return 10.0 * self.psd[-1][0]
+
+    @property
+    def rms(self) -> float:
+        """Root mean square, m/s2."""
+        return float(np.sqrt(0.5 * (self._amplitudes() ** 2).sum()))
+
+    def _amplitudes(self) -> Floats:
+        """Of the sines at 0, 1, 2 ... over the duration, m/s2."""
+        count = math.floor(self.psd[-1][0] * self.duration * (1.0 + 1e-12)) + 1
+        if count > MOST_PIECES // 20:
+            most = (MOST_PIECES // 20) / self.psd[-1][0]
+            raise InputError(f"duration = {self.duration!r} s: expected at most {most:.3g} s")
+        density = along_profile(self.psd, np.arange(count) / self.duration)
+        return np.sqrt(2.0 * density / self.duration)
+
+    def pieces(self, accuracy: float = 1e-6) -> Pieces:
+        """Equal pieces; the signal at their Chebyshev points by inverse Fourier transforms."""
+        amplitudes = self._amplitudes()
+        order = np.arange(len(amplitudes))
+        phases = np.random.default_rng(self.seed).uniform(0.0, TURN, len(amplitudes))
+        lines = 0.5 * amplitudes * np.exp(1j * phases)
+        omega = TURN * order / self.duration
+        # as a sine whose fourth derivative has the same ratio to it, by root mean squares
+        ratio = np.linalg.norm(amplitudes * omega**4) / np.linalg.norm(amplitudes)
+        longest = phase_step(accuracy) / ratio**0.25
+        count = next_fast(max(math.ceil(self.duration / longest), 4 * len(lines)))
+        step = self.duration / count
+
+        def at(shift: float, weights: Any = 1.0) -> NDArray[np.float64]:
+            """All values a shift after the nodes."""
+            return np.fft.irfft(weights * lines * np.exp(1j * omega * shift), count) * count
+
+        values = np.stack([at(point * step) for point in POINTS], axis=1)
+        # between the nodes a trigonometric polynomial of degree n rises by no more than
+        # 1/cos(pi n/N) above N equally spaced values (Ehlich and Zeller, Math. Z. 86, 1964)
+        rise = 1.0 / math.cos(math.pi * (len(lines) - 1) / count)
+        error = step**4 * np.abs(at(0.0, omega**4)).max() * rise / ERROR
+        nodes = self.duration * np.arange(count + 1) / count
+        return Pieces.from_values(nodes, values, float(error))
+
+
+def next_fast(count: int) -> int:
+    """A length from ``count`` on that Fourier transforms are quick at."""
+    from scipy.fft import next_fast_len
+
+    return int(next_fast_len(count, real=True))

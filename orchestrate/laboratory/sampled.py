@@ -1,0 +1,67 @@
+"""An acceleration known at equal times: a record played again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import InputError
+from .pieces import Pieces
+from .signals import HERTZ, MOST_PIECES, ExcitationSignal, checked
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sampled(ExcitationSignal):
+    """An acceleration known at equal times, as an analyser's record has it.
+
+    Between the samples the natural choice of cubics: the spline through them, with two continuous
+    derivatives. That is the excitation itself, so the pieces have no error.
+
+    Parameters
+    ----------
+    acceleration : array_like
+        Samples from time 0 on, m/s2; at least four.
+    sample_rate : float
+        Hz.
+
+    Raises
+    ------
+    InputError
+    """
+
+    acceleration: tuple[float, ...] = field(repr=False)
+    sample_rate: float
+    duration: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        try:
+            values = np.asarray(self.acceleration, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError("acceleration: expected a list of numbers, in m/s2") from None
+        if values.ndim != 1 or not 4 <= len(values) <= MOST_PIECES:
+            shape = "x".join(map(str, values.shape)) or "one"
+            raise InputError(
+                f"acceleration: {shape} values; expected a list of 4 to {MOST_PIECES} numbers"
+            )
+        if not np.isfinite(values).all():
+            wrong = int(np.flatnonzero(~np.isfinite(values))[0])
+            text = "expected finite numbers"
+            raise InputError(f"acceleration[{wrong}] = {values[wrong]}: {text}")
+        put(self, "acceleration", tuple(values.tolist()))
+        put(self, "sample_rate", checked(HERTZ, "sample_rate", self.sample_rate))
+        put(self, "duration", (len(values) - 1) / self.sample_rate)
+
+    @property
+    def usual_rate(self) -> float:
+        """Its own, Hz."""
+        return self.sample_rate
+
+    def pieces(self, accuracy: float = 1e-6) -> Pieces:
+        """The spline."""
+        from scipy.interpolate import CubicSpline
+
+        nodes = np.arange(len(self.acceleration)) / self.sample_rate
+        third, second, first, value = CubicSpline(nodes, self.acceleration).c
+        return Pieces(nodes, np.stack([value, first, 2.0 * second, 6.0 * third], axis=1), 0.0)

@@ -1,0 +1,229 @@
+"""Shake a structure as in the laboratory: time histories and impacts under any excitation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import OSCILLATOR, PLAYED, REST, EventInstance, begin, finder, play
+from ..errors import InputError
+from ..response.equations import absolute_accelerations
+from ..response.labels import variable, yes_or_no
+from ..response.questions import Question, checked_structure, positive, state
+from ..response.simulate import IN_TIME, impact_columns, impact_variables
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Excitation, Structure
+from .pieces import Pieces
+from .signals import ExcitationSignal
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+MOST_SAMPLES = 100_000_000
+DECAYED = 1e-3  # what is left of the free vibration from the start where it counts as over
+
+
+@lru_cache(maxsize=4)
+def pieces_of(excitation: ExcitationSignal, accuracy: float) -> Pieces:
+    """An excitation's pieces, made once a process."""
+    return excitation.pieces(accuracy)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShakeJob(Question):
+    """A motion under an excitation of any kind, in parts that go on from each other's end.
+
+    Attributes
+    ----------
+    excitation : ExcitationSignal
+    sample_rate : float
+        Hz.
+    accuracy : float
+        Of the cubic pieces, relative to the excitation's peak.
+    start : tuple of float
+        x1, x2 in m, v1, v2 in m/s.
+    """
+
+    excitation: ExcitationSignal
+    sample_rate: float
+    accuracy: float
+    start: tuple[float, ...] = REST
+    asked: ClassVar[str] = "shake"
+    chunk: ClassVar[int] = 20_000
+    sequential: ClassVar[bool] = True
+    item: ClassVar[str] = "piece"
+
+    @property
+    def pieces(self) -> Pieces:
+        """The excitation as the FMU takes it."""
+        return pieces_of(self.excitation, self.accuracy)
+
+    def parameters(self) -> dict[str, Any]:
+        """With the excitation's kind."""
+        found = super().parameters()
+        found["excitation"] = {"kind": type(self.excitation).__name__, **found["excitation"]}
+        return found
+
+    def count(self) -> int:
+        """Number of pieces."""
+        return len(self.pieces.derivatives)
+
+    def items(self, inputs: Inputs) -> Sequence[int]:
+        """The pieces."""
+        return range(self.count())
+
+    def times(self) -> NDArray[np.float64]:
+        """When the motion is read, s."""
+        last = math.floor(self.pieces.duration * self.sample_rate * (1.0 + 1e-14))
+        times: NDArray[np.float64] = np.arange(last + 1) / self.sample_rate
+        return times[times <= self.pieces.duration]
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+        """The motion over some pieces, and the FMU's state to go on from."""
+        pieces, first, last = self.pieces, items[0], items[-1] + 1
+        nodes = pieces.nodes[first : last + 1]
+        times = self.times()
+        end = None if last == self.count() else np.searchsorted(times, nodes[-1])
+        samples = times[np.searchsorted(times, nodes[0]) : end]
+        at_rest = Excitation(frequency=self.structure.omega, amplitude=0.0)
+        with EventInstance(fmus[OSCILLATOR]) as instance:
+            begin(instance, self.structure, at_rest, self.start)
+            if carry is not None:
+                instance.restore_state(carry["fmu_state"][-1].tobytes())
+            played = play(instance, nodes, pieces.derivatives[first:last], samples)
+            kept = np.frombuffer(instance.save_state(), dtype=np.uint8)[np.newaxis]
+        one, two = absolute_accelerations(played.rows[:, :4], self.structure, played.touching).T
+        return {
+            **dict(zip(PLAYED, played.rows.T, strict=True)),
+            **{"in_contact": played.touching, "a1_abs": one, "a2_abs": two},
+            "box_acceleration": pieces(samples),
+            **impact_columns(played.impacts, self.structure),
+            "fmu_state": kept,
+        }
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Histories, impacts, and what is known of the excitation."""
+        import xarray as xr
+
+        columns = [*PLAYED, "a1_abs", "a2_abs", "box_acceleration"]
+        error = "largest distance of the box's acceleration to the signal, by a bound"
+        transient = f"time after which the start's free vibration is below {DECAYED:g} of it"
+        return xr.Dataset(
+            {
+                **{name: variable("time", table[name], *IN_TIME[name]) for name in columns},
+                "in_contact": yes_or_no(
+                    "time", table["in_contact"], "whether the masses are in permanent contact"
+                ),
+                **impact_variables(table),
+                "excitation_error": variable((), self.pieces.error, "m/s2", error),
+                "transient_time": variable((), transient_time(self.structure), "s", transient),
+            },
+            {"time": variable("time", self.times(), "s", "time from the start")},
+            {"title": f"Shaken by {self.excitation!r}: {self.structure.label()}"},
+        )
+
+
+def transient_time(structure: Structure) -> float:
+    """How long the slowest free vibration takes to decay to a thousandth, s.
+
+    Of either mass alone and of both together; infinite without damping, and where a damper is so
+    strong that it creeps, by the slower of both roots.
+    """
+    both = (structure.m1 + structure.m2, structure.k1 + structure.k2, structure.d1 + structure.d2)
+    alone = ((structure.m1, structure.k1, structure.d1), (structure.m2, structure.k2, structure.d2))
+    oscillators = (both,) if structure.bonded else (*alone, both)
+    rates = [float(-np.roots((m, d, k)).real.max()) for m, k, d in oscillators]
+    slowest = min(rates)
+    return -math.log(DECAYED) / slowest if slowest > 0.0 else math.inf
+
+
+def shake(
+    structure: Structure,
+    excitation: ExcitationSignal,
+    *,
+    sample_rate: float | None = None,
+    start: ArrayLike | None = None,
+    accuracy: float = 1e-6,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Shake a structure and record its motion.
+
+    Parameters
+    ----------
+    structure : Structure
+        Delaminated or bonded.
+    excitation : SweptSine, Random, Shock or Sampled
+        The box's acceleration; ``one + other`` is both together.
+    sample_rate : float, optional
+        Of the record, Hz; by default what the excitation needs. The motion does not depend on it.
+    start : array_like of 4 floats, optional
+        x1, x2 in m, v1, v2 in m/s at time 0, relative to the box; at rest by default.
+    accuracy : float
+        Largest error of the cubic pieces that the FMU is given, relative to the peak: 1e-10 to
+        1e-2. The bound reached is in the result.
+    **running
+        ``store``, ``progress`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time`` in s: ``box_acceleration``; ``a1_abs``, ``a2_abs``, accelerations of the
+        masses in space between impacts; ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``, ``v_rel``
+        relative to the box; ``contact_force`` in N and ``in_contact``. Over ``impact``:
+        ``impact_time``, ``impact_velocity``, ``impulse`` in N s and ``sticks``. Scalars:
+        ``excitation_error`` in m/s2 and ``transient_time`` in s, after which the start is
+        forgotten where the motion is linear.
+
+    Raises
+    ------
+    InputError
+        Where a number is out of its range.
+
+    Notes
+    -----
+    The FMU takes the acceleration as cubics (Chebyshev interpolation, :mod:`.pieces`) and is exact
+    for these: states and impacts are those of the pieces whatever the sampling rate, to the last
+    bit.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_file("beam")
+    >>> sweep = orchestrate.SweptSine(first=10.0, last=14.0, duration=4.0, acceleration=0.2)
+    >>> history = orchestrate.shake(beam, sweep, sample_rate=500.0)
+    >>> history.sizes["time"], bool(history.sizes["impact"] > 100)
+    (2001, True)
+    """
+    if not isinstance(excitation, ExcitationSignal):
+        kinds = "expected a SweptSine, Random, Shock or Sampled, or a sum of them"
+        raise InputError(f"excitation = {excitation!r}: {kinds}")
+    rate = positive("sample_rate", excitation.usual_rate if sample_rate is None else sample_rate)
+    if rate * excitation.duration > MOST_SAMPLES:
+        most = MOST_SAMPLES / excitation.duration
+        raise InputError(
+            f"sample_rate = {rate!r} Hz: expected at most {most:.3g} for that duration"
+        )
+    wanted = positive("accuracy", accuracy)
+    if not 1e-10 <= wanted <= 1e-2:
+        raise InputError(f"accuracy = {wanted!r}: expected 1e-10 <= accuracy <= 0.01")
+    shaken = checked_structure(structure)
+    job = ShakeJob(
+        name=f"shake_{type(excitation).__name__}_{shaken.label()}",
+        structure=shaken,
+        excitation=excitation,
+        sample_rate=rate,
+        accuracy=wanted,
+        start=state("start", start, shaken),
+    )
+    return answer(job, running, finder(running))

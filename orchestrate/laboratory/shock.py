@@ -1,0 +1,101 @@
+"""A classical shock pulse."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import InputError
+from ..structures.ranges import Quantity
+from .pieces import ERROR, Floats, Pieces, divided, phase_step
+from .signals import LEVEL, SECONDS, ExcitationSignal, checked, one_of_words
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shock(ExcitationSignal):
+    """A classical pulse (IEC 60068-2-27), with quiet before and after it.
+
+    Parameters
+    ----------
+    peak : float
+        m/s2.
+    length : float
+        Of the pulse, s.
+    shape : str
+        ``"half-sine"``, ``"sawtooth"`` (final peak) or ``"trapezoid"`` (rise and decay of a tenth
+        each).
+    delay : float
+        Quiet before it, s.
+    duration : float, optional
+        Of all, s; by default twenty lengths after the pulse's beginning.
+
+    Raises
+    ------
+    InputError
+
+    Notes
+    -----
+    The box keeps the pulse's change of velocity: a shaker adds pulses before and after.
+    """
+
+    peak: float
+    length: float
+    shape: str = "half-sine"
+    delay: float = 0.0
+    duration: float = 0.0
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        put(self, "peak", checked(LEVEL, "peak", self.peak))
+        put(self, "length", checked(SECONDS, "length", self.length))
+        put(self, "delay", checked(Quantity("delay", "s", "", 0.0, 1e7), "delay", self.delay))
+        one_of_words("shape", self.shape, ("half-sine", "sawtooth", "trapezoid"))
+        end = self.delay + self.length
+        put(
+            self,
+            "duration",
+            checked(SECONDS, "duration", self.duration or end + 19.0 * self.length),
+        )
+        if self.duration < end:
+            text = f"expected at least delay + length = {end:g} s"
+            raise InputError(f"duration = {self.duration!r} s: {text}")
+
+    @property
+    def usual_rate(self) -> float:
+        """A hundred samples in the pulse, Hz."""
+        return 100.0 / self.length
+
+    def pieces(self, accuracy: float = 1e-6) -> Pieces:
+        """The pulse between its corners, and quiet."""
+        edges, error = self._edges(accuracy)
+        begin, end = self.delay, self.delay + self.length
+        nodes = np.unique([0.0, *(begin + edges), end, self.duration])
+        inside = (nodes[:-1] >= begin) & (nodes[1:] <= end)
+        found = Pieces.interpolate(nodes, self._pulse(), error)
+        return Pieces(nodes, np.where(inside[:, None], found.derivatives, 0.0), error)
+
+    def _edges(self, accuracy: float) -> tuple[Floats, float]:
+        """Where pieces begin, s after the pulse's beginning, and their error."""
+        if self.shape == "trapezoid":
+            return self.length * np.array([0.0, 0.1, 0.9]), 0.0
+        if self.shape == "sawtooth":
+            return np.zeros(1), 0.0
+        angles = divided(0.0, math.pi, phase_step(accuracy))
+        error = self.peak * float(np.diff(angles).max()) ** 4 / ERROR
+        return self.length * angles[:-1] / math.pi, error
+
+    def _pulse(self) -> Callable[[Floats], Floats]:
+        """The pulse as a function of the time."""
+
+        def pulse(time: Floats) -> Floats:
+            part = (time - self.delay) / self.length
+            if self.shape == "half-sine":
+                return self.peak * np.sin(np.pi * part)
+            if self.shape == "sawtooth":
+                return self.peak * part
+            return self.peak * np.minimum(np.minimum(10.0 * part, 10.0 * (1.0 - part)), 1.0)
+
+        return pulse

@@ -1,0 +1,134 @@
+"""What every excitation is: an acceleration of the box over the time, and sums of them.
+
+Each knows how to tell itself to the FMU: as cubic pieces with a bound of their error (see
+:mod:`.pieces`). The box's displacement is not needed: the structure feels the acceleration alone.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import reduce
+from itertools import pairwise
+from operator import add
+
+import numpy as np
+
+from ..errors import InputError
+from ..structures.ranges import Quantity
+from .pieces import Floats, Pieces
+
+TURN = 2.0 * math.pi
+Profile = tuple[tuple[float, float], ...]  # frequency in Hz and what holds there, ascending
+MOST_PIECES = 50_000_000
+HERTZ = Quantity("frequency", "Hz", "", 1e-9, 1e9)
+SECONDS = Quantity("duration", "s", "", 1e-9, 1e7)
+LEVEL = Quantity("acceleration", "m/s2", "", 0.0, 1e12)
+DENSITY = Quantity("psd", "m2/s4/Hz", "", 0.0, 1e24)
+
+
+def checked(quantity: Quantity, name: str, value: object) -> float:
+    """A number in a quantity's range, named as the user named it."""
+    own = Quantity(name, quantity.unit, "", quantity.minimum, quantity.maximum)
+    return own.check(value)
+
+
+def one_of_words(name: str, value: object, words: Sequence[str]) -> str:
+    """A word that is known."""
+    if value not in words:
+        raise InputError(f"{name} = {value!r}: expected one of {', '.join(words)}")
+    return str(value)
+
+
+def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
+    """Break points (Hz, value) with ascending frequencies."""
+    expected = "expected pairs (Hz, value) with ascending frequencies, at least two"
+    try:
+        pairs = [(float(f), float(value)) for f, value in given]  # type: ignore[attr-defined]
+    except (TypeError, ValueError):
+        raise InputError(f"{name} = {given!r}: {expected}") from None
+    for f, value in pairs:
+        checked(HERTZ, f"{name}'s frequency", f)
+        checked(quantity, f"{name} at {f:g} Hz", value)
+        if value == 0.0:
+            raise InputError(f"{name} at {f:g} Hz = 0.0: expected a number > 0 at break points")
+    ascending = all(one[0] < other[0] for one, other in pairwise(pairs))
+    if len(pairs) < 2 or not ascending:
+        raise InputError(f"{name} = {tuple(pairs)!r}: {expected}")
+    return tuple(pairs)
+
+
+def along_profile(profile: Profile, frequency: Floats) -> Floats:
+    """A profile's values, straight between break points in log-log scales; 0 outside."""
+    corners, values = np.log(np.array(profile)).T
+    inside = (frequency >= profile[0][0]) & (frequency <= profile[-1][0])
+    with np.errstate(divide="ignore"):
+        found = np.exp(np.interp(np.log(frequency), corners, values))
+    return np.where(inside, found, 0.0)
+
+
+class ExcitationSignal(ABC):
+    """An acceleration of the box over a time that begins at 0.
+
+    ``one + other`` is both together.
+
+    Attributes
+    ----------
+    duration : float
+        s.
+    """
+
+    duration: float
+
+    @property
+    @abstractmethod
+    def usual_rate(self) -> float:
+        """A sampling rate that shows all of it, Hz."""
+
+    @abstractmethod
+    def pieces(self, accuracy: float = 1e-6) -> Pieces:
+        """The acceleration as cubic pieces.
+
+        Parameters
+        ----------
+        accuracy : float
+            Largest error wanted, relative to the peak.
+
+        Returns
+        -------
+        Pieces
+            With the bound of the error that they have, m/s2.
+        """
+
+    def __add__(self, other: ExcitationSignal) -> SumOfSignals:
+        """Both together."""
+        if not isinstance(other, ExcitationSignal):
+            return NotImplemented
+        return SumOfSignals((*parts_of(self), *parts_of(other)))
+
+
+def parts_of(signal: ExcitationSignal) -> tuple[ExcitationSignal, ...]:
+    """A sum's parts, or the signal itself."""
+    return signal.parts if isinstance(signal, SumOfSignals) else (signal,)
+
+
+@dataclass(frozen=True)
+class SumOfSignals(ExcitationSignal):
+    """Signals together, over the longest of them; made by ``+``."""
+
+    parts: tuple[ExcitationSignal, ...]
+    duration: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "duration", max(part.duration for part in self.parts))
+
+    @property
+    def usual_rate(self) -> float:
+        """The highest that one of the parts needs, Hz."""
+        return max(part.usual_rate for part in self.parts)
+
+    def pieces(self, accuracy: float = 1e-6) -> Pieces:
+        """The pieces of all parts, on all their nodes."""
+        return reduce(add, (part.pieces(accuracy) for part in self.parts))

@@ -1,0 +1,216 @@
+"""A sine whose frequency moves from one end of a range to the other, and its error bound."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import InputError
+from ..structures.ranges import Quantity
+from .pieces import ERROR, Floats, Pieces, divided, phase_step, subdivided
+from .signals import (
+    HERTZ,
+    LEVEL,
+    MOST_PIECES,
+    SECONDS,
+    TURN,
+    ExcitationSignal,
+    Profile,
+    along_profile,
+    checked,
+    checked_profile,
+    one_of_words,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SweptSine(ExcitationSignal):
+    """A sine whose frequency moves slowly from one end of a range to the other.
+
+    Linear: ``A sin(2 pi (f0 t + (f1 - f0) t^2/(2 T)))``. Logarithmic, with L = ln(f1/f0):
+    ``A sin(2 pi f0 T/L (exp(L t/T) - 1))``.
+
+    Parameters
+    ----------
+    first, last : float
+        Frequencies at the beginning and at the end, Hz; ``last < first`` sweeps down.
+    acceleration : float or sequence of (float, float)
+        Peak acceleration A, m/s2; or its profile as break points (Hz, m/s2), straight between them
+        in log-log scales, which has to reach over all frequencies.
+    duration : float, optional
+        s.
+    rate : float, optional
+        In place of the duration: Hz/s where linear, octaves/min where logarithmic.
+    spacing : str
+        ``"linear"`` or ``"log"``.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> sweep = SweptSine(first=20.0, last=90.0, rate=1.0, spacing="log", acceleration=4.9)
+    >>> round(sweep.duration, 1)
+    130.2
+    """
+
+    first: float
+    last: float
+    acceleration: float | Profile
+    duration: float = 0.0
+    rate: float | None = None
+    spacing: str = "linear"
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        put(self, "first", checked(HERTZ, "first", self.first))
+        put(self, "last", checked(HERTZ, "last", self.last))
+        one_of_words("spacing", self.spacing, ("linear", "log"))
+        if self.first == self.last:
+            raise InputError(f"last = {self.last!r} Hz: expected another frequency than first")
+        put(self, "acceleration", self._checked_acceleration())
+        given = [name for name in ("duration", "rate") if getattr(self, name)]
+        if len(given) != 1:
+            said = " and ".join(f"{name} = {getattr(self, name)!r}" for name in given)
+            raise InputError(f"{said or 'nothing'} given: expected one of duration and rate")
+        if self.rate:
+            rate = checked(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
+            put(self, "duration", self._span() / rate)
+            put(self, "rate", None)
+        put(self, "duration", checked(SECONDS, "duration", self.duration))
+
+    def _span(self) -> float:
+        """Hz where linear; octaves, times a minute, where logarithmic."""
+        if self.spacing == "linear":
+            return abs(self.last - self.first)
+        return 60.0 * abs(math.log2(self.last / self.first))
+
+    def _checked_acceleration(self) -> float | Profile:
+        if not isinstance(self.acceleration, (tuple, list, np.ndarray)):
+            return checked(LEVEL, "acceleration", self.acceleration)
+        profile = checked_profile("acceleration", self.acceleration, LEVEL)
+        low, high = sorted((self.first, self.last))
+        if not profile[0][0] <= low <= high <= profile[-1][0]:
+            ends = f"{profile[0][0]:g} to {profile[-1][0]:g} Hz"
+            raise InputError(
+                f"acceleration: its profile is of {ends}; expected {low:g} to {high:g}"
+            )
+        return profile
+
+    @property
+    def usual_rate(self) -> float:
+        """Twenty samples in the shortest period, Hz."""
+        return 20.0 * max(self.first, self.last)
+
+    @property
+    def _growth(self) -> float:
+        """Of the frequency: Hz/s where linear, ln(f1/f0)/T in 1/s where logarithmic."""
+        if self.spacing == "linear":
+            return (self.last - self.first) / self.duration
+        return math.log(self.last / self.first) / self.duration
+
+    def frequency(self, time: ArrayLike) -> Floats:
+        """The frequency at a time, Hz."""
+        t = np.asarray(time, dtype=float)
+        if self.spacing == "linear":
+            return np.asarray(self.first + self._growth * t)
+        return np.asarray(self.first * np.exp(self._growth * t))
+
+    def phase(self, time: ArrayLike) -> Floats:
+        """The phase at a time, rad."""
+        t = np.asarray(time, dtype=float)
+        if self.spacing == "linear":
+            return np.asarray(TURN * t * (self.first + 0.5 * self._growth * t))
+        return np.asarray(TURN * self.first / self._growth * np.expm1(self._growth * t))
+
+    def time_of(self, frequency: float) -> float:
+        """When it has a frequency, Hz; s."""
+        if self.spacing == "linear":
+            return (frequency - self.first) / self._growth
+        return math.log(frequency / self.first) / self._growth
+
+    def _times_of(self, phase: Floats) -> Floats:
+        """When it has phases, rad; s."""
+        growth, turns = self._growth, phase / TURN
+        if self.spacing == "linear":
+            root = np.sqrt(np.maximum(self.first**2 + 2.0 * growth * turns, 0.0))
+            return np.asarray(2.0 * turns / (self.first + root))
+        return np.asarray(np.log1p(growth * turns / self.first) / growth)
+
+    def level(self, time: ArrayLike) -> Floats:
+        """The peak acceleration at a time, m/s2."""
+        if isinstance(self.acceleration, float):
+            return np.full(np.shape(time), self.acceleration)
+        low, high = self.acceleration[0][0], self.acceleration[-1][0]
+        return along_profile(self.acceleration, np.clip(self.frequency(time), low, high))
+
+    def __call__(self, time: ArrayLike) -> Floats:
+        """The acceleration at a time, m/s2."""
+        return np.asarray(self.level(time) * np.sin(self.phase(time)))
+
+    def pieces(self, accuracy: float = 1e-6) -> Pieces:
+        """Pieces of equal phase, shorter ones where the frequency changes within them."""
+        end = float(self.phase(self.duration))
+        if end > MOST_PIECES * phase_step(accuracy):
+            text = f"expected less than {MOST_PIECES * phase_step(accuracy) / TURN:.3g}"
+            raise InputError(f"the sweep has {end / TURN:.3g} oscillations: {text}")
+        phases = divided(0.0, end, phase_step(accuracy))
+        nodes = self._times_of(phases)
+        nodes[0], nodes[-1] = 0.0, self.duration
+        nodes = np.union1d(nodes, self._corners())
+        wanted = accuracy * self._peak()
+        while (parts := np.ceil((self._bounds(nodes) / wanted) ** 0.25 - 1e-3)).max() > 1.0:
+            nodes = subdivided(nodes, np.maximum(parts, 1.0).astype(int))
+        return Pieces.interpolate(nodes, self, float(self._bounds(nodes).max()))
+
+    def _peak(self) -> float:
+        """The largest level, m/s2; 1 where there is none."""
+        ends = np.array([0.0, *self._corners(), self.duration])
+        return float(self.level(ends).max()) or 1.0
+
+    def _corners(self) -> list[float]:
+        """When the profile has its break points, s."""
+        if isinstance(self.acceleration, float):
+            return []
+        times = [self.time_of(f) for f, _ in self.acceleration]
+        return [time for time in times if 0.0 < time < self.duration]
+
+    def _bounds(self, nodes: Floats) -> Floats:
+        """The bound of :mod:`.pieces`, from the largest fourth derivative, of each piece.
+
+        Of ``A sin(phase)`` by Leibniz's and Faa di Bruno's rules, each term at its largest.
+        """
+        ends = np.stack([nodes[:-1], nodes[1:]])
+        f = self.frequency(ends)
+        w = TURN * f.max(axis=0)
+        linear, growth = self.spacing == "linear", abs(self._growth)
+        w2 = TURN * growth if linear else w * growth  # the phase's second derivative
+        w3, w4 = (0.0, 0.0) if linear else (w * growth**2, w * growth**3)
+        sine = [1.0, w, w**2 + w2, w**3 + 3.0 * w * w2 + w3]
+        sine.append(w**4 + 6.0 * w**2 * w2 + 3.0 * w2**2 + 4.0 * w * w3 + w4)
+        level = self._level_bounds(ends, f.min(axis=0))
+        fourth = sum(math.comb(4, order) * level[order] * sine[4 - order] for order in range(5))
+        return np.asarray(np.diff(nodes) ** 4 * fourth / ERROR)
+
+    def _level_bounds(self, ends: Floats, lowest: Floats) -> list[Floats]:
+        """Largest derivatives of the level of orders 0 to 4 on each piece, A ~ f^p there."""
+        top = self.level(ends).max(axis=0)
+        if isinstance(self.acceleration, float):
+            return [top, *(np.zeros_like(top) for _ in range(4))]
+        corners, values = np.log(np.array(self.acceleration)).T
+        slopes = np.diff(values) / np.diff(corners)
+        middle = np.log(self.frequency(ends.mean(axis=0)))
+        last = len(slopes) - 1
+        p = slopes[np.clip(np.searchsorted(corners, middle) - 1, 0, last)]
+        bounds, factor = [top], np.ones_like(top)
+        for order in range(1, 5):
+            if self.spacing == "linear":
+                factor = factor * np.abs(p - order + 1) * abs(self._growth) / lowest
+            else:
+                factor = factor * np.abs(p) * abs(self._growth)
+            bounds.append(top * factor)
+        return bounds

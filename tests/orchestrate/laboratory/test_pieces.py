@@ -1,0 +1,219 @@
+"""Cubic pieces: they are as near to their signal as they say, for all kinds of excitation."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from orchestrate import InputError, Random, Sampled, Shock, SweptSine
+from orchestrate.laboratory.pieces import Pieces
+
+ACCURACY = st.floats(-8.0, -2.0).map(lambda power: 10.0**power)
+HERTZ = st.floats(0.1, 500.0)
+
+
+def times_within(duration, seed=1, count=4000):
+    return np.sort(np.random.default_rng(seed).uniform(0.0, duration, count))
+
+
+@st.composite
+def sweeps(draw):
+    first, last = draw(HERTZ), draw(HERTZ.filter(lambda f: f > 0.2))
+    last = last if last != first else 2.0 * first
+    level = draw(st.one_of(st.floats(0.1, 50.0), st.just("profile")))
+    if level == "profile":
+        ends = 0.09, 600.0
+        middle = draw(st.floats(0.2, 400.0))
+        values = draw(st.tuples(*[st.floats(0.1, 10.0)] * 3))
+        level = tuple(zip((ends[0], middle, ends[1]), values, strict=True))
+    duration = draw(st.floats(5.0, 200.0)) / min(first, last)
+    duration = min(duration, 20_000.0 / max(first, last))
+    spacing = draw(st.sampled_from(["linear", "log"]))
+    return SweptSine(first=first, last=last, acceleration=level, duration=duration, spacing=spacing)
+
+
+@settings(deadline=None, max_examples=60)
+@given(sweeps(), ACCURACY)
+def test_swept_sine_within_its_bound(sweep, accuracy):
+    pieces = sweep.pieces(accuracy)
+    times = times_within(sweep.duration)
+    peak = float(sweep.level(np.linspace(0.0, sweep.duration, 1001)).max())
+    distance = np.abs(pieces(times) - sweep(times)).max()
+    phase_rounding = 1e-15 * float(sweep.phase(sweep.duration))
+    assert distance <= pieces.error + (1e-13 + phase_rounding) * peak
+    assert pieces.error <= 1.02 * accuracy * peak  # what was asked for
+
+
+def test_swept_sine_is_the_standard_one():
+    sweep = SweptSine(first=20.0, last=90.0, duration=7.0, acceleration=4.0)
+    t = times_within(7.0)
+    phase = 2.0 * math.pi * (20.0 * t + (90.0 - 20.0) * t**2 / (2.0 * 7.0))
+    assert np.allclose(sweep(t), 4.0 * np.sin(phase), rtol=0.0, atol=1e-10)
+    from scipy.signal import chirp
+
+    log = SweptSine(first=90.0, last=20.0, duration=7.0, acceleration=4.0, spacing="log")
+    expected = 4.0 * chirp(t, 90.0, 7.0, 20.0, method="logarithmic", phi=-90.0)
+    assert np.allclose(log(t), expected, rtol=0.0, atol=1e-9)
+
+
+def test_rates_of_a_sweep():
+    assert SweptSine(first=20, last=80, rate=1.0, spacing="log", acceleration=1).duration == 120.0
+    assert SweptSine(first=80, last=20, rate=0.5, acceleration=1).duration == 120.0
+
+
+def test_profile_of_a_sweep_is_straight_in_logarithms():
+    sweep = SweptSine(first=10, last=40, duration=3.0, acceleration=[(5.0, 1.0), (50.0, 10.0)])
+    for f in (10.0, 25.0, 40.0):
+        assert math.isclose(float(sweep.level(sweep.time_of(f))), f / 5.0, rel_tol=1e-9)
+
+
+PROFILE = ((20.0, 0.5), (80.0, 2.0), (200.0, 0.1))
+
+
+def sines(shaking):
+    """Amplitudes, angular frequencies and phases of its sines, by the definition alone."""
+    f = np.arange(math.floor(200.0 * shaking.duration) + 1) / shaking.duration
+    corners, values = np.log(np.array(shaking.psd)).T
+    inside = (f >= shaking.psd[0][0]) & (f <= shaking.psd[-1][0])
+    density = np.exp(np.interp(np.log(np.maximum(f, 1e-9)), corners, values)) * inside
+    phases = np.random.default_rng(shaking.seed).uniform(0.0, 2.0 * math.pi, len(f))
+    return np.sqrt(2.0 * density / shaking.duration), 2.0 * math.pi * f, phases
+
+
+@settings(deadline=None, max_examples=25)
+@given(st.floats(0.5, 8.0), st.integers(0, 1000), ACCURACY)
+def test_random_vibration_within_its_bound(duration, seed, accuracy):
+    shaking = Random(psd=PROFILE, duration=duration, seed=seed)
+    amplitudes, omega, phases = sines(shaking)
+    times = times_within(duration, count=500)
+    exact = np.cos(np.outer(times, omega) + phases) @ amplitudes
+    pieces = shaking.pieces(accuracy)
+    assert np.abs(pieces(times) - exact).max() <= pieces.error + 1e-11 * shaking.rms
+    assert pieces.error <= 30.0 * accuracy * shaking.rms * math.sqrt(3.0)
+
+
+@pytest.mark.slow
+def test_random_vibration_within_its_bound_a_thousand_times():
+    for seed in range(1000):
+        shaking = Random(psd=PROFILE, duration=2.0, seed=seed)
+        amplitudes, omega, phases = sines(shaking)
+        times = times_within(2.0, seed, 500)
+        exact = np.cos(np.outer(times, omega) + phases) @ amplitudes
+        pieces = shaking.pieces(1e-5)
+        assert np.abs(pieces(times) - exact).max() <= pieces.error
+
+
+def test_random_vibration_has_its_density():
+    shaking = Random(psd=PROFILE, duration=64.0, seed=3)
+    rate = 1024.0
+    values = shaking.pieces()(np.arange(int(64.0 * rate)) / rate)
+    lines = np.abs(np.fft.rfft(values)) ** 2 * 2.0 / (64.0 * rate**2)
+    f = np.fft.rfftfreq(len(values), 1.0 / rate)
+    for hertz, density in ((20.0, 0.5), (40.0, 1.0), (80.0, 2.0), (200.0, 0.1)):
+        assert math.isclose(lines[np.argmin(np.abs(f - hertz))], density, rel_tol=1e-3)
+    assert lines[(f < 19.99) | (f > 200.01)].max() < 1e-8
+    assert math.isclose(shaking.rms**2, (values**2).mean(), rel_tol=1e-5)
+    assert abs(((values / shaking.rms) ** 4).mean() - 3.0) < 0.1  # as of a Gaussian
+
+
+@pytest.mark.parametrize(
+    ("shape", "area"), [("half-sine", 2.0 / math.pi), ("sawtooth", 0.5), ("trapezoid", 0.9)]
+)
+def test_shocks(shape, area):
+    shock = Shock(peak=50.0, length=0.011, shape=shape, delay=0.003)
+    pieces = shock.pieces()
+    a, b, c, d = pieces.derivatives.T
+    h = np.diff(pieces.nodes)
+    change = (h * (a + h * (b / 2.0 + h * (c / 6.0 + h * d / 24.0)))).sum()
+    assert math.isclose(change, area * 50.0 * 0.011, rel_tol=1e-5)
+    assert shock.duration == pytest.approx(0.003 + 20 * 0.011)
+    times = times_within(shock.duration)
+    part = (times - 0.003) / 0.011
+    exact = {
+        "half-sine": 50.0 * np.sin(np.pi * part),
+        "sawtooth": 50.0 * part,
+        "trapezoid": 50.0 * np.clip(np.minimum(10.0 * part, 10.0 * (1.0 - part)), None, 1.0),
+    }[shape]
+    expected = np.where((part >= 0.0) & (part <= 1.0), exact, 0.0)
+    assert np.abs(pieces(times) - expected).max() <= pieces.error + 1e-11
+
+
+def test_sampled_acceleration_goes_through_its_samples_smoothly():
+    values = np.random.default_rng(2).normal(size=50)
+    pieces = Sampled(acceleration=values, sample_rate=100.0).pieces()
+    assert np.allclose(pieces.derivatives[:, 0], values[:-1])
+    ends = pieces.taylor(pieces.nodes[1:-1] - 1e-12)
+    starts = pieces.taylor(pieces.nodes[1:-1])
+    for order, size in ((0, 1e-8), (1, 1e-6), (2, 1e-3)):
+        assert np.abs(ends[:, order] - starts[:, order]).max() < size
+
+
+def test_sum_of_signals():
+    sweep = SweptSine(first=5.0, last=9.0, duration=2.0, acceleration=1.0)
+    shock = Shock(peak=3.0, length=0.1, delay=0.5)
+    both = (sweep + shock).pieces()
+    times = times_within(3.0)
+    alone = sweep.pieces()(times) + shock.pieces()(times)
+    assert np.abs(both(times) - alone).max() < 1e-12
+    assert both.error == sweep.pieces().error + shock.pieces().error
+    assert (sweep + shock).duration == shock.duration == both.duration
+    three = sweep + shock + sweep
+    assert len(three.parts) == 3 and three.usual_rate == shock.usual_rate
+
+
+def test_a_cubic_is_its_own_piece():
+    nodes = np.array([0.0, 0.3, 1.0])
+    pieces = Pieces.interpolate(nodes, lambda t: 1.0 + t * (2.0 + t * (3.0 + 4.0 * t)), 0.0)
+    assert np.allclose(pieces.derivatives[0], [1.0, 2.0, 6.0, 24.0])
+    assert np.allclose(pieces.taylor(np.array([0.2]))[0], [1.552, 3.68, 10.8, 24.0])
+    assert pieces(np.array([1.0, 2.0])).tolist() == [0.0, 0.0]
+
+
+SWEEP = {"first": 20.0, "last": 90.0, "duration": 2.0, "acceleration": 4.9}
+
+
+@pytest.mark.parametrize(
+    ("kind", "changes", "words"),
+    [
+        (SweptSine, {"first": 0.0}, "first = 0.0 Hz: expected 1e-09 <= first"),
+        (SweptSine, {"last": 20.0}, "last = 20.0 Hz: expected another frequency than first"),
+        (SweptSine, {"spacing": "lin"}, "spacing = 'lin': expected one of linear, log"),
+        (SweptSine, {"rate": 1.0}, "duration = 2.0 and rate = 1.0 given: expected one of"),
+        (SweptSine, {"duration": 0.0}, "nothing given: expected one of duration and rate"),
+        (SweptSine, {"acceleration": -1.0}, "acceleration = -1.0 m/s2: expected 0 <="),
+        (SweptSine, {"acceleration": [(30, 1), (90, 1)]}, "is of 30 to 90 Hz; expected 20 to 90"),
+        (SweptSine, {"acceleration": [(30, 1), (10, 1)]}, "with ascending frequencies"),
+        (SweptSine, {"acceleration": float("nan")}, "acceleration = nan m/s2: expected"),
+        (Random, {"psd": 3.0}, "psd = 3.0: expected pairs (Hz, value)"),
+        (Random, {"psd": [(20, 0.0), (30, 1.0)]}, "psd at 20 Hz = 0.0: expected a number > 0"),
+        (Random, {"seed": -1}, "seed = -1: expected a whole number >= 0"),
+        (Random, {"duration": 1e-3}, "no multiple of 1/duration lies within 20 to 200 Hz"),
+        (Random, {"duration": 1e7}, "duration = 10000000.0 s: expected at most"),
+        (Shock, {"shape": "sine"}, "shape = 'sine': expected one of half-sine"),
+        (Shock, {"duration": 0.001}, "duration = 0.001 s: expected at least delay + length"),
+        (Sampled, {"acceleration": [1.0, float("nan"), 2.0, 3.0]}, "acceleration[1] = nan"),
+        (Sampled, {"acceleration": [1.0, 2.0]}, "2 values; expected a list of 4 to"),
+        (Sampled, {"acceleration": ["g", 2.0, 1, 1]}, "expected a list of numbers, in m/s2"),
+        (Sampled, {"sample_rate": 0.0}, "sample_rate = 0.0 Hz: expected"),
+    ],
+)
+def test_mistakes_are_one_line(kind, changes, words):
+    usual = {
+        SweptSine: SWEEP,
+        Random: {"psd": PROFILE, "duration": 2.0},
+        Shock: {"peak": 1.0, "length": 0.01},
+        Sampled: {"acceleration": [0.0, 1.0, 0.0, 1.0], "sample_rate": 100.0},
+    }
+    with pytest.raises(InputError) as error:
+        kind(**{**usual[kind], **changes})
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_endless_sweeps_are_refused():
+    endless = SweptSine(first=1e6, last=1e7, duration=1e6, acceleration=1.0)
+    with pytest.raises(InputError, match="oscillations: expected less than"):
+        endless.pieces()

@@ -1,0 +1,227 @@
+"""Shaken structures against independent integrations, and what the record must not change."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from orchestrate import InputError, Random, Sampled, Shock, Structure, SweptSine, shake
+from orchestrate.laboratory.shake import ShakeJob, transient_time
+
+BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007, e=0.6)
+SWEEP = SweptSine(first=40.0, last=52.0, duration=1.5, acceleration=4.9)
+OPEN = (0.0, 2e-4, 0.0, 0.0)  # a start with a gap: the reference knows of no permanent contact
+SIGNALS = {
+    "sweep": SWEEP,
+    "log sweep down": SweptSine(
+        first=60.0, last=30.0, duration=1.0, spacing="log", acceleration=[(20.0, 1.0), (70.0, 9.0)]
+    ),
+    "random": Random(psd=[(10.0, 1.0), (200.0, 0.2)], duration=0.7, seed=5),
+    "shock": Shock(peak=100.0, length=0.011, delay=0.01, duration=0.2),
+    "sawtooth": Shock(peak=100.0, length=0.011, shape="sawtooth", duration=0.2),
+    "samples": Sampled(
+        acceleration=np.random.default_rng(1).normal(size=200).tolist(), sample_rate=400.0
+    ),
+}
+
+
+def exact(signal):
+    """The signal as a function of one time, by its definition where it has a simple one."""
+    if isinstance(signal, SweptSine):
+        return lambda t: float(signal(t))
+    pieces = signal.pieces(1e-10)  # its own test shows that these are the signal
+    return lambda t: float(pieces(np.array([t]))[0])
+
+
+def quiet_until(shock):
+    """Where an integration has to begin anew: the pulse's corners."""
+    return [shock.delay, shock.delay + shock.length] if isinstance(shock, Shock) else []
+
+
+def linear_motion(mass, spring, damper, signal, times):
+    """Displacement of one oscillator in the box, by DOP853."""
+
+    def rates(t, y):
+        return [y[1], -(spring * y[0] + damper * y[1]) / mass - acceleration(t)]
+
+    acceleration = exact(signal)
+    y, found = [0.0, 0.0], []
+    ends = [0.0, *(t for t in quiet_until(signal) if t > 0.0), float(times[-1])]
+    for begin, end in zip(ends[:-1], ends[1:], strict=True):
+        inside = times[(times >= begin) & ((times < end) | (end == ends[-1]))]
+        grid = np.union1d(inside, [end])
+        run = solve_ivp(
+            rates, (begin, end), y, "DOP853", grid, rtol=1e-11, atol=1e-14, max_step=1e-3
+        )
+        found.append(run.y[0, : len(inside)])
+        y = run.y[:, -1]
+    return np.concatenate(found)
+
+
+@pytest.mark.parametrize("name", SIGNALS)
+def test_bonded_structure_is_the_linear_oscillator(name):
+    signal = SIGNALS[name]
+    data = shake(BEAM.as_bonded(), signal, sample_rate=500.0, accuracy=1e-8, progress=False)
+    sums = [getattr(BEAM, x + "1") + getattr(BEAM, x + "2") for x in "mkd"]
+    expected = linear_motion(*sums, signal, data.time.values)
+    assert np.abs(data.x1.values - expected).max() <= 1e-7 * np.abs(expected).max()
+    assert (data.x1 == data.x2).all() and data.sizes["impact"] == 0
+    box = [exact(signal)(t) for t in data.time.values[1:-1]]
+    peak = np.abs(box).max()
+    assert np.abs(data.box_acceleration.values[1:-1] - box).max() <= 1e-7 * peak
+    felt = -(sums[1] * data.x1 + sums[2] * data.v1) / sums[0]
+    assert np.allclose(data.a1_abs, felt, rtol=1e-12, atol=1e-12)
+
+
+def reference(structure, signal, end):
+    """Impact by impact, by SciPy's events: times and closing speeds up to the first sticking."""
+    s, acceleration = structure, exact(signal)
+
+    def rates(t, y):
+        a = acceleration(t)
+        one = -(s.k1 * y[0] + s.d1 * y[2]) / s.m1 - a
+        return [y[2], y[3], one, -(s.k2 * y[1] + s.d2 * y[3]) / s.m2 - a]
+
+    def gap(t, y):
+        return y[1] - y[0] if t > begin + 1e-9 else 1.0
+
+    gap.terminal, gap.direction = True, -1.0
+    begin, y, impacts = 0.0, np.array(OPEN), []
+    while True:
+        run = solve_ivp(
+            rates, (begin, end), y, "DOP853", rtol=1e-12, atol=1e-15, events=gap, max_step=2e-3
+        )
+        if run.status != 1:
+            return np.array(impacts), run.y[:, -1]
+        begin, y = float(run.t[-1]), run.y[:, -1].copy()
+        closing = y[2] - y[3]
+        impacts.append((begin, closing))
+        mean = (s.m1 * y[2] + s.m2 * y[3]) / (s.m1 + s.m2)
+        y[2] = mean - s.e * closing * s.m2 / (s.m1 + s.m2)
+        y[3] = mean + s.e * closing * s.m1 / (s.m1 + s.m2)
+        y[1] = y[0]
+
+
+def random_structure(seed):
+    draw = np.random.default_rng(seed).uniform
+    m1, f1 = draw(0.5, 2.0), draw(30.0, 60.0)
+    return Structure.from_halves(
+        **{"m1": m1, "m2": m1 * draw(0.4, 2.0), "f1": f1, "f2": f1 * draw(1.1, 1.8)},
+        **{"zeta1": draw(0.003, 0.02), "zeta2": draw(0.003, 0.02), "e": draw(0.5, 0.9)},
+    )
+
+
+def compare_impacts(seed, duration):
+    structure = random_structure(seed)
+    draw = np.random.default_rng(seed + 1000).uniform
+    first = structure.f1 * draw(0.7, 1.0)
+    signal = SweptSine(first=first, last=1.4 * first, duration=duration, acceleration=5.0)
+    data = shake(structure, signal, start=OPEN, accuracy=1e-10, progress=False)
+    impacts, _ = reference(structure, signal, duration)
+    times = data.impact_time.values
+    alike = min(len(times), len(impacts), int(np.argmax(data.sticks.values)) or 10**9)
+    away = np.abs(times[:alike] - impacts[:alike, 0]) * structure.f1
+    chaos = np.flatnonzero(away > 1e-7)
+    return alike, int(chaos[0]) if len(chaos) else alike, away
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_impacts_of_a_swept_sine_are_those_of_an_independent_integration(seed):
+    alike, regular, away = compare_impacts(seed, 0.6)
+    assert alike >= 5
+    # what differs has grown by itself, as in chaos: never more than a factor of 1000 an impact
+    assert regular == alike or away[regular] <= 1e3 * max(away[regular - 1], 1e-11)
+    assert regular >= 5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20))
+def test_impacts_of_twenty_structures(seed):
+    alike, regular, away = compare_impacts(seed, 2.0)
+    assert regular >= min(alike, 5)
+    assert regular == alike or away[regular] <= 1e3 * max(away[regular - 1], 1e-11)
+
+
+@pytest.mark.parametrize("name", SIGNALS)
+def test_the_record_does_not_change_the_motion(name):
+    """Not the sampling rate, not the parts in which it is computed: to the last bit."""
+    data = shake(BEAM, SIGNALS[name], sample_rate=300.0, progress=False)
+    finer = shake(BEAM, SIGNALS[name], sample_rate=900.0, progress=False)
+    for column in ("x1", "x2", "v1", "v2", "contact_force", "a1_abs"):
+        assert (data[column].values == finer[column].values[::3]).all(), column
+    for column in ("impact_time", "impact_velocity", "impulse", "sticks"):
+        assert (data[column].values == finer[column].values).all(), column
+
+
+def test_parts_of_a_run_go_on_from_each_other(monkeypatch):
+    whole = shake(BEAM, SWEEP, sample_rate=777.0, progress=False)
+    monkeypatch.setattr(ShakeJob, "chunk", 101)
+    parts = shake(BEAM, SWEEP, sample_rate=777.0, progress=False)
+    assert whole.sizes["impact"] > 50
+    assert whole.drop_attrs().identical(parts.drop_attrs())
+
+
+def test_twice_the_level_twice_the_motion():
+    data = shake(BEAM, SWEEP, progress=False)
+    louder = dataclasses.replace(SWEEP, acceleration=2.0 * SWEEP.acceleration)
+    twice = shake(BEAM, louder, progress=False)
+    assert (twice.x1.values == 2.0 * data.x1.values).all()
+    assert (twice.impulse.values == 2.0 * data.impulse.values).all()
+
+
+def test_a_slow_sweep_answers_like_the_steady_state():
+    """Bonded, order 1 at the end of a slow sweep is the transfer function there."""
+    sweep = SweptSine(first=20.0, last=22.0, duration=20.0, acceleration=1.0)
+    data = shake(BEAM.as_bonded(), sweep, sample_rate=2000.0, progress=False)
+    end = data.isel(time=slice(-1000, None))
+    angle = sweep.phase(end.time.values)
+    basis = np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    (s, c), *_ = np.linalg.lstsq(basis, end.a1_abs.values, rcond=None)
+    m, k, d = (getattr(BEAM, x + "1") + getattr(BEAM, x + "2") for x in "mkd")
+    w = 2.0 * math.pi * float(sweep.frequency(end.time.values.mean()))
+    transfer = (k + 1j * w * d) / (k - m * w**2 + 1j * w * d)
+    assert math.isclose(math.hypot(s, c), abs(transfer), rel_tol=5e-3)
+
+
+def test_transient_time_is_when_a_thousandth_is_left():
+    bonded = BEAM.as_bonded()
+    data = shake(bonded, Shock(peak=100.0, length=0.005, duration=8.0), sample_rate=2000.0)
+    end = float(data.transient_time)
+    energy = np.hypot(data.x1, data.v1 / (2.0 * math.pi * 48.0)).values
+    late = energy[np.searchsorted(data.time.values, end + 0.005)]
+    assert math.isclose(late / energy[20], 1e-3, rel_tol=0.1)
+    undamped = Structure(d1=0.0)
+    assert transient_time(undamped) == math.inf
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"excitation": 3.0}, "excitation = 3.0: expected a SweptSine, Random, Shock or Sampled"),
+        ({"structure": 3.0}, "structure = 3.0: expected a Structure"),
+        ({"sample_rate": -1.0}, "sample_rate = -1.0: expected a number > 0"),
+        ({"sample_rate": 1e12}, "sample_rate = 1000000000000.0 Hz: expected at most"),
+        ({"accuracy": 0.5}, "accuracy = 0.5: expected 1e-10 <= accuracy <= 0.01"),
+        ({"start": (1.0, 0.0, 0.0, 0.0)}, "start = "),
+    ],
+)
+def test_mistakes_are_one_line(given, words):
+    asked = {"structure": BEAM, "excitation": SWEEP, **given}
+    with pytest.raises(InputError) as error:
+        shake(**asked)
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_stored_run_goes_on_and_is_read_again(tmp_path):
+    path = tmp_path / "run.nc"
+    first = shake(BEAM, SWEEP, store=path, progress=False)
+    again = shake(BEAM, SWEEP, store=path, progress=False)
+    assert first.identical(again)
+    assert again.attrs["title"].startswith("Shaken by SweptSine(first=40.0, last=52.0")
+    other = dataclasses.replace(SWEEP, last=53.0)
+    with pytest.raises(InputError, match="last = 52.0 there, 53.0 here"):
+        shake(BEAM, other, store=path, progress=False)
