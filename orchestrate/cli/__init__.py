@@ -32,6 +32,7 @@ from . import (
     paper,
     passage,
     resonance,
+    shake,
     simulate,
     spectra,
     sweep,
@@ -40,7 +41,7 @@ from .options import Commands, sets_text
 from .process import Terminated, outputs, signals
 
 COMMANDS = (
-    *(build, simulate, resonance, spectra, sweep, map),
+    *(build, simulate, shake, resonance, spectra, sweep, map),
     *(lyapunov, attractors, basin, orbit, branch, border),
     *(couple, capture, passage, jump_voltages, drive_branch),
     *(explore, paper),

@@ -7,6 +7,7 @@ import hashlib
 import json
 import math
 import os
+import re
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -203,6 +204,8 @@ def brief(name: str, value: Any) -> str:
 
     if name in ("direction", "over") and value != "frequency":
         return "-".join(value) if isinstance(value, tuple) else str(value)
+    if name == "excitation":  # of the laboratory
+        return re.sub(r"[^a-zA-Z0-9.]+", "-", value.label)
     if name in ("bifurcation", "switch"):
         return "" if value is None else f"{name}{value}"
     varied = isinstance(value, tuple) and name in (*PARAMETERS, "values", "limits")

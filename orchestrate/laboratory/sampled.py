@@ -54,6 +54,11 @@ class Sampled(ExcitationSignal):
         put(self, "duration", (len(values) - 1) / self.sample_rate)
 
     @property
+    def label(self) -> str:
+        """How many samples, and how often."""
+        return f"{len(self.acceleration)} samples at {self.sample_rate:g} Hz"
+
+    @property
     def usual_rate(self) -> float:
         """Its own, Hz."""
         return self.sample_rate

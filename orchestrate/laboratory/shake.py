@@ -130,7 +130,10 @@ class ShakeJob(Question):
                 "transient_time": variable((), transient_time(self.structure), "s", transient),
             },
             {"time": variable("time", self.times(), "s", "time from the start")},
-            {"title": f"Shaken by {self.excitation!r}: {self.structure.label()}"},
+            {
+                "title": f"Shaken by {self.excitation.label}: {self.structure.label()}",
+                "excitation": self.excitation.label,
+            },
         )
 
 
@@ -202,8 +205,8 @@ def shake(
     >>> beam = orchestrate.Structure.from_file("beam")
     >>> sweep = orchestrate.SweptSine(first=10.0, last=14.0, duration=4.0, acceleration=0.2)
     >>> history = orchestrate.shake(beam, sweep, sample_rate=500.0)
-    >>> history.sizes["time"], bool(history.sizes["impact"] > 100)
-    (2001, True)
+    >>> history.sizes["time"], history.sizes["impact"]
+    (2001, 94)
     """
     if not isinstance(excitation, ExcitationSignal):
         kinds = "expected a SweptSine, Random, Shock or Sampled, or a sum of them"

@@ -64,6 +64,11 @@ class Shock(ExcitationSignal):
             raise InputError(f"duration = {self.duration!r} s: {text}")
 
     @property
+    def label(self) -> str:
+        """Its shape, peak and length."""
+        return f"{self.shape} shock, {self.peak:.4g} m/s2 for {1e3 * self.length:.4g} ms"
+
+    @property
     def usual_rate(self) -> float:
         """A hundred samples in the pulse, Hz."""
         return 100.0 / self.length

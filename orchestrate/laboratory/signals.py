@@ -84,6 +84,11 @@ class ExcitationSignal(ABC):
 
     @property
     @abstractmethod
+    def label(self) -> str:
+        """What it is in a few words, for titles and names of files."""
+
+    @property
+    @abstractmethod
     def usual_rate(self) -> float:
         """A sampling rate that shows all of it, Hz."""
 
@@ -123,6 +128,11 @@ class SumOfSignals(ExcitationSignal):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "duration", max(part.duration for part in self.parts))
+
+    @property
+    def label(self) -> str:
+        """All of them."""
+        return " + ".join(part.label for part in self.parts)
 
     @property
     def usual_rate(self) -> float:

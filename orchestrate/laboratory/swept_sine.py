@@ -102,6 +102,11 @@ class SweptSine(ExcitationSignal):
         return profile
 
     @property
+    def label(self) -> str:
+        """Its frequencies and duration."""
+        return f"swept sine {self.first:g} to {self.last:g} Hz in {self.duration:.4g} s"
+
+    @property
     def usual_rate(self) -> float:
         """Twenty samples in the shortest period, Hz."""
         return 20.0 * max(self.first, self.last)

@@ -212,11 +212,30 @@ PAPER = [
     (["--figures", "5,,7"], ["figures: nothing"]),
     (["--figures", "spectra", "--jobs", "0"], ["jobs = 0"]),
 ]
+SWEPT = ["--swept-sine", "8:20", "--g", "1"]
+LABORATORY = [
+    ([], ["nothing given", "--swept-sine, --random, --shock"]),
+    ([*SWEPT, "--shock", "trapezoid"], ["--swept-sine and --shock given", "one of"]),
+    (SWEPT, ["nothing given", "one of duration and rate"]),
+    (["--swept-sine", "8:20", "--duration", "2"], ["level", "--g and --acceleration"]),
+    ([*SWEPT, "--duration", "2", "--seed", "1"], ["--seed", "with --random alone"]),
+    ([*SWEPT, "--duration", "-2"], ["--duration -2", "a number > 0"]),
+    ([*SWEPT, "--duration", "2", "--spacing", "cubic"], ["spacing = 'cubic'", "linear, log"]),
+    ([*SWEPT, "--duration", "2", "--accuracy", "1"], ["accuracy = 1.0", "<= 0.01"]),
+    (["--swept-sine", "8", "--g", "1", "--duration", "2"], ["--swept-sine 8", "FIRST:LAST"]),
+    (["--random", "5-9", "--duration", "2"], ["--random 5-9", "HZ:VALUE"]),
+    (["--random", "5:1,9:nan", "--duration", "2"], ["--random 5:1,9:nan", "HZ:VALUE"]),
+    (["--random", "5:1,9:1"], ["--random", "--duration"]),
+    (["--random", "5:1,9:1", "--duration", "2", "--seed", "x"], ["--seed x", "whole number"]),
+    (["--shock", "sine", "--length", "1", "--g", "1"], ["shape = 'sine'", "half-sine"]),
+    (["--shock", "sawtooth", "--g", "1"], ["--shock", "--length"]),
+]
 MISTAKES = [
     (command, options, words)
     for command, cases in (
         ("sweep", SWEEP),
         ("simulate", [*SIMULATE, *SHAKEN]),
+        ("shake", LABORATORY),
         ("resonance", RESONANCE),
         ("map", MAP),
         ("lyapunov", LYAPUNOV),

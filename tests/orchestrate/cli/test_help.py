@@ -16,7 +16,17 @@ from orchestrate.cli.options import values_of
 from .commands import ROOT
 
 COMMANDS = (
-    *("build", "simulate", "resonance", "spectra", "sweep", "map", "lyapunov", "attractors"),
+    *(
+        "build",
+        "simulate",
+        "shake",
+        "resonance",
+        "spectra",
+        "sweep",
+        "map",
+        "lyapunov",
+        "attractors",
+    ),
     *("basin", "orbit", "branch", "border", "couple", "capture", "passage", "jump-voltages"),
     *("drive-branch", "explore", "paper"),
 )

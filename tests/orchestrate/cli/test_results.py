@@ -195,6 +195,32 @@ def test_a_motion_with_the_bonded_structure_beside_it(ask, folder):
     assert shows_something(next(folder.glob("*.png")))
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (
+            ("--swept-sine", "12:14", "--duration", "2", "--g", "0.02", "--beside"),
+            ("no impacts", "delaminated:", "impacts, the hardest of"),
+        ),
+        (
+            ("--swept-sine", "20:10", "--rate", "20", "--spacing", "log", "--g", "5:0.01,50:0.1"),
+            ("largest accelerations: box 0.", "impacts"),
+        ),
+        (("--random", "5:0.1,40:0.1", "--duration", "2"), ("largest gap", "impacts")),
+        (
+            ("--shock", "half-sine", "--length", "0.011", "--acceleration", "49"),
+            ("box 49, masses", "4 impacts", "no permanent contact begins"),
+        ),
+    ],
+)
+def test_shaken_as_in_the_laboratory(ask, folder, options, words):
+    done = ask("shake", "--structure", "beam", "--sample-rate", "400", *options)
+    assert done.code == 0, done.err
+    assert all(word in done.out for word in words), done.out
+    assert len(list(folder.glob("*.nc"))) == 1 + ("--beside" in options)
+    assert shows_something(next(folder.glob("*.png")))
+
+
 def test_spectra(ask, folder):
     short = ("--transient", "300", "--periods", "8", "--points", "256")
     done = ask("spectra", "--eta", "1.047", *short)

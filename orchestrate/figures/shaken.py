@@ -1,0 +1,87 @@
+"""A record of the laboratory: envelopes of accelerations and gap over the time, and the impacts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .labels import about, prefix
+from .style import BLACK, BLUE, RED, entitle, in_our_look, say
+
+COLUMNS = 400  # of an envelope
+SHORT = 5000  # points that are drawn as a line
+MASSES: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("a1_abs", {"color": BLUE, "label": "mass 1"}),
+    ("a2_abs", {"color": RED, "label": "mass 2"}),
+)
+
+
+@in_our_look
+def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
+    """Draw a record: what the box did, what both masses felt, the gap and the impacts.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.shake`.
+    title : str
+        What is shaken; by default the structure.
+    bonded : xarray.Dataset, optional
+        The same of the bonded structure, drawn over it.
+    """
+    figure = Figure(figsize=(10.4, 7.2), layout="constrained")
+    rows = figure.subplots(4, 1, sharex=True, height_ratios=(1.0, 1.6, 1.2, 1.2))
+    entitle(figure, title or f"{data.attrs['excitation']}; {about(data)}")
+    box, masses, gap, impacts = rows
+    envelope(box, data, "box_acceleration", 1.0, color=BLACK)
+    box.set_ylabel("box in m/s$^2$")
+    for name, style in MASSES:
+        envelope(masses, data, name, 1.0, alpha=0.55, **style)
+    if bonded is not None:
+        outline(masses, bonded)
+    masses.set_ylabel("masses in m/s$^2$")
+    masses.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
+    factor, letter = prefix(float(data.x_rel.max()))
+    envelope(gap, data, "x_rel", factor, color=BLACK)
+    gap.set_ylabel(f"gap in {letter}m")
+    draw_impacts(impacts, data)
+    impacts.set(xlabel="time in s", xlim=(0.0, float(data.time[-1])))
+    return figure
+
+
+def draw_impacts(axes: Axes, data: xr.Dataset) -> None:
+    """Each impact's impulse at its time."""
+    count = data.sizes["impact"]
+    axes.set_ylabel("impulse in N s")
+    if not count:
+        say(axes, "no impacts")
+        return
+    size = 5 if count < COLUMNS else 2
+    axes.plot(data.impact_time, data.impulse, ".", color=RED, markersize=size)
+    axes.set_ylim(bottom=0.0)
+
+
+def outline(axes: Axes, bonded: xr.Dataset) -> None:
+    """The bonded structure's acceleration, as the two lines that it stays between."""
+    time, low, high = extremes(bonded.time.values, bonded.a1_abs.values)
+    axes.plot(time, high, color=BLACK, linewidth=0.9, label="both, bonded")
+    axes.plot(time, low, color=BLACK, linewidth=0.9)
+
+
+def extremes(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time, least and largest value of equal parts of a signal."""
+    edges = np.linspace(0, len(time), min(COLUMNS, len(time)) + 1).astype(int)[:-1]
+    return time[edges], np.minimum.reduceat(values, edges), np.maximum.reduceat(values, edges)
+
+
+def envelope(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
+    """A signal: itself where it is short, between its least and largest values where it is long."""
+    time, values = data.time.values, data[name].values / factor
+    if len(time) <= SHORT:
+        axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})
+        return
+    axes.fill_between(*extremes(time, values), linewidth=0.4, **style)
