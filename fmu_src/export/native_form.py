@@ -8,15 +8,14 @@ from pathlib import Path
 
 from ..runtime.table import Model
 from .archive import guid_of, write_archive
-from .compile_kernel import compile_objects
+from .compiler import link_all
 from .description_fmi2 import fmi2_xml
 from .description_fmi3 import fmi3_xml
 from .documentation import documentation_files
 from .errors import require
-from .linking import link_all
 from .model_header import model_header
 from .platforms import binaries, usual
-from .source_code import source_files, units
+from .source_code import kernel_source, source_files, units
 from .sources import (
     Files,
     check_unedited,
@@ -27,7 +26,6 @@ from .sources import (
     read,
     texts,
 )
-from .translation.kernel import translate
 
 HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
@@ -112,15 +110,16 @@ def export(
     header = {"model.h": model_header(model, token, digest)}
     shim = {**shim_sources(version), **fmi_headers(version), **header}
     told = plain(model) if is_plain else model
-    sources = {**shim, "kernel.c": translate(model.entries).encode()}
+    kernel = kernel_source(folder)
+    sources = {**shim, "kernel.c": kernel}
     files = source_files(model.name, version, sources)
     files["modelDescription.xml"] = description(told, token, version, sources)
-    made = link_all(compile_objects(folder, platforms or usual()), model.name, shim)
+    made = link_all(platforms or usual(), model.name, kernel, shim)
     files.update(binaries(version, model.name, made))
     form = f"{version}-plain" if is_plain else version
     files.update(documentation_files(folder, digest, form))
-    kernel = {k: v for k, v in model_sources(folder).items() if k.startswith("kernels/")}
-    files.update({f"documentation/{name}": content for name, content in kernel.items()})
+    python = {k: v for k, v in model_sources(folder).items() if k.startswith("kernels/")}
+    files.update({f"documentation/{name}": content for name, content in python.items()})
     check_unedited()
     path = target / f"{model.name}.fmu"
     write_archive(path, files)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 from xml.etree import ElementTree as ET
 
 from . import description
-from .sources import Files
+from .sources import Files, load
+from .translation.kernel import translate
 
 OPTION = "-ffp-contract=off"  # the one that a compiler needs
 CMAKE = """\
@@ -22,6 +24,23 @@ if(NOT MSVC)
     target_compile_options({name} PRIVATE {option})
 endif()
 """
+
+
+@functools.cache
+def kernel_source(folder: str) -> bytes:
+    """The kernel of a model in C, of which all compiled forms are made.
+
+    Parameters
+    ----------
+    folder : str
+        The model's, below ``fmu_src/models``.
+
+    Raises
+    ------
+    CannotExport
+        Where a line of it cannot be translated.
+    """
+    return translate(load(folder).entries).encode()
 
 
 def units(files: Files) -> list[str]:

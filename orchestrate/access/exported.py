@@ -142,7 +142,7 @@ def exported_once(name: str, form: str, folder: Path, level: int) -> Description
 @functools.cache
 def announce(folder: Path, level: int) -> None:
     """Say once that it takes long."""
-    text = "exporting FMUs to %s, this once: compiling takes up to a minute a model"
+    text = "exporting FMUs to %s, this once: compiling takes some seconds a model"
     log.log(level, text, folder)
 
 

@@ -274,7 +274,6 @@ def campaign(seed: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 def compile_all() -> None:
     """Compile kernel and search by Numba, in this process for good."""
     import numba
-
     from fmu_src.export.compile_kernel import jit_kernel, kernel_modules
 
     jit_kernel(kernel_modules())
