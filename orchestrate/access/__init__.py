@@ -23,7 +23,7 @@ from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
 from .events import STATE, EventInstance, Impacts
-from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, up_to_date
+from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_of, up_to_date
 from .instance import Instance
 from .models import OSCILLATOR, SHAKER
 from .play import PLAYED, Played, play
@@ -55,5 +55,6 @@ __all__ = [
     "play",
     "room_for_samples",
     "sampled",
+    "sources_of",
     "up_to_date",
 ]
