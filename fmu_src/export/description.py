@@ -68,7 +68,7 @@ DISPLAY_UNITS = {  # how many of them an SI unit is
     "s": {"ms": 1e3},
 }
 LOG_CATEGORIES = {
-    "logStatusError": "Errors: what was wrong, its value and what is expected",
+    "logStatusError": "Errors and discarded steps: what was wrong, its value and what is expected",
     "logAll": "All messages",
 }
 

@@ -31,9 +31,19 @@ HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
     "fmi3": ("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h"),
 }
+NO_PREFIX = b"#define fmi2FullName(name) name\n"
+STANDARD_PREFIX = b"""\
+#if defined(FMI2_FUNCTION_PREFIX) && !defined(FMI2_OVERRIDE_FUNCTION_PREFIX)
+#define fmi2Paste(a, b) a##b
+#define fmi2PasteB(a, b) fmi2Paste(a, b)
+#define fmi2FullName(name) fmi2PasteB(FMI2_FUNCTION_PREFIX, name)
+#else
+#define fmi2FullName(name) name
+#endif
+"""
 SHIM = {
-    "fmi2": ("core.h", "core.c", "self_test.c", "fmi2.c"),
-    "fmi3": ("core.h", "core.c", "self_test.c", "fmi3.c", "fmi3_absent.c"),
+    "fmi2": ("names.h", "core.h", "core.c", "self_test.c", "fmi2.c"),
+    "fmi3": ("names.h", "core.h", "core.c", "self_test.c", "fmi3.c", "fmi3_absent.c"),
 }
 
 
@@ -54,7 +64,14 @@ def fmi_headers(version: str) -> Files:
     """The standard's C headers, which come with FMPy."""
     require("fmpy", "brings the C headers of the FMI standard")
     folder = resources.files("fmpy") / "c-code"
-    return {name: (folder / name).read_bytes() for name in HEADERS[version]}
+    return {name: with_prefix((folder / name).read_bytes()) for name in HEADERS[version]}
+
+
+def with_prefix(header: bytes) -> bytes:
+    """FMI 2.0's header as the standard has it: FMPy's own knows no prefix of functions."""
+    if b"defined(FMI2_FUNCTION_PREFIX)" in header:
+        return header
+    return header.replace(NO_PREFIX, STANDARD_PREFIX)
 
 
 def guid(folder: str, form: str) -> str:

@@ -116,6 +116,21 @@ def parameter(name: str, unit: str, start: float, description: str, **more: Any)
     return Variable(name, description, "parameter", unit, start=start, **given)
 
 
+def evaluation_limit(function: str) -> Variable:
+    """The parameter that bounds the longest communication step, by evaluations of a function."""
+    return parameter(
+        "evaluation_limit",
+        "",
+        10_000_000,
+        f"Evaluations of the {function} at which a communication step is discarded: the instance "
+        "stays where it was",
+        type=INTEGER,
+        variability="tunable",
+        minimum=1,
+        maximum=10_000_000,
+    )
+
+
 def drive(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
     """An input."""
     given = {"minimum": -HUGE, "maximum": HUGE, **more}
@@ -217,6 +232,9 @@ class Model:
     written_only : tuple of int
         First slot and number of slots that a step writes and never reads: a step that fails need
         not put them back.
+    limited : int
+        The code of ``advance`` where the parameter ``evaluation_limit`` was reached: the step is
+        discarded, no error.
     time_slot, stop_slot, set_slot : int
         Slots of the communication point reached, of the flag that ends a step at its first event,
         and of the flag to be raised when one of ``polynomial`` is set, to whatever value.
@@ -255,6 +273,7 @@ class Model:
     variables: tuple[Variable, ...]
     memory_size: int
     written_only: tuple[int, int]
+    limited: int
     time_slot: int
     stop_slot: int
     set_slot: int

@@ -94,6 +94,7 @@ def module_of(folder, body):
         ("m[0] = max(1, 2)\nreturn 0", 11, "expected real numbers"),
         ("m[0] = helper(m, x=time)\nreturn 0", 11, "expected arguments without names"),
         ("m[0] = 'text'\nreturn 0", 11, "'text'; expected a number"),
+        ("return entry(m, time)", 11, "entry calls itself; expected a loop, no recursion"),
     ],
 )
 def test_what_is_outside_the_subset_is_refused(tmp_path, body, line, text):
@@ -103,6 +104,17 @@ def test_what_is_outside_the_subset_is_refused(tmp_path, body, line, text):
         translate({"entry": module.entry})
     told = str(caught.value)
     assert f"outside.py, line {line}: " in told and text in told and "\n" not in told
+
+
+def test_recursion_through_another_function_is_refused(tmp_path):
+    """At the call that closes the circle: nobody could say how much stack it takes."""
+    module = module_of(tmp_path, "return other(m, time)")
+    path = tmp_path / "outside.py"
+    other = "def other(m, time):\n    m[0] += 1.0\n    return entry(m, time)\n"
+    path.write_text(f"{path.read_text('utf-8')}\n\n{other}", "utf-8")
+    module.__spec__.loader.exec_module(module)
+    with pytest.raises(CannotExport, match="outside.py, line 15: entry calls itself"):
+        translate({"entry": module.entry})
 
 
 def test_what_would_be_evaluated_too_early_is_refused(tmp_path):

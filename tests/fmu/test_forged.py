@@ -23,6 +23,7 @@ SLOTS = {
     "TwoMassImpactOscillator": [
         (-3, 0),
         (oscillator.X1, oscillator.X1_SAMPLE + 2),
+        (oscillator.EVALUATIONS, oscillator.EVALUATION_LIMIT + 1),
         (oscillator.TIME, oscillator.SIZE),
     ],
     "MotorShaker": [(-3, 0), (shaker.BOX_POSITION, shaker.SIZE)],
@@ -67,6 +68,9 @@ def test_every_slot_forged(form, model, tmp_path):
         (oscillator.IMPACT_COUNT, 0.5, "impact_count = 0.5"),
         (oscillator.IMPACT_COUNT, 1e18, "impact_count = 1"),  # beyond FMI's integers
         (oscillator.X1, float("nan"), "x1 = nan"),
+        (oscillator.EVALUATIONS, -1.0, "evaluations = -1"),
+        (oscillator.EVALUATION_LIMIT, 0.0, "evaluation_limit = 0"),
+        (oscillator.EVALUATION_LIMIT, 1e9, "evaluation_limit = 1000000000"),
         (oscillator.MODE, 7.0, "7.0 in slot"),
         (oscillator.MODE, 7.0, "0 in flight, 1 in permanent contact, 2 where bonded"),
         (oscillator.SERIES, 1e6, "0, or 8 or 12 in a short flight"),

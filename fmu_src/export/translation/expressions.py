@@ -98,7 +98,9 @@ class Expressions(ABC):
         """The name in C of a module's number."""
 
     @abstractmethod
-    def function(self, function: FunctionType, kinds: tuple[Type, ...]) -> tuple[str, Type]:
+    def function(
+        self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
+    ) -> tuple[str, Type]:
         """The name in C of a function for arguments of these types, and its result's type."""
 
     @abstractmethod
@@ -264,7 +266,7 @@ class Expressions(ABC):
         if not isinstance(thing, FunctionType):
             raise self.refuse(node, name, f"a function of the kernel, or {', '.join(BUILT_IN)}")
         values = self.operands(node.args)
-        known, result = self.function(thing, tuple(value.type for value in values))
+        known, result = self.function(node, thing, tuple(value.type for value in values))
         return Value(f"{known}({', '.join(value.text for value in values)})", result)
 
     def built_in(self, node: ast.Call, name: str) -> Value:

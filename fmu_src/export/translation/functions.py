@@ -48,6 +48,8 @@ class Unit:
 class Kernel(Protocol):
     """What a function has to know of the others."""
 
+    begun: set[FunctionType]
+
     def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
         """Another function, translated."""
 
@@ -130,8 +132,12 @@ class Body(Expressions):
         """The name in C of a module's number."""
         return self.kernel.constant(module, name)
 
-    def function(self, function: FunctionType, kinds: tuple[Type, ...]) -> tuple[str, Type]:
+    def function(
+        self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
+    ) -> tuple[str, Type]:
         """The name in C of another function, and its result's type."""
+        if function in self.kernel.begun:  # nobody could say how much stack it takes
+            raise self.refuse(node, f"{function.__name__} calls itself", "a loop, no recursion")
         unit = self.kernel.unit(function, kinds)
         return unit.name, unit.result
 

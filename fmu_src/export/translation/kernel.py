@@ -39,6 +39,11 @@ HEAD = """\
 
 #include <math.h>
 
+#if defined(FMI2_FUNCTION_PREFIX) || defined(FMI3_FUNCTION_PREFIX) || \\
+    defined(FMI3_ACTUAL_FUNCTION_PREFIX)
+#include "names.h"
+#endif
+
 #if defined(_MSC_VER)
 #define RESTRICT __restrict
 #else
@@ -84,19 +89,24 @@ class Translation:
         Names in C of the tuples used.
     names : dict of str to object
         What each name in C stands for.
+    begun : set of function
+        Those whose bodies are being read: a call of one of them is recursion.
     """
 
     units: dict[tuple[FunctionType, tuple[Type, ...]], Unit] = field(default_factory=dict)
     constants: dict[str, float] = field(default_factory=dict)
     structures: dict[Type, str] = field(default_factory=dict)
     names: dict[str, object] = field(default_factory=dict)
+    begun: set[FunctionType] = field(default_factory=set)
 
     def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
         """A function for arguments of these types, translated where it was not yet."""
         key = function, kinds
         if key not in self.units:
             unit = Unit(function, kinds, self.own_name(function.__name__, key, function.__module__))
+            self.begun.add(function)
             Body(self, unit).translate()
+            self.begun.remove(function)
             self.units[key] = unit
         return self.units[key]
 

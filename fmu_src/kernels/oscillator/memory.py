@@ -59,6 +59,8 @@ X1_SAMPLE = slot(SAMPLES)
 X2_SAMPLE = slot(SAMPLES)
 V1_SAMPLE = slot(SAMPLES)
 V2_SAMPLE = slot(SAMPLES)
+EVALUATIONS = slot()
+EVALUATION_LIMIT = slot()
 TIME = slot()  # communication point reached, s (the independent variable)
 
 # -- constants derived from the parameters ---------------------------------------------------------
@@ -169,7 +171,7 @@ CUBIC_SET = slot()
 SIZE = slot.used
 
 # -- return codes of the entry points --------------------------------------------------------------
-OK, UNFINISHED, NOT_FINITE, START_OVERLAP, START_BONDED = 0, 1, 2, 3, 4
+OK, UNFINISHED, NOT_FINITE, START_OVERLAP, START_BONDED, LIMITED = 0, 1, 2, 3, 4, 5
 FORGED = 100  # a saved state that this model never had; which slot, and why:
 NOT_A_NUMBER, NO_INPUT, NO_AGE, NO_MODE, NO_END_KIND, NO_SERIES = 0, 1, 2, 3, 4, 5
 NO_COUNT, NO_PHASE, NO_TIME, NO_GAP, NO_EVENT = 6, 7, 8, 9, 10

@@ -17,7 +17,7 @@ from .roots import lifted, walk
 
 WORK_BASE = 100000.0  # evaluations of the event function a step may take whatever its length,
 WORK_RATE = 256.0  # and in a time gamma, the shortest flight that is told from sticking,
-WORK_MOST = 1e7  # and at the very most: a second or two, compiled
+WORK_MOST = 1e7  # and at the very most: a second or two, compiled; EVALUATION_LIMIT may allow less
 
 
 def initialize(m, time):
@@ -37,7 +37,7 @@ def initialize(m, time):
         m[i] = 0.0
     for i in range(at.IMPACT_COUNT, at.SAMPLE_COUNT):
         m[i] = 0.0
-    for i in range(at.X1_SAMPLE, at.TIME):
+    for i in range(at.X1_SAMPLE, at.EVALUATION_LIMIT):
         m[i] = 0.0
     m[at.BOX_IMPULSE] = 0.0
     m[at.BOX_IMPULSE_MOMENT] = 0.0
@@ -90,9 +90,8 @@ def advance(m, time):
     m[at.TARGET] = time
     m[at.WORK] = 0.0
     m[at.STOPPED] = 0.0
-    m[at.WORK_LIMIT] = min(
-        WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA]
-    )
+    allowed = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * m[at.OMEGA] * abs(h) / m[at.GAMMA])
+    m[at.WORK_LIMIT] = min(allowed, m[at.EVALUATION_LIMIT])
     now = local_time(m, before)
     if inputs_changed(m):
         renew_segment(m, now)
@@ -104,7 +103,7 @@ def advance(m, time):
     tau = run_samples(m, before, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:
         m[at.REPORT] = m[at.START_TIME] + m[at.ORIGIN] / m[at.OMEGA]
-        return at.UNFINISHED
+        return at.LIMITED if m[at.WORK_LIMIT] < allowed else at.UNFINISHED
     if m[at.STOPPED] != 0.0:
         time = min(time, m[at.IMPACT_TIME])
     same = m[at.MODE] == mode and m[at.IMPACT_COUNT] == impacts
@@ -128,6 +127,7 @@ def coast(m, time):
         highest = m[at.X_REL]
         if not is_without_summit(m, now, tau):
             return at.UNFINISHED
+    m[at.WORK] = 0.0
     return arrive(m, time, tau, written(m, m[at.CUBIC_AGE] + now), highest, True)
 
 
@@ -176,6 +176,7 @@ def arrive(m, time, tau, left, highest, same):
         m[at.BOX_IMPULSE] = force
         m[at.BOX_IMPULSE_MOMENT] = moment
         m[at.X_REL_MAX] = highest
+        m[at.EVALUATIONS] = m[at.WORK]
     return code
 
 

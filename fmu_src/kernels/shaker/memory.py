@@ -41,6 +41,8 @@ MOTOR_ENERGY = slot()
 BOX_DAMPER_ENERGY = slot()
 BOX_FORCE_WORK = slot()
 STORED_ENERGY = slot()
+EVALUATIONS = slot()
+EVALUATION_LIMIT = slot()
 TIME = slot()  # communication point reached, s (the independent variable)
 
 # -- what is integrated, in this order -------------------------------------------------------------
@@ -80,6 +82,6 @@ OUTPUT_RATES = slot(TIME - BOX_POSITION)  # time derivatives of the outputs, whe
 SIZE = slot.used
 
 # -- return codes of the entry points --------------------------------------------------------------
-OK, UNFINISHED, NOT_FINITE, INERTIA = 0, 1, 2, 3
+OK, UNFINISHED, NOT_FINITE, INERTIA, LIMITED = 0, 1, 2, 3, 4
 FORGED = 100  # a saved state that this model never had; which slot, and why:
 NOT_A_NUMBER, NO_PHASE, NO_TIME, NO_FLAG = 0, 1, 2, 3

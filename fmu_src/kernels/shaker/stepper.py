@@ -13,7 +13,7 @@ from .outputs import write
 
 WORK_BASE = 100000.0  # evaluations of the right-hand side a step may take whatever its length,
 WORK_RATE = 200.0  # and for each radian of box, rotor or no-load speed,
-WORK_MOST = 1e7  # and at the very most: about a second, compiled
+WORK_MOST = 1e7  # and at the very most: about a second, compiled; EVALUATION_LIMIT may allow less
 # of the fastest decay's time constant: no sub-step is longer, the formula is not stable beyond
 STABLE = 8.0
 REGULAR = 1.000001  # M J over S^2, at least: the rotor is not all unbalance, nor the box all rotor
@@ -27,7 +27,9 @@ def initialize(m, time):
     int
         OK, or one of the codes of :mod:`.memory`.
     """
-    for i in range(at.BOX_POSITION, at.SIZE):
+    for i in range(at.BOX_POSITION, at.EVALUATION_LIMIT):
+        m[i] = 0.0
+    for i in range(at.TIME, at.SIZE):
         m[i] = 0.0
     m[at.TIME] = time
     m[at.FORCE_TIME] = time
@@ -64,17 +66,20 @@ def advance(m, time):
         fastest += abs(m[at.VOLTAGE]) / m[at.MOTOR_CONSTANT]
     m[at.TARGET] = time
     m[at.WORK] = 0.0
-    m[at.WORK_LIMIT] = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * max(length, 0.0))
+    allowed = min(WORK_MOST, WORK_BASE + WORK_RATE * fastest * max(length, 0.0))
+    m[at.WORK_LIMIT] = min(allowed, m[at.EVALUATION_LIMIT])
+    too_many = at.LIMITED if m[at.WORK_LIMIT] < allowed else at.UNFINISHED
     least = at.STAGES / STABLE * fastest_decay(m) * length
     if least > m[at.WORK_LIMIT]:
         m[at.WORK] = least
         m[at.REPORT] = before
-        return at.UNFINISHED
+        return too_many
     code = through(m, length)
     m[at.REPORT] += before
     if code != at.OK:
-        return code
+        return too_many if code == at.UNFINISHED else code
     m[at.TIME] = time
+    m[at.EVALUATIONS] = m[at.WORK]
     write(m)
     return finite(m)
 

@@ -17,6 +17,9 @@ MESSAGES = with_slots(
         "armature_resistance = {ARMATURE_RESISTANCE} Ohm (expected 0 H, or more), "
         "rotor_inertia = {ROTOR_INERTIA} kg.m2 with motor_constant = {MOTOR_CONSTANT} N.m/A, "
         "or box_damping = {BOX_DAMPING} N.s/m with box_mass = {BOX_MASS} kg",
+        at.LIMITED: "the step to time = {TARGET} s is discarded: evaluation_limit = "
+        "{EVALUATION_LIMIT}, it needs at least {WORK:0} evaluations, and reached {REPORT} s; "
+        "expected a shorter step, or a larger limit",
         at.NOT_FINITE: "the motion leaves the range of floating-point numbers in the step to "
         "time = {TARGET} s: voltage = {VOLTAGE} V, box_force = {BOX_FORCE} N, "
         "speed = {SPEED} rad/s; expected values that keep it finite",

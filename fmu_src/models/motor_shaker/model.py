@@ -17,6 +17,7 @@ MODEL = Model(
     variables=VARIABLES,
     memory_size=at.SIZE,
     written_only=(at.RATES, at.STATE - at.RATES),
+    limited=at.LIMITED,
     time_slot=at.TIME,
     stop_slot=at.STOP,
     set_slot=at.FORCE_SET,

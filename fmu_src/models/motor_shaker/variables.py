@@ -5,7 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from ...kernels.shaker import memory
-from ...runtime.table import LARGE, TINY, Variable, drive, numbered, output, parameter
+from ...runtime.table import (
+    INTEGER,
+    LARGE,
+    TINY,
+    Variable,
+    drive,
+    evaluation_limit,
+    numbered,
+    output,
+    parameter,
+)
 
 LIMIT = 1e30  # of start values and inputs: squares, sums and energies of them stay finite
 
@@ -152,5 +162,14 @@ OUTPUTS = (
         "Kinetic energy of box and rotor, and energy of the box's spring",
         STORED,
     ),
+    output(
+        "evaluations",
+        "",
+        "Evaluations of the right-hand side in the last communication step",
+        type=INTEGER,
+        variability="discrete",
+        minimum=0,
+    ),
 )
-VARIABLES = numbered(PARAMETERS + INPUTS + OUTPUTS, memory)
+LIMITS = (evaluation_limit("right-hand side"),)
+VARIABLES = numbered(PARAMETERS + INPUTS + OUTPUTS + LIMITS, memory)

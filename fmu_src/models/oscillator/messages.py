@@ -24,6 +24,10 @@ MESSAGES = with_slots(
         "{WORK_LIMIT:0}) reached only {REPORT} s, in "
         "{MODE:flight|permanent contact|bonded motion} after {IMPACT_COUNT} impacts; "
         "e = {E} and gamma = {GAMMA} decide how many impacts chattering has",
+        at.LIMITED: "the step to time = {TARGET} s is discarded: evaluation_limit = "
+        "{EVALUATION_LIMIT}, and {WORK:0} evaluations reached only {REPORT} s, in "
+        "{MODE:flight|permanent contact|bonded motion} after {IMPACT_COUNT} impacts; "
+        "expected a shorter step, or a larger limit",
         at.NOT_FINITE: "the motion leaves the range of floating-point numbers in the step to "
         "time = {TARGET} s: box_amplitude = {BOX_AMPLITUDE} m, "
         "box_frequency = {BOX_FREQUENCY} rad/s, box_acceleration = {BOX_ACCELERATION} m/s2; "

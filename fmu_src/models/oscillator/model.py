@@ -20,6 +20,7 @@ MODEL = Model(
     variables=VARIABLES,
     memory_size=at.SIZE,
     written_only=(at.X1_SAMPLE, 4 * at.SAMPLES),
+    limited=at.LIMITED,
     time_slot=at.TIME,
     stop_slot=at.STOP_AT_IMPACT,
     set_slot=at.CUBIC_SET,

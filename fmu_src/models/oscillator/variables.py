@@ -16,6 +16,7 @@ from ...runtime.table import (
     TINY,
     Variable,
     drive,
+    evaluation_limit,
     numbered,
     output,
     parameter,
@@ -244,6 +245,15 @@ VARIABLES = numbered(
     + samples("x1_sample", "m", "x1")
     + samples("x2_sample", "m", "x2")
     + samples("v1_sample", "m/s", "v1")
-    + samples("v2_sample", "m/s", "v2"),
+    + samples("v2_sample", "m/s", "v2")
+    + (
+        output(
+            "evaluations",
+            "",
+            "Evaluations of the event function in the last communication step",
+            **COUNT,
+        ),
+        evaluation_limit("event function"),
+    ),
     memory,
 )

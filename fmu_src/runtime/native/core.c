@@ -1,4 +1,5 @@
 /* Life cycle, checks and messages of an instance; see core.h. */
+#define DEFINE_VARIABLES
 #include "core.h"
 
 #include <math.h>
@@ -44,18 +45,23 @@ static bool is_whole(double value) {
 
 /* A value as people write it: Integers without a fraction, Booleans as words. */
 static void append_value(char *text, const Variable *variable, double value) {
-    if (variable->type == BOOLEAN && (value == 0 || value == 1)) append(text, value ? "true" : "false");
+    if (variable->type == BOOLEAN && (value == 0 || value == 1)) append(text, value != 0 ? "true" : "false");
     else if (variable->type == INTEGER && is_whole(value)) append_whole(text, value);
     else append_number(text, value);
 }
 
-Status refuse(Instance *instance, const char *call, const char *reason) {
+/* Report why a call is not done. */
+static Status complain(Instance *instance, Status status, const char *call, const char *reason) {
     char text[TEXT] = "";
     append(text, call);
     append(text, ": ");
     append(text, reason);
-    instance->report(instance, FAILED, text);
-    return FAILED;
+    instance->report(instance, status, text);
+    return status;
+}
+
+Status refuse(Instance *instance, const char *call, const char *reason) {
+    return complain(instance, FAILED, call, reason);
 }
 
 bool in_phase(Instance *instance, const char *call, int phases) {
@@ -245,7 +251,7 @@ static Status refuse_step(Instance *instance, const char *call, double current, 
     return refuse(instance, call, text);
 }
 
-/* Advance with a copy of the state to go back to. */
+/* Advance with a copy of the state to go back to: a step that reaches its limit of evaluations is discarded, and a shorter one may follow. */
 static Status advance(Instance *instance, const char *call, double target) {
     double *memory = instance->state.memory, reached = memory[TIME_SLOT];
     double before[MEMORY_SIZE - SKIP_COUNT];  /* what the step only writes need not be put back */
@@ -262,7 +268,7 @@ static Status advance(Instance *instance, const char *call, double target) {
     explain(text, memory, code);
     memcpy(memory, before, head);
     memcpy(memory + SKIP_FIRST + SKIP_COUNT, before + SKIP_FIRST, tail);
-    return refuse(instance, call, text);
+    return complain(instance, code == LIMITED_CODE ? DISCARD : FAILED, call, text);
 }
 
 Status step(Instance *instance, const char *call, double current, double size) {

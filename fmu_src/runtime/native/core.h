@@ -5,15 +5,18 @@
 #ifndef CORE_H
 #define CORE_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "model.h"
+#include "names.h"
 
 #if defined(__GNUC__) && !defined(_WIN32)
 /* names of this library alone, whatever options compile it: the C library, too, has a function step */
 #pragma GCC visibility push(hidden)
 #endif
+
+#include "model.h"
 
 /* The compiled kernel. */
 int kernel_initialize(double *memory, double time);

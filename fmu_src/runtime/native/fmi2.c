@@ -241,7 +241,11 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real current, fmi2Real size, fmi2Bool
 static fmi2Status co_simulation(fmi2Component c, const char *call) {
     return c ? refuse2(c, call, "this is co-simulation") : fmi2Error;
 }
+#if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-parameter"
+#elif defined(_MSC_VER)
+#pragma warning(disable : 4100)
+#endif
 #define ABSENT(NAME, ...) \
     fmi2Status NAME(fmi2Component c, __VA_ARGS__) { return co_simulation(c, #NAME); }
 ABSENT(fmi2NewDiscreteStates, fmi2EventInfo *info)

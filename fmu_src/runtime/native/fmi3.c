@@ -53,17 +53,17 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_def
     return (fmi3Status)enter_initialization(c, call);
 }
 
-static double impacts(const Instance *instance) { return instance->state.memory[EVENT_COUNT_SLOT]; }
+static double impacts(const Instance *instance) { return EVENT_CLOCK ? instance->state.memory[EVENT_COUNT_SLOT] : 0.0; }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
     Instance *instance = c;
     if (!instance) return fmi3Error;
     Status status = exit_initialization(instance, "fmi3ExitInitializationMode");
-    if (status == OK) instance->state.clock = EVENT_CLOCK && impacts(instance) > 0;
+    if (status == OK) instance->state.clock = impacts(instance) > 0;
     return (fmi3Status)status;
 }
 
-static fmi3Status change(Instance *instance, const char *call, int from, Phase to) {
+static fmi3Status change(Instance *instance, const char *call, int from, int to) {
     if (!instance || !in_phase(instance, call, from)) return fmi3Error;
     instance->state.phase = to;
     return fmi3OK;
@@ -282,6 +282,6 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Float64 size, fmi
     *last = instance->state.memory[TIME_SLOT];
     if (status != OK) return (fmi3Status)status;
     *early = *last < current + size;
-    *event_needed = instance->state.clock = EVENT_CLOCK && instance->event_mode && impacts(instance) > before;
+    *event_needed = instance->state.clock = instance->event_mode && impacts(instance) > before;
     return fmi3OK;
 }

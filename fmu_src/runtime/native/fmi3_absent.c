@@ -64,7 +64,11 @@ fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference refs[], size_t 
 #define ABSENT(NAME, ...)                                                                    \
     fmi3Status NAME(fmi3Instance c, __VA_ARGS__) { return absent(c, #NAME, "not provided, as modelDescription.xml says"); }
 
+#if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-parameter"
+#elif defined(_MSC_VER)
+#pragma warning(disable : 4100)
+#endif
 ABSENT(fmi3GetNumberOfVariableDependencies, fmi3ValueReference reference, size_t *count)
 ABSENT(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t elements[], fmi3ValueReference independents[], size_t others[],
        fmi3DependencyKind kinds[], size_t count)

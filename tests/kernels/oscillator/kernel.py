@@ -24,6 +24,7 @@ DEFAULTS = {
     "box_amplitude": 1.0,
     "box_frequency": 0.4,
     "x_rel_max_on": 1.0,
+    "evaluation_limit": 1e7,
 }
 # of a point of time
 OUTPUTS = (

@@ -13,6 +13,7 @@ DEFAULTS = {
     "motor_constant": 0.06,
     "armature_resistance": 12.0,
     "armature_inductance": 0.0,
+    "evaluation_limit": 1e7,
     "voltage": 0.0,
     "box_force": 0.0,
     "box_force_1": 0.0,

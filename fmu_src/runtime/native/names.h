@@ -1,0 +1,52 @@
+/* Names that the files of an FMU share, with the FMU's own prefix before them: several FMUs' sources can be linked into one program.
+
+   FMI's own functions get the prefix in the standard's headers: compile all files of an FMU with -DFMI2_FUNCTION_PREFIX=NAME_ or, for FMI 3.0,
+   -DFMI3_FUNCTION_PREFIX=NAME_, with another NAME for each. Without a prefix this file changes nothing. */
+#ifndef NAMES_H
+#define NAMES_H
+
+#if defined(FMI2_FUNCTION_PREFIX) && !defined(FMI2_OVERRIDE_FUNCTION_PREFIX)
+#define OWN_PREFIX FMI2_FUNCTION_PREFIX
+#elif defined(FMI3_FUNCTION_PREFIX) && !defined(FMI3_OVERRIDE_FUNCTION_PREFIX)
+#define OWN_PREFIX FMI3_FUNCTION_PREFIX
+#elif defined(FMI3_ACTUAL_FUNCTION_PREFIX)
+#define OWN_PREFIX FMI3_ACTUAL_FUNCTION_PREFIX
+#endif
+
+#if defined(OWN_PREFIX)
+#define PASTE(prefix, name) prefix##name
+#define PREFIXED(prefix, name) PASTE(prefix, name)
+#define OWN(name) PREFIXED(OWN_PREFIX, name)
+
+#define kernel_initialize OWN(kernel_initialize)
+#define kernel_advance OWN(kernel_advance)
+#define kernel_refresh OWN(kernel_refresh)
+#define kernel_coast OWN(kernel_coast)
+#define kernel_restore OWN(kernel_restore)
+#define kernel_differentiate OWN(kernel_differentiate)
+
+#define VARIABLES OWN(VARIABLES)
+#define has_right_bits OWN(has_right_bits)
+#define instance_new OWN(instance_new)
+#define instance_free OWN(instance_free)
+#define instance_reset OWN(instance_reset)
+#define refuse OWN(refuse)
+#define in_phase OWN(in_phase)
+#define check_categories OWN(check_categories)
+#define set_experiment OWN(set_experiment)
+#define enter_initialization OWN(enter_initialization)
+#define exit_initialization OWN(exit_initialization)
+#define step OWN(step)
+#define find OWN(find)
+#define may_set OWN(may_set)
+#define set OWN(set)
+#define refresh OWN(refresh)
+#define may_get OWN(may_get)
+#define has_rate OWN(has_rate)
+#define differentiate OWN(differentiate)
+#define number OWN(number)
+#define state_to_bytes OWN(state_to_bytes)
+#define state_from_bytes OWN(state_from_bytes)
+#endif
+
+#endif

@@ -1,0 +1,296 @@
+"""The C inside the FMUs on a real-time target: what it takes, what it never does, and its bits."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tools.real_time import footprint, sources, targets
+
+from .slave import slave
+
+HERE = Path(__file__).parent
+MANUAL = HERE.parents[1] / "docs" / "real_time.md"
+MODELS = ("TwoMassImpactOscillator", "MotorShaker")
+VERSIONS = ("fmi2", "fmi3")
+WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Wvla", "-Werror")
+# what C's library has to have: nothing of it is a file, a lock or a clock
+LIBRARY = {"calloc", "malloc", "free", "sqrt", "fabs", "snprintf", "strtod", "strtol"} | {
+    *("memcmp", "memcpy", "memset", "memmove"),
+    *("strchr", "strcmp", "strcpy", "strlen", "strncat", "strncmp", "strpbrk"),
+}
+# the last two make messages, in functions into which gcc has put them
+OF_A_STEP = {"sqrt", "fabs", "memcpy", "memset", "memmove", "strlen", "strncat"}
+TOKEN = re.compile(r'#define MODEL_TOKEN "([^"]*)"')
+
+
+def needs(*programs):
+    """Skip where a program is missing."""
+    absent = sources.missing(*programs)
+    return pytest.mark.skipif(bool(absent), reason=f"expected {', '.join(absent)} on this machine")
+
+
+@pytest.fixture(scope="module")
+def folders(exported, fmus, tmp_path_factory):
+    """The unpacked ``sources/`` by FMI version and model."""
+    assert fmus
+    place = tmp_path_factory.mktemp("sources")
+    return {
+        (version, model): sources.unpack(
+            exported / version / f"{model}.fmu", place / version / model
+        )
+        for version in VERSIONS
+        for model in MODELS
+    }
+
+
+@needs("gcc")
+@pytest.mark.parametrize("version", VERSIONS)
+def test_nothing_is_allocated_after_instantiation(folders, version, tmp_path):
+    """Ten thousand steps of chattering: event mode and early return in FMI 3.0; inputs set, one
+    of them refused with a message; rates of outputs.
+    """
+    folder = folders[version, MODELS[0]]
+    second = ["-DSECOND"] if version == "fmi2" else []
+    program = HERE / "no_allocation.c"
+    flags = ["-O1", "-std=c99", "-fno-builtin-malloc", *second]
+    command = ["gcc", *flags, f"-I{folder}", *sources.c_files(folder), program, "-lm", "-o", "run"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    before, after, events = map(int, sources.run(tmp_path / "run").split())
+    assert before == 2  # the instance, and its name
+    assert after == 0
+    assert events > 1000
+
+
+@pytest.fixture(scope="module")
+def graphs(folders):
+    """Call graphs by FMI version and model."""
+    if sources.missing("gcc"):
+        pytest.skip("expected gcc")
+    return {key: footprint.call_graph(folder, "gcc", "-O1") for key, folder in folders.items()}
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_no_function_calls_itself(graphs, version, model):
+    graph = graphs[version, model]
+    called = [name for name in graph.sizes if re.search(rf"\b{version}\w+$", name)]
+    assert f"{version}DoStep" in called
+    for name in graph.sizes:
+        assert graph.deepest(name) < 32768
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_step_calls_nothing_that_allocates_waits_or_writes(graphs, version, model):
+    graph = graphs[version, model]
+    assert graph.outside(f"{version}DoStep", footprint.MESSAGES) <= OF_A_STEP
+    everything = set().union(*(graph.outside(name) for name in graph.sizes))
+    assert {name.removeprefix("__builtin_") for name in everything} <= {
+        *LIBRARY,
+        footprint.INDIRECT,
+    }
+
+
+def test_a_circle_of_calls_is_seen():
+    graph = footprint.CallGraph(
+        {"a.c:one": 16, "a.c:two": 32, "a.c:end": 64},
+        {"a.c:one": {"a.c:two"}, "a.c:two": {"a.c:end", "a.c:one"}},
+    )
+    with pytest.raises(RecursionError, match=r"a.c:one -> a.c:two -> a.c:one"):
+        graph.deepest("a.c:one")
+    assert graph.deepest("a.c:two", without=("one",)) == 96
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_no_compiler_warns(folders, version, model):
+    """Without optimisation, which takes a moment; with it in the slow test."""
+    compilers = [name for name in ("gcc", "clang") if not sources.missing(name)]
+    if not compilers:
+        pytest.skip("expected gcc or clang on this machine")
+    for compiler in compilers:
+        files = sources.c_files(folders[version, model])
+        sources.run(compiler, *WARNINGS, "-fsyntax-only", *files)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_no_compiler_warns_where_it_looks_closely(folders, version, model, tmp_path):
+    compilers = [name for name in ("gcc", "clang") if not sources.missing(name)]
+    if not compilers:
+        pytest.skip("expected gcc or clang on this machine")
+    for compiler in compilers:
+        for file in sources.c_files(folders[version, model]):
+            sources.run(compiler, *WARNINGS, "-O2", "-c", file, "-o", tmp_path / "a.o")
+
+
+@pytest.mark.slow
+@needs("clang")
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_clangs_analyser_finds_nothing(folders, version, model):
+    files = sources.c_files(folders[version, model])
+    command = ["clang", "--analyze", "-std=c99", "-Xclang", "-analyzer-output=text", *files]
+    done = subprocess.run(command, cwd=files[0].parent, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def guarded(lines):
+    """Lines with the conditions of the preprocessor they lie in."""
+    stack = []
+    for line in lines:
+        word = line.strip()
+        if word.startswith("#if"):
+            stack.append(word)
+        elif word.startswith(("#el", "#else")):
+            stack[-1] = f"{stack[-1]} / {word}"
+        elif word.startswith("#endif"):
+            stack.pop()
+        yield line, " ".join(stack)
+
+
+ONLY_WHERE = {  # what Microsoft's compiler has not, and the macro behind which it may stand
+    r"__attribute__|__builtin_|__typeof|\btypeof\b|__extension__|__asm": "__GNUC__",
+    r"#pragma (GCC|clang)|#pragma STDC": "__GNUC__|__clang__",
+    r"\brestrict\b": "_MSC_VER",
+    r"#include <(?!assert|math|stdbool|stddef|stdint|stdio|stdlib|string)": "nothing",
+    r"\b(complex|_Complex|_Generic|_Thread_local|alloca|variable-length)\b": "nothing",
+    r"\bcase\b.*\.\.\.|\?:|\(\{": "nothing",
+}
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_microsofts_dialect_is_held_to(folders, version, model):
+    """By rule, since that compiler cannot be run here; arrays of variable length are among the
+    warnings.
+    """
+    files = [
+        file
+        for file in folders[version, model].glob("*.[ch]")
+        if not re.match(r"fmi\d\w+\.h", file.name)  # the standard's own
+    ]
+    assert len(files) >= 6
+    for file in files:
+        text = re.sub(r"/\*.*?\*/", lambda m: "\n" * m[0].count("\n"), file.read_text(), flags=re.S)
+        text = re.sub(r'"(\\.|[^"\\])*"', '""', text)
+        for line, conditions in guarded(text.splitlines()):
+            for pattern, macro in ONLY_WHERE.items():
+                if re.search(pattern, line):
+                    assert re.search(macro, conditions), f"{file.name}: {line}"
+
+
+@needs("gcc", "nm")
+@pytest.mark.parametrize("version", VERSIONS)
+def test_no_global_variable_changes(folders, version, tmp_path):
+    """All that is global can lie in read-only memory."""
+    for file in sources.c_files(folders[version, MODELS[0]]):
+        made = tmp_path / f"{file.stem}.o"
+        sources.run("gcc", "-O1", "-std=c99", "-fno-pie", "-c", file, "-o", made)
+        kinds = sources.run("nm", "--defined-only", made).split()[1::3]
+        assert kinds and set(kinds) <= set("TtRr"), file.name
+
+
+@needs("gcc", "nm")
+def test_sources_of_several_fmus_are_linked_into_one_program(folders, fmus, tmp_path):
+    """By the prefix of the standard's headers: no name is there twice, and each has its bits."""
+    parts = {
+        "Second": ("fmi2", MODELS[0], "-DFMI2_FUNCTION_PREFIX=Second_"),
+        "Third": ("fmi3", MODELS[0], "-DFMI3_FUNCTION_PREFIX=Third_"),
+        "Shaker": ("fmi3", MODELS[1], "-DFMI3_FUNCTION_PREFIX=Shaker_"),
+    }
+    objects, tokens = [], []
+    for prefix, (version, model, define) in parts.items():
+        folder = folders[version, model]
+        tokens.append(TOKEN.search((folder / "model.h").read_text("utf-8")).group(1))
+        for file in sources.c_files(folder):
+            objects.append(tmp_path / f"{prefix}-{file.stem}.o")
+            sources.run("gcc", "-O1", *sources.BITS, define, "-c", file, "-o", objects[-1])
+            names = sources.run("nm", "-g", "--defined-only", objects[-1]).split()[2::3]
+            assert names and all(name.startswith(f"{prefix}_") for name in names), file.name
+    program = tmp_path / "together"
+    sources.run("gcc", "-std=c99", HERE / "linked_together.c", *objects, "-lm", "-o", program)
+    second, third, speed = sources.run(program, *tokens).split()
+    with slave(fmus["fmi3"]) as fmu:
+        fmu.start()
+        for time in range(1, 101):
+            fmu.step(float(time))
+        assert float.fromhex(second) == float.fromhex(third) == fmu.one("v1")
+    assert float.fromhex(speed) > 1.0
+
+
+def stated(machine, what):
+    """A number of bytes in the manual's table of stack and memory."""
+    text = MANUAL.read_text("utf-8")
+    head = next(line for line in text.splitlines() if line.startswith("| bytes |"))
+    column = [cell.strip() for cell in head.split("|")].index(machine)
+    (row,) = (line for line in text.splitlines() if line.startswith(f"| {what} |"))
+    return int(row.split("|")[column].replace(",", ""))
+
+
+@pytest.mark.parametrize("machine", footprint.MACHINES)
+def test_the_manual_states_the_stack(folders, machine):
+    """As upper bounds, by the call graph, for another version of the compiler too."""
+    compiler, *flags = footprint.MACHINES[machine]
+    if sources.missing(compiler):
+        pytest.skip(f"expected {compiler} on this machine")
+    graph = footprint.call_graph(folders["fmi3", MODELS[0]], compiler, *flags, "-O2")
+    for what, name in footprint.CALLS.items():
+        assert 0.6 * stated(machine, what) < graph.deepest(name, footprint.MESSAGES)
+        assert graph.deepest(name, footprint.MESSAGES) <= stated(machine, what), what
+    assert graph.deepest(footprint.CALLS["a step"]) <= stated(machine, "a refusal")
+
+
+@needs("gcc")
+def test_the_manual_states_the_memory(folders, tmp_path):
+    """Of an instance, as the program prints it; the trajectory is the one of the bare targets."""
+    result = targets.on_desktop(folders["fmi3", MODELS[0]], tmp_path)
+    assert int(result["impacts"]) > 4000
+    assert int(result["instance"]) == stated("x86-64", "an instance")
+    text = MANUAL.read_text("utf-8")
+    assert result["hash"] in text and f"{int(result['impacts']):,} impacts" in text
+
+
+def same_motion(one, other):
+    """Whether impacts, hash and last state agree."""
+    return all(one[key] == other[key] for key in ("impacts", "hash", "x1", "x2", "v1", "v2"))
+
+
+@pytest.mark.slow
+@needs("gcc", *targets.TOOLS["Cortex-M7"])
+@pytest.mark.parametrize("optimisation", ["-O2", "-O3"])
+def test_a_bare_cortex_m7_has_the_bits_of_the_desktop(folders, optimisation, tmp_path):
+    """And takes the stack and the memory that the manual states."""
+    folder = folders["fmi3", MODELS[0]]
+    result = targets.on_cortex_m7(folder, tmp_path, optimisation)
+    assert same_motion(result, targets.on_desktop(folder, tmp_path))
+    if optimisation == "-O2":
+        assert int(result["instance"]) == stated("Cortex-M7", "an instance")
+        assert int(result["stack"]) <= stated("Cortex-M7", "a step") + 1024  # main's own
+        assert int(result["code"]) <= stated("Cortex-M7", "the program") < int(result["code"]) * 1.1
+
+
+@pytest.mark.slow
+@needs("gcc", *targets.TOOLS["RISC-V 64"])
+@pytest.mark.parametrize("standard", [sources.BITS, ("-std=gnu99",), ("-ffp-contract=fast",)])
+def test_riscv_has_the_bits_of_the_desktop(folders, standard, tmp_path):
+    """gcc fuses there unless it is told not to: the sources tell it themselves."""
+    folder = folders["fmi3", MODELS[0]]
+    result = targets.on_riscv64(folder, tmp_path, standard=standard)
+    assert same_motion(result, targets.on_desktop(folder, tmp_path))
+
+
+@pytest.mark.slow
+@needs("gcc", *targets.TOOLS["RISC-V 64"])
+def test_riscv_without_what_the_sources_tell_is_refused(folders, tmp_path):
+    """The self-test at instantiation, on another machine."""
+    folder = shutil.copytree(folders["fmi3", MODELS[0]], tmp_path / "changed")
+    kernel = folder / "kernel.c"
+    lines = kernel.read_text("utf-8").splitlines(keepends=True)
+    kernel.write_text("".join(line for line in lines if "GCC optimize" not in line), "utf-8")
+    with pytest.raises(RuntimeError, match="numbers differ from the model's"):
+        targets.on_riscv64(folder, tmp_path, standard=("-std=gnu99",))

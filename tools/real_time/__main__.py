@@ -1,0 +1,60 @@
+"""Prints what the manual's page on real-time targets states: ``python -m tools.real_time``."""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from functools import reduce
+from operator import add
+from pathlib import Path
+
+from orchestrate.access import OSCILLATOR, find
+
+from .footprint import MACHINES, stack_table
+from .sources import missing, unpack, version_of
+from .step_times import FREQUENCIES, PARTS, measure, row
+from .targets import all_targets
+
+
+def print_targets(sources: Path, folder: Path) -> None:
+    """The trajectory on each target."""
+    for name, result in all_targets(sources, folder).items():
+        print(f"{name}: " + ", ".join(f"{key} {value}" for key, value in result.items()))
+
+
+def print_stack(sources: Path) -> None:
+    """Bytes of stack of each call."""
+    if missing(*(compiler for compiler, *_ in MACHINES.values())):
+        return
+    for machine, calls in stack_table(sources, "-O2").items():
+        compiler = version_of(MACHINES[machine][0])
+        print(f"stack, {machine} ({compiler}): {', '.join(f'{k} {v}' for k, v in calls.items())}")
+
+
+def print_times(fmu: Path, steps: int) -> None:
+    """The table of step times, us."""
+    columns = ["eta", "steps", *PARTS, "impacts", "contacts", "most evaluations"]
+    print(f"| {' | '.join(columns)} |")
+    print(f"|{'---|' * len(columns)}")
+    rows = []
+    for eta in FREQUENCIES:
+        rows.append(measure(fmu, eta, steps // len(FREQUENCIES)))
+        print(row(str(eta), rows[-1]), flush=True)
+    print(row("all", reduce(add, rows)))
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(prog="python -m tools.real_time", description=__doc__)
+    parser.add_argument("--steps", type=int, default=100_000_000, help="to be timed (default 1e8)")
+    arguments = parser.parse_args()
+    fmu = Path(find(OSCILLATOR).path)
+    with tempfile.TemporaryDirectory() as folder:
+        sources = unpack(fmu, Path(folder))
+        print_targets(sources, Path(folder))
+        print_stack(sources)
+    print_times(fmu, arguments.steps)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,116 @@
+"""Bytes of stack that calls of the FMU take, by the call graph that gcc writes."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from .sources import BITS, CORTEX_M7, c_files, run
+
+NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
+EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
+SIZE = re.compile(r"(\d+) bytes \((\w+)")
+INDIRECT = "__indirect_call"
+# what makes a message of a call that is refused; no step that succeeds goes through it
+MESSAGES = ("complain", "refuse", "refuse_step", "explain")
+CALLS = {  # FMI 3.0's, by what they are for
+    "a step": "fmi3DoStep",
+    "outputs": "fmi3GetFloat64",
+    "inputs": "fmi3SetFloat64",
+    "instantiation": "fmi3InstantiateCoSimulation",
+    "initialisation": "fmi3ExitInitializationMode",
+}
+MACHINES = {
+    "Cortex-M7": ("arm-none-eabi-gcc", *CORTEX_M7),
+    "x86-64": ("gcc",),
+}
+
+
+@dataclass(frozen=True)
+class CallGraph:
+    """Functions of all files, the bytes of stack each takes itself, and whom it calls."""
+
+    sizes: dict[str, int]
+    called: dict[str, set[str]]
+
+    def deepest(self, function: str, without: tuple[str, ...] = ()) -> int:
+        """Bytes of stack of a call, those of the C library not counted.
+
+        Parameters
+        ----------
+        function : str
+        without : tuple of str
+            Names of functions that are not called.
+
+        Raises
+        ------
+        RecursionError
+            Where a function calls itself, through others too.
+        """
+        return self._deepest(function, without, ())
+
+    def _deepest(self, function: str, without: tuple[str, ...], path: tuple[str, ...]) -> int:
+        if function in path:
+            raise RecursionError(" -> ".join([*path, function]))
+        inner = [
+            self._deepest(other, without, (*path, function))
+            for other in self.called.get(function, ())
+            if plain_name(other) not in without
+        ]
+        return self.sizes.get(function, 0) + max(inner, default=0)
+
+    def outside(self, function: str, without: tuple[str, ...] = ()) -> set[str]:
+        """Functions that a call reaches and that are not the FMU's: the C library's."""
+        reached: set[str] = set()
+        waiting = [function]
+        while waiting:
+            name = waiting.pop()
+            if name not in reached and plain_name(name) not in without:
+                reached.add(name)
+                waiting += self.called.get(name, ())
+        return {name for name in reached if name not in self.sizes}
+
+
+def plain_name(title: str) -> str:
+    """A function's name: without its file, and without what gcc adds to a part of it."""
+    return title.rpartition(":")[2].partition(".")[0]
+
+
+def call_graph(sources: Path, compiler: str, *flags: str) -> CallGraph:
+    """The call graph of an FMU's sources.
+
+    Raises
+    ------
+    ValueError
+        Where a function's stack has no bound: it has an array of variable length.
+    """
+    sizes: dict[str, int] = {}
+    called: dict[str, set[str]] = {}
+    for file in c_files(sources):
+        with tempfile.TemporaryDirectory() as folder:
+            written = Path(folder) / "a.o"
+            run(compiler, *flags, *BITS, "-fcallgraph-info=su", "-c", file, "-o", written)
+            text = written.with_suffix(".ci").read_text("utf-8")
+        for title, label in NODE.findall(text):
+            size = SIZE.search(label)
+            if size and size.group(2) == "dynamic" and "bounded" not in label:
+                raise ValueError(f"{title}: expected a stack of a known size")
+            if size:
+                sizes[title] = int(size.group(1))
+        for source, target in EDGE.findall(text):
+            called.setdefault(source, set()).add(target)
+    return CallGraph(sizes, called)
+
+
+def stack_table(sources: Path, *flags: str) -> dict[str, dict[str, int]]:
+    """Bytes of stack by machine and by what a call is for; "a refusal" is a step with its
+    message, but without what the C library's ``snprintf`` takes.
+    """
+    table = {}
+    for machine, (compiler, *own) in MACHINES.items():
+        graph = call_graph(sources, compiler, *own, *flags)
+        table[machine] = {what: graph.deepest(name, MESSAGES) for what, name in CALLS.items()}
+        table[machine]["a refusal"] = graph.deepest(CALLS["a step"])
+    return table

@@ -1,0 +1,88 @@
+"""Times of a hundred million communication steps at 10 kHz, each one measured."""
+
+from __future__ import annotations
+
+import tempfile
+import zipfile
+from collections import Counter
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+from orchestrate.access import describe
+from orchestrate.structures import Structure
+
+from .sources import HERE, run
+
+BINARY = "binaries/x86_64-linux/TwoMassImpactOscillator.so"
+COUNTED = ("evaluations", "impact_count", "contact_count")
+# chattering into permanent contact each period, up to 0.4; flights of one and many impacts; chaos
+FREQUENCIES = (0.1, 0.2, 0.3, 0.4, 0.6, 1.13, 2.0, 2.9)
+SIZE = 1e-4  # s
+RUNS = 3  # of the same steps: the least time of each counts
+PARTS = {"median": 0.5, "99.9 %": 0.999, "99.999 %": 0.99999, "worst": 1.0}
+
+
+@dataclass(frozen=True)
+class StepTimes:
+    """Times of some steps.
+
+    Attributes
+    ----------
+    histogram : Counter
+        Steps by nanoseconds.
+    evaluations, impacts, contacts : int
+        Most evaluations in a step; impacts and permanent contacts in all of them.
+    """
+
+    histogram: Counter[int]
+    evaluations: int
+    impacts: int
+    contacts: int
+
+    def __add__(self, other: StepTimes) -> StepTimes:
+        return StepTimes(
+            self.histogram + other.histogram,
+            max(self.evaluations, other.evaluations),
+            self.impacts + other.impacts,
+            self.contacts + other.contacts,
+        )
+
+    def quantile(self, part: float) -> int:
+        """The time, ns, that a part of the steps does not exceed."""
+        wanted, seen = part * self.histogram.total(), 0
+        for time, count in sorted(self.histogram.items()):
+            seen += count
+            if seen >= wanted:
+                return time
+        raise ValueError("expected steps")
+
+
+def measure(fmu: str | PathLike[str], eta: float, steps: int) -> StepTimes:
+    """Times of so many steps of the paper's structure, omega = 75 rad/s, at one frequency."""
+    beam = Structure.from_file("beam")
+    values = {**beam.parameters(), "box_frequency": eta * beam.omega}
+    values["box_amplitude"] = 1e-3 / eta**2
+    with tempfile.TemporaryDirectory() as folder:
+        with zipfile.ZipFile(fmu) as archive:
+            library = archive.extract(BINARY, folder)
+        known = describe(fmu)
+        reference = {name: str(v.valueReference) for name, v in known.variables.items()}
+        reals = {name for name in values if name not in ("bonded",)}
+        given = [part for name in reals for part in (reference[name], repr(float(values[name])))]
+        program = Path(folder) / "steps"
+        options = ("-O2", "-std=gnu99", "-Wall", "-Wextra", "-Werror")
+        run("gcc", *options, HERE / "steps.c", "-ldl", "-o", program)
+        order = [str(steps), repr(SIZE), str(RUNS), *(reference[name] for name in COUNTED)]
+        text = run(program, library, known.guid, *order, *given, timeout=3600.0)
+    lines = [line.split() for line in text.splitlines()]
+    evaluations, impacts, contacts = (int(count) for _, count in lines[:3])
+    times = Counter({int(time): int(count) for time, count in lines[3:]})
+    return StepTimes(times, evaluations, impacts, contacts)
+
+
+def row(name: str, times: StepTimes) -> str:
+    """A row of the manual's table, times in microseconds."""
+    parts = [f"{times.quantile(part) / 1000.0:.2f}" for part in PARTS.values()]
+    counts = [f"{n:,}" for n in (times.impacts, times.contacts, times.evaluations)]
+    return f"| {' | '.join([name, f'{times.histogram.total():,}', *parts, *counts])} |"
