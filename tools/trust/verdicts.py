@@ -244,7 +244,8 @@ def refuted(system: System, answer: Answer, way: str) -> str:
 def refuted_bracket(system: System, answer: Answer, way: str) -> str:
     """Hold voltages before and past the bracket, and go back to its beginning.
 
-    An irregular motion may be lost before: so the first one is further away.
+    An irregular motion may be lost before: so the first one is further away, and the speed past a
+    jump differs the more from the one there.
     """
     sign = 1.0 if way == "up" else -1.0
     stays, lost = ordered((answer.low, answer.high), way)
@@ -252,7 +253,7 @@ def refuted_bracket(system: System, answer: Answer, way: str) -> str:
     before, there, beyond, back = held_speeds(
         system, first_of(system, way), (far, stays, past, stays)
     )
-    if abs(beyond - before) < SAME:
+    if abs(beyond - before) < CHANGE:
         return f"lost at {stays:.5f}, but past it, held, the speed is that of {far:.5f}"
     if abs(back - there) < SAME and abs(back - before) < SAME:
         return f"lost at {stays:.5f}, but the speed comes back there"
