@@ -154,6 +154,14 @@ def test_another_motion_on_the_way_back_is_undecided():
     assert Scripted(back=0.02).verdict() == UNDECIDED
 
 
+def test_a_way_back_that_has_not_settled_is_undecided():
+    scripted = Scripted()
+    low, high = scripted.at(1.5), scripted.at(1.5001, higher=0.01)
+    for higher, what in ((0.0, FOLLOWS), (0.003, UNDECIDED), (0.01, LOST), (np.nan, UNDECIDED)):
+        scripted.back = higher
+        assert scripted.there_and_back(low, high) == what
+
+
 def test_it_begins_on_the_motion_of_the_ramp():
     """A lagging ramp's speed only rises when the voltage is held, unless its motion is lost."""
     scripted = Scripted(falls=(15,))
