@@ -6,8 +6,10 @@ each held until the speed has settled, so that the motion stays the same as long
 the speed changes most the steps are halved: the largest change of the settled speed is bracketed,
 whatever the rate of the ramp was. Then the voltage goes back from beyond that change. Where the
 speed does not come back with it, two motions exist at one voltage, and the first one is lost on the
-way; where it does, all the steps back, the speed follows the voltage. What has not settled in the
-time that is given, or comes back another way, decides nothing.
+way. Where it does, the steps are halved further, until the speed changes less from each of them to
+the next than it would between two motions that are told apart, and all the steps go back: so the
+speed follows the voltage. What has not settled in the time that is given, comes back another way,
+or is still steep at the shortest step, decides nothing.
 """
 
 from __future__ import annotations
@@ -102,11 +104,18 @@ class HoldSettings:
         Of the speed that a motion settles at, over omega.
     width : float
         Of the bracket of voltages that is asked for, over K omega.
+    finest : float
+        Shortest step of the voltage, over K omega: where the speed still changes much over one, and
+        comes back, nothing is decided.
     distinct : float
-        Smallest difference of two settled speeds that are told apart, over omega.
+        Largest difference of two settled speeds that may be of the same motion, over omega.
+    two_motions : float
+        Smallest difference of two settled speeds at one voltage that makes a jump, over omega.
     smallest_jump : float
-        Change of the settled speed, over omega, below which no jump is looked for: where two folds
-        are ``width`` apart, the speed jumps by more.
+        Change of the settled speed between neighbours, over omega, below which there is no jump. It
+        is less than 0.866 ``two_motions``: between two folds that are close, speeds at one voltage
+        differ by 2/sqrt(3) of what the speed jumps by at either, or less. So no steps find a jump
+        that others rule out.
     stair : float
         Longest first step of the voltage, over K omega, and
     max_stairs : int
@@ -120,12 +129,14 @@ class HoldSettings:
     block: int = 24
     tolerance: float = 1e-4
     width: float = 1e-4
+    finest: float = 1e-6
     distinct: float = 2e-3
-    smallest_jump: float = 8e-3
+    two_motions: float = 5e-3
+    smallest_jump: float = 4e-3
     stair: float = 4e-3
     max_stairs: int = 25
     past: float = 0.02
-    max_holds: int = 60
+    max_holds: int = 200
 
 
 class HeldVoltageTest:
@@ -292,16 +303,19 @@ class HeldVoltageTest:
             i, low, high = largest_change(points, sign)
             if sign * (high.speed - low.speed) < self.settings.smallest_jump + noise(low, high):
                 return Verdict(FOLLOWS)
-            if self.is_close(low, high):
+            if self.is_within(low, high, self.settings.width):
                 short = high.origin == low.voltage
                 again = high if short else self.step_from(low, high.voltage)
-                if not self.differ(again, high):
-                    return self.there_and_back(low, high)
-                points[i + 1] = again  # a longer step of the voltage had thrown it across
-                continue
+                if self.differ(again, high):
+                    points[i + 1] = again  # a longer step of the voltage had thrown it across
+                    continue
+                what = self.there_and_back(low, high)
+                if what != FOLLOWS or self.is_within(low, high, self.settings.finest):
+                    return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
             middle = next((one for one in self.inside(low, high) if one.speed == one.speed), None)
             if middle is None:
-                return self.there_and_back(low, high)
+                what = self.there_and_back(low, high)
+                return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
             points.insert(i + 1, middle)
         return Verdict(UNDECIDED, low.voltage, high.voltage)
 
@@ -310,19 +324,17 @@ class HeldVoltageTest:
         for part in (0.5, 0.25, 0.75):
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
-    def there_and_back(self, low: Settled, high: Settled) -> Verdict:
+    def there_and_back(self, low: Settled, high: Settled) -> int:
         """Go back to the lower voltage: a motion was lost where the speed does not come back."""
         back = self.step_from(high, low.voltage)
-        if math.isnan(back.speed):
-            return Verdict(UNDECIDED, low.voltage, high.voltage)
-        if self.differ(back, low):
-            return Verdict(LOST, low.voltage, high.voltage)
-        what = FOLLOWS if self.is_close(low, high) else UNDECIDED
-        return Verdict(what) if what == FOLLOWS else Verdict(what, low.voltage, high.voltage)
+        if abs(back.speed - low.speed) > self.settings.two_motions + noise(back, low):
+            return LOST
+        comes_back = math.isfinite(back.speed) and not self.differ(back, low)
+        return FOLLOWS if comes_back else UNDECIDED
 
-    def is_close(self, low: Settled, high: Settled) -> bool:
-        """Whether two voltages are as close as is asked for."""
-        return abs(high.voltage - low.voltage) <= self.settings.width * self.volts
+    def is_within(self, low: Settled, high: Settled, width: float) -> bool:
+        """Whether two voltages are as close as is asked for, over K omega."""
+        return abs(high.voltage - low.voltage) <= width * self.volts
 
     def differ(self, point: Settled, other: Settled) -> bool:
         """Whether both have settled, at different speeds."""

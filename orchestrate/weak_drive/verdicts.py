@@ -21,7 +21,7 @@ STEEP = (
 )
 THEORY_ERROR = 5e-4  # of eta0, of the averaged theory's folds
 NARROW = 2e-4  # of eta0: two folds so close may be none, so far as the averaged theory knows
-FOLLOWS_TEXT = "no loss of stability: at held voltages too the speed passes without a gap"
+FOLLOWS_TEXT = "no jump: at held voltages too the speed passes the resonance without a gap"
 LEFT_BEFORE_TEXT = "left its branch before the ramp: it does so at the first voltage, held, too"
 NO_FOLD_TEXT = "no fold: the speed follows the voltage through the resonance"
 

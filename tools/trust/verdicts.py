@@ -16,6 +16,7 @@ from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, UNDECIDED
 
 from .campaign import Campaign, Outcome
+from .held_speeds import held_speeds
 
 RATES = (2e-4, 1e-4, 5e-5, 2e-5)  # of eta0 in a time 1/omega
 FEW_RATES = RATES[::3]  # for drives near the edge of folds
@@ -25,6 +26,12 @@ FOLD, TORUS, NONE, UNKNOWN = "fold", "Neimark-Sacker", "none", "unknown"
 TOLERANCE = 2e-4  # of eta0: how far a bracket may lie from where the motion is lost
 EARLY = 2e-3  # of eta0: how far before it the jump of a ramp may be seen
 NARROW = 2e-4  # of eta0: folds so close are left out, a bracket is half as wide
+BESIDE = 6e-5  # of eta0: before and past a fold voltages are held, to see whether it is met
+CHANGE = 8e-3  # of omega: least change of the speed between them where a fold is a jump
+SAME = 4e-3  # of omega: speeds at one voltage that differ by more are of two motions
+GRID = 4e-3  # of eta0: between voltages that are held there and back
+AROUND = (0.06, 0.04)  # of eta0: of them, below the lowest fold and above the highest
+SHORT = 0.25  # of a hold, on that grid
 SLOPES = (-0.6, 0.3)  # least slopes d eta0 / d Omega of drives that nearly have, or lack, folds
 
 
@@ -152,11 +159,121 @@ def truths(system: System) -> dict[tuple[str, str], Truth]:
         return dict.fromkeys(((kind, way) for kind in KINDS for way in WAYS), Truth(UNKNOWN))
     branch = drive_branch(structure, drive, speed=speed, longest=0.03, progress=False)
     units = drive.volts(structure), omega
-    return {
+    known = {
         (kind, way): truth(branch.sel(structure=kind), kind, way, units)
         for kind in KINDS
         for way in WAYS
     }
+    delaminated = system.of_kind("delaminated")
+    for way in WAYS:
+        if known["delaminated", way].kind != NONE:
+            known["delaminated", way] = fold_that_is_met(delaminated, branch, way)
+    return known
+
+
+def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
+    """The fold of delaminated branches at which a slow course of held voltages jumps.
+
+    Branches have more folds than a ramp meets; and where it meets one it may go on with another
+    motion of nearly the same speed. So voltages are held closely before and past each fold, in one
+    course that begins far away: wider steps than these may land on other motions. A fold is met
+    where the speed before it is that of the branch, and it is a jump where the speed past it is
+    another. Unknown without any.
+    """
+    sign = 1.0 if way == "up" else -1.0
+    folds = sorted(folds_of(system, branch, way), reverse=way == "down")
+    if not folds:
+        return Truth(UNKNOWN)
+    course = [voltage + side * sign * BESIDE for voltage, _ in folds for side in (-1.0, 1.0)]
+    course = ordered(course, way)
+    speeds = dict(zip(course, held_speeds(system, first_of(system, way), course), strict=True))
+    met = []
+    for voltage, speed in folds:
+        before, past = (speeds[voltage + side * sign * BESIDE] for side in (-1.0, 1.0))
+        if abs(before - speed) < CHANGE and sign * (past - before) > CHANGE:
+            met.append((sign * (past - before), voltage))
+    return Truth(FOLD, max(met)[1], max(met)[1]) if met else Truth(UNKNOWN)
+
+
+def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
+    """Voltages over K omega and speeds over omega of delaminated folds that end one way."""
+    structure, drive = system
+    units = drive.volts(structure), structure.omega
+    legs = branch.sel(structure="delaminated")
+    names = ("voltage", "speed")
+    points = np.stack([legs[name].values / unit for name, unit in zip(names, units, strict=True)])
+    points = np.nan_to_num(points, nan=np.inf)
+    own = branch.bifurcation_structure.values == "delaminated"
+    own &= branch.bifurcation_kind.values == FOLD
+    folds = []
+    for i in np.flatnonzero(own):
+        fold = np.array(
+            [
+                float(branch[f"bifurcation_{name}"][i]) / unit
+                for name, unit in zip(names, units, strict=True)
+            ]
+        )
+        leg, at = np.unravel_index(
+            np.argmin(np.abs(points - fold[:, np.newaxis, np.newaxis]).max(axis=0)),
+            points.shape[1:],
+        )
+        around = points[0, leg, max(0, at - 1) : at + 2]
+        is_highest = fold[0] >= np.median(around[np.isfinite(around)])
+        if is_highest == (way == "up"):
+            folds.append((float(fold[0]), float(fold[1])))
+    return folds
+
+
+def first_of(system: System, way: str) -> float:
+    """Where a course in a direction begins, over K omega."""
+    return ends_of(system)[WAYS.index(way)]
+
+
+def ordered(voltages: Sequence[float], way: str) -> list[float]:
+    """Voltages in the order in which they are met."""
+    return sorted(voltages, reverse=way == "down")
+
+
+def refuted(system: System, answer: Answer, way: str) -> str:
+    """What voltages that are held by themselves say against an answer; empty where nothing."""
+    if answer.said == "lost" and answer.held:
+        return refuted_bracket(system, answer, way)
+    return refuted_by_grid(system, answer, way) if answer.said in ("lost", "none") else ""
+
+
+def refuted_bracket(system: System, answer: Answer, way: str) -> str:
+    """Hold voltages before and past the bracket, and go back to its beginning.
+
+    An irregular motion may be lost before: so the first one is further away, and the speed past a
+    jump differs the more from the one there.
+    """
+    sign = 1.0 if way == "up" else -1.0
+    stays, lost = ordered((answer.low, answer.high), way)
+    far, past = stays - sign * EARLY, lost + sign * 0.5 * TOLERANCE
+    before, there, beyond, back = held_speeds(
+        system, first_of(system, way), (far, stays, past, stays)
+    )
+    if abs(beyond - before) < CHANGE:
+        return f"lost at {stays:.5f}, but past it, held, the speed is that of {far:.5f}"
+    if abs(back - there) < SAME and abs(back - before) < SAME:
+        return f"lost at {stays:.5f}, but the speed comes back there"
+    return ""
+
+
+def refuted_by_grid(system: System, answer: Answer, way: str) -> str:
+    """Hold voltages through the resonance and back: two speeds at one of them, or none."""
+    low, high = ends_of(system)
+    ends = (low + 0.15 - AROUND[0], high - 0.15 + AROUND[1])
+    voltages = ordered(np.arange(*ends, GRID).tolist(), way)
+    there_and_back = [*voltages, *voltages[::-1]]
+    speeds = held_speeds(system, first_of(system, way), there_and_back, SHORT)
+    apart = np.abs(speeds[: len(voltages)] - speeds[::-1][: len(voltages)])
+    if answer.said == "lost":
+        return "" if not (apart < SAME).all() else "lost, but held speeds come back everywhere"
+    if not (apart > CHANGE).any():
+        return ""
+    at = voltages[int(np.nanargmax(apart))]
+    return f"none, but two motions last at {at:.5f}: speeds {np.nanmax(apart):.4f} apart"
 
 
 def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:
@@ -222,6 +339,12 @@ def judged(
     said: dict[str, set[str]] = {way: set() for way in WAYS}
     for rate in rates:
         for way, answer in zip(WAYS, answers(system, rate), strict=True):
+            if known[way].kind == UNKNOWN and answer.said not in said[way]:
+                problem = refuted(system, answer, way)
+                yield (
+                    "held by themselves",
+                    f"{kind}, {way}, rate {rate:g}: {problem}" * bool(problem),
+                )
             said[way].add(answer.said)
             by = "by held voltages" if answer.held else "by the record"
             decided = answer.said in ("lost", "none")
@@ -244,7 +367,12 @@ class Verdicts(Campaign):
         "through both FMUs, loses its motion in a fold or a Neimark-Sacker point, `couple` does "
         "not say that there is no jump, and brackets the place within 2e-4 K omega where it holds "
         "voltages; where the branch loses none, `couple` says that there is none; and it does not "
-        "say one thing at one rate and another at another. What it leaves undecided is counted."
+        "say one thing at one rate and another at another. A delaminated fold counts where a "
+        "course of held voltages of its own meets it, and its speed changes there by more than "
+        "8e-3 omega: a change to another motion of nearly the same speed is no jump. Where the "
+        "branches do not say, such courses are held beside the bracket and back, or through the "
+        "resonance and back, and must not speak against the answer. What is left undecided is "
+        "counted."
     )
     unit, target, batch, package = "drives", 40, 1, True
 

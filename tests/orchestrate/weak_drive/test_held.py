@@ -25,15 +25,16 @@ STIFF = 20.0
 class Rotor:
     """A speed that follows eta0 = 1.5 + slope x + 20 x^3, x = speed - 1.3; a step a revolution."""
 
-    def __init__(self, schedule, slope, start):
+    def __init__(self, schedule, slope, start, stiff=STIFF):
         self.schedule, self.slope, self.speed = schedule, slope, start
+        self.stiff = stiff
         self.master = SimpleNamespace(close=lambda: None)
 
     def revolve(self, steps):
         speeds = []
         for i in steps:
             x = self.speed - 1.3
-            needed = 1.5 + self.slope * x + STIFF * x**3
+            needed = 1.5 + self.slope * x + self.stiff * x**3
             self.speed += 0.02 * H * (self.schedule.voltage((i + 0.5) * H) - needed)
             speeds.append(self.speed)
         return {"speed": np.array(speeds)}
@@ -45,11 +46,15 @@ class Rotor:
         self.speed = float(table["speed"][0])
 
 
-def judged(slope, up=True, start=1.1, first=1.4, rate=1e-4, longest=2e4):
+def judged(
+    slope, up=True, start=1.1, first=1.4, rate=1e-4, longest=2e4, stiff=STIFF, last=1.6, **settings
+):
     """The verdict on the whole ramp, from its beginning to its end."""
-    schedule = Ramp(first, 1.6, rate, back=False) if up else Ramp(1.6, first, rate, back=False)
+    ends = (first, last) if up else (last, first)
+    schedule = Ramp(*ends, rate, back=False)
     steps = round(schedule.duration / H)
-    test = HeldVoltageTest(lambda other: Rotor(other, slope, start), schedule, H, 1.0, 1.0, longest)
+    units = (H, 1.0, 1.0, longest, HoldSettings(**settings))
+    test = HeldVoltageTest(lambda other: Rotor(other, slope, start, stiff), schedule, *units)
     passing = Passing(round(0.8 * steps), steps // 4, steps - 1, DOUBTFUL, 0.8 * steps)
     return test.classify(passing, (0, steps - 1), 1.3, up)
 
@@ -71,9 +76,39 @@ def test_a_fold(slope, up, start, rate):
     assert low - 5e-6 <= fold_of(slope, up) <= high + 5e-6 and high - low < 2e-4
 
 
-@pytest.mark.parametrize("slope", [0.001, 0.02, 0.1])
+NARROW = {"first": 1.47, "last": 1.53, "stiff": 2500.0}  # speeds change little between its folds
+
+
+@pytest.mark.parametrize("rate", [2e-4, 1.3e-4, 1e-4, 7e-5, 5e-5, 2e-5])
+@pytest.mark.parametrize(("up", "start"), [(True, 1.27), (False, 1.33)])
+def test_folds_that_are_close_in_speed_too(up, start, rate):
+    """1.1e-4 apart; the speed jumps by 0.0066: some rates said that it passes without a gap."""
+    verdict = judged(-0.0365, up, start, rate=rate, **NARROW)
+    assert verdict.what == LOST
+    fold = 1.5 + (1 if up else -1) * 2.0 / 3.0 * 0.0365 * (0.0365 / 7500.0) ** 0.5
+    low, high = sorted((verdict.low, verdict.high))
+    assert low - 5e-6 <= fold <= high + 5e-6 and high - low < 2e-4
+
+
+@pytest.mark.parametrize("slope", np.linspace(-0.05, 0.03, 17).round(4).tolist())
+def test_no_two_rates_contradict_each_other(slope):
+    """A jump at one and none at another: what lies between the two is undecided at some."""
+    rates = (2e-4, 1.3e-4, 1e-4, 5e-5)
+    said = {judged(slope, start=1.27, rate=rate, **NARROW).what for rate in rates}
+    assert said <= {LOST, UNDECIDED} or said <= {FOLLOWS, UNDECIDED}
+    assert said == {LOST} or slope > -0.035
+    assert said == {FOLLOWS} or slope < 0.005
+
+
+def test_two_motions_of_nearly_the_same_speed_are_undecided():
+    """The folds are wider apart than a bracket, their speeds less than told apart for sure."""
+    settings = {"two_motions": 0.02, "smallest_jump": 0.005}
+    assert judged(-0.0365, start=1.27, **NARROW, **settings).what == UNDECIDED
+
+
+@pytest.mark.parametrize("slope", [0.005, 0.02, 0.1])
 def test_a_steep_branch(slope):
-    """A thousand times as steep as the voltage, but the speed comes back with it."""
+    """Up to 200 times as steep as the voltage, but the speed comes back with it."""
     verdict = judged(slope, longest=2e5)
     assert verdict.what == FOLLOWS and np.isnan(verdict.low)
 
@@ -117,6 +152,14 @@ class Scripted(HeldVoltageTest):
 def test_another_motion_on_the_way_back_is_undecided():
     assert Scripted().verdict() == FOLLOWS
     assert Scripted(back=0.02).verdict() == UNDECIDED
+
+
+def test_a_way_back_that_has_not_settled_is_undecided():
+    scripted = Scripted()
+    low, high = scripted.at(1.5), scripted.at(1.5001, higher=0.01)
+    for higher, what in ((0.0, FOLLOWS), (0.003, UNDECIDED), (0.01, LOST), (np.nan, UNDECIDED)):
+        scripted.back = higher
+        assert scripted.there_and_back(low, high) == what
 
 
 def test_it_begins_on_the_motion_of_the_ramp():

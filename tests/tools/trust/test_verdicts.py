@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from orchestrate.weak_drive import averaged
-from tools.trust import verdicts
+from tools.trust import held_speeds, verdicts
 from tools.trust.verdicts import FOLD, NONE, TORUS, UNKNOWN, Answer, Truth, Verdicts, complaint
 
 LOST = Answer("lost", 1.5, 1.5001, True)
@@ -56,6 +56,7 @@ def test_the_jump_of_a_ramp_down_is_late_downward():
 def test_answers_that_change_with_the_rate_are_findings(monkeypatch):
     said = iter([(LOST, NOTHING), (OPEN, NOTHING), (NOTHING, NOTHING), (LOST, NOTHING)])
     monkeypatch.setattr(verdicts, "answers", lambda *_: next(said))
+    monkeypatch.setattr(verdicts, "refuted", lambda *_: "")
     system = verdicts.with_folds(np.random.default_rng(1))
     found = list(
         verdicts.judged(system, "delaminated", dict.fromkeys(verdicts.WAYS, Truth(UNKNOWN)))
@@ -96,6 +97,108 @@ def test_where_a_branch_loses_its_motion():
     assert verdicts.truth(branch([True] * 20, "stuck"), "bonded", "up", (1.0, 1.0)).kind == UNKNOWN
     other = whole.assign(stable=~whole.stable)
     assert verdicts.truth(other, "bonded", "up", (1.0, 1.0)).kind == UNKNOWN
+
+
+SYSTEM = verdicts.with_folds(np.random.default_rng(1)).of_kind("delaminated")
+FIRST_FOLD, LAST_FOLD = 1.30, 1.28
+
+
+class Motions:
+    """Speeds at held voltages, with a memory: lost at one voltage up, at another one down.
+
+    Speeds rise with the voltage; ``gap`` lies between those of both motions. One more fold, of a
+    motion that goes on with nearly the same speed, is met on the way up at 1.25.
+    """
+
+    def __init__(self, monkeypatch, gap=0.05, up=FIRST_FOLD, down=LAST_FOLD):
+        self.gap, self.up, self.down, self.courses = gap, up, down, []
+        monkeypatch.setattr(verdicts, "held_speeds", self.held)
+
+    def held(self, _system, first, voltages, part=1.0):
+        self.courses.append(list(voltages))
+        beyond, speeds = first > self.up, []
+        for voltage in voltages:
+            beyond = voltage > self.up or (beyond and voltage > self.down)
+            small = 0.003 if voltage > 1.25 else 0.0
+            speeds.append(0.9 * voltage + small + self.gap * beyond)
+        return np.array(speeds)
+
+
+def branch_with_folds(folds, kind="delaminated"):
+    """A delaminated branch whose voltage rises and falls: each fold is a voltage and a speed."""
+    voltage, speed = np.array(folds).T
+    volts, omega = SYSTEM.drive.volts(SYSTEM.structure), SYSTEM.structure.omega
+    highest = np.arange(len(folds)) % 2 == 0
+    beside = np.where(highest, -1e-3, 1e-3)
+    points = np.stack([voltage + beside, voltage, voltage + 2.0 * beside], 1).ravel()
+    speeds = np.stack([speed - 1e-4, speed, speed + 1e-4], 1).ravel()
+    along = ("structure", "leg", "point")
+    bifurcation = {
+        "structure": [kind] * len(folds),
+        "kind": ["fold"] * len(folds),
+        "voltage": voltage * volts,
+        "speed": speed * omega,
+        "revolutions": np.ones(len(folds)),
+    }
+    return xr.Dataset(
+        {
+            "voltage": (along, points[None, None] * volts),
+            "speed": (along, speeds[None, None] * omega),
+        }
+        | {f"bifurcation_{name}": ("bifurcation", each) for name, each in bifurcation.items()},
+        {"structure": ["delaminated"], "leg": ["from below"]},
+    )
+
+
+FOLDS = [(1.25, 1.125), (1.26, 1.0), (FIRST_FOLD, 1.173), (LAST_FOLD, 1.205), (1.33, 0.9)]
+
+
+def test_a_fold_counts_where_held_voltages_meet_it_and_the_speed_jumps(monkeypatch):
+    """Not one where the motion goes on with nearly the same speed, nor one of another branch."""
+    Motions(monkeypatch)
+    data = branch_with_folds(FOLDS)
+    assert verdicts.fold_that_is_met(SYSTEM, data, "up").low == pytest.approx(FIRST_FOLD)
+    assert verdicts.fold_that_is_met(SYSTEM, data, "down").low == pytest.approx(LAST_FOLD)
+    beside = branch_with_folds([(1.25, 1.125), (1.26, 1.0), (1.33, 0.9)])
+    assert verdicts.fold_that_is_met(SYSTEM, beside, "up").kind == UNKNOWN
+    bonded = branch_with_folds(FOLDS, "bonded")
+    assert verdicts.fold_that_is_met(SYSTEM, bonded, "up").kind == UNKNOWN
+
+
+@pytest.mark.parametrize(("way", "place"), [("up", FIRST_FOLD), ("down", LAST_FOLD)])
+@pytest.mark.parametrize("off", [0.0, 3e-3, -3e-3])
+def test_a_bracket_is_refuted_where_nothing_is_lost(monkeypatch, way, place, off):
+    motions = Motions(monkeypatch)
+    bracket = Answer("lost", place + off - 3e-5, place + off + 3e-5, True)
+    assert bool(verdicts.refuted(SYSTEM, bracket, way)) is (off != 0.0)
+    far, stays, past, back = motions.courses[0]
+    assert stays == back and min(far, past) < stays < max(far, past)
+
+
+@pytest.mark.parametrize("way", verdicts.WAYS)
+def test_none_is_refuted_by_two_motions_and_a_jump_of_the_record_by_their_lack(monkeypatch, way):
+    low, high = verdicts.ends_of(SYSTEM)
+    middle = 0.5 * (low + high)
+    Motions(monkeypatch, up=middle + 0.01, down=middle - 0.01)
+    assert "two motions last" in verdicts.refuted(SYSTEM, NOTHING, way)
+    assert not verdicts.refuted(SYSTEM, SEEN, way) and not verdicts.refuted(SYSTEM, OPEN, way)
+    Motions(monkeypatch, gap=0.0)
+    assert not verdicts.refuted(SYSTEM, NOTHING, way)
+    assert "come back" in verdicts.refuted(SYSTEM, SEEN, way)
+
+
+def test_a_voltage_is_held_after_another_and_the_speed_read_at_the_end(monkeypatch):
+    """It follows the voltage; the second hold is too short for how slowly it does so."""
+
+    def record(structure, drive, voltage, **_):
+        time = np.linspace(0.0, voltage.duration, 20_000)[1:]
+        eta0 = np.array([voltage.voltage(each) for each in time]) / drive.volts(structure)
+        slow = np.where(eta0 < 1.15, 0.0, 0.1 * np.exp(-(time - time[0]) / 2e4))
+        return xr.Dataset({"time": time, "Omega": ("time", eta0 - slow)})
+
+    monkeypatch.setattr(held_speeds, "couple", record)
+    first, second, third = held_speeds.held_speeds(SYSTEM, 1.0, [1.1, 1.2, 1.1])
+    assert first == pytest.approx(1.1) and third == pytest.approx(1.1) and np.isnan(second)
 
 
 @pytest.mark.slow

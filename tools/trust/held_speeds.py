@@ -1,0 +1,69 @@
+"""Where a motion goes when its voltage is held: a course of ramps and long holds.
+
+It is none of the ways in which `couple` decides: one run through all voltages, nothing restored,
+and the speed is read at the end of each hold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from orchestrate import couple
+from orchestrate.weak_drive.schedule import Course
+
+if TYPE_CHECKING:
+    from .verdicts import System
+
+RATE = 5e-5  # of eta0 in a time 1/omega, between holds
+BEGIN = 600.0  # time over omega at the first voltage
+LONG, LONG_OF_ROTOR = 4000.0, 200.0  # of a hold, in 1/omega and in the rotor's time 1/b
+SETTLED = 1e-3  # of omega: mean speeds of the last two quarters of a hold
+
+
+def held_speeds(
+    system: System, first: float, voltages: Sequence[float], part: float = 1.0
+) -> np.ndarray:
+    """Mean speeds at the ends of holds, one after the other.
+
+    Parameters
+    ----------
+    system : System
+    first : float
+        Voltage over K omega at which the motor begins, with its no-load speed.
+    voltages : sequence of float
+        Those that are held, over K omega.
+    part : float
+        Of the usual time of a hold.
+
+    Returns
+    -------
+    ndarray
+        Over omega; NaN where a speed has not settled.
+    """
+    structure, drive = system
+    hold = part * (LONG + LONG_OF_ROTOR / drive.b(structure))
+    times, course, ends = [0.0, BEGIN], [first, first], []
+    for voltage in voltages:
+        arrival = times[-1] + max(abs(voltage - course[-1]) / RATE, 1.0)
+        times += [arrival, arrival + hold]
+        course += [voltage, voltage]
+        ends.append(times[-1])
+    omega, volts = structure.omega, drive.volts(structure)
+    schedule = Course(
+        tuple(time / omega for time in times), tuple(voltage * volts for voltage in course)
+    )
+    run = couple(structure, drive, voltage=schedule, hold=1.0 / omega, progress=False)
+    time, speed = run.time.values * omega, np.abs(run.Omega.values)
+    return np.array([settled(time, speed, end, hold) for end in ends])
+
+
+def settled(time: np.ndarray, speed: np.ndarray, end: float, hold: float) -> float:
+    """The mean speed over the last quarter of a hold; NaN where the one before has another."""
+    before, last = (
+        speed[(time > end - quarters * hold / 4.0) & (time <= end - (quarters - 1) * hold / 4.0)]
+        for quarters in (2, 1)
+    )
+    return float(last.mean()) if abs(last.mean() - before.mean()) < SETTLED else float("nan")
