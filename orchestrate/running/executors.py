@@ -15,10 +15,11 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
@@ -164,6 +165,12 @@ class Processes:
                 count, timeout=IDLE, initializer=attend, initargs=(os.getpid(),)
             )
         )
+
+    def start(self, modules: Iterable[str]) -> None:
+        """Start the processes ahead of their chunks; they import some modules meanwhile."""
+        for name in modules:
+            for _ in range(self.count):
+                self.executor.submit(import_module, name)
 
     def room(self) -> int:
         """One chunk more than are computed."""
