@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..files import open_folder
-from .executors import Cluster, Here, Processes, Workers, at_work, compute
+from .executors import Here, Processes, Workers, at_work, compute
 from .identity import Fmu, Identity, identity_of
 from .job import Job, Table
 from .options import RunOptions
@@ -143,6 +143,8 @@ class Runner:
     def others(self) -> Workers:
         """Those who compute much."""
         if self.options.cluster:
+            from .cluster import Cluster  # brings asyncio, which nobody else needs
+
             return Cluster(self.options.cluster)
         return Processes(self.options.processes)
 

@@ -16,13 +16,8 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError, WorkerError
 from orchestrate.running import runner
-from orchestrate.running.executors import (
-    Cluster,
-    Processes,
-    at_work,
-    compute,
-    is_no_lost_connection,
-)
+from orchestrate.running.cluster import Cluster, is_no_lost_connection
+from orchestrate.running.executors import Processes, at_work, compute
 from orchestrate.running.journal import Journal, Lock, journal_path
 from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
@@ -379,7 +374,7 @@ def false_client(monkeypatch, client):
     async def greet(address):
         pass
 
-    monkeypatch.setattr("orchestrate.running.executors.greet", greet)
+    monkeypatch.setattr("orchestrate.running.cluster.greet", greet)
     return distributed
 
 
