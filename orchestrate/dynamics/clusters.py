@@ -104,7 +104,7 @@ def response_from(instance: Instance, point: Point, start: ArrayLike, telling: T
         before, dropped = nearly, min(done, telling.longest - done)
     same = nearly.multiplicity == before.multiplicity
     if nearly.multiplicity and same and 2.0 * nearly.deviation < before.deviation:
-        return Settled(replace(response, multiplicity=nearly.multiplicity), done)
+        return Settled(replace(response, tolerance=telling.apart * telling.converged), done)
     response = respond(instance, *point, start, 0, telling.irregular_samples, telling.converged)
     return Settled(response, done + telling.irregular_samples)
 

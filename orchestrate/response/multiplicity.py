@@ -187,7 +187,7 @@ def decide(states: Floats, tolerance: float) -> Decision:
                 return Decision(n, REPEATED)
             nearly = nearly or (0 if drifting else n)
             break
-        spread = spread_of(later, n)
+        spread = float(spread_of(later, n))
         died = spread <= ROUNDING
         left = ROUNDING if died else remaining(later, n, spread)
         least = max(4.0 * left, spread / STILL if died else tolerance)
@@ -229,12 +229,25 @@ def growth(away: Floats) -> float:
     return late / early if early and late else 1.0
 
 
-def spread_of(later: Floats, n: int) -> float:
-    """The largest distance of states any multiple of n periods apart."""
-    spread = 0.0
-    for first in range(n):
-        part = later[:, first::n]
-        spread = max(spread, float((part.max(axis=1) - part.min(axis=1)).max()))
+def spread_of(states: Floats, n: int) -> Floats:
+    """The largest distance of states any multiple of n periods apart.
+
+    Parameters
+    ----------
+    states : ndarray, shape (..., n_co-ordinates, n_samples)
+        Several runs of states at once, or one.
+    n : int
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Of each run.
+    """
+    count = states.shape[-1]
+    again = states[..., count - n : count - n + -count % n]  # fills the last n periods
+    turns = np.concatenate([states, again], axis=-1).reshape(*states.shape[:-1], -1, n)
+    same = turns.swapaxes(-1, -2).copy()  # what is n periods apart beside each other is quicker
+    spread: Floats = (same.max(axis=-1) - same.min(axis=-1)).max(axis=(-1, -2))
     return spread
 
 
@@ -261,7 +274,7 @@ def contraction(later: Floats, n: int) -> float:
         blocks = [float(part.max()) for part in np.array_split(away, BLOCKS) if len(part)]
         steady = len(blocks) == BLOCKS and bool((np.diff(blocks) < 0.0).all())
         return growth(away) if steady else 1.0
-    early, late = spread_of(later[:, :half], n), spread_of(later[:, -half:], n)
+    early, late = spread_of(np.array([later[:, :half], later[:, -half:]]), n).tolist()
     return late / early if early else 1.0
 
 

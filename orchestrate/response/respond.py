@@ -30,24 +30,30 @@ class Response:
         Mean over the samples' periods.
     permanent_contact : bool
         Whether any occurred in them.
-    multiplicity : int
-        Least n such that the state repeats after n periods within the tolerance; 0: none. How far
-        to believe it: :meth:`decision`.
     frequency : float
         Of the excitation, rad/s.
+    tolerance : float
+        Within which a state repeats, over the motion's size: see :mod:`.multiplicity`.
     """
 
     samples: NDArray[np.float64]
     x_rel_max: float
     impacts_per_period: float
     permanent_contact: bool
-    multiplicity: int
-    frequency: float = 1.0
+    frequency: float
+    tolerance: float
 
     @cached_property
     def states(self) -> NDArray[np.float64]:
         """The samples over the motion's size, see :func:`.multiplicity.over_size`."""
         return over_size(self.samples, self.frequency, self.x_rel_max)
+
+    @cached_property
+    def multiplicity(self) -> int:
+        """Least n such that the state repeats after n periods within the tolerance; 0: none. How
+        far to believe it: :meth:`decision`.
+        """
+        return self.repetition(self.tolerance).multiplicity
 
     def repetition(self, tolerance: float) -> Repetition:
         """After how many periods states repeat within a tolerance, and how closely they do."""
@@ -137,14 +143,13 @@ def respond(
     impacts, contacts, touching = instance.get("impact_count", "contact_count", "in_contact")
     states, peak = sample(instance, period, transient, samples)
     impacts_after, contacts_after = instance.get("impact_count", "contact_count")
-    repeated = repetition(over_size(states, excitation.frequency, peak), tolerance)
     return Response(
         samples=states,
         x_rel_max=peak,
         impacts_per_period=(impacts_after - impacts) / samples,
         permanent_contact=bool(touching) or contacts_after > contacts,
-        multiplicity=repeated.multiplicity,
         frequency=excitation.frequency,
+        tolerance=tolerance,
     )
 
 

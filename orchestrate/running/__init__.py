@@ -9,7 +9,8 @@ module              idea
 :mod:`.store`       where chunks and results are kept: in memory or on disk
 :mod:`.journal`     chunks on disk while a job is under way
 :mod:`.provenance`  where a dataset comes from, in its attributes
-:mod:`.executors`   who computes: this process, processes of this machine, workers of a cluster
+:mod:`.executors`   who computes: this process, or processes of this machine
+:mod:`.cluster`     the workers of a Dask scheduler
 :mod:`.progress`    how far a job is, and what may be computed next, guesses included
 :mod:`.runner`      keeps them busy until every result is there
 ==================  ===============================================================================

@@ -1,4 +1,4 @@
-"""Who computes: this process, processes of this machine, or the workers of a Dask scheduler.
+"""Who computes: this process, processes of this machine, or others (:mod:`.cluster`).
 
 Processes are loky's: they start without running the caller's script again, so a script needs no
 ``__main__`` guard and a notebook works. A chunk is the same call for all three.
@@ -6,37 +6,29 @@ Processes are loky's: they start without running the caller's script again, so a
 
 from __future__ import annotations
 
-import asyncio
 import functools
 import hashlib
-import logging
 import os
 import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
+from importlib import import_module
 from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
-from ..errors import InputError, WorkerError
+from ..errors import WorkerError
 from ..files import write_whole
 from ..temporary import process_folder
 from .identity import changed, code_of
 from .job import Job, Table, last_entries
 
-DASK = (
-    *("distributed.batched", "distributed.client", "distributed.comm.core", "distributed.comm.tcp"),
-    *("distributed.core", "distributed.utils", "distributed.utils_comm", "tornado.application"),
-)
-CONNECTION = (OSError, CancelledError, asyncio.CancelledError, asyncio.TimeoutError)
 IDLE = 30  # s that processes wait for another question
-CONNECT = "5s"
-RETRIES = 3  # a chunk whose worker is lost is computed by others
 
 
 def compute(
@@ -165,6 +157,12 @@ class Processes:
             )
         )
 
+    def start(self, modules: Iterable[str]) -> None:
+        """Start the processes ahead of their chunks; they import some modules meanwhile."""
+        for name in modules:
+            for _ in range(self.count):
+                self.executor.submit(import_module, name)
+
     def room(self) -> int:
         """One chunk more than are computed."""
         return self.count + 1
@@ -218,117 +216,6 @@ def attend(parent: int) -> None:
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
-
-
-def is_no_lost_connection(record: logging.LogRecord) -> bool:
-    """Whether a line of Dask's log stays: a lost connection is an exception of ours already."""
-    kind = record.exc_info[0] if record.exc_info else None
-    lost = kind is not None and issubclass(kind, CONNECTION)
-    told = record.getMessage()
-    return not lost and "CommClosedError" not in told and not told.startswith("Failed to reconnect")
-
-
-class Cluster:
-    """Workers of a Dask scheduler.
-
-    Parameters
-    ----------
-    address : str
-
-    Raises
-    ------
-    InputError
-        Where no scheduler answers there, or it has no workers.
-    WorkerError
-        Where it ends while it is asked.
-    """
-
-    remote = True
-
-    def __init__(self, address: str) -> None:
-        try:
-            from distributed import Client, KilledWorker
-        except ImportError:
-            raise InputError(
-                'cluster: needs Dask; pip install "vibroimpact[cluster]" brings it'
-            ) from None
-        self.losses: Mapping[type[BaseException], str] = {
-            CancelledError: "the scheduler of the cluster has ended",
-            KilledWorker: "workers of the cluster ended without a word (killed, or out of memory)",
-        }
-        for name in DASK:
-            logging.getLogger(name).addFilter(is_no_lost_connection)
-        connect: Any = Client
-        try:
-            with ThreadPoolExecutor(1) as beside:  # a notebook has a loop in this thread
-                beside.submit(asyncio.run, greet(address)).result()
-            self._client = connect(address, timeout=CONNECT, set_as_default=False)
-        except Exception as error:  # of whatever answers there, and however
-            raise InputError(
-                f"cluster {address}: no scheduler answers there ({str(error) or 'silence'}); "
-                "`dask scheduler` starts one"
-            ) from None
-        self.executor: Executor = Submitting(
-            self._client.get_executor(pure=False, retries=RETRIES), self._client
-        )
-        with ended_at_once(self):
-            if not self._cores():
-                raise InputError(
-                    f"cluster {address}: the scheduler has no workers; "
-                    f"`dask worker {address} --nthreads 1` starts one"
-                )
-
-    def _cores(self) -> int:
-        """Cores of all workers."""
-        try:
-            return int(sum(self._client.ncores().values()))
-        except Exception as error:  # one of many, where the connection is lost
-            raise CancelledError from error
-
-    def room(self) -> int:
-        """Two chunks for each core; workers may come and go."""
-        return 2 * max(1, self._cores())
-
-    def close(self, in_haste: bool) -> None:
-        """Leave the scheduler, where it is there; what it still computes for us is cancelled."""
-        with suppress(Exception):
-            self.executor.shutdown(wait=not in_haste)
-        with suppress(Exception):
-            self._client.close()
-
-
-async def greet(address: str) -> None:
-    """See whether Dask answers at an address; its client waits for ever for one that is silent."""
-    from dask.utils import parse_timedelta
-    from distributed.comm import connect
-    from distributed.security import Security
-
-    call: Any = connect
-    security: Any = Security
-    answer = call(address, timeout=CONNECT, **security().get_connection_args("client"))
-    reached = await asyncio.wait_for(answer, 1.0 + parse_timedelta(CONNECT))
-    reached.abort()
-
-
-class Submitting(Executor):
-    """Dask's executor, where a call that finds no scheduler is one that is cancelled."""
-
-    def __init__(self, pool: Any, client: Any) -> None:
-        self._pool, self._client = pool, client
-
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Hand out a call."""
-        try:
-            future: Future[Any] = self._pool.submit(fn, *args, **kwargs)
-        except Exception as error:
-            if self._client.status == "running":
-                raise
-            raise CancelledError from error
-        return future
-
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Wait for what is under way, or cancel it."""
-        self._pool.shutdown(wait=wait)
 
 
 @contextmanager

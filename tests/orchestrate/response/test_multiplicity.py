@@ -20,6 +20,7 @@ from orchestrate.response.multiplicity import (
     multiplicity,
     over_size,
     repetition,
+    spread_of,
 )
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import respond
@@ -245,6 +246,14 @@ def test_a_deviation_that_dies_while_it_turns_round_repeats_after_one_period(ang
     assert decide(states_of(lambda n: spiral(n, 0.9)), TOLERANCE) == (1, REPEATED)
     n, decided = decide(states_of(lambda n: spiral(n, 0.99)), TOLERANCE)
     assert (n, decided) in [(1, REPEATED), (1, UNDECIDED)]
+
+
+@given(st.integers(1, 60), st.integers(0, 60), st.integers(0, 2**32 - 1))
+def test_the_spread_is_that_of_states_a_multiple_of_n_periods_apart(n, more, seed):
+    runs = np.random.default_rng(seed).uniform(-1.0, 1.0, (2, 6, n + more))
+    expected = [max(np.ptp(run[:, k::n], axis=1).max() for k in range(n)) for run in runs]
+    assert spread_of(runs, n).tolist() == expected
+    assert float(spread_of(runs[0], n)) == expected[0]
 
 
 @given(st.floats(0.0, 1.0), st.floats(0.05, 0.45))
