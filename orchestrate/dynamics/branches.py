@@ -17,13 +17,16 @@ from ..response.questions import Question, checked_structure, numbers, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .bifurcations import KINDS, Look
-from .branch_walk import Event, Leg, Pace, backwards, follow, leaving
+from .bifurcations import KINDS
+from .branch_switching import leaving_branch
 from .continuation import NoConvergenceError
-from .families import ACCELERATION, Setting, check_names, knocking
+from .families import ACCELERATION, Setting, check_names, require_delaminated
+from .orbit_point import OrbitPoint
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
-from .orbit_search import solve, verdict
-from .orbits import FirstGuess, finite, from_result, orbit, told
+from .orbit_search import run_in_fmu, solve_orbit
+from .orbit_tracer import OrbitTracer
+from .orbits import FirstGuess, excitation_arguments, finite, from_result, orbit
+from .tracer import Bifurcation, BranchSegment, ContinuationSettings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,6 +38,7 @@ TOLD = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual
 NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_closing")
 KEPT = (*TOLD, *NODES)  # of what is told of orbits, also of those at bifurcations
 BIFURCATION = "bifurcation"
+OrbitSegment = BranchSegment[OrbitPoint]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,7 +74,7 @@ class BranchJob(Question):
     def call(self) -> str:
         """The call that asks it; where it leaves another branch, that one is not told."""
         setting, values = self.setting, np.array([self.value])
-        guess = self.start.told(setting.point(values).excitation.frequency)
+        guess = self.start.as_argument(setting.point(values).excitation.frequency)
         start = f"start={setting.first_orbit(values, self.period, guess)}"
         switch = [f"switch={KINDS[self.switch]!r}"] if self.switch >= 0 else []
         steps = [f"longest={self.longest!r}", f"most={self.most}"]
@@ -95,9 +99,9 @@ class BranchJob(Question):
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
         """Follow it."""
-        legs = followed(self)
+        segments = trace(self)
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return table(instance, self.setting, legs)
+            return table(instance, self.setting, segments)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Everything along the branch."""
@@ -114,8 +118,8 @@ class BranchJob(Question):
         return dataset.set_coords(list(coordinates(setting, along, "point")))
 
 
-def followed(job: BranchJob) -> list[Leg]:
-    """The branch in both directions; in one, where it leaves another.
+def trace(job: BranchJob) -> list[OrbitSegment]:
+    """Trace the branch in both directions; in one, where it leaves another.
 
     Raises
     ------
@@ -123,49 +127,52 @@ def followed(job: BranchJob) -> list[Leg]:
         Where there is no orbit at its start.
     """
     guess = job.start.sequence(job.period), np.array(job.start.nodes).reshape(-1, 4)
-    pace = Pace(job.longest, job.most)
+    settings = ContinuationSettings(job.longest, job.most)
     try:
-        family, root = solve(job.setting, guess, np.array([job.value]))
-        start = Look(family, root)
-        if job.switch >= 0:
-            return [follow(leaving(job.switch, start), pace)]
+        start = OrbitPoint(*solve_orbit(job.setting, guess, np.array([job.value])))
+        starts = (
+            [start.reversed(), start] if job.switch < 0 else [leaving_branch(job.switch, start)]
+        )
     except NoConvergenceError as reason:
         expected = "expected an orbit of this structure"
         raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
-    return [follow(look, pace) for look in (backwards(start), start)]
+    return [OrbitTracer(point, settings).trace(point) for point in starts]
 
 
-def table(instance: EventInstance, setting: Setting, legs: list[Leg]) -> Table:
-    """Arrays along the branch, and those of its bifurcations, in the order along it."""
-    looks, events = joined(legs)
-    ends = [legs[0].end if len(legs) > 1 else "start", legs[-1].end]
-    found = table_of([record(instance, setting, look) for look in looks])
-    at = table_of([record(instance, setting, one.look) for one in events]) if events else {}
+def table(instance: EventInstance, setting: Setting, segments: list[OrbitSegment]) -> Table:
+    """Return arrays along the branch, and those of its bifurcations, in the order along it."""
+    points, bifurcations = joined(segments)
+    ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
+    along = table_of([record(instance, setting, point) for point in points])
+    at = [record(instance, setting, each.point) for each in bifurcations]
     return {
-        **found,
-        **{f"{BIFURCATION}_{name}": values for name, values in at.items()},
-        "bifurcation_kind": np.array([one.kind for one in events], dtype=int),
-        "bifurcation_place": np.array([one.place for one in events]),
+        **along,
+        **{f"{BIFURCATION}_{name}": rows for name, rows in (table_of(at) if at else {}).items()},
+        "bifurcation_kind": np.array([each.kind for each in bifurcations], dtype=int),
+        "bifurcation_place": np.array([each.position for each in bifurcations]),
         "bifurcation_ends": np.array(ends),
     }
 
 
-def joined(legs: list[Leg]) -> tuple[list[Look], list[Event]]:
-    """Orbits and bifurcations of one direction, or of both in the order along the branch."""
-    last = legs[-1]
-    if len(legs) == 1:
-        return last.looks, last.events
-    back, middle = legs[0], len(legs[0].looks) - 1.0
-    events = [replace(one, place=middle - one.place) for one in reversed(back.events)]
-    events += [replace(one, place=middle + one.place) for one in last.events]
-    return [*reversed(back.looks[1:]), *last.looks], events
+def joined(
+    segments: list[OrbitSegment],
+) -> tuple[list[OrbitPoint], list[Bifurcation[OrbitPoint]]]:
+    """Return orbits and bifurcations of one direction, or of both in the order along the branch."""
+    forth = segments[-1]
+    if len(segments) == 1:
+        return forth.points, forth.bifurcations
+    back, middle = segments[0], len(segments[0].points) - 1.0
+    bifurcations = [
+        *(replace(each, position=middle - each.position) for each in reversed(back.bifurcations)),
+        *(replace(each, position=middle + each.position) for each in forth.bifurcations),
+    ]
+    return [*reversed(back.points[1:]), *forth.points], bifurcations
 
 
-def record(instance: EventInstance, setting: Setting, look: Look) -> OrbitRecord:
-    """An orbit on the branch, verified."""
-    unknowns = look.root.unknowns
-    word = verdict(instance, setting, unknowns[look.family.size :], look.ring)
-    return OrbitRecord.of(look.family, unknowns, look.root.residual, word)
+def record(instance: EventInstance, setting: Setting, point: OrbitPoint) -> OrbitRecord:
+    """Return the record of an orbit on the branch, run through in the FMU."""
+    check = run_in_fmu(instance, setting, point.values, point.orbit)
+    return OrbitRecord.from_root(point.family, point.root.unknowns, point.root.residual, check)
 
 
 def at_bifurcations(setting: Setting, table: Table) -> dict[str, Variable]:
@@ -270,11 +277,11 @@ def branch(
     array([2.64796105, 2.7855415 ])
     """
     check_names((over,))
-    knocking(checked_structure(structure))
+    require_delaminated(checked_structure(structure))
     if start is not None:
         check_start(start, several=switch is not None)
     low_high = checked_limits(over, limits)
-    given = excitation_of(start, over, told(eta, frequency, amplitude), low_high)
+    given = excitation_of(start, over, excitation_arguments(eta, frequency, amplitude), low_high)
     if start is None:
         start, value = first_orbit(
             structure, over, low_high, given, period, box_acceleration, running

@@ -22,8 +22,8 @@ from .clusters import Telling, response_from
 from .continuation import NoConvergenceError
 from .families import Setting
 from .guesses import Guess, from_impacts, start
-from .impact_sequence import TURN, Ring, Sequence
-from .orbit_search import least_periods, solve, why_no_motion
+from .impact_sequence import TURN, ImpactSequence, PeriodicOrbit
+from .orbit_search import least_periods, solve_orbit, why_no_motion
 from .settled_motion import (
     IRREGULAR,
     ORBIT,
@@ -109,13 +109,13 @@ class MotionDecider:
                 return known, False
         unstable = False
         for periods in [n] if n else self.possible_periods(response):
-            ring, free_phase = self.orbit(response.end, periods)
-            if ring is None:
+            orbit, free_phase = self.orbit_near(response.end, periods)
+            if orbit is None:
                 continue
-            if largest(ring) >= 1.0 - MARGIN:
+            if largest(orbit) >= 1.0 - MARGIN:
                 unstable = True
                 continue
-            found = SettledMotion.from_orbit(self.point, ring, free_phase)
+            found = SettledMotion.from_orbit(self.point, orbit, free_phase)
             if self.comes_to(response.end, found):
                 return self.remembered(found), False
         return None, unstable
@@ -157,37 +157,37 @@ class MotionDecider:
                 return motion
         return None
 
-    def remembered(self, orbit: SettledMotion) -> SettledMotion:
+    def remembered(self, motion: SettledMotion) -> SettledMotion:
         """A stable orbit, or in its place the known one that is the same."""
         for known in self.known:
-            if known.is_orbit_of(orbit):
+            if known.is_orbit_of(motion):
                 return known
-        self.known.append(orbit)
-        return orbit
+        self.known.append(motion)
+        return motion
 
     def orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
         """The stable orbit near a state at phase 0 that repeats after some periods."""
-        ring, free_phase = self.orbit(state, periods)
-        if ring is None or largest(ring) >= 1.0 - MARGIN:
+        orbit, free_phase = self.orbit_near(state, periods)
+        if orbit is None or largest(orbit) >= 1.0 - MARGIN:
             return None
-        return self.remembered(SettledMotion.from_orbit(self.point, ring, free_phase))
+        return self.remembered(SettledMotion.from_orbit(self.point, orbit, free_phase))
 
-    def comes_to(self, state: ArrayLike, orbit: SettledMotion) -> bool:
+    def comes_to(self, state: ArrayLike, motion: SettledMotion) -> bool:
         """Whether the response from a state at phase 0 is on a stable orbit: in its neighbourhood,
         and nearer to it, as its multipliers say, after some of its periods.
         """
-        excitation, periods = self.point.excitation, orbit.multiplicity
+        excitation, periods = self.point.excitation, motion.multiplicity
         begin(self.plain, *self.point, state)
-        if orbit.free_phase > 0.0:
-            self.plain.step(0.0, orbit.free_phase / excitation.frequency)
-        there, states = self.plain.get(*STATE), orbit.free_states
+        if motion.free_phase > 0.0:
+            self.plain.step(0.0, motion.free_phase / excitation.frequency)
+        there, states = self.plain.get(*STATE), motion.free_states
         before = states.nearest(there)[1]
         if before < SAME or not before < NEAR:
             return before < SAME
-        rate = max(orbit.multiplier, 1e-3)
+        rate = max(motion.multiplier, 1e-3)
         turns = math.ceil(math.log(SHRINKS) / math.log(rate))
         turns = max(1, min(turns, self.telling.longest // periods))
-        shifted = excitation.replace(phase=orbit.free_phase % TURN)
+        shifted = excitation.replace(phase=motion.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)
         after = states.nearest(self.plain.get(*STATE))[1]
@@ -195,7 +195,7 @@ class MotionDecider:
 
     # -- orbits -----------------------------------------------------------------------------------
 
-    def orbit(self, state: ArrayLike, periods: int) -> tuple[Ring | None, float]:
+    def orbit_near(self, state: ArrayLike, periods: int) -> tuple[PeriodicOrbit | None, float]:
         """The orbit near the response from a state at phase 0, with its least period, and a phase
         of it far from impacts; no orbit where Newton's method finds no possible motion.
         """
@@ -204,18 +204,18 @@ class MotionDecider:
         guess, free_phase = self.impacts_from(np.array(state), periods)
         return self.solved(guess), free_phase
 
-    def solved(self, guess: Guess) -> Ring | None:
+    def solved(self, guess: Guess) -> PeriodicOrbit | None:
         """The orbit of a guess, with its least period; None where there is no possible motion."""
         if len(guess[0].kinds) > MOST_NODES:
             return None
         try:
-            family, root = solve(self.setting, guess, self.values)
+            family, root = solve_orbit(self.setting, guess, self.values)
         except NoConvergenceError:
             return None
-        ring = family.ring(root.unknowns)
-        if root.residual > RESIDUAL or why_no_motion(ring):
+        orbit = family.orbit(root.unknowns)
+        if root.residual > RESIDUAL or why_no_motion(orbit):
             return None
-        return without_copies(ring)
+        return without_copies(orbit)
 
     def impacts_from(self, state: Floats, periods: int) -> tuple[Guess, float]:
         """The impacts of some periods, from the middle of the longest stretch without any."""
@@ -225,7 +225,7 @@ class MotionDecider:
         start(instance, self.point, form, state)
         times = instance.impacts(0.0, span).time
         if not len(times):
-            return (Sequence(periods, ()), np.zeros((0, 4))), 0.0
+            return (ImpactSequence(periods, ()), np.zeros((0, 4))), 0.0
         stretches = np.diff(np.append(times, times[0] + span))
         longest = int(stretches.argmax())
         begun = float(times[longest] + 0.5 * stretches[longest]) % span
@@ -235,54 +235,54 @@ class MotionDecider:
         found = instance.impacts(begun, begun + span)
         return from_impacts(found, self.point, form, periods), frequency * begun
 
-    def followed(self, orbit: SettledMotion) -> SettledMotion | None:
+    def followed(self, motion: SettledMotion) -> SettledMotion | None:
         """The stable orbit here of the sequence of an orbit at another value of the parameter."""
-        if orbit.ring is None or self.eventful is None:
+        if motion.orbit is None or self.eventful is None:
             return None
-        ring = self.solved((orbit.ring.sequence, orbit.ring.nodes))
-        if ring is None or largest(ring) >= 1.0 - MARGIN:
+        orbit = self.solved((motion.orbit.sequence, motion.orbit.nodes))
+        if orbit is None or largest(orbit) >= 1.0 - MARGIN:
             return None
-        found = SettledMotion.from_orbit(self.point, ring, free_phase_of(ring))
+        found = SettledMotion.from_orbit(self.point, orbit, free_phase_of(orbit))
         if not self.returns(found):
             return None
         own = self.orbit_at(found.states[0], found.multiplicity)  # with the impacts of the FMU
         return own if own is not None and own.nearest(found.states[0])[1] < SAME else None
 
-    def returns(self, orbit: SettledMotion) -> bool:
+    def returns(self, motion: SettledMotion) -> bool:
         """Whether the FMU that begins on an orbit stays there."""
         excitation = self.point.excitation
-        shifted = excitation.replace(phase=orbit.free_phase % TURN)
+        shifted = excitation.replace(phase=motion.free_phase % TURN)
         try:
-            begin(self.plain, self.point.structure, shifted, orbit.free_states.states[0])
+            begin(self.plain, self.point.structure, shifted, motion.free_states.states[0])
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
-        self.plain.step(0.0, orbit.multiplicity * excitation.period)
-        return orbit.free_states.nearest(self.plain.get(*STATE))[1] < SAME
+        self.plain.step(0.0, motion.multiplicity * excitation.period)
+        return motion.free_states.nearest(self.plain.get(*STATE))[1] < SAME
 
 
-def largest(ring: Ring) -> float:
+def largest(orbit: PeriodicOrbit) -> float:
     """The largest absolute value of an orbit's multipliers."""
-    return float(np.abs(ring.multipliers()).max(initial=0.0))
+    return float(np.abs(orbit.multipliers()).max(initial=0.0))
 
 
-def without_copies(ring: Ring) -> Ring:
+def without_copies(orbit: PeriodicOrbit) -> PeriodicOrbit:
     """An orbit over the least number of periods after which it closes."""
-    periods, least = ring.sequence.periods, least_periods(ring)
+    periods, least = orbit.sequence.periods, least_periods(orbit)
     if least == periods:
-        return ring
-    nodes, first = in_order(ring.nodes, periods)
+        return orbit
+    nodes, first = in_order(orbit.nodes, periods)
     count = len(nodes) * least // periods
-    kinds = np.roll(np.array(ring.sequence.kinds, dtype=int), -first)[:count]
-    return Ring(Sequence(least, tuple(kinds.tolist())), ring.form, nodes[:count])
+    kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)[:count]
+    return PeriodicOrbit(ImpactSequence(least, tuple(kinds.tolist())), orbit.form, nodes[:count])
 
 
-def free_phase_of(ring: Ring) -> float:
+def free_phase_of(orbit: PeriodicOrbit) -> float:
     """A phase of an orbit in the middle of its longest segment."""
-    if not ring.count:
+    if not orbit.count:
         return 0.0
-    longest = int(ring.durations.argmax())
-    middle = 0.5 * (ring.begins[longest] + ring.ends[longest])
-    return float(middle % (TURN * ring.sequence.periods))
+    longest = int(orbit.durations.argmax())
+    middle = 0.5 * (orbit.begins[longest] + orbit.ends[longest])
+    return float(middle % (TURN * orbit.sequence.periods))
 
 
 def at_another_phase(

@@ -13,7 +13,7 @@ from ..response.questions import ASKED, Point, point
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import one_of
 from .closed_form import ClosedForm, Floats
-from .impact_sequence import POSITION, Ring, Sequence
+from .impact_sequence import POSITION, ImpactSequence, PeriodicOrbit
 
 ACCELERATION = "box_acceleration"
 SMALLEST = 1e-3  # scale of displacements and velocities over a eta^2
@@ -81,7 +81,7 @@ class Setting:
         return Setting(structure, rest, self.over[:1], self.limits[:1], acceleration)
 
 
-def knocking(structure: Structure) -> Structure:
+def require_delaminated(structure: Structure) -> Structure:
     """A structure whose masses knock.
 
     Raises
@@ -114,17 +114,17 @@ class Family:
     Attributes
     ----------
     setting : Setting
-    sequence : Sequence
+    sequence : ImpactSequence
     scale : ndarray
         Sizes of the unknowns.
     """
 
     setting: Setting
-    sequence: Sequence
+    sequence: ImpactSequence
     scale: Floats = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
-    def near(cls, setting: Setting, sequence: Sequence, nodes: Floats) -> Family:
+    def near(cls, setting: Setting, sequence: ImpactSequence, nodes: Floats) -> Family:
         """With scales from the nodes of one of its orbits, which count as one."""
         size = max(float(np.abs(nodes[:, 1:]).max(initial=0.0)), SMALLEST)
         spans = [high - low for low, high in setting.limits]
@@ -142,14 +142,14 @@ class Family:
             return RESIDUAL
         return RESIDUAL * float(self.scale[POSITION]) / np.sqrt(len(self.sequence.kinds))
 
-    def ring(self, unknowns: Floats) -> Ring:
+    def orbit(self, unknowns: Floats) -> PeriodicOrbit:
         """The orbit's nodes and equations."""
         nodes, values = unknowns[: self.size], unknowns[self.size :]
-        return Ring(self.sequence, self.setting.form(values), nodes.reshape(-1, 4))
+        return PeriodicOrbit(self.sequence, self.setting.form(values), nodes.reshape(-1, 4))
 
     def residual(self, unknowns: Floats) -> Floats:
         """What is left of the equations."""
-        return self.ring(unknowns).residual()
+        return self.orbit(unknowns).residual()
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Its derivative: exact by the nodes, by differences by the parameters."""
@@ -157,7 +157,7 @@ class Family:
             difference(self.residual, unknowns, self.size + i, *limits)[:, None]
             for i, limits in enumerate(self.setting.limits)
         ]
-        return np.hstack([self.ring(unknowns).jacobian().real, *columns])
+        return np.hstack([self.orbit(unknowns).jacobian().real, *columns])
 
 
 def node_scales(size: float, count: int) -> Floats:

@@ -147,7 +147,7 @@ class Value:
         """Where an attractor of a neighbour leads here: the attractor's number, and how."""
         state = motion.states[0] / motion.point.scale * self.decider.point.scale
         found, _ = self.decider.decide(state)
-        if motion.ring is not None and unlike(motion, found):
+        if motion.orbit is not None and unlike(motion, found):
             followed = self.decider.followed(motion)
             if followed is not None:
                 return self.index(followed), FOLLOWED

@@ -10,11 +10,20 @@ from ..access import EventInstance, Impacts, begin
 from ..response.questions import Point
 from .closed_form import ClosedForm, Floats
 from .families import ACCELERATION
-from .impact_sequence import CLOSING, IMPACT, PHASE, RELEASE, STICK, TURN, Ring, Sequence
+from .impact_sequence import (
+    CLOSING,
+    IMPACT,
+    PHASE,
+    RELEASE,
+    STICK,
+    TURN,
+    ImpactSequence,
+    PeriodicOrbit,
+)
 from .turning_points import in_order
 
 LOOKS = 64  # at the contact force, in a period of the fastest oscillation
-Guess = tuple[Sequence, Floats]
+Guess = tuple[ImpactSequence, Floats]
 
 
 def from_state(
@@ -63,7 +72,7 @@ def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int)
             kinds.append(RELEASE)
             rows.append(released)
     ordered, first = in_order(np.array(rows).reshape(-1, 4), periods)
-    return Sequence(periods, tuple(kinds[first:] + kinds[:first])), ordered
+    return ImpactSequence(periods, tuple(kinds[first:] + kinds[:first])), ordered
 
 
 def release(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
@@ -85,13 +94,13 @@ def release(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
     return np.array([phase[i] + part * (phase[i + 1] - phase[i]), row[0], row[2], 0.0])
 
 
-def from_phases(form: ClosedForm, sequence: Sequence, phases: Floats) -> Guess:
+def from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats) -> Guess:
     """Nodes at given phases: the equations left are linear, and are met as well as can be."""
     nodes = np.zeros((len(phases), 4))
     nodes[:, PHASE] = phases
-    ring = Ring(sequence, form, nodes)
+    orbit = PeriodicOrbit(sequence, form, nodes)
     others = np.arange(4 * len(phases)) % 4 != PHASE
-    found = np.linalg.lstsq(ring.jacobian().real[:, others], -ring.residual(), rcond=None)[0]
+    found = np.linalg.lstsq(orbit.jacobian().real[:, others], -orbit.residual(), rcond=None)[0]
     nodes[:, PHASE + 1 :] = found.reshape(-1, CLOSING)
     return sequence, nodes
 

@@ -25,7 +25,7 @@ ON_CIRCLE = 1e-7  # of a multiplier's size: nearer to the unit circle no orbit i
 
 
 @dataclass(frozen=True)
-class Sequence:
+class ImpactSequence:
     """What happens in an orbit.
 
     Attributes
@@ -54,32 +54,32 @@ class Sequence:
         """Number of impacts."""
         return len(self.kinds) - self.kinds.count(RELEASE)
 
-    def doubled(self) -> Sequence:
+    def doubled(self) -> ImpactSequence:
         """The same orbit run through twice."""
-        return Sequence(2 * self.periods, self.kinds * 2)
+        return ImpactSequence(2 * self.periods, self.kinds * 2)
 
-    def without(self, node: int) -> Sequence:
+    def without(self, node: int) -> ImpactSequence:
         """The sequence with one node less."""
-        return Sequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
+        return ImpactSequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
 
-    def with_impact(self, before: int) -> Sequence:
+    def with_impact(self, before: int) -> ImpactSequence:
         """The sequence with one impact more, before a node."""
-        return Sequence(self.periods, (*self.kinds[:before], IMPACT, *self.kinds[before:]))
+        return ImpactSequence(self.periods, (*self.kinds[:before], IMPACT, *self.kinds[before:]))
 
 
 @dataclass(frozen=True)
-class Ring:
+class PeriodicOrbit:
     """Nodes of a sequence at given unknowns, and the equations between them.
 
     Attributes
     ----------
-    sequence : Sequence
+    sequence : ImpactSequence
     form : ClosedForm
     nodes : ndarray, shape (k, 4)
         Phase in rad, displacement, velocity of the centre of mass, closing speed.
     """
 
-    sequence: Sequence
+    sequence: ImpactSequence
     form: ClosedForm
     nodes: Floats
 

@@ -13,7 +13,7 @@ from ..running.job import Table
 from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
 from .impact_sequence import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
-from .orbit_search import Verdict
+from .orbit_search import FmuCheck
 from .turning_points import Amplitudes, in_order, nearest, phase_zero, turning_points
 
 KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
@@ -40,7 +40,7 @@ class OrbitRecord:
     clearance : float
         Smallest gap at which the masses turn away from each other without an impact.
     residual : float
-    verdict : Verdict
+    fmu : FmuCheck
     """
 
     values: Floats
@@ -52,26 +52,28 @@ class OrbitRecord:
     amplitudes: Amplitudes
     clearance: float
     residual: float
-    verdict: Verdict
+    fmu: FmuCheck
 
     @classmethod
-    def of(cls, family: Family, unknowns: Floats, residual: float, verdict: Verdict) -> OrbitRecord:
+    def from_root(
+        cls, family: Family, unknowns: Floats, residual: float, fmu: FmuCheck
+    ) -> OrbitRecord:
         """All about a root."""
-        ring = family.ring(unknowns)
-        turns = turning_points(ring)
-        nodes, first = in_order(ring.nodes, ring.sequence.periods)
-        multipliers = ring.multipliers()
+        orbit = family.orbit(unknowns)
+        turns = turning_points(orbit)
+        nodes, first = in_order(orbit.nodes, orbit.sequence.periods)
+        multipliers = orbit.multipliers()
         return cls(
             values=unknowns[family.size :],
-            kinds=np.roll(np.array(ring.sequence.kinds, dtype=int), -first),
+            kinds=np.roll(np.array(orbit.sequence.kinds, dtype=int), -first),
             nodes=nodes,
-            zero=phase_zero(ring),
+            zero=phase_zero(orbit),
             multipliers=np.stack([multipliers.real, multipliers.imag], axis=1),
-            product=ring.dictated(),
-            amplitudes=Amplitudes.of(ring, turns),
-            clearance=nearest(ring, turns)[0],
+            product=orbit.dictated(),
+            amplitudes=Amplitudes.from_orbit(orbit, turns),
+            clearance=nearest(orbit, turns)[0],
             residual=residual,
-            verdict=verdict,
+            fmu=fmu,
         )
 
 
@@ -98,8 +100,8 @@ def table_of(records: Rows[OrbitRecord]) -> Table:
         ),
         "clearance": np.array([r.clearance for r in records]),
         "residual": np.array([r.residual for r in records]),
-        "same": np.array([r.verdict.same for r in records]),
-        "away": np.array([r.verdict.away for r in records]),
+        "same": np.array([r.fmu.same for r in records]),
+        "away": np.array([r.fmu.away for r in records]),
     }
 
 

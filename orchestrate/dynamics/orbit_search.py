@@ -9,10 +9,10 @@ import numpy as np
 
 from ..access import EventInstance
 from .closed_form import ClosedForm, Floats
-from .continuation import NoConvergenceError, Root, corrected, held
+from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, Setting
 from .guesses import Guess, from_phases, start
-from .impact_sequence import CLOSING, IMPACT, PHASE, TURN, Ring, Sequence
+from .impact_sequence import CLOSING, IMPACT, PHASE, TURN, ImpactSequence, PeriodicOrbit
 from .turning_points import in_order, nearest, phase_zero, turning_points, weakest_force
 
 SAME_PHASE = 1e-6  # rad: impacts of the FMU at these are the orbit's own
@@ -21,7 +21,7 @@ PHASES = 24  # at which a single impact is tried
 
 
 @dataclass(frozen=True)
-class Verdict:
+class FmuCheck:
     """What the FMU makes of an orbit.
 
     Attributes
@@ -36,8 +36,13 @@ class Verdict:
     away: float
 
 
-def solve(
-    setting: Setting, guess: Guess, values: Floats, *, most: int = 25, furthest: float = 100.0
+def solve_orbit(
+    setting: Setting,
+    guess: Guess,
+    values: Floats,
+    *,
+    max_iterations: int = 25,
+    max_distance: float = 100.0,
 ) -> tuple[Family, Root]:
     """The orbit of a guess's sequence at values of the parameters, by Newton's method.
 
@@ -49,36 +54,38 @@ def solve(
     sequence, nodes = guess
     family = Family.near(setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), values)
-    across = held(family, family.size)
-    return family, corrected(family, unknowns, across, most=most, furthest=furthest)
+    across = unit_vector(len(unknowns), family.size)
+    return family, newton_correct(
+        family, unknowns, across, max_iterations=max_iterations, max_distance=max_distance
+    )
 
 
-def why_no_motion(ring: Ring) -> str:
+def why_no_motion(orbit: PeriodicOrbit) -> str:
     """Why a root of the equations is no motion; empty where it is one."""
-    if (ring.durations <= 0.0).any():
+    if (orbit.durations <= 0.0).any():
         return "its impacts are out of order"
-    closing = ring.nodes[~ring.sequence.releases, CLOSING] if ring.count else np.ones(1)
+    closing = orbit.nodes[~orbit.sequence.releases, CLOSING] if orbit.count else np.ones(1)
     if not (closing > 0.0).all():
         return "an impact has no closing speed"
-    if nearest(ring, turning_points(ring))[0] < 0.0:
+    if nearest(orbit, turning_points(orbit))[0] < 0.0:
         return "the masses would go through each other"
-    if weakest_force(ring) < 0.0:
+    if weakest_force(orbit) < 0.0:
         return "the contact would pull"
     return ""
 
 
-def least_periods(ring: Ring) -> int:
+def least_periods(orbit: PeriodicOrbit) -> int:
     """The least number of periods after which an orbit closes, wherever its impacts lie: phases are
     compared on a circle, so that one at phase 0 may be told as 2 pi.
     """
-    periods, count = ring.sequence.periods, ring.count
-    kinds, span = np.array(ring.sequence.kinds), TURN * ring.sequence.periods
-    size = float(np.abs(ring.nodes[:, 1:]).max(initial=0.0)) or 1.0
+    periods, count = orbit.sequence.periods, orbit.count
+    kinds, span = np.array(orbit.sequence.kinds), TURN * orbit.sequence.periods
+    size = float(np.abs(orbit.nodes[:, 1:]).max(initial=0.0)) or 1.0
     for part in range(1, periods):
         if periods % part or count * part % periods:
             continue
         shift = count * part // periods
-        away = np.roll(ring.nodes, -shift, axis=0) - ring.nodes
+        away = np.roll(orbit.nodes, -shift, axis=0) - orbit.nodes
         away[:, PHASE] -= TURN * part
         away[:, PHASE] -= span * np.round(away[:, PHASE] / span)
         away[:, 1:] /= size
@@ -88,24 +95,26 @@ def least_periods(ring: Ring) -> int:
     return periods
 
 
-def verdict(instance: EventInstance, setting: Setting, values: Floats, ring: Ring) -> Verdict:
+def run_in_fmu(
+    instance: EventInstance, setting: Setting, values: Floats, orbit: PeriodicOrbit
+) -> FmuCheck:
     """Run the orbit through in the FMU."""
     point = setting.point(values)
-    state = phase_zero(ring)[0]
-    start(instance, point, ring.form, state * point.scale)
-    end = ring.sequence.periods * point.excitation.period
+    state = phase_zero(orbit)[0]
+    start(instance, point, orbit.form, state * point.scale)
+    end = orbit.sequence.periods * point.excitation.period
     found = instance.impacts(0.0, end)
     after = instance.read("x1", "x2", "v1", "v2") / point.scale
     away = float(np.abs(after - state).max())
-    wanted, first = in_order(ring.nodes, ring.sequence.periods)
-    kinds = np.roll(np.array(ring.sequence.kinds, dtype=int), -first)
+    wanted, first = in_order(orbit.nodes, orbit.sequence.periods)
+    kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
     impacts = kinds != 2
     if len(found.time) != impacts.sum():
-        return Verdict(False, away)
+        return FmuCheck(False, away)
     phases = point.excitation.frequency * found.time
     near = np.abs(phases - wanted[impacts, PHASE]).max(initial=0.0) < SAME_PHASE
     sticking = (found.sticks == (kinds[impacts] == 1)).all()
-    return Verdict(bool(near and sticking), away)
+    return FmuCheck(bool(near and sticking), away)
 
 
 def first_motion(
@@ -129,13 +138,13 @@ def first_motion(
     reason, unstable = "", None
     for guess in guesses:
         try:
-            family, root = solve(setting, guess, values)
+            family, root = solve_orbit(setting, guess, values)
         except NoConvergenceError as error:
             reason = reason or str(error)
             continue
-        ring = family.ring(root.unknowns)
-        why = why_no_motion(ring) or why_shorter(ring, guess[0].periods)
-        if not why and (not stable or ring.stable):
+        orbit = family.orbit(root.unknowns)
+        why = why_no_motion(orbit) or why_shorter(orbit, guess[0].periods)
+        if not why and (not stable or orbit.stable):
             return family, root
         unstable = unstable or (None if why else (family, root))
         reason = reason or why
@@ -144,14 +153,14 @@ def first_motion(
     raise NoConvergenceError(reason or "there is no impact to begin with")
 
 
-def why_shorter(ring: Ring, periods: int) -> str:
+def why_shorter(orbit: PeriodicOrbit, periods: int) -> str:
     """Why an orbit is none of so many periods; empty where it is one."""
-    shorter = least_periods(ring)
+    shorter = least_periods(orbit)
     return f"the orbit found repeats after {shorter} already" if shorter < periods else ""
 
 
 def single_impacts(form: ClosedForm, periods: int) -> Iterator[Guess]:
     """Guesses with one impact in all, at phases all around."""
-    sequence = Sequence(periods, (IMPACT,))
+    sequence = ImpactSequence(periods, (IMPACT,))
     for phase in np.arange(PHASES) * TURN / PHASES:
         yield from_phases(form, sequence, np.array([phase]))

@@ -20,12 +20,11 @@ from ..running.runner import answer
 from ..structures import Structure
 from .closed_form import Floats
 from .continuation import NoConvergenceError
-from .families import ACCELERATION, Setting, knocking
+from .families import ACCELERATION, Setting, require_delaminated
 from .guesses import Guess, close_returns, from_phases, from_state
-from .impact_sequence import IMPACT, PHASE, RELEASE, TURN
-from .impact_sequence import Sequence as ImpactSequence
+from .impact_sequence import IMPACT, PHASE, RELEASE, TURN, ImpactSequence
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
-from .orbit_search import first_motion, single_impacts, verdict
+from .orbit_search import first_motion, run_in_fmu, single_impacts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,7 +56,7 @@ class FirstGuess:
     kinds: tuple[int, ...] = ()
     nodes: tuple[tuple[float, ...], ...] = ()
 
-    def told(self, frequency: float) -> str:
+    def as_argument(self, frequency: float) -> str:
         """As a user would write it; contacts are left to the FMU."""
         if self.state:
             return f"{self.state!r}"
@@ -108,7 +107,7 @@ class OrbitJob(Question):
         if self.guess is None:
             parts += [f"{name}={getattr(self, name)}" for name in ("transient", "search", "tries")]
         else:
-            parts.append(f"guess={self.guess.told(frequency)}")
+            parts.append(f"guess={self.guess.as_argument(frequency)}")
         return f"orbit({', '.join(parts)})"
 
     @property
@@ -163,9 +162,8 @@ def found(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
         raise InputError(
             f"period = {job.period}: no orbit found ({reason}); expected {expected}"
         ) from None
-    ring = family.ring(root.unknowns)
-    word = verdict(instance, setting, values, ring)
-    return OrbitRecord.of(family, root.unknowns, root.residual, word)
+    check = run_in_fmu(instance, setting, values, family.orbit(root.unknowns))
+    return OrbitRecord.from_root(family, root.unknowns, root.residual, check)
 
 
 def guesses(
@@ -233,7 +231,7 @@ def from_result(given: Mapping[Any, Any]) -> FirstGuess:
     return FirstGuess(kinds=tuple(map(int, kinds[there])), nodes=rows)
 
 
-def told(
+def excitation_arguments(
     eta: ArrayLike | None, frequency: ArrayLike | None, amplitude: ArrayLike | None
 ) -> tuple[tuple[str, float], ...]:
     """An excitation as plain numbers."""
@@ -312,13 +310,13 @@ def orbit(
     array([-3.3595, -0.5903, -0.5903, -0.1421])
     """
     given = one_point(structure, eta, frequency, amplitude)
-    knocking(structure)
+    require_delaminated(structure)
     given.excitation.check(structure)
     count = whole("period", period, 1, MOST_PERIODS)
     job = OrbitJob(
         name=f"orbit_{structure.label()}_{count}T",
         structure=structure,
-        excitation=told(eta, frequency, amplitude),
+        excitation=excitation_arguments(eta, frequency, amplitude),
         box_acceleration=finite("box_acceleration", box_acceleration),
         period=count,
         guess=first_guess(guess, structure, given.excitation.frequency, count),

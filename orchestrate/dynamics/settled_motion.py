@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..response.multiplicity import LEAST_GAP
 from ..response.questions import Point
-from .impact_sequence import PHASE, TURN, Ring
+from .impact_sequence import PHASE, TURN, PeriodicOrbit
 from .turning_points import Amplitudes, phase_zero, turning_points
 
 Floats = NDArray[np.float64]
@@ -49,7 +49,7 @@ class SettledMotion:
         Largest gap, m.
     multiplier : float
         Largest absolute value of the orbit's Floquet multipliers; NaN where there is no orbit.
-    ring : Ring, optional
+    orbit : PeriodicOrbit, optional
         The orbit.
     free_phase : float
         Phase in rad at which it is far from impacts.
@@ -62,24 +62,24 @@ class SettledMotion:
     impacts_per_period: float
     gap: float
     multiplier: float = np.nan
-    ring: Ring | None = None
+    orbit: PeriodicOrbit | None = None
     free_phase: float = 0.0
 
     @classmethod
-    def from_orbit(cls, point: Point, ring: Ring, free_phase: float) -> SettledMotion:
+    def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
         """A stable orbit."""
-        periods, scale = ring.sequence.periods, point.scale
-        states = phase_zero(ring) * scale
+        periods, scale = orbit.sequence.periods, point.scale
+        states = phase_zero(orbit) * scale
         states[:, 1] = np.maximum(states[:, 0], states[:, 1])  # in contact, within rounding
         return cls(
             point=point,
             decided=ORBIT,
             states=states,
             multiplicity=periods,
-            impacts_per_period=ring.sequence.impacts / periods,
-            gap=Amplitudes.of(ring, turning_points(ring)).gap * point.length,
-            multiplier=float(np.abs(ring.multipliers()).max(initial=0.0)),
-            ring=ring,
+            impacts_per_period=orbit.sequence.impacts / periods,
+            gap=Amplitudes.from_orbit(orbit, turning_points(orbit)).gap * point.length,
+            multiplier=float(np.abs(orbit.multipliers()).max(initial=0.0)),
+            orbit=orbit,
             free_phase=free_phase,
         )
 
@@ -102,21 +102,21 @@ class SettledMotion:
     @cached_property
     def free_states(self) -> KnownStates:
         """States of an orbit at its free phase in successive periods."""
-        assert self.ring is not None, "no orbit"
+        assert self.orbit is not None, "no orbit"
         wanted = self.free_phase + TURN * np.arange(self.multiplicity)
-        begin = self.ring.begins[0]
+        begin = self.orbit.begins[0]
         shifted = begin + np.mod(wanted - begin, TURN * self.multiplicity)
-        segment = np.searchsorted(self.ring.begins, shifted, side="right") - 1
-        found = self.ring.states(segment, shifted) * self.point.scale
+        segment = np.searchsorted(self.orbit.begins, shifted, side="right") - 1
+        found = self.orbit.states(segment, shifted) * self.point.scale
         return KnownStates.from_states(found, self.point.excitation.frequency, self.gap)
 
     def is_orbit_of(self, other: SettledMotion) -> bool:
         """Whether both are one orbit: the same nodes, begun in another period or not; or the same
         states, where chattering that ends in contact has one more of its smallest impacts.
         """
-        if self.ring is None or other.ring is None or self.multiplicity != other.multiplicity:
+        if self.orbit is None or other.orbit is None or self.multiplicity != other.multiplicity:
             return False
-        return same_nodes(self.ring, other.ring) or self.nearest(other.states[0])[1] < SAME
+        return same_nodes(self.orbit, other.orbit) or self.nearest(other.states[0])[1] < SAME
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,7 @@ class KnownStates:
         return period, float(distances[period])
 
 
-def same_nodes(one: Ring, other: Ring) -> bool:
+def same_nodes(one: PeriodicOrbit, other: PeriodicOrbit) -> bool:
     """Whether two orbits of as many periods have the same nodes, whole periods apart or not."""
     kinds, others = np.array(one.sequence.kinds), np.array(other.sequence.kinds)
     if len(kinds) != len(others):

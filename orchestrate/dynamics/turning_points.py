@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .closed_form import Floats
-from .impact_sequence import PHASE, Ring
+from .impact_sequence import PHASE, PeriodicOrbit
 
 XI_1, XI_2, GAP = range(3)  # quantities that turn, as weights of the two masses
 WEIGHTS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]])
@@ -35,42 +35,42 @@ class TurningPoints:
     curvature: Floats
 
 
-def looks(ring: Ring) -> tuple[NDArray[np.int_], Floats]:
+def looks(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
     """Segments and phases at which to look at a motion, in order; the ends of segments left out."""
     counts = FEWEST + np.ceil(
-        LOOKS * np.abs(ring.durations) * ring.form.fastest / (2.0 * np.pi)
+        LOOKS * np.abs(orbit.durations) * orbit.form.fastest / (2.0 * np.pi)
     ).astype(int)
     segment = np.repeat(np.arange(len(counts)), counts)
     place = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     part = (place + 0.5) / counts[segment]
-    return segment, ring.begins[segment] + part * (ring.ends - ring.begins)[segment]
+    return segment, orbit.begins[segment] + part * (orbit.ends - orbit.begins)[segment]
 
 
-def turning_points(ring: Ring) -> TurningPoints:
+def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
     """All turning points of both displacements and, in flight, of the gap."""
-    segment, phase = looks(ring)
-    rates = ring.states(segment, phase)[:, 2:] @ WEIGHTS.T
+    segment, phase = looks(orbit)
+    rates = orbit.states(segment, phase)[:, 2:] @ WEIGHTS.T
     same = segment[1:] == segment[:-1]
     turned = (np.sign(rates[1:]) != np.sign(rates[:-1])) & same[:, None]
-    turned[:, GAP] &= ~ring.contact[segment[1:]]
+    turned[:, GAP] &= ~orbit.contact[segment[1:]]
     which, quantity = np.nonzero(turned)
     low, high, segment = phase[which], phase[which + 1], segment[which]
     first, last = rates[which, quantity], rates[which + 1, quantity]
     found = low + (high - low) * first / (first - last)
     for _ in range(REFINEMENTS):
-        rate, curvature, _ = measured(ring, segment, quantity, found)
+        rate, curvature, _ = measured(orbit, segment, quantity, found)
         step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
-        found = np.clip(found - ring.form.eta * step, low, high)
-    _, curvature, value = measured(ring, segment, quantity, found)
+        found = np.clip(found - orbit.form.eta * step, low, high)
+    _, curvature, value = measured(orbit, segment, quantity, found)
     return TurningPoints(segment, quantity, found, value, curvature)
 
 
 def measured(
-    ring: Ring, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
+    orbit: PeriodicOrbit, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """First and second derivative by tau, and value, of quantities inside segments."""
-    state = ring.states(segment, phase)
-    field = ring.form.field(state, phase, ring.contact[segment])
+    state = orbit.states(segment, phase)
+    field = orbit.form.field(state, phase, orbit.contact[segment])
     weights = WEIGHTS[quantity]
     rate, curvature = (weights * field[:, :2]).sum(axis=1), (weights * field[:, 2:]).sum(axis=1)
     return rate, curvature, (weights * state[:, :2]).sum(axis=1)
@@ -93,15 +93,15 @@ class Amplitudes:
     gap: float
 
     @classmethod
-    def of(cls, ring: Ring, turns: TurningPoints) -> Amplitudes:
+    def from_orbit(cls, orbit: PeriodicOrbit, turns: TurningPoints) -> Amplitudes:
         """From the turning points; a displacement may also be largest at an impact."""
-        ends = np.abs(ring.arrivals[:, :2]).max(axis=0)
+        ends = np.abs(orbit.arrivals[:, :2]).max(axis=0)
         inside = [np.abs(turns.value[turns.quantity == which]) for which in range(3)]
         largest = [max(values, default=0.0) for values in inside]
         return cls(max(ends[0], largest[0]), max(ends[1], largest[1]), float(largest[GAP]))
 
 
-def nearest(ring: Ring, turns: TurningPoints) -> tuple[float, int, float]:
+def nearest(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
     """The flight that comes nearest to one more impact.
 
     Returns
@@ -119,32 +119,34 @@ def nearest(ring: Ring, turns: TurningPoints) -> tuple[float, int, float]:
     return float(turns.value[lowest]), int(turns.segment[lowest]), float(turns.phase[lowest])
 
 
-def weakest_force(ring: Ring) -> float:
+def weakest_force(orbit: PeriodicOrbit) -> float:
     """How near permanent contact comes to an earlier release: the smallest -f (18) where f turns.
 
     Infinite where there is no contact, or f does not turn there.
     """
-    if not ring.contact.any():
+    if not orbit.contact.any():
         return np.inf
-    segment, phase = looks(ring)
-    inside = ring.contact[segment]
+    segment, phase = looks(orbit)
+    inside = orbit.contact[segment]
     segment, phase = segment[inside], phase[inside]
-    rate = pressing(ring, segment, phase)[1]
+    rate = pressing(orbit, segment, phase)[1]
     turned = (rate[1:] > 0.0) & (rate[:-1] <= 0.0) & (segment[1:] == segment[:-1])
     if not turned.any():
         return np.inf
     low, high, segment = phase[:-1][turned], phase[1:][turned], segment[1:][turned]
     found = 0.5 * (low + high)
     for _ in range(REFINEMENTS):
-        _, rate, curvature = pressing(ring, segment, found)
+        _, rate, curvature = pressing(orbit, segment, found)
         step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
-        found = np.clip(found - ring.form.eta * step, low, high)
-    return float(pressing(ring, segment, found)[0].min())
+        found = np.clip(found - orbit.form.eta * step, low, high)
+    return float(pressing(orbit, segment, found)[0].min())
 
 
-def pressing(ring: Ring, segment: NDArray[np.int_], phase: Floats) -> tuple[Floats, Floats, Floats]:
+def pressing(
+    orbit: PeriodicOrbit, segment: NDArray[np.int_], phase: Floats
+) -> tuple[Floats, Floats, Floats]:
     """-f (18) inside permanent contact, and its first two derivatives by tau."""
-    form, state = ring.form, ring.states(segment, phase)
+    form, state = orbit.form, orbit.states(segment, phase)
     position, velocity = state[:, 0], state[:, 2]
     acceleration = form.field(state, phase, True)[:, 2]
     jerk = form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
@@ -156,14 +158,14 @@ def pressing(ring: Ring, segment: NDArray[np.int_], phase: Floats) -> tuple[Floa
     )
 
 
-def phase_zero(ring: Ring) -> Floats:
+def phase_zero(orbit: PeriodicOrbit) -> Floats:
     """States at multiples of 2 pi of the phase, in their order, shape (periods, 4)."""
-    turn, periods = 2.0 * np.pi, ring.sequence.periods
+    turn, periods = 2.0 * np.pi, orbit.sequence.periods
     wanted = turn * np.arange(periods)
-    begin = ring.begins[0]
+    begin = orbit.begins[0]
     shifted = begin + np.mod(wanted - begin, turn * periods)
-    segment = np.searchsorted(ring.begins, shifted, side="right") - 1
-    return ring.states(segment, shifted)
+    segment = np.searchsorted(orbit.begins, shifted, side="right") - 1
+    return orbit.states(segment, shifted)
 
 
 def in_order(nodes: Floats, periods: int) -> tuple[Floats, int]:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .averaged import FOLD, TORUS
-from .drive_walk import FLIP, LIMIT
+from ..dynamics.bifurcations import FLIP, FOLD, KINDS, TORUS
+from ..dynamics.tracer import LIMIT
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -144,7 +144,9 @@ class Branches:
             turned = sign * (motions.voltage[i + 1] - motions.voltage[i]) < 0.0
             if not turned and (lost or motions.stable[i + 1]):
                 continue
-            fold, torus, flip = (self.nearest(motions, i, kind) for kind in (FOLD, TORUS, FLIP))
+            fold, torus, flip = (
+                self.nearest(motions, i, KINDS[kind]) for kind in (FOLD, TORUS, FLIP)
+            )
             if torus is not None and not lost:
                 path.slow_losses.append(torus)
                 lost = True

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..access.instance import Instance
 from ..dynamics.closed_form import Floats
-from ..dynamics.continuation import NoConvergenceError, oriented
+from ..dynamics.continuation import NoConvergenceError, fix_sign
 from ..errors import FmuError
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -238,7 +238,7 @@ class Shooter:
         contact = bool((kept[:, PLACES["x1"]] == kept[:, PLACES["x2"]]).any())
         return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
 
-    def look(self, unknowns: Floats) -> Period:
+    def observe_period(self, unknowns: Floats) -> Period:
         """What a motion does over a period."""
         master, voltage = self.begin(unknowns)
         ends = master.motion, master.shaking
@@ -360,7 +360,7 @@ class Shooter:
         """The direction of length 1 of the state that the map turns round: multiplier -1."""
         values, vectors = np.linalg.eig(self.section())
         found = vectors[:, np.argmin(np.abs(values + 1.0))].real
-        return oriented(np.asarray(found / np.linalg.norm(found)))
+        return fix_sign(np.asarray(found / np.linalg.norm(found)))
 
 
 Ends = Callable[[float], "Floats | None"]  # of a period, by a change of an unknown

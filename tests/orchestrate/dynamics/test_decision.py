@@ -145,19 +145,19 @@ def two_periods():
 
 
 def test_orbits_are_one_whatever_period_they_begin_with():
-    ring = two_periods().ring
-    nodes = ring.nodes.copy()
+    orbit = two_periods().orbit
+    nodes = orbit.nodes.copy()
     nodes[:, 0] += 2.0 * np.pi
-    later = type(ring)(ring.sequence, ring.form, np.roll(nodes, 1, axis=0))
-    assert same_nodes(ring, later) and same_nodes(later, ring)
+    later = type(orbit)(orbit.sequence, orbit.form, np.roll(nodes, 1, axis=0))
+    assert same_nodes(orbit, later) and same_nodes(later, orbit)
     nodes[0, 3] += 1e-4
-    assert not same_nodes(ring, type(ring)(ring.sequence, ring.form, nodes))
-    twice = type(ring)(
-        ring.sequence.doubled(),
-        ring.form,
-        np.vstack([ring.nodes, ring.nodes + [4.0 * np.pi, 0.0, 0.0, 0.0]]),
+    assert not same_nodes(orbit, type(orbit)(orbit.sequence, orbit.form, nodes))
+    twice = type(orbit)(
+        orbit.sequence.doubled(),
+        orbit.form,
+        np.vstack([orbit.nodes, orbit.nodes + [4.0 * np.pi, 0.0, 0.0, 0.0]]),
     )
-    assert (least_periods(ring), least_periods(twice)) == (2, 2)
+    assert (least_periods(orbit), least_periods(twice)) == (2, 2)
 
 
 def test_distances_compare_gaps_with_the_gap():
