@@ -66,9 +66,16 @@ class Setting:
         return given.get(ACCELERATION, self.box_acceleration)
 
     def form(self, values: Floats) -> ClosedForm:
-        """The closed form there."""
-        found = self.point(values)
-        return ClosedForm.of(found.structure, found.excitation, self.acceleration(values))
+        """Return the closed form there.
+
+        Raises
+        ------
+        InputError
+            On a natural frequency with no damping, or next to none: amplitudes grow there.
+        """
+        point = self.point(values)
+        point.excitation.check(point.structure)
+        return ClosedForm.from_structure(*point, self.acceleration(values))
 
     def first_alone(self, values: Floats) -> Setting:
         """The same, with all parameters but the first one at values."""

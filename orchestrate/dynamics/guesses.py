@@ -20,9 +20,9 @@ from .impact_sequence import (
     ImpactSequence,
     PeriodicOrbit,
 )
+from .release import contact_durations
 from .turning_points import in_order
 
-LOOKS = 64  # at the contact force, in a period of the fastest oscillation
 Guess = tuple[ImpactSequence, Floats]
 
 
@@ -76,22 +76,14 @@ def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int)
 
 
 def release(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
-    """The node where permanent contact ends (19), before a phase; none where it does not."""
-    begun, position, velocity, _ = stick
-    duration = (until - begun) / form.eta
-    count = LOOKS + int(LOOKS * duration * form.fastest / TURN)
-    time = np.linspace(0.0, duration, count)
-    phase = begun + form.eta * time
-    free = np.array([position, position, velocity, velocity]) - form.steady(phase[:1], True)[0]
-    state = form.contact(time) @ free + form.steady(phase, True)
-    force = form.force(state[:, 0], state[:, 2])
-    opens = np.flatnonzero((force[1:] >= 0.0) & (force[:-1] < 0.0))
-    if not len(opens):
+    """Return the node where permanent contact ends (19), before a phase; None where it does not."""
+    phase, position, velocity = stick[PHASE:CLOSING, None]
+    span = (until - phase) / form.eta
+    duration = contact_durations(form, phase, position, velocity, span)
+    if not np.isfinite(duration).all():
         return None
-    i = opens[0]
-    part = force[i] / (force[i] - force[i + 1])
-    row = state[i] + part * (state[i + 1] - state[i])
-    return np.array([phase[i] + part * (phase[i + 1] - phase[i]), row[0], row[2], 0.0])
+    motion = form.common_motion(duration, phase, position, velocity)
+    return np.concatenate([phase + form.eta * duration, *motion, np.zeros(1)])
 
 
 def from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats) -> Guess:

@@ -18,7 +18,7 @@ from ..running.runner import answer
 from ..structures import Structure
 from .following import Followed, FollowingQuestion, starts_of
 from .lyapunov import Exponent, largest_exponent, without_impacts
-from .variational import period, releases
+from .variational import contact_times, period
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,7 +81,7 @@ def statistics(impacts: Impacts, item: Followed, periods: int) -> dict[str, floa
     eta = excitation.eta(structure)
     span = period(eta)
     found: Exponent | None = None if len(impacts.time) else without_impacts(structure)
-    exponent = found or largest_exponent(impacts, periods * span, eta, structure)
+    exponent = found or largest_exponent(impacts, periods * span, item.point)
     return {
         **counts(impacts, span, periods),
         "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
@@ -120,9 +120,8 @@ def contact_time(impacts: Impacts, item: Followed, end: float) -> float:
             np.append(0.0, impacts.closing),
             np.append(True, impacts.sticks),
         )
-    structure, excitation = item.point
     ends = np.append(impacts.time[1:], end)
-    return float(releases(impacts, ends, excitation.eta(structure), structure).sum())
+    return float(contact_times(impacts, ends, item.point).sum())
 
 
 def strengths(impacts: Impacts, span: float, periods: int) -> dict[str, float]:

@@ -109,7 +109,7 @@ def follow_parts(
         impacts = impacts_of(instance, point, start, periods)
         start = tuple(instance.get(*STATE))
         end = periods * period(eta)
-        found.append(largest_exponent(impacts, end, eta, point.structure, BLOCKS, BATCHES))
+        found.append(largest_exponent(impacts, end, point, BLOCKS, BATCHES))
     return found, start
 
 

@@ -19,12 +19,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import Impacts, finder
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import asked_along, positive, whole
+from ..response.questions import Point, asked_along, positive, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .following import Followed, FollowingQuestion, starts_of
-from .variational import Branches, period, slowest_rate, steps
+from .variational import impact_matrices, period
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -84,8 +84,7 @@ def fewest_impacts(batches: int = BATCHES) -> int:
 def largest_exponent(
     impacts: Impacts,
     end: float,
-    eta: float,
-    structure: Structure,
+    point: Point,
     blocks: int = BLOCKS,
     batches: int = BATCHES,
 ) -> Exponent:
@@ -97,8 +96,7 @@ def largest_exponent(
         Of the span, non-dimensional; time 0 is at phase 0.
     end : float
         tau at the span's end.
-    eta : float
-    structure : Structure
+    point : Point
     blocks : int
         Products of matrices whose growth is told apart.
     batches : int
@@ -113,7 +111,7 @@ def largest_exponent(
     """
     if len(impacts.time) < fewest_impacts(batches):
         return Exponent(math.nan, math.nan)
-    matrices = steps(impacts, end, eta, structure)
+    matrices = impact_matrices(impacts, end, point)
     size = max(1, len(matrices) // blocks)
     growth = growth_of(*products(matrices, size))
     if growth is None:
@@ -146,10 +144,23 @@ def without_impacts(structure: Structure) -> Exponent | None:
     Exponent or None
         Exact; None for all other structures.
     """
-    one, two, both = Branches.of(structure)
-    if not structure.bonded and one != two:
+    mu, kappa = structure.mu, structure.kappa
+    alike = structure.D1 == structure.D2 and kappa / mu == 1.0
+    if not (structure.bonded or alike):
         return None
-    return Exponent(-slowest_rate(both), 0.0)
+    return Exponent(-decay_rate(structure.D3, (1.0 + kappa) / (1.0 + mu)), 0.0)
+
+
+def decay_rate(damping: float, square: float) -> float:
+    """Return the rate at which the free motion of an oscillator decays in the long run.
+
+    Parameters
+    ----------
+    damping, square : float
+        D_i (8) and omega_i^2 (7): of an overdamped one, the slower part decays at that rate.
+    """
+    excess = square - damping**2
+    return damping if excess >= 0.0 else square / (damping + math.sqrt(-excess))
 
 
 def verdict(
@@ -217,7 +228,7 @@ class LyapunovJob(FollowingQuestion):
                 f"expected periods with at least {needed} impacts{enough}"
             )
         end = self.periods * period(eta)
-        return largest_exponent(impacts, end, eta, structure, self.blocks, self.batches)
+        return largest_exponent(impacts, end, item.point, self.blocks, self.batches)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Exponent, error and verdict over the parameter."""

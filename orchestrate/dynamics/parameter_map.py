@@ -189,7 +189,7 @@ class MapJob(Question):
         structure, eta = item.structure, item.excitation.eta(item.structure)
         impacts: Impacts = impacts_of(eventful, item, start, self.periods)
         known = None if len(impacts.time) else without_impacts(structure)
-        return known or largest_exponent(impacts, self.periods * period(eta), eta, structure)
+        return known or largest_exponent(impacts, self.periods * period(eta), item)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """The fields over both parameters."""

@@ -76,7 +76,7 @@ class LowSpeedJob(Job):
         """What is counted of one motion, by ``COUNTS``."""
         begin(instance, *point, REST)
         impacts = impacts_of(instance, point, REST, self.periods)
-        form = ClosedForm.of(point.structure, point.excitation)
+        form = ClosedForm.from_structure(*point)
         state, mu = impacts.state, form.mu
         force = form.force(state[:, 0], (state[:, 2] + mu * state[:, 3]) / (1.0 + mu))
         fastest = impacts.closing.max(initial=0.0)

@@ -68,11 +68,11 @@ def test_of_a_periodic_response_it_is_that_of_its_multipliers(instances, structu
     point = Point(structure, Excitation.nondimensional(eta, structure))
     start, span = settled(plain, point, 1500), period(eta)
     impacts = impacts_of(eventful, point, start, 400)
-    exponent, error = largest_exponent(impacts, 400 * span, eta, structure)
+    exponent, error = largest_exponent(impacts, 400 * span, point)
     first = np.searchsorted(impacts.time, span)
     names = ("time", "state", "closing", "sticks")
     one = Impacts(*(getattr(impacts, name)[:first] for name in names))
-    multiplier = np.abs(np.linalg.eigvals(monodromy(one, eta, structure))).max()
+    multiplier = np.abs(np.linalg.eigvals(monodromy(one, point))).max()
     assert exponent == pytest.approx(math.log(multiplier) / span, abs=5e-4)
     assert 0.0 < error < 5e-4
     assert verdict(exponent, error, 1e-3) == PERIODIC
@@ -86,7 +86,7 @@ def test_it_agrees_with_two_neighbours_of_the_fmu(instances, eta, expected):
     point, periods = Point(PAPER, Excitation.nondimensional(eta, PAPER)), 400
     start, span = settled(plain, point, 3000), period(eta)
     impacts = impacts_of(eventful, point, start, periods)
-    exponent, error = largest_exponent(impacts, periods * span, eta, PAPER)
+    exponent, error = largest_exponent(impacts, periods * span, point)
     here, growth = start, 0.0
     shift = 1e-8 * np.array([0.5, -0.5, 0.5, 0.5]) * np.abs(start).max()
     scale = np.linalg.norm(shift)

@@ -26,7 +26,7 @@ def test_amplitudes_are_those_of_the_settled_response(eta, period):
 def test_derivatives_of_the_contact_force():
     structure = Structure.nondimensional(D1=0.02, D2=0.005, mu=0.8)
     found = orbit(structure, eta=0.4)
-    form = ClosedForm.of(structure, Excitation.nondimensional(0.4, structure))
+    form = ClosedForm.from_structure(structure, Excitation.nondimensional(0.4, structure))
     nodes = np.stack([found[name].values for name in NODES], axis=1)
     solution = PeriodicOrbit(ImpactSequence(1, tuple(found.node_kind.values.tolist())), form, nodes)
     segment = np.flatnonzero(solution.contact)

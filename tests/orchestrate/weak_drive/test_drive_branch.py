@@ -16,7 +16,8 @@ from .validation import Whole, branch_of
 
 @pytest.fixture(scope="module")
 def branch():
-    return drive_branch(*QUICK, speed=(1.27, 1.39), longest=0.15, most=30, progress=False)
+    most = np.int64(30)  # as NumPy counts
+    return drive_branch(*QUICK, speed=(1.27, 1.39), longest=0.15, most=most, progress=False)
 
 
 def points(branch, structure, kind):
@@ -116,6 +117,7 @@ def test_an_orbit_and_its_multipliers_are_the_whole_systems():
     [
         ({"speed": (1.4, 1.2)}, "speed = \\(1.4, 1.2\\) rad/s: expected"),
         ({"most": 1}, "most = 1: expected a whole number from 2"),
+        ({"most": True}, "most = True: expected a whole number"),
         ({"longest": 2.0}, "longest = 2.0"),
         ({"period": 0}, "period = 0"),
         ({"settle": -1.0}, "settle = -1.0"),
