@@ -18,11 +18,11 @@ from ..errors import InputError
 from .bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
 from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root, leading_component
-from .families import Family, difference
+from .families import Family, central_difference
 from .impact_sequence import CLOSING, PeriodicOrbit
 from .orbit_point import OrbitPoint
 from .tracer import BranchStep, BranchTracer, ContinuationSettings
-from .turning_points import GAP, measured, nearest, turning_points
+from .turning_points import GAP, derivatives, nearest_miss, turning_points
 
 REAL_MULTIPLIERS: dict[int, float] = {FOLD: 1.0, FLIP: -1.0}  # that lie on the unit circle
 SMOOTH_KINDS = (FOLD, FLIP, TORUS)
@@ -77,7 +77,7 @@ class BifurcationCurve:
             released = point.orbit.sequence.releases
             place = int(np.where(released, np.inf, point.orbit.nodes[:, CLOSING]).argmin())
         elif kind == TOUCHING:
-            _, place, phase = nearest(point.orbit, turning_points(point.orbit))
+            _, place, phase = nearest_miss(point.orbit, turning_points(point.orbit))
             extra = np.array([phase])
         elif kind not in SMOOTH_KINDS:
             expected = ", ".join(KINDS[known] for known in (*SMOOTH_KINDS, GRAZING, TOUCHING))
@@ -121,7 +121,7 @@ class BifurcationCurve:
             return self.orbit(unknowns).nodes[self.place, CLOSING : CLOSING + 1]
         if self.kind == TOUCHING:
             which = np.array([self.place]), np.array([GAP])
-            rate, _, gap = measured(self.orbit(unknowns), *which, unknowns[-1:])
+            rate, _, gap = derivatives(self.orbit(unknowns), *which, unknowns[-1:])
             return np.append(gap, rate)
         size = self.family.size
         bordered = np.zeros((size + 1, size + 1), dtype=complex)
@@ -142,7 +142,7 @@ class BifurcationCurve:
         spans = [(-np.inf, np.inf)] * self.family.size
         limits = [*spans, *self.family.setting.limits, *[(-np.inf, np.inf)] * len(self.extra)]
         own = [
-            difference(self.condition, unknowns, i, *limit, step=STEP * scale)
+            central_difference(self.condition, unknowns, i, *limit, step=STEP * scale)
             for i, (limit, scale) in enumerate(zip(limits, self.scale, strict=True))
         ]
         return np.vstack([np.hstack([orbit, blank]), np.array(own).T])
@@ -157,7 +157,7 @@ class BifurcationCurve:
             return "another impact grazes"
         if (orbit.durations <= 0.0).any():
             return "impacts change their order"
-        if nearest(orbit, turning_points(orbit))[0] < -OVERLAP:
+        if nearest_miss(orbit, turning_points(orbit))[0] < -OVERLAP:
             return "a flight grazes" if self.kind != TOUCHING else "another flight grazes"
         if self.kind == TORUS and not 0.0 < unknowns[-1] < np.pi:
             return "a resonance 1:1 or 1:2"

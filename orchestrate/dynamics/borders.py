@@ -19,13 +19,13 @@ from ..running.runner import answer
 from ..structures import Structure
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, TORUS
-from .branches import begin_of, check_inside, check_start, excitation_of
+from .branches import check_inside, check_start, complete_excitation, first_nodes
 from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
-from .families import ACCELERATION, Family, Setting, check_names, require_delaminated
+from .families import ACCELERATION, Family, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import run_in_fmu, solve_orbit
-from .orbits import FirstGuess, excitation_arguments, finite
+from .orbits import FirstGuess, excitation_arguments, finite_number
 from .tracer import BranchSegment, ContinuationSettings
 
 if TYPE_CHECKING:
@@ -62,20 +62,20 @@ class BorderJob(Question):
     asked: ClassVar[str] = "border"
 
     def call(self) -> str:
-        """The call that asks it, with the orbit at the bifurcation for the branch."""
+        """Return the call that asks it, with the orbit at the bifurcation for the branch."""
         setting, values = self.setting, np.array(self.values)
         guess = self.start.as_argument(setting.point(values).excitation.frequency)
-        start = f"start={setting.first_orbit(values, self.period, guess)}"
+        start = f"start={setting.orbit_call(values, self.period, guess)}"
         given = [f"bifurcation={KINDS[self.kind]!r}", f"over={setting.over!r}"]
         given += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
         return f"border({', '.join([repr(self.structure), start, *given])})"
 
     def count(self) -> int:
-        """One curve."""
+        """Return one: a curve."""
         return 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Its number."""
+        """Return the number of the curve."""
         return [0]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
@@ -90,7 +90,7 @@ class BorderJob(Question):
         return {**table_of(rows), "angle": np.array(angles), "ends": ends}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The curve, labelled."""
+        """Return the curve, labelled."""
         import xarray as xr
 
         setting, ends = self.setting, [str(text) for text in table["ends"]]
@@ -115,9 +115,9 @@ def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
     setting, nodes = job.setting, np.array(job.start.nodes).reshape(-1, 4)
     sequence, values = job.start.sequence(job.period), np.array(job.values)
     try:
-        alone = setting.first_alone(values)
+        alone = setting.over_first_alone(values)
         point = OrbitPoint(*solve_orbit(alone, (sequence, nodes), values[:1]))
-        family = Family.near(setting, sequence, point.orbit.nodes)
+        family = Family.from_nodes(setting, sequence, point.orbit.nodes)
         curve = BifurcationCurve.from_orbit(family, point, job.kind)
         guess = np.concatenate([point.orbit.nodes.ravel(), values, curve.extra])
         curve.update_border(guess)
@@ -157,7 +157,7 @@ def border(
     most: int = 500,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """A bifurcation of a branch, followed over two parameters.
+    """Follow a bifurcation of a branch over two parameters.
 
     Parameters
     ----------
@@ -207,23 +207,23 @@ def border(
     require_delaminated(checked_structure(structure))
     check_start(start, several=True)
     names = tuple(over)
-    check_names(names)
+    check_parameters(names)
     if len(names) != 2 or names[0] != start.attrs.get("over"):
         raise InputError(
             f"over = {names!r}: expected two names, the first one that of start, "
             f"{start.attrs.get('over')!r}"
         )
-    pairs = checked_limits(names, limits)
-    nodes, kind = begin_of(start, "bifurcation", bifurcation)
+    pairs = check_both_limits(names, limits)
+    nodes, kind = first_nodes(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
-    given = excitation_of(
+    given = complete_excitation(
         start.isel(point=0), names[0], excitation_arguments(eta, frequency, amplitude), pairs[0]
     )
     second = second_value(structure, names[1], given, box_acceleration)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):
         check_inside(name, number, pair)
     fixed = tuple((name, number) for name, number in given if name not in names)
-    setting = Setting(structure, fixed, names, pairs, finite(ACCELERATION, box_acceleration))
+    setting = Setting(structure, fixed, names, pairs, finite_number(ACCELERATION, box_acceleration))
     for i in range(2):  # what is out of range is said before any work
         setting.form(np.array([pairs[0][i], pairs[1][i]]))
     job = BorderJob(
@@ -234,14 +234,14 @@ def border(
         period=start.sizes["sample"],
         kind=kind,
         values=(value, second),
-        longest=finite("longest", longest),
+        longest=finite_number("longest", longest),
         most=whole("most", most, 1),
     )
     return answer(job, running, finder(running))
 
 
-def checked_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
-    """Limits of both parameters."""
+def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
+    """Return the limits of both parameters."""
     try:
         rows = [numbers(name, row) for name, row in zip(names, limits, strict=True)]
     except (TypeError, ValueError):
@@ -257,7 +257,7 @@ def checked_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, fl
 def second_value(
     structure: Structure, name: str, given: tuple[tuple[str, float], ...], box_acceleration: float
 ) -> float:
-    """The second parameter's value where the curve begins."""
+    """Return the second parameter's value where the curve begins."""
     if name == ACCELERATION:
         return box_acceleration
     return dict(given)[name] if name in dict(given) else structure.get(name)

@@ -11,7 +11,7 @@ from .continuation import ArclengthStepper, Root, fix_sign, newton_correct, unit
 from .families import Family
 from .impact_sequence import CLOSING, PHASE, TURN, ImpactSequence
 from .orbit_point import OrbitPoint
-from .turning_points import nearest, turning_points
+from .turning_points import nearest_miss, turning_points
 
 AWAY = 1e-3  # along the new branch, over unknowns' scales: where its gap is looked at
 
@@ -59,7 +59,7 @@ def double_period(point: OrbitPoint) -> OrbitPoint:
 def add_touching(point: OrbitPoint) -> OrbitPoint:
     """Return the orbit with the touching as an impact; its closing speed rises along the branch."""
     orbit = point.orbit
-    _, segment, phase = nearest(orbit, turning_points(orbit))
+    _, segment, phase = nearest_miss(orbit, turning_points(orbit))
     state = orbit.states(np.array([segment]), np.array([phase]))[0]
     share = orbit.form.mu / (1.0 + orbit.form.mu)
     row = [phase, state[0], state[2] * (1.0 - share) + state[3] * share, 0.0]
@@ -87,7 +87,7 @@ def remove_grazing(point: OrbitPoint) -> OrbitPoint:
 
 def same_motion(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:
     """Return the same motion as an orbit of another sequence, at the same parameters."""
-    family = Family.near(point.family.setting, sequence, nodes)
+    family = Family.from_nodes(point.family.setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), point.values)
     normal = unit_vector(len(unknowns), family.size)
     return OrbitPoint(family, newton_correct(family, unknowns, normal))

@@ -20,12 +20,12 @@ from ..structures import Structure
 from .bifurcations import KINDS
 from .branch_switching import leaving_branch
 from .continuation import NoConvergenceError
-from .families import ACCELERATION, Setting, check_names, require_delaminated
+from .families import ACCELERATION, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import run_in_fmu, solve_orbit
 from .orbit_tracer import OrbitTracer
-from .orbits import FirstGuess, excitation_arguments, finite, from_result, orbit
+from .orbits import FirstGuess, excitation_arguments, finite_number, from_result, orbit
 from .tracer import Bifurcation, BranchSegment, ContinuationSettings
 
 if TYPE_CHECKING:
@@ -72,10 +72,10 @@ class BranchJob(Question):
     asked: ClassVar[str] = "branch"
 
     def call(self) -> str:
-        """The call that asks it; where it leaves another branch, that one is not told."""
+        """Return the call that asks it; of a branch that leaves another one, without that one."""
         setting, values = self.setting, np.array([self.value])
         guess = self.start.as_argument(setting.point(values).excitation.frequency)
-        start = f"start={setting.first_orbit(values, self.period, guess)}"
+        start = f"start={setting.orbit_call(values, self.period, guess)}"
         switch = [f"switch={KINDS[self.switch]!r}"] if self.switch >= 0 else []
         steps = [f"longest={self.longest!r}", f"most={self.most}"]
         (over,), (limits,) = setting.over, setting.limits
@@ -90,11 +90,11 @@ class BranchJob(Question):
         return f"branch({', '.join(parts)})"
 
     def count(self) -> int:
-        """One branch."""
+        """Return one: a branch."""
         return 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Its number."""
+        """Return the number of the branch."""
         return [0]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
@@ -104,7 +104,7 @@ class BranchJob(Question):
             return table(instance, self.setting, segments)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Everything along the branch."""
+        """Return everything along the branch."""
         import xarray as xr
 
         setting, (name,) = self.setting, self.setting.over
@@ -114,7 +114,7 @@ class BranchJob(Question):
         periods = along["zero"].shape[1]
         title = f"Branch of orbits of {periods} periods along {name}: {self.structure.label()}"
         attributes = {"title": title, "over": name, "first_end": ends[0], "last_end": ends[1]}
-        dataset = xr.Dataset({**found, **at_bifurcations(setting, table)}, attrs=attributes)
+        dataset = xr.Dataset({**found, **bifurcation_variables(setting, table)}, attrs=attributes)
         return dataset.set_coords(list(coordinates(setting, along, "point")))
 
 
@@ -175,8 +175,8 @@ def record(instance: EventInstance, setting: Setting, point: OrbitPoint) -> Orbi
     return OrbitRecord.from_root(point.family, point.root.unknowns, point.root.residual, check)
 
 
-def at_bifurcations(setting: Setting, table: Table) -> dict[str, Variable]:
-    """What is told of the bifurcations."""
+def bifurcation_variables(setting: Setting, table: Table) -> dict[str, Variable]:
+    """Return the variables of the bifurcations."""
     (name,) = setting.over
     kinds = flags(BIFURCATION, table["bifurcation_kind"], "kind of bifurcation", KINDS)
     place = "position along the branch's points: between two where not whole"
@@ -218,7 +218,7 @@ def branch(
     most: int = 1000,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """The branch of periodic orbits through one of them, along a parameter.
+    """Follow the branch of periodic orbits through one of them, along a parameter.
 
     Parameters
     ----------
@@ -276,12 +276,14 @@ def branch(
     >>> found.bifurcation_value.values.round(8)
     array([2.64796105, 2.7855415 ])
     """
-    check_names((over,))
+    check_parameters((over,))
     require_delaminated(checked_structure(structure))
     if start is not None:
         check_start(start, several=switch is not None)
-    low_high = checked_limits(over, limits)
-    given = excitation_of(start, over, excitation_arguments(eta, frequency, amplitude), low_high)
+    low_high = check_limits(over, limits)
+    given = complete_excitation(
+        start, over, excitation_arguments(eta, frequency, amplitude), low_high
+    )
     if start is None:
         start, value = first_orbit(
             structure, over, low_high, given, period, box_acceleration, running
@@ -289,10 +291,10 @@ def branch(
     else:
         value = start_value(start, over, switch, structure)
     check_inside(over, value, low_high)
-    nodes, kind = begin_of(start, "switch", switch)
+    nodes, kind = first_nodes(start, "switch", switch)
     fixed = tuple((name, number) for name, number in given if name != over)
     setting = Setting(
-        structure, fixed, (over,), (low_high,), finite(ACCELERATION, box_acceleration)
+        structure, fixed, (over,), (low_high,), finite_number(ACCELERATION, box_acceleration)
     )
     for limit in low_high:  # what is out of range is said before any work
         setting.form(np.array([limit]))
@@ -304,15 +306,16 @@ def branch(
         period=start.sizes["sample"],
         value=value,
         switch=kind,
-        longest=finite("longest", longest),
+        longest=finite_number("longest", longest),
         most=whole("most", most, 1),
     )
     return answer(job, running, finder(running))
 
 
 def check_start(start: Any, several: bool) -> None:
-    """Whether a branch can begin with it; several orbits will do where one of its bifurcations is
-    named.
+    """Check that a branch can begin with it.
+
+    Several orbits will do where one of their bifurcations is named.
 
     Raises
     ------
@@ -331,21 +334,21 @@ def check_start(start: Any, several: bool) -> None:
         )
 
 
-def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
-    """The limits, if they are two numbers in order."""
+def check_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
+    """Return the limits, if they are two numbers in order."""
     found = numbers(over, limits)
     if not isinstance(found, tuple) or len(found) != 2 or not found[0] < found[1]:
         raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
     return found[0], found[1]
 
 
-def excitation_of(
+def complete_excitation(
     start: xr.Dataset | None,
     over: str,
     given: tuple[tuple[str, float], ...],
     limits: tuple[float, float],
 ) -> tuple[tuple[str, float], ...]:
-    """The excitation's numbers, with the one that varies where it starts."""
+    """Return the excitation's numbers, with the one that varies where it starts."""
     names = [name for name, _ in given]
     if start is not None and not given:
         wanted = ("frequency", "amplitude") if over in ("frequency", "amplitude") else ("eta",)
@@ -364,7 +367,7 @@ def first_orbit(
     box_acceleration: float,
     running: Mapping[str, Any],
 ) -> tuple[xr.Dataset, float]:
-    """The orbit that a branch begins with where the user names none, and the parameter there."""
+    """Find the orbit that a branch begins with by default, and the parameter there."""
     excitation: dict[str, Any] = dict(given)
     quiet: dict[str, Any] = {
         name: value
@@ -386,7 +389,7 @@ def first_orbit(
 
 
 def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
-    """See that a branch starts between its limits.
+    """Check that a branch starts between its limits.
 
     Raises
     ------
@@ -399,9 +402,9 @@ def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
 
 
 def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Structure) -> float:
-    """The parameter's value at the start."""
+    """Return the parameter's value at the start."""
     if switch is not None:
-        return float(start["bifurcation_value"].values[number_of(start, "switch", switch)])
+        return float(start["bifurcation_value"].values[check_number(start, "switch", switch)])
     if over in start.coords:
         return float(start[over])
     if over == ACCELERATION:
@@ -409,18 +412,18 @@ def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Str
     return structure.get(over)
 
 
-def number_of(start: xr.Dataset, name: str, number: int) -> int:
-    """A bifurcation's number, if there is one."""
+def check_number(start: xr.Dataset, name: str, number: int) -> int:
+    """Return a bifurcation's number, if there is one of that number."""
     count = start.sizes.get(BIFURCATION, 0)
     if not count:
         raise InputError(f"{name} = {number!r}: start has no bifurcations; expected a branch")
     return whole(name, number, 0, count - 1)
 
 
-def begin_of(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
-    """Nodes of the orbit to begin with, and the kind of the bifurcation that ``name`` gives."""
+def first_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
+    """Return the nodes to begin with, and the kind of the bifurcation that ``name`` gives."""
     if number is None:
         return from_result(start), -1
-    found = start.isel({BIFURCATION: number_of(start, name, number)})
+    found = start.isel({BIFURCATION: check_number(start, name, number)})
     nodes = {name: found[f"{BIFURCATION}_{name}"].values for name in NODES}
     return from_result(nodes), int(found["bifurcation_kind"])

@@ -19,7 +19,7 @@ MASSES = slice(0, 2)  # oscillators 1 and 2
 
 
 def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
-    """Which two oscillators two masses are: 1 and 2, or twice 3 where they are one."""
+    """Return which two oscillators two masses are: 1 and 2, or twice 3 where they are one."""
     if not np.any(contact):
         return MASSES
     return np.where(np.reshape(contact, (-1, 1)), 2, np.arange(2))
@@ -132,7 +132,7 @@ class ClosedForm:
         return slow * (1.0 + 0.5 * faster), -0.5 * slow * faster / nu
 
     def oscillator(self, i: int, time: Floats) -> Floats:
-        """Flow matrices of oscillator ``i`` without excitation, the free part of (10).
+        """Return flow matrices of oscillator ``i`` without excitation, the free part of (10).
 
         Parameters
         ----------
@@ -152,14 +152,14 @@ class ClosedForm:
         return found
 
     def flight(self, time: Floats) -> Floats:
-        """Flow matrices with both masses free, shape (n, 4, 4)."""
+        """Return flow matrices with both masses free, shape (n, 4, 4)."""
         found = np.zeros((len(time), 4, 4))
         found[:, 0::2, 0::2] = self.oscillator(0, time)
         found[:, 1::2, 1::2] = self.oscillator(1, time)
         return found
 
     def contact(self, time: Floats) -> Floats:
-        """Flow matrices with both masses as one, shape (n, 4, 4); of states on the boundary."""
+        """Return flow matrices with both masses as one, shape (n, 4, 4), for states without gap."""
         common = self.oscillator(2, time)
         found = np.zeros((len(time), 4, 4))
         found[:, 0::2, 0::2] = common
@@ -167,7 +167,7 @@ class ClosedForm:
         return found
 
     def steady(self, phase: Floats, contact: NDArray[np.bool_] | bool = False) -> Floats:
-        """The forced response, the harmonic part of (10).
+        """Return the steady response to the excitation, the harmonic part of (10).
 
         Parameters
         ----------
@@ -223,7 +223,7 @@ class ClosedForm:
     def field(
         self, state: Floats, phase: Floats, contact: NDArray[np.bool_] | bool = False
     ) -> Floats:
-        """The derivative of states by tau: the right-hand side of (6), shape (n, 4)."""
+        """Return the derivative of states by tau: the right-hand side of (6), shape (n, 4)."""
         which = oscillators(contact)
         drive = np.sin(phase)[:, None] + self.offset[0] * self.stiffness[0]
         found = np.empty((len(phase), 4))
@@ -233,5 +233,5 @@ class ClosedForm:
         return found
 
     def force(self, position: Floats, velocity: Floats) -> Floats:
-        """The contact force f (18): negative where the masses are pressed together."""
+        """Return the contact force f (18): negative where the masses are pressed together."""
         return self.force_v * velocity + self.force_x * position

@@ -45,13 +45,13 @@ class Setting:
     box_acceleration: float = 0.0
 
     def point(self, values: Floats) -> Point:
-        """The structure under its excitation at values of the parameters."""
+        """Return the structure under its excitation at values of the parameters."""
         given = {**dict(self.excitation), **dict(zip(self.over, map(float, values), strict=True))}
         given.pop(ACCELERATION, None)
         return point(self.structure, given)
 
-    def first_orbit(self, values: Floats, period: int, guess: str) -> str:
-        """The call that asks for the orbit at values of the parameters."""
+    def orbit_call(self, values: Floats, period: int, guess: str) -> str:
+        """Return the call that asks for the orbit at values of the parameters."""
         found, told = self.point(values), dict(self.excitation)
         told.update(zip(self.over, map(float, values), strict=True))
         shown = {name: told[name] for name in ASKED if name in told}
@@ -61,7 +61,7 @@ class Setting:
         return f"orbit({', '.join([repr(found.structure), *parts, f'guess={guess}'])})"
 
     def acceleration(self, values: Floats) -> float:
-        """The box's constant acceleration there."""
+        """Return the box's constant acceleration there."""
         given = dict(zip(self.over, map(float, values), strict=True))
         return given.get(ACCELERATION, self.box_acceleration)
 
@@ -77,8 +77,8 @@ class Setting:
         point.excitation.check(point.structure)
         return ClosedForm.from_structure(*point, self.acceleration(values))
 
-    def first_alone(self, values: Floats) -> Setting:
-        """The same, with all parameters but the first one at values."""
+    def over_first_alone(self, values: Floats) -> Setting:
+        """Return the same, with all parameters but the first one fixed at values."""
         told = dict(zip(self.over[1:], map(float, values[1:]), strict=True))
         acceleration = told.pop(ACCELERATION, self.box_acceleration)
         excitation = {**dict(self.excitation), **{k: v for k, v in told.items() if k in ASKED}}
@@ -89,7 +89,7 @@ class Setting:
 
 
 def require_delaminated(structure: Structure) -> Structure:
-    """A structure whose masses knock.
+    """Return a structure, if its masses knock.
 
     Raises
     ------
@@ -101,8 +101,8 @@ def require_delaminated(structure: Structure) -> Structure:
     return structure
 
 
-def check_names(over: tuple[str, ...]) -> None:
-    """Whether these are parameters that can vary.
+def check_parameters(over: tuple[str, ...]) -> None:
+    """Check that these are parameters that can vary.
 
     Raises
     ------
@@ -131,8 +131,8 @@ class Family:
     scale: Floats = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
-    def near(cls, setting: Setting, sequence: ImpactSequence, nodes: Floats) -> Family:
-        """With scales from the nodes of one of its orbits, which count as one."""
+    def from_nodes(cls, setting: Setting, sequence: ImpactSequence, nodes: Floats) -> Family:
+        """Return the family with scales from the nodes of one of its orbits."""
         size = max(float(np.abs(nodes[:, 1:]).max(initial=0.0)), SMALLEST)
         spans = [high - low for low, high in setting.limits]
         return cls(setting, sequence, np.append(node_scales(size, len(nodes)), spans))
@@ -150,29 +150,29 @@ class Family:
         return RESIDUAL * float(self.scale[POSITION]) / np.sqrt(len(self.sequence.kinds))
 
     def orbit(self, unknowns: Floats) -> PeriodicOrbit:
-        """The orbit's nodes and equations."""
+        """Return the orbit of some unknowns."""
         nodes, values = unknowns[: self.size], unknowns[self.size :]
         return PeriodicOrbit(self.sequence, self.setting.form(values), nodes.reshape(-1, 4))
 
     def residual(self, unknowns: Floats) -> Floats:
-        """What is left of the equations."""
+        """Return the residual of the orbit's equations."""
         return self.orbit(unknowns).residual()
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Its derivative: exact by the nodes, by differences by the parameters."""
+        """Return its derivative: exact by the nodes, by differences by the parameters."""
         columns = [
-            difference(self.residual, unknowns, self.size + i, *limits)[:, None]
+            central_difference(self.residual, unknowns, self.size + i, *limits)[:, None]
             for i, limits in enumerate(self.setting.limits)
         ]
         return np.hstack([self.orbit(unknowns).jacobian().real, *columns])
 
 
 def node_scales(size: float, count: int) -> Floats:
-    """Scales of the unknowns of some nodes, in a motion of some size."""
+    """Return scales of the unknowns of some nodes, in a motion of some size."""
     return np.tile([1.0, size, size, size], count) * np.sqrt(max(count, 1))
 
 
-def difference(
+def central_difference(
     function: Callable[[Floats], Floats],
     unknowns: Floats,
     which: int,
@@ -180,7 +180,7 @@ def difference(
     high: float,
     step: float = 0.0,
 ) -> Floats:
-    """Derivative of a function by one unknown, by a central difference inside limits."""
+    """Return the derivative of a function by one unknown, by a central difference inside limits."""
     value = unknowns[which]
     step = step or RELATIVE_STEP * max(abs(value), 1e-3 * (high - low))
     ends = []

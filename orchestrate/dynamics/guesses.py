@@ -21,7 +21,7 @@ from .impact_sequence import (
     PeriodicOrbit,
 )
 from .release import contact_durations
-from .turning_points import in_order
+from .turning_points import from_phase_zero
 
 Guess = tuple[ImpactSequence, Floats]
 
@@ -29,7 +29,7 @@ Guess = tuple[ImpactSequence, Floats]
 def from_state(
     instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
 ) -> Guess:
-    """The sequence that the FMU runs through from a state at phase 0.
+    """Return the sequence that the FMU runs through from a state at phase 0.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def start(instance: EventInstance, point: Point, form: ClosedForm, state: Floats
 
 
 def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
-    """The nodes of impacts, with the releases between them."""
+    """Return the nodes of impacts, with the releases between them."""
     state, mu = impacts.state / point.scale, form.mu
     phase = point.excitation.frequency * impacts.time
     velocity = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
@@ -71,7 +71,7 @@ def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int)
         if released is not None:
             kinds.append(RELEASE)
             rows.append(released)
-    ordered, first = in_order(np.array(rows).reshape(-1, 4), periods)
+    ordered, first = from_phase_zero(np.array(rows).reshape(-1, 4), periods)
     return ImpactSequence(periods, tuple(kinds[first:] + kinds[:first])), ordered
 
 
@@ -87,7 +87,7 @@ def release(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
 
 
 def from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats) -> Guess:
-    """Nodes at given phases: the equations left are linear, and are met as well as can be."""
+    """Return nodes at given phases that solve the other equations, which are linear, best."""
     nodes = np.zeros((len(phases), 4))
     nodes[:, PHASE] = phases
     orbit = PeriodicOrbit(sequence, form, nodes)
@@ -100,7 +100,7 @@ def from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats) -> G
 def close_returns(
     instance: EventInstance, point: Point, form: ClosedForm, periods: int, transient: int, most: int
 ) -> Iterator[tuple[Floats, float]]:
-    """States of the response from rest that come back after some periods, the closest first.
+    """Yield states of the response from rest that come back after some periods, closest first.
 
     Parameters
     ----------
@@ -122,15 +122,15 @@ def close_returns(
     period = point.excitation.period
     start(instance, point, form, np.zeros(4))
     instance.advance(0.0, transient * period)
-    states = strobed(instance, point, transient, most)
+    states = stroboscopic_states(instance, point, transient, most)
     scale = np.maximum(np.abs(states).max(axis=0), 1e-300)
     distance = (np.abs(states[periods:] - states[:-periods]) / scale).max(axis=1)
     for i in np.argsort(distance, kind="stable"):
         yield states[i], float(distance[i])
 
 
-def strobed(instance: EventInstance, point: Point, first: int, count: int) -> Floats:
-    """States at phase 0 of successive periods, shape (count, 4)."""
+def stroboscopic_states(instance: EventInstance, point: Point, first: int, count: int) -> Floats:
+    """Return states at phase 0 of successive periods, shape (count, 4)."""
     period = point.excitation.period
     states = np.empty((count, 4))
     for i in range(count):

@@ -55,15 +55,15 @@ class ImpactSequence:
         return len(self.kinds) - self.kinds.count(RELEASE)
 
     def doubled(self) -> ImpactSequence:
-        """The same orbit run through twice."""
+        """Return the same orbit run through twice."""
         return ImpactSequence(2 * self.periods, self.kinds * 2)
 
     def without(self, node: int) -> ImpactSequence:
-        """The sequence with one node less."""
+        """Return the sequence with one node less."""
         return ImpactSequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
 
     def with_impact(self, before: int) -> ImpactSequence:
-        """The sequence with one impact more, before a node."""
+        """Return the sequence with one impact more, before a node."""
         return ImpactSequence(self.periods, (*self.kinds[:before], IMPACT, *self.kinds[before:]))
 
 
@@ -131,7 +131,7 @@ class PeriodicOrbit:
         return found
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
-        """States inside segments.
+        """Return states inside segments.
 
         Parameters
         ----------
@@ -173,7 +173,7 @@ class PeriodicOrbit:
         )
 
     def residual(self) -> Floats:
-        """What is left of the equations, shape (4 k,).
+        """Return the residual of the equations, shape (4 k,).
 
         Each segment must arrive at the node after it: with no gap, at its displacement and
         velocity, and with its closing speed; at a release with f = 0 (19) and no closing speed.
@@ -191,7 +191,7 @@ class PeriodicOrbit:
         return found.ravel()
 
     def blocks(self) -> tuple[Floats, Floats]:
-        """Derivatives of each segment's equations by the node before and the node after it.
+        """Return derivatives of each segment's equations by the node before and the one after it.
 
         Returns
         -------
@@ -218,7 +218,7 @@ class PeriodicOrbit:
         return before, after
 
     def jacobian(self, turn: complex = 1.0) -> NDArray[np.inexact]:
-        """Derivative of the residual by the unknowns, shape (4 k, 4 k).
+        """Return the derivative of the residual by the unknowns, shape (4 k, 4 k).
 
         Parameters
         ----------
@@ -235,7 +235,7 @@ class PeriodicOrbit:
         return found.reshape(4 * k, 4 * k)
 
     def monodromy(self) -> Floats:
-        """How a deviation at the first node is mapped by one run through the orbit, shape (4, 4).
+        """Return the matrix of a deviation at the first node over one run through the orbit.
 
         Its eigenvalues are the Floquet multipliers: those of the stroboscopic map too. In permanent
         contact the deviation of the gap is gone, so with a contact two of them are zero.
@@ -249,7 +249,7 @@ class PeriodicOrbit:
         return found
 
     def multipliers(self) -> NDArray[np.complex128]:
-        """Floquet multipliers, the largest first, shape (4,); infinite where an impact grazes."""
+        """Return the Floquet multipliers, the largest first; infinite where an impact grazes."""
         try:
             found = np.linalg.eigvals(self.monodromy()).astype(complex)
         except np.linalg.LinAlgError:
@@ -266,8 +266,8 @@ class PeriodicOrbit:
         """
         return bool(np.abs(self.multipliers()).max() < 1.0 - ON_CIRCLE)
 
-    def dictated(self) -> float:
-        """The multipliers' product, by Liouville's formula and e^2 for each impact."""
+    def multiplier_product(self) -> float:
+        """Return the multipliers' product, by Liouville's formula and e^2 for each impact."""
         lost = float(self.form.damping[0] + self.form.damping[1])
         time = TURN * self.sequence.periods / self.form.eta
         if self.contact.any():

@@ -23,7 +23,7 @@ from ..response.questions import Point, asked_along, positive, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import Followed, FollowingQuestion, starts_of
+from .following import Followed, FollowingQuestion, start_states
 from .variational import impact_matrices, period
 
 if TYPE_CHECKING:
@@ -46,8 +46,8 @@ class Exponent(NamedTuple):
     error: float
 
 
-def products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
-    """Products of ``size`` matrices in turn, scaled, with the logarithms of the scales.
+def scaled_products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
+    """Return products of ``size`` matrices in turn, scaled, with the logarithms of the scales.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
 
 
 def fewest_impacts(batches: int = BATCHES) -> int:
-    """Impacts from which an exponent has an uncertainty."""
+    """Return how many impacts an exponent with an uncertainty takes."""
     return 2 * batches
 
 
@@ -88,7 +88,7 @@ def largest_exponent(
     blocks: int = BLOCKS,
     batches: int = BATCHES,
 ) -> Exponent:
-    """The largest Lyapunov exponent over a span.
+    """Return the largest Lyapunov exponent over a span.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def largest_exponent(
         return Exponent(math.nan, math.nan)
     matrices = impact_matrices(impacts, end, point)
     size = max(1, len(matrices) // blocks)
-    growth = growth_of(*products(matrices, size))
+    growth = log_growth(*scaled_products(matrices, size))
     if growth is None:
         return Exponent(-math.inf, math.nan)
     durations = np.diff(np.append(impacts.time[::size], end))
@@ -124,8 +124,8 @@ def largest_exponent(
     return Exponent(float(mean), float(means.std(ddof=1) / np.sqrt(len(means))))
 
 
-def growth_of(blocks: Floats, logs: Floats) -> Floats | None:
-    """Logarithms of the growth of a vector by each block in turn; None where it vanishes."""
+def log_growth(blocks: Floats, logs: Floats) -> Floats | None:
+    """Return logarithms of a vector's growth by each block in turn; None where it vanishes."""
     growth, vector = np.empty(len(blocks)), np.array([1.0, 0.7, 0.3, -0.5])
     for i, (block, log) in enumerate(zip(blocks, logs, strict=True)):
         vector = block @ vector
@@ -137,7 +137,7 @@ def growth_of(blocks: Floats, logs: Floats) -> Floats | None:
 
 
 def without_impacts(structure: Structure) -> Exponent | None:
-    """The exponent of a structure whose masses never part, or are alike: both move as linear ones.
+    """Return the exponent of a structure that moves as a linear one: bonded, or of alike masses.
 
     Returns
     -------
@@ -166,7 +166,7 @@ def decay_rate(damping: float, square: float) -> float:
 def verdict(
     exponent: ArrayLike, error: ArrayLike, floor: ArrayLike, sigmas: float = SIGMAS
 ) -> NDArray[np.int8]:
-    """Periodic, neutral (quasi-periodic, or not decided) or chaotic.
+    """Decide whether responses are periodic, neutral (quasi-periodic, or undecided) or chaotic.
 
     Parameters
     ----------
@@ -204,11 +204,11 @@ class LyapunovJob(FollowingQuestion):
     chunk: ClassVar[int] = 5
 
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
-        """Exponent, error, impacts per period."""
+        """Return exponent, error, impacts per period."""
         return [*self.exponent(impacts, item), len(impacts.time) / self.periods]
 
     def exponent(self, impacts: Impacts, item: Followed) -> Exponent:
-        """Of one response.
+        """Return the exponent of one response.
 
         Raises
         ------
@@ -231,7 +231,7 @@ class LyapunovJob(FollowingQuestion):
         return largest_exponent(impacts, end, item.point, self.blocks, self.batches)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Exponent, error and verdict over the parameter."""
+        """Return exponent, error and verdict over the parameter."""
         import xarray as xr
 
         along, (exponent, error, impacts) = self.series.name, table["rows"].T
@@ -264,7 +264,7 @@ def lyapunov(
     wander: float = WANDER,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Largest Lyapunov exponents of responses: periodic, neutral or chaotic.
+    """Compute largest Lyapunov exponents of responses: periodic, neutral or chaotic.
 
     Parameters
     ----------
@@ -329,7 +329,7 @@ def lyapunov(
         **question,
         transient=whole("transient", transient, 0),
         periods=whole("periods", periods, 1),
-        start=starts_of(start, LyapunovJob(name=name, **question)),
+        start=start_states(start, LyapunovJob(name=name, **question)),
         blocks=whole("blocks", blocks, 1),
         batches=whole("batches", batches, 3),
         sigmas=positive("sigmas", sigmas),

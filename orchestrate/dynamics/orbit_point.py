@@ -23,7 +23,7 @@ from .closed_form import Floats
 from .continuation import Root
 from .families import Family
 from .impact_sequence import CLOSING, POSITION, VELOCITY, PeriodicOrbit
-from .turning_points import nearest, turning_points, weakest_force
+from .turning_points import nearest_miss, turning_points, weakest_force
 
 CONTACT_KINDS = (CONTACT_LOST, CONTACT_BEGUN)
 ON_CIRCLE = 1e-6  # of a located pair of multipliers: how far its size may be from 1
@@ -67,7 +67,7 @@ class OrbitPoint:
     @cached_property
     def clearance(self) -> float:
         """Smallest gap at which the masses turn away from each other without an impact."""
-        return nearest(self.orbit, turning_points(self.orbit))[0]
+        return nearest_miss(self.orbit, turning_points(self.orbit))[0]
 
     @cached_property
     def sticking_margins(self) -> Floats:

@@ -14,7 +14,7 @@ from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
 from .impact_sequence import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .orbit_search import FmuCheck
-from .turning_points import Amplitudes, in_order, nearest, phase_zero, turning_points
+from .turning_points import Amplitudes, from_phase_zero, nearest_miss, phase_zero, turning_points
 
 KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
 PARTS = np.array(["real", "imaginary"])
@@ -58,10 +58,10 @@ class OrbitRecord:
     def from_root(
         cls, family: Family, unknowns: Floats, residual: float, fmu: FmuCheck
     ) -> OrbitRecord:
-        """All about a root."""
+        """Return the record of a root."""
         orbit = family.orbit(unknowns)
         turns = turning_points(orbit)
-        nodes, first = in_order(orbit.nodes, orbit.sequence.periods)
+        nodes, first = from_phase_zero(orbit.nodes, orbit.sequence.periods)
         multipliers = orbit.multipliers()
         return cls(
             values=unknowns[family.size :],
@@ -69,16 +69,16 @@ class OrbitRecord:
             nodes=nodes,
             zero=phase_zero(orbit),
             multipliers=np.stack([multipliers.real, multipliers.imag], axis=1),
-            product=orbit.dictated(),
+            product=orbit.multiplier_product(),
             amplitudes=Amplitudes.from_orbit(orbit, turns),
-            clearance=nearest(orbit, turns)[0],
+            clearance=nearest_miss(orbit, turns)[0],
             residual=residual,
             fmu=fmu,
         )
 
 
-def padded(rows: Rows[Floats], fill: float) -> Floats:
-    """Arrays of different lengths as one, the shorter ones filled up."""
+def pad(rows: Rows[Floats], fill: float) -> Floats:
+    """Return arrays of different lengths as one, the shorter ones filled up."""
     most = max(len(row) for row in rows)
     found = np.full((len(rows), most, *rows[0].shape[1:]), fill)
     for index, row in enumerate(rows):
@@ -87,11 +87,11 @@ def padded(rows: Rows[Floats], fill: float) -> Floats:
 
 
 def table_of(records: Rows[OrbitRecord]) -> Table:
-    """Arrays with one row an orbit."""
+    """Return arrays with one row an orbit."""
     return {
         "values": np.array([r.values for r in records]),
-        "kinds": padded([r.kinds for r in records], -1).astype(int),
-        "nodes": padded([r.nodes for r in records], np.nan),
+        "kinds": pad([r.kinds for r in records], -1).astype(int),
+        "nodes": pad([r.nodes for r in records], np.nan),
         "zero": np.array([r.zero for r in records]),
         "multipliers": np.array([r.multipliers for r in records]),
         "product": np.array([r.product for r in records]),
@@ -106,7 +106,7 @@ def table_of(records: Rows[OrbitRecord]) -> Table:
 
 
 def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
-    """Parameters along the rows, and the names of what has several parts."""
+    """Return the parameters along the rows, and the names of what has several parts."""
     points = [setting.point(values) for values in table["values"]]
     excitations = [point.excitation for point in points]
     along: dict[str, Any] = {
@@ -135,7 +135,7 @@ def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]
 
 
 def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
-    """All that is told of the orbits."""
+    """Return all variables of the orbits."""
     points = [setting.point(values) for values in table["values"]]
     scale = np.array([point.scale for point in points])
     frequency = np.array([point.excitation.frequency for point in points])
@@ -151,7 +151,7 @@ def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
 
 
 def states(table: Table, scale: Floats, row: str) -> dict[str, Variable]:
-    """Where the orbits are at each phase 0."""
+    """Return where the orbits are at each phase 0."""
     zero, along = table["zero"], (row, "sample", "coordinate")
     text = "states at phase 0: x1, x2 in m, v1, v2 in m/s"
     gap = zero[:, :, 1] - zero[:, :, 0]
@@ -163,7 +163,7 @@ def states(table: Table, scale: Floats, row: str) -> dict[str, Variable]:
 
 
 def impacts(table: Table, scale: Floats, frequency: Floats, row: str) -> dict[str, Variable]:
-    """Their impacts; of nodes that are none, not a number."""
+    """Return their impacts; of nodes that are none, not a number."""
     nodes, along, periods = table["nodes"], (row, "node"), table["zero"].shape[1]
     there = (table["kinds"] >= 0) & (table["kinds"] != RELEASE)
     times = np.where(there, nodes[:, :, PHASE] / frequency[:, None], np.nan)
@@ -179,7 +179,7 @@ def impacts(table: Table, scale: Floats, frequency: Floats, row: str) -> dict[st
 
 
 def stability(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
-    """Their multipliers, and what follows."""
+    """Return their multipliers, and what follows."""
     multipliers, time = table["multipliers"], table["zero"].shape[1] * 2.0 * np.pi / eta
     size = np.hypot(*np.moveaxis(multipliers, -1, 0))
     with np.errstate(divide="ignore"):
@@ -201,7 +201,7 @@ def stability(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
 
 
 def sizes(table: Table, row: str) -> dict[str, Variable]:
-    """How large an orbit is."""
+    """Return how large the orbits are."""
     texts = {
         "xi1_max": "largest distance of mass 1 from the box's middle over a eta^2",
         "xi2_max": "largest distance of mass 2 from the box's middle over a eta^2",
@@ -217,7 +217,7 @@ def sizes(table: Table, row: str) -> dict[str, Variable]:
 
 
 def checks(table: Table, row: str) -> dict[str, Variable]:
-    """How well an orbit is known."""
+    """Return how well the orbits are known."""
     return {
         "residual": variable(
             row, table["residual"], "1", "what Newton's method leaves of the equations"
@@ -232,7 +232,7 @@ def checks(table: Table, row: str) -> dict[str, Variable]:
 
 
 def node_variables(table: Table, row: str) -> dict[str, Variable]:
-    """The orbit's nodes: what Newton's method solves for, and another one may begin with."""
+    """Return the nodes: what Newton's method solves for, and another orbit may begin with."""
     nodes = table["nodes"]
     along = (row, "node")
     text = "closing speed before the impact over omega a eta^2"

@@ -13,7 +13,7 @@ from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, Setting
 from .guesses import Guess, from_phases, start
 from .impact_sequence import CLOSING, IMPACT, PHASE, TURN, ImpactSequence, PeriodicOrbit
-from .turning_points import in_order, nearest, phase_zero, turning_points, weakest_force
+from .turning_points import from_phase_zero, nearest_miss, phase_zero, turning_points, weakest_force
 
 SAME_PHASE = 1e-6  # rad: impacts of the FMU at these are the orbit's own
 SAME_ORBIT = 1e-6  # of the nodes over their size: an orbit is as at its beginning again
@@ -44,7 +44,7 @@ def solve_orbit(
     max_iterations: int = 25,
     max_distance: float = 100.0,
 ) -> tuple[Family, Root]:
-    """The orbit of a guess's sequence at values of the parameters, by Newton's method.
+    """Solve for the orbit of a guess's sequence at values of the parameters, by Newton's method.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def solve_orbit(
         Where there is none near.
     """
     sequence, nodes = guess
-    family = Family.near(setting, sequence, nodes)
+    family = Family.from_nodes(setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), values)
     across = unit_vector(len(unknowns), family.size)
     return family, newton_correct(
@@ -61,13 +61,13 @@ def solve_orbit(
 
 
 def why_no_motion(orbit: PeriodicOrbit) -> str:
-    """Why a root of the equations is no motion; empty where it is one."""
+    """Say why a root of the equations is no motion; empty where it is one."""
     if (orbit.durations <= 0.0).any():
         return "its impacts are out of order"
     closing = orbit.nodes[~orbit.sequence.releases, CLOSING] if orbit.count else np.ones(1)
     if not (closing > 0.0).all():
         return "an impact has no closing speed"
-    if nearest(orbit, turning_points(orbit))[0] < 0.0:
+    if nearest_miss(orbit, turning_points(orbit))[0] < 0.0:
         return "the masses would go through each other"
     if weakest_force(orbit) < 0.0:
         return "the contact would pull"
@@ -75,8 +75,9 @@ def why_no_motion(orbit: PeriodicOrbit) -> str:
 
 
 def least_periods(orbit: PeriodicOrbit) -> int:
-    """The least number of periods after which an orbit closes, wherever its impacts lie: phases are
-    compared on a circle, so that one at phase 0 may be told as 2 pi.
+    """Return the least number of periods after which an orbit closes.
+
+    Phases are compared on a circle, so that one at phase 0 may also be 2 pi.
     """
     periods, count = orbit.sequence.periods, orbit.count
     kinds, span = np.array(orbit.sequence.kinds), TURN * orbit.sequence.periods
@@ -106,7 +107,7 @@ def run_in_fmu(
     found = instance.impacts(0.0, end)
     after = instance.read("x1", "x2", "v1", "v2") / point.scale
     away = float(np.abs(after - state).max())
-    wanted, first = in_order(orbit.nodes, orbit.sequence.periods)
+    wanted, first = from_phase_zero(orbit.nodes, orbit.sequence.periods)
     kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
     impacts = kinds != 2
     if len(found.time) != impacts.sum():
@@ -120,7 +121,7 @@ def run_in_fmu(
 def first_motion(
     setting: Setting, guesses: Iterable[Guess], values: Floats, *, stable: bool = False
 ) -> tuple[Family, Root]:
-    """The first orbit that Newton's method finds and that is a motion of just its periods.
+    """Return the first orbit of Newton's method that is a motion of just its periods.
 
     Parameters
     ----------
@@ -154,13 +155,13 @@ def first_motion(
 
 
 def why_shorter(orbit: PeriodicOrbit, periods: int) -> str:
-    """Why an orbit is none of so many periods; empty where it is one."""
+    """Say why an orbit is none of so many periods; empty where it is one."""
     shorter = least_periods(orbit)
     return f"the orbit found repeats after {shorter} already" if shorter < periods else ""
 
 
 def single_impacts(form: ClosedForm, periods: int) -> Iterator[Guess]:
-    """Guesses with one impact in all, at phases all around."""
+    """Yield guesses with one impact in all, at phases all around."""
     sequence = ImpactSequence(periods, (IMPACT,))
     for phase in np.arange(PHASES) * TURN / PHASES:
         yield from_phases(form, sequence, np.array([phase]))

@@ -76,7 +76,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         """Put the stepper to an orbit, and measure the unknowns in the size of the motion."""
         family, root = point.family, point.root
         nodes = root.unknowns[: family.size].reshape(-1, 4)
-        scaled = Family.near(family.setting, family.sequence, nodes)
+        scaled = Family.from_nodes(family.setting, family.sequence, nodes)
         low, high = SAME_SIZE
         if len(nodes) and not low < scaled.scale[POSITION] / family.scale[POSITION] < high:
             tangent = root.tangent * family.scale / scaled.scale

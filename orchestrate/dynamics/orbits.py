@@ -57,7 +57,7 @@ class FirstGuess:
     nodes: tuple[tuple[float, ...], ...] = ()
 
     def as_argument(self, frequency: float) -> str:
-        """As a user would write it; contacts are left to the FMU."""
+        """Return the guess as a user would write it; contacts are left to the FMU."""
         if self.state:
             return f"{self.state!r}"
         rows = zip(self.kinds, self.nodes, strict=True)
@@ -65,7 +65,7 @@ class FirstGuess:
         return f"{{'impact_time': {times!r}}}"
 
     def sequence(self, periods: int) -> ImpactSequence:
-        """The sequence of its nodes."""
+        """Return the sequence of its nodes."""
         return ImpactSequence(periods, self.kinds)
 
 
@@ -98,7 +98,7 @@ class OrbitJob(Question):
     asked: ClassVar[str] = "orbit"
 
     def call(self) -> str:
-        """The call that asks it."""
+        """Return the call that asks it."""
         frequency = self.setting.point(np.array([self.excitation[0][1]])).excitation.frequency
         told = {**dict(self.excitation), "period": self.period}
         if self.box_acceleration:
@@ -118,20 +118,20 @@ class OrbitJob(Question):
         return Setting(self.structure, self.excitation, (name,), limits, self.box_acceleration)
 
     def count(self) -> int:
-        """One orbit."""
+        """Return one: an orbit."""
         return 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """The orbit's number."""
+        """Return the number of the orbit."""
         return [0]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
         """Find it."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return table_of([found(instance, self)])
+            return table_of([find_orbit(instance, self)])
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The orbit, labelled."""
+        """Return the orbit, labelled."""
         import xarray as xr
 
         setting = self.setting
@@ -144,8 +144,8 @@ class OrbitJob(Question):
         return whole_table.isel(point=0)
 
 
-def found(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
-    """The orbit that is asked for.
+def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
+    """Find the orbit that is asked for.
 
     Raises
     ------
@@ -169,7 +169,7 @@ def found(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
 def guesses(
     instance: EventInstance, job: OrbitJob, setting: Setting, values: Floats
 ) -> Iterator[Guess]:
-    """The user's guess; or close returns of the response, then single impacts."""
+    """Yield the user's guess; or close returns of the response, then single impacts."""
     point, form, guess = setting.point(values), setting.form(values), job.guess
     if guess is not None and guess.state:
         yield from_state(instance, point, form, np.array(guess.state), job.period)
@@ -190,7 +190,7 @@ def guesses(
 def first_guess(
     given: Any, structure: Structure, frequency: float, period: int
 ) -> FirstGuess | None:
-    """A user's guess in one of its forms.
+    """Return a user's guess in one of its forms as plain numbers.
 
     Raises
     ------
@@ -215,7 +215,7 @@ def first_guess(
 
 
 def from_result(given: Mapping[Any, Any]) -> FirstGuess:
-    """The nodes of an orbit that was found before.
+    """Return the nodes of an orbit that was found before.
 
     Raises
     ------
@@ -234,7 +234,7 @@ def from_result(given: Mapping[Any, Any]) -> FirstGuess:
 def excitation_arguments(
     eta: ArrayLike | None, frequency: ArrayLike | None, amplitude: ArrayLike | None
 ) -> tuple[tuple[str, float], ...]:
-    """An excitation as plain numbers."""
+    """Return an excitation as plain numbers."""
     given = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
     return tuple((name, float(np.asarray(v))) for name, v in given.items() if v is not None)
 
@@ -253,7 +253,7 @@ def orbit(
     tries: int = 20,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """A periodic orbit by Newton's method, stable or unstable.
+    """Find a periodic orbit by Newton's method, stable or unstable.
 
     Parameters
     ----------
@@ -317,7 +317,7 @@ def orbit(
         name=f"orbit_{structure.label()}_{count}T",
         structure=structure,
         excitation=excitation_arguments(eta, frequency, amplitude),
-        box_acceleration=finite("box_acceleration", box_acceleration),
+        box_acceleration=finite_number("box_acceleration", box_acceleration),
         period=count,
         guess=first_guess(guess, structure, given.excitation.frequency, count),
         transient=whole("transient", transient, 0),
@@ -327,8 +327,8 @@ def orbit(
     return answer(job, running, finder(running))
 
 
-def finite(name: str, given: ArrayLike) -> float:
-    """One finite number.
+def finite_number(name: str, given: ArrayLike) -> float:
+    """Return one finite number.
 
     Raises
     ------

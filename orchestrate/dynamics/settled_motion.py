@@ -67,7 +67,7 @@ class SettledMotion:
 
     @classmethod
     def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
-        """A stable orbit."""
+        """Return the motion of a stable orbit."""
         periods, scale = orbit.sequence.periods, point.scale
         states = phase_zero(orbit) * scale
         states[:, 1] = np.maximum(states[:, 0], states[:, 1])  # in contact, within rounding
@@ -92,7 +92,7 @@ class SettledMotion:
         return [self.multiplicity, self.impacts_per_period, gap, *means]
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
-        """The period whose first state is nearest to a state at phase 0, and its distance."""
+        """Return the period whose first state is nearest to a state at phase 0, and its distance."""
         return self._known.nearest(state)
 
     @cached_property
@@ -111,8 +111,10 @@ class SettledMotion:
         return KnownStates.from_states(found, self.point.excitation.frequency, self.gap)
 
     def is_orbit_of(self, other: SettledMotion) -> bool:
-        """Whether both are one orbit: the same nodes, begun in another period or not; or the same
-        states, where chattering that ends in contact has one more of its smallest impacts.
+        """Return whether both are one orbit.
+
+        They have the same nodes, begun in the same period or not; or the same states, where
+        chattering that ends in contact has one more of its smallest impacts.
         """
         if self.orbit is None or other.orbit is None or self.multiplicity != other.multiplicity:
             return False
@@ -142,7 +144,7 @@ class KnownStates:
 
     @classmethod
     def from_states(cls, states: Floats, frequency: float, gap: float) -> KnownStates:
-        """Some states, SI, with the excitation's frequency in rad/s and the largest gap in m."""
+        """Return states, SI, for a frequency in rad/s and a largest gap in m to compare with."""
         matrix = LENGTHS / np.array([1.0, 1.0, frequency, frequency])[:, np.newaxis]
         found = states @ matrix
         size = float(np.abs(found[:, :4]).max()) or 1.0
@@ -152,14 +154,14 @@ class KnownStates:
         return cls(states, found / sizes, matrix / sizes)
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
-        """The period whose state is nearest to a state, and its distance over the motion's size."""
+        """Return the period whose state is nearest to a state, and the distance over the size."""
         distances = np.abs(self.scaled - np.asarray(state) @ self.matrix).max(axis=1)
         period = int(distances.argmin())
         return period, float(distances[period])
 
 
 def same_nodes(one: PeriodicOrbit, other: PeriodicOrbit) -> bool:
-    """Whether two orbits of as many periods have the same nodes, whole periods apart or not."""
+    """Return whether two orbits of as many periods have the same nodes, up to whole periods."""
     kinds, others = np.array(one.sequence.kinds), np.array(other.sequence.kinds)
     if len(kinds) != len(others):
         return False

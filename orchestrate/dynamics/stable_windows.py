@@ -28,7 +28,7 @@ class StableWindow(NamedTuple):
 
 
 def stable_windows(found: xr.Dataset) -> list[StableWindow]:
-    """The stable parts of a branch, in the order along it.
+    """Return the stable parts of a branch, in the order along it.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def stable_windows(found: xr.Dataset) -> list[StableWindow]:
 
 
 def kind_names(found: xr.Dataset) -> dict[int, str]:
-    """Names of the kinds of bifurcations by number."""
+    """Return the names of the kinds of bifurcations by number."""
     words = found.bifurcation_kind.attrs
     names = [word.replace("_", " ") for word in words["flag_meanings"].split()]
     return dict(zip(map(int, words["flag_values"]), names, strict=True))

@@ -35,8 +35,8 @@ class TurningPoints:
     curvature: Floats
 
 
-def looks(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
-    """Segments and phases at which to look at a motion, in order; the ends of segments left out."""
+def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
+    """Return segments and phases at which a motion is sampled, in order, inside segments."""
     counts = FEWEST + np.ceil(
         LOOKS * np.abs(orbit.durations) * orbit.form.fastest / (2.0 * np.pi)
     ).astype(int)
@@ -47,8 +47,8 @@ def looks(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
 
 
 def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
-    """All turning points of both displacements and, in flight, of the gap."""
-    segment, phase = looks(orbit)
+    """Find all turning points of both displacements and, in flight, of the gap."""
+    segment, phase = sample_grid(orbit)
     rates = orbit.states(segment, phase)[:, 2:] @ WEIGHTS.T
     same = segment[1:] == segment[:-1]
     turned = (np.sign(rates[1:]) != np.sign(rates[:-1])) & same[:, None]
@@ -58,17 +58,17 @@ def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
     first, last = rates[which, quantity], rates[which + 1, quantity]
     found = low + (high - low) * first / (first - last)
     for _ in range(REFINEMENTS):
-        rate, curvature, _ = measured(orbit, segment, quantity, found)
+        rate, curvature, _ = derivatives(orbit, segment, quantity, found)
         step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
         found = np.clip(found - orbit.form.eta * step, low, high)
-    _, curvature, value = measured(orbit, segment, quantity, found)
+    _, curvature, value = derivatives(orbit, segment, quantity, found)
     return TurningPoints(segment, quantity, found, value, curvature)
 
 
-def measured(
+def derivatives(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """First and second derivative by tau, and value, of quantities inside segments."""
+    """Return first and second derivative by tau, and value, of quantities inside segments."""
     state = orbit.states(segment, phase)
     field = orbit.form.field(state, phase, orbit.contact[segment])
     weights = WEIGHTS[quantity]
@@ -94,15 +94,15 @@ class Amplitudes:
 
     @classmethod
     def from_orbit(cls, orbit: PeriodicOrbit, turns: TurningPoints) -> Amplitudes:
-        """From the turning points; a displacement may also be largest at an impact."""
+        """Return those of an orbit; a displacement may also be largest at an impact."""
         ends = np.abs(orbit.arrivals[:, :2]).max(axis=0)
         inside = [np.abs(turns.value[turns.quantity == which]) for which in range(3)]
         largest = [max(values, default=0.0) for values in inside]
         return cls(max(ends[0], largest[0]), max(ends[1], largest[1]), float(largest[GAP]))
 
 
-def nearest(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
-    """The flight that comes nearest to one more impact.
+def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
+    """Find the flight that comes nearest to one more impact.
 
     Returns
     -------
@@ -120,32 +120,32 @@ def nearest(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, flo
 
 
 def weakest_force(orbit: PeriodicOrbit) -> float:
-    """How near permanent contact comes to an earlier release: the smallest -f (18) where f turns.
+    """Return the smallest -f (18) where f turns: it is 0 at an earlier release.
 
     Infinite where there is no contact, or f does not turn there.
     """
     if not orbit.contact.any():
         return np.inf
-    segment, phase = looks(orbit)
+    segment, phase = sample_grid(orbit)
     inside = orbit.contact[segment]
     segment, phase = segment[inside], phase[inside]
-    rate = pressing(orbit, segment, phase)[1]
+    rate = pressing_force(orbit, segment, phase)[1]
     turned = (rate[1:] > 0.0) & (rate[:-1] <= 0.0) & (segment[1:] == segment[:-1])
     if not turned.any():
         return np.inf
     low, high, segment = phase[:-1][turned], phase[1:][turned], segment[1:][turned]
     found = 0.5 * (low + high)
     for _ in range(REFINEMENTS):
-        _, rate, curvature = pressing(orbit, segment, found)
+        _, rate, curvature = pressing_force(orbit, segment, found)
         step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
         found = np.clip(found - orbit.form.eta * step, low, high)
-    return float(pressing(orbit, segment, found)[0].min())
+    return float(pressing_force(orbit, segment, found)[0].min())
 
 
-def pressing(
+def pressing_force(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """-f (18) inside permanent contact, and its first two derivatives by tau."""
+    """Return -f (18) inside permanent contact, and its first two derivatives by tau."""
     form, state = orbit.form, orbit.states(segment, phase)
     position, velocity = state[:, 0], state[:, 2]
     acceleration = form.field(state, phase, True)[:, 2]
@@ -159,7 +159,7 @@ def pressing(
 
 
 def phase_zero(orbit: PeriodicOrbit) -> Floats:
-    """States at multiples of 2 pi of the phase, in their order, shape (periods, 4)."""
+    """Return states at multiples of 2 pi of the phase, in their order, shape (periods, 4)."""
     turn, periods = 2.0 * np.pi, orbit.sequence.periods
     wanted = turn * np.arange(periods)
     begin = orbit.begins[0]
@@ -168,8 +168,8 @@ def phase_zero(orbit: PeriodicOrbit) -> Floats:
     return orbit.states(segment, shifted)
 
 
-def in_order(nodes: Floats, periods: int) -> tuple[Floats, int]:
-    """Nodes from phase 0 on, with the number of the one that is first now."""
+def from_phase_zero(nodes: Floats, periods: int) -> tuple[Floats, int]:
+    """Return nodes from phase 0 on, with the index of the one that is first now."""
     turn = 2.0 * np.pi * periods
     phase = np.mod(nodes[:, PHASE], turn)
     first = int(phase.argmin()) if len(nodes) else 0

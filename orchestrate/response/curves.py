@@ -3,24 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import (
-    STATE,
-    EventInstance,
-    Impacts,
-    Instance,
-    begin,
-    sampled,
-)
+from ..access import STATE, EventInstance, Impacts, Instance, begin, sampled
 from .equations import in_touch
 from .questions import Point
-
-if TYPE_CHECKING:
-    pass
 
 FLIGHT, SEQUENCE, CONTACT = 0, 1, 2  # the three states of Figure 5
 KINDS = {FLIGHT: "separate motion", SEQUENCE: "sequence of impacts", CONTACT: "permanent contact"}

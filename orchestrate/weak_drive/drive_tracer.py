@@ -222,7 +222,7 @@ def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
     NoConvergenceError
         Where there is none.
     """
-    shooter.renew(guess)
+    shooter.renew_jacobian(guess)
     speed = unit_vector(len(guess), -1)
     root = newton_correct(shooter, guess, speed, max_iterations=ITERATIONS)
     return motion_at(shooter, root, speed if up else -speed)
@@ -239,7 +239,7 @@ def double_period(shooter: Shooter, flip: Motion) -> Motion:
     for distance in AWAY:
         shooter.repeat_after(flip.period.revolutions)
         shooter.angle, shooter.matrix = flip.angle, flip.matrix
-        away = np.append(shooter.alternating(), [0.0, 0.0])
+        away = np.append(shooter.flip_direction(), [0.0, 0.0])
         guess = flip.root.unknowns + distance * away
         shooter.repeat_after(2 * shooter.turns)
         with contextlib.suppress(NoConvergenceError):
@@ -257,7 +257,7 @@ def start_in_wide_gap(shooter: Shooter, motion: Motion) -> Motion:
         return motion
     root = motion.root
     unknowns = shooter.begin_later(root.unknowns, motion.period.clear)
-    matrix = shooter.renew(unknowns)
+    matrix = shooter.renew_jacobian(unknowns)
     direction = np.append(np.zeros(shooter.size), root.tangent[-2:])  # of voltage and speed
     tangent = unit_tangent(np.vstack([matrix, direction]))
     moved = replace(root, unknowns=unknowns, tangent=tangent)

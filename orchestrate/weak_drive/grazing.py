@@ -50,7 +50,7 @@ def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins
         Of the motor where its period begins, rad.
     """
     shooter.angle = angle
-    master, voltage = shooter.begin(unknowns)
+    master, voltage = shooter.begin_period(unknowns)
     gaps, closing = [math.inf], [math.inf]
     for _ in range(shooter.count):
         before = master.motion

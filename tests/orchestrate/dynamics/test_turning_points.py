@@ -6,7 +6,7 @@ import pytest
 from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.dynamics.impact_sequence import ImpactSequence, PeriodicOrbit
 from orchestrate.dynamics.orbits import orbit
-from orchestrate.dynamics.turning_points import pressing
+from orchestrate.dynamics.turning_points import pressing_force
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
 
@@ -32,7 +32,9 @@ def test_derivatives_of_the_contact_force():
     segment = np.flatnonzero(solution.contact)
     middle = 0.5 * (solution.begins + solution.ends)[segment]
     step = 1e-5 * form.eta
-    before, here, after = (pressing(solution, segment, middle + s) for s in (-step, 0.0, step))
+    before, here, after = (
+        pressing_force(solution, segment, middle + s) for s in (-step, 0.0, step)
+    )
     for order in (0, 1):
         slope = (after[order] - before[order]) / 2e-5
         assert here[order + 1] == pytest.approx(slope, rel=1e-7)

@@ -22,7 +22,7 @@ from orchestrate.access import (
     find,
 )
 from orchestrate.dynamics.closed_form import ClosedForm
-from orchestrate.dynamics.following import impacts_of
+from orchestrate.dynamics.following import follow_impacts
 from orchestrate.dynamics.lyapunov import decay_rate
 from orchestrate.dynamics.variational import contact_times, monodromy, period
 from orchestrate.response.questions import Point
@@ -74,7 +74,7 @@ def test_monodromy_equals_differences_of_the_fmu(instances, structure, eta):
     start = after(plain, point, REST, 200)
     if start[1] - start[0] < 1e-3 * np.abs(start).max():
         start = point.scale * [-0.05, 0.05, 1.0, -1.0]  # in contact there is no neighbour beyond
-    impacts = impacts_of(eventful, point, start, 2)
+    impacts = follow_impacts(eventful, point, start, 2)
     assert len(impacts.time)
     expected = differences(plain, point, start, 2)
     np.testing.assert_allclose(monodromy(impacts, point, 2), expected, atol=2e-5)
@@ -86,7 +86,7 @@ def test_releases_are_those_of_the_fmu(instances, structure, eta):
     plain, eventful = instances
     point = Point(structure, Excitation.nondimensional(eta, structure))
     span = period(eta)
-    impacts = impacts_of(eventful, point, REST, 4)
+    impacts = follow_impacts(eventful, point, REST, 4)
     ends = np.append(impacts.time[1:], 4 * span)
     found = contact_times(impacts, ends, point)
     for stick in np.flatnonzero(impacts.sticks):
@@ -104,7 +104,7 @@ def test_permanent_contact_is_in_the_matrices(instances):
     seen = 0
     for structure in (ALIKE[0], *UNLIKE):
         point = Point(structure, Excitation.nondimensional(0.3, structure))
-        seen += impacts_of(eventful, point, REST, 3).sticks.any()
+        seen += follow_impacts(eventful, point, REST, 3).sticks.any()
     assert seen >= 5
 
 
