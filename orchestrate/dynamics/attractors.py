@@ -1,4 +1,4 @@
-"""Coexisting attractors: random starts, followed until settled and told apart."""
+"""Coexisting attractors: random starts run on until they are settled, then grouped."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ DECIDED_BY = (
     "undecided: states repeat nearly, near an unstable orbit"
 )
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
-LOOKED_AT, LOOKS = 8, 64  # periods of the response from rest, and states in each
+SIZE_PERIODS, SAMPLES_PER_PERIOD = 8, 64  # of the response from rest, to measure its size
 AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: the second box
 
 
@@ -86,7 +86,7 @@ class AttractorsJob(SeriesQuestion):
     width : float
         Half width in units of the largest gap there, where no scale is given.
     follows : str
-        Name of a sweep over the same parameter that tells the gaps instead of responses from rest.
+        Name of a sweep over the same parameter whose gaps are taken instead of those from rest.
     settings : AttractorSettings
     """
 
@@ -189,14 +189,14 @@ class AttractorsJob(SeriesQuestion):
         shape = len(series.points), self.starts
         features = table["features"].reshape(*shape, len(FEATURES))
         ends, decided = table["end"].reshape(*shape, 4), table["decided"].reshape(shape)
-        found = continue_attractors(
+        matched = continue_attractors(
             instances,
             [series.points[i] for i in order],
             [Starts(features[i], ends[i], decided[i]) for i in order],
             self.settings,
         )
         back = np.argsort(order)
-        columns = {name: rows[back] for name, rows in attractor_columns(found).items()}
+        columns = {name: rows[back] for name, rows in attractor_columns(matched).items()}
         return {name: rows[np.newaxis] for name, rows in columns.items()}
 
     def order(self) -> NDArray[np.intp]:
@@ -272,26 +272,28 @@ class SettledRows:
         }
 
 
-def attractor_columns(found: MatchedAttractors) -> Table:
+def attractor_columns(matched: MatchedAttractors) -> Table:
     """Return attractors along a parameter as arrays, a row a value; ABSENT where there is none."""
-    shape = len(found.motions), found.count
+    shape = len(matched.motions), matched.count
     columns = {name: np.full(shape, np.nan) for name in (*OF_ATTRACTORS, "multiplier")}
     how, share = np.zeros(shape, dtype=np.int8), np.zeros(shape)
     states = np.full((*shape, 4), np.nan)
-    for i, motions in enumerate(found.motions):
-        for number, motion in zip(found.numbers[i], motions, strict=True):
+    for i, motions in enumerate(matched.motions):
+        for number, motion in zip(matched.numbers[i], motions, strict=True):
             columns["multiplicity"][i, number] = motion.multiplicity
             columns["impacts_per_period"][i, number] = motion.impacts_per_period
             columns["xi_rel_max"][i, number] = motion.gap / motion.point.length
             columns["multiplier"][i, number] = motion.multiplier
             how[i, number], states[i, number] = motion.decided, motion.states[0]
-            share[i, number] = np.mean(found.labels[i] == number) if len(found.labels[i]) else 0.0
+            share[i, number] = (
+                np.mean(matched.labels[i] == number) if len(matched.labels[i]) else 0.0
+            )
     return {
         **columns,
         "how": how,
         "share": share,
         "state": states,
-        "labels": np.array(found.labels),
+        "labels": np.array(matched.labels),
     }
 
 
@@ -357,8 +359,8 @@ def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings
     """Measure the response from rest."""
     response = run_until_settled(instance, point, REST, settings).response
     begin(instance, *point, response.end)
-    span = LOOKED_AT * point.excitation.period
-    states = sampled(instance, 0.0, span, LOOKED_AT * LOOKS)
+    span = SIZE_PERIODS * point.excitation.period
+    states = sampled(instance, 0.0, span, SIZE_PERIODS * SAMPLES_PER_PERIOD)
     displacement = float(np.abs(states[:, :2]).max())
     return SizeFromRest(np.array(response.end), displacement, response.x_rel_max)
 
@@ -385,15 +387,15 @@ def starts_in_both_boxes(
         mass 1 lie within 0.7 of the largest displacement from those of the response from rest, the
         gap in [0, 3 G] and its rate in +-3 G Omega with the largest gap G.
     """
-    found = random_starts(count, scale, seed, point.structure.omega)
+    states = random_starts(count, scale, seed, point.structure.omega)
     draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (count, 4))
     frequency = point.excitation.frequency
     around, gap = AROUND * size.displacement, BEYOND * (size.gap or point.length)
     x1 = size.state[0] + around * draws[:, 0]
     v1 = size.state[2] + frequency * around * draws[:, 2]
     x2, v2 = x1 + gap * np.abs(draws[:, 1]), v1 + frequency * gap * draws[:, 3]
-    found[1::2] = np.column_stack([x1, x2, v1, v2])[1::2]
-    return found
+    states[1::2] = np.column_stack([x1, x2, v1, v2])[1::2]
+    return states
 
 
 def attractor_settings(**given: Any) -> AttractorSettings:
@@ -454,7 +456,7 @@ def attractors(
     settle : float
         Periods dropped at least, over eta: a slow decay takes time, not periods.
     samples : int
-        Periods looked at.
+        Periods kept: more where attractors repeat after more than half as many.
     converged : float
         Relative deviation within which a repeated state decides.
     longest : int
@@ -485,7 +487,8 @@ def attractors(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is out
+        of its range.
 
     Notes
     -----
@@ -495,8 +498,8 @@ def attractors(
     possible motion, if its multipliers lie inside the unit circle, and if the response comes nearer
     to it as they say. So multiplicity and impacts are those of the orbit, and two attractors are
     two orbits. What has not repeated after ``longest`` periods is irregular, a torus or chaos; how
-    many of these there are depends on ``alike_irregular``. An FMU without events (FMI 2.0) tells no
-    impacts: there states that repeat decide.
+    many of these there are depends on ``alike_irregular``. An FMU without events (FMI 2.0)
+    reports no impacts: there states that repeat decide.
 
     Global continuation (Datseris, Rossi and Wagemakers, Chaos 33, 073151, 2023): every attractor
     is carried to both neighbouring values, its state as a further start, or its orbit by Newton's
@@ -539,9 +542,9 @@ def check_scale(given: ArrayLike | None) -> Numbers | None:
     InputError
         Where one is not.
     """
-    found = numbers("scale", given)
-    each = found if isinstance(found, tuple) else () if found is None else (found,)
+    scale = numbers("scale", given)
+    each = scale if isinstance(scale, tuple) else () if scale is None else (scale,)
     wrong = [value for value in each if value <= 0.0]
     if wrong:
         raise InputError(f"scale = {wrong[0]!r}: expected numbers > 0, m")
-    return found
+    return scale

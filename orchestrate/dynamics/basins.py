@@ -315,7 +315,8 @@ def basin(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is out
+        of its range.
 
     Notes
     -----
@@ -407,15 +408,15 @@ def find_known_attractors(
     kept = {name: value for name, value in running.items() if name in ("fmu", "build_folder")}
     asked = {name: getattr(settings, name) for name in SETTINGS}
     search: Any = {**excitation, **asked, **kept, "jobs": 1, "progress": False}
-    found = attractors(point.structure, starts=SEARCH, **search).isel(frequency=0)
-    states = tuple(map(tuple, found.state.values.tolist()))
+    known = attractors(point.structure, starts=SEARCH, **search).isel(frequency=0)
+    states = tuple(map(tuple, known.state.values.tolist()))
     samples = []
     with Instance(finder(running)(OSCILLATOR).path) as instance:
-        for state, n in zip(states, found.multiplicity.values, strict=True):
+        for state, n in zip(states, known.multiplicity.values, strict=True):
             begin(instance, *point, state)
             periods = int(n) or settings.irregular_samples
             samples.append(sample(instance, point.excitation.period, 0, periods)[0].copy())
-    gap = float(found.xi_rel_max.max()) * point.length
+    gap = float(known.xi_rel_max.max()) * point.length
     return Known(point, states, np.concatenate(samples), gap)
 
 

@@ -98,10 +98,10 @@ class BorderJob(Question):
         title = f"{KINDS[self.kind]} over {' and '.join(setting.over)}: {self.structure.label()}"
         attributes = {"title": title, "kind": KINDS[self.kind], "over": list(setting.over)}
         attributes.update(first_end=ends[0], last_end=ends[1])
-        found = {**variables(setting, table, "point"), **names}
+        data = {**variables(setting, table, "point"), **names}
         text = "angle of the multipliers on the unit circle"
-        found["angle"] = variable("point", table["angle"], "rad", text)
-        return xr.Dataset(found, attrs=attributes).set_coords(list(names))
+        data["angle"] = variable("point", table["angle"], "rad", text)
+        return xr.Dataset(data, attrs=attributes).set_coords(list(names))
 
 
 def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
@@ -183,14 +183,14 @@ def border(
     Returns
     -------
     xarray.Dataset
-        Along ``point``: both parameters, the orbit there as :func:`orchestrate.orbit` tells it, and
+        Along ``point``: both parameters, the orbit there as :func:`orchestrate.orbit` has it, and
         the ``angle`` of the multipliers at a Neimark-Sacker bifurcation. Attributes: ``kind``, and
         ``first_end`` and ``last_end``, why the curve ends.
 
     Raises
     ------
     InputError
-        Where the question is not whole, or there is no such bifurcation.
+        Where arguments contradict each other, or there is no such bifurcation.
 
     Examples
     --------

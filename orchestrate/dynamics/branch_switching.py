@@ -13,7 +13,7 @@ from .impact_sequence import CLOSING, PHASE, TURN, ImpactSequence
 from .orbit_point import OrbitPoint
 from .turning_points import nearest_miss, turning_points
 
-AWAY = 1e-3  # along the new branch, over unknowns' scales: where its gap is looked at
+AWAY = 1e-3  # along the new branch, in unknowns over their scale: where its gap is tested
 
 
 def leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
@@ -69,9 +69,9 @@ def add_touching(point: OrbitPoint) -> OrbitPoint:
         node = segment + 1
         sequence = orbit.sequence.with_impact(node)
         nodes = np.insert(orbit.nodes, node, row, axis=0)
-    found = same_motion(point, sequence, nodes)
-    rising = found.root.tangent[4 * node + CLOSING] > 0.0
-    return found if rising else found.reversed()
+    begin = same_motion(point, sequence, nodes)
+    rising = begin.root.tangent[4 * node + CLOSING] > 0.0
+    return begin if rising else begin.reversed()
 
 
 def remove_grazing(point: OrbitPoint) -> OrbitPoint:
@@ -80,9 +80,9 @@ def remove_grazing(point: OrbitPoint) -> OrbitPoint:
     closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
     node = int(np.abs(closing).argmin())
     nodes = np.delete(orbit.nodes, node, axis=0)
-    found = same_motion(point, orbit.sequence.without(node), nodes)
-    ahead = ArclengthStepper(found.family, found.root, AWAY, AWAY).root_after(AWAY)
-    return found if OrbitPoint(found.family, ahead).clearance > 0.0 else found.reversed()
+    begin = same_motion(point, orbit.sequence.without(node), nodes)
+    ahead = ArclengthStepper(begin.family, begin.root, AWAY, AWAY).root_after(AWAY)
+    return begin if OrbitPoint(begin.family, ahead).clearance > 0.0 else begin.reversed()
 
 
 def same_motion(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:

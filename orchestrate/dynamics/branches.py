@@ -1,4 +1,4 @@
-"""Orbits followed along a parameter, stable and unstable, with the bifurcations on the way."""
+"""Branches of orbits along a parameter, stable and unstable, with their bifurcations."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
 
-TOLD = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual")
+REPORTED = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual")
 NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_closing")
-KEPT = (*TOLD, *NODES)  # of what is told of orbits, also of those at bifurcations
+KEPT = (*REPORTED, *NODES)  # variables of orbits that those at bifurcations have, too
 BIFURCATION = "bifurcation"
 OrbitSegment = BranchSegment[OrbitPoint]
 
@@ -109,12 +109,12 @@ class BranchJob(Question):
 
         setting, (name,) = self.setting, self.setting.over
         along = {key: table[key] for key in table if not key.startswith(BIFURCATION)}
-        found = {**variables(setting, along, "point"), **coordinates(setting, along, "point")}
+        data = {**variables(setting, along, "point"), **coordinates(setting, along, "point")}
         ends = [str(text) for text in table["bifurcation_ends"]]
         periods = along["zero"].shape[1]
         title = f"Branch of orbits of {periods} periods along {name}: {self.structure.label()}"
         attributes = {"title": title, "over": name, "first_end": ends[0], "last_end": ends[1]}
-        dataset = xr.Dataset({**found, **bifurcation_variables(setting, table)}, attrs=attributes)
+        dataset = xr.Dataset({**data, **bifurcation_variables(setting, table)}, attrs=attributes)
         return dataset.set_coords(list(coordinates(setting, along, "point")))
 
 
@@ -180,26 +180,26 @@ def bifurcation_variables(setting: Setting, table: Table) -> dict[str, Variable]
     (name,) = setting.over
     kinds = flags(BIFURCATION, table["bifurcation_kind"], "kind of bifurcation", KINDS)
     place = "position along the branch's points: between two where not whole"
-    found = {
+    data = {
         "bifurcation_kind": kinds,
         "bifurcation_place": variable(BIFURCATION, table["bifurcation_place"], "1", place),
     }
     if not len(table["bifurcation_kind"]):
-        found["bifurcation_value"] = variable(BIFURCATION, np.zeros(0), "1", name)
-        return found
+        data["bifurcation_value"] = variable(BIFURCATION, np.zeros(0), "1", name)
+        return data
     rows = {
         key.removeprefix(f"{BIFURCATION}_"): values
         for key, values in table.items()
         if key.startswith(BIFURCATION)
     }
     parameters = coordinates(setting, rows, BIFURCATION)
-    found["bifurcation_value"] = parameters[name]
+    data["bifurcation_value"] = parameters[name]
     for key, (dims, values, attributes) in variables(setting, rows, BIFURCATION).items():
         if key in KEPT:
             each = (dims,) if isinstance(dims, str) else dims
             own = tuple(f"{BIFURCATION}_node" if dim == "node" else dim for dim in each)
-            found[f"{BIFURCATION}_{key}"] = own, values, attributes
-    return found
+            data[f"{BIFURCATION}_{key}"] = own, values, attributes
+    return data
 
 
 def branch(
@@ -251,14 +251,14 @@ def branch(
     Returns
     -------
     xarray.Dataset
-        Along ``point``: the parameter, and all that :func:`orchestrate.orbit` tells. Along
+        Along ``point``: the parameter, and all variables of :func:`orchestrate.orbit`. Along
         ``bifurcation``: ``bifurcation_kind`` and ``bifurcation_value``, the orbit there, and its
         multipliers. ``first_end`` and ``last_end`` among the attributes say why it ends.
 
     Raises
     ------
     InputError
-        Where the question is not whole, or no orbit is found to begin with.
+        Where arguments are missing or contradict each other, or no orbit is found to begin with.
 
     Notes
     -----
@@ -324,7 +324,7 @@ def check_start(start: Any, several: bool) -> None:
     if not hasattr(start, "sizes"):
         raise InputError(
             f"start = {start!r}: expected a dataset of orbit or branch; a number of the parameter "
-            "is told by its name, as eta = 1.5"
+            "is given by its name, as eta=1.5"
         )
     if "node_kind" not in start:
         raise InputError("start: without node_kind; expected a dataset of orbit or branch")
@@ -336,10 +336,10 @@ def check_start(start: Any, several: bool) -> None:
 
 def check_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
     """Return the limits, if they are two numbers in order."""
-    found = numbers(over, limits)
-    if not isinstance(found, tuple) or len(found) != 2 or not found[0] < found[1]:
+    pair = numbers(over, limits)
+    if not isinstance(pair, tuple) or len(pair) != 2 or not pair[0] < pair[1]:
         raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
-    return found[0], found[1]
+    return pair[0], pair[1]
 
 
 def complete_excitation(
@@ -382,10 +382,10 @@ def first_orbit(
         value = own if limits[0] <= own <= limits[1] else limits[0]
         structure = structure.replace(**{over: value})
     check_inside(over, value, limits)
-    found = orbit(
+    start = orbit(
         structure, period=period, box_acceleration=box_acceleration, **excitation, **quiet
     )
-    return found, value
+    return start, value
 
 
 def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
@@ -424,6 +424,6 @@ def first_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[First
     """Return the nodes to begin with, and the kind of the bifurcation that ``name`` gives."""
     if number is None:
         return from_result(start), -1
-    found = start.isel({BIFURCATION: check_number(start, name, number)})
-    nodes = {name: found[f"{BIFURCATION}_{name}"].values for name in NODES}
-    return from_result(nodes), int(found["bifurcation_kind"])
+    at = start.isel({BIFURCATION: check_number(start, name, number)})
+    nodes = {name: at[f"{BIFURCATION}_{name}"].values for name in NODES}
+    return from_result(nodes), int(at["bifurcation_kind"])

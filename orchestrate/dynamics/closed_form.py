@@ -27,7 +27,7 @@ def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """The numbers that the motion between impacts is made of.
+    """The coefficients of the motion between impacts.
 
     Attributes
     ----------
@@ -144,27 +144,27 @@ class ClosedForm:
         ndarray, shape (n, 2, 2)
         """
         cosine, sine = self.basis(i, time)
-        found = np.empty((len(time), 2, 2))
-        found[:, 0, 0] = cosine + self.damping[i] * sine
-        found[:, 0, 1] = sine
-        found[:, 1, 0] = -self.stiffness[i] * sine
-        found[:, 1, 1] = cosine - self.damping[i] * sine
-        return found
+        matrices = np.empty((len(time), 2, 2))
+        matrices[:, 0, 0] = cosine + self.damping[i] * sine
+        matrices[:, 0, 1] = sine
+        matrices[:, 1, 0] = -self.stiffness[i] * sine
+        matrices[:, 1, 1] = cosine - self.damping[i] * sine
+        return matrices
 
     def flight(self, time: Floats) -> Floats:
         """Return flow matrices with both masses free, shape (n, 4, 4)."""
-        found = np.zeros((len(time), 4, 4))
-        found[:, 0::2, 0::2] = self.oscillator(0, time)
-        found[:, 1::2, 1::2] = self.oscillator(1, time)
-        return found
+        matrices = np.zeros((len(time), 4, 4))
+        matrices[:, 0::2, 0::2] = self.oscillator(0, time)
+        matrices[:, 1::2, 1::2] = self.oscillator(1, time)
+        return matrices
 
     def contact(self, time: Floats) -> Floats:
         """Return flow matrices with both masses as one, shape (n, 4, 4), for states without gap."""
         common = self.oscillator(2, time)
-        found = np.zeros((len(time), 4, 4))
-        found[:, 0::2, 0::2] = common
-        found[:, 1::2, 1::2] = common
-        return found
+        matrices = np.zeros((len(time), 4, 4))
+        matrices[:, 0::2, 0::2] = common
+        matrices[:, 1::2, 1::2] = common
+        return matrices
 
     def steady(self, phase: Floats, contact: NDArray[np.bool_] | bool = False) -> Floats:
         """Return the steady response to the excitation, the harmonic part of (10).
@@ -183,10 +183,10 @@ class ClosedForm:
         which = oscillators(contact)
         cosine, sine = np.cos(phase)[:, None], np.sin(phase)[:, None]
         a, b = self.cosine[which], self.sine[which]
-        found = np.empty((len(phase), 4))
-        found[:, :2] = a * cosine + b * sine + self.offset[which]
-        found[:, 2:] = self.eta * (b * cosine - a * sine)
-        return found
+        states = np.empty((len(phase), 4))
+        states[:, :2] = a * cosine + b * sine + self.offset[which]
+        states[:, 2:] = self.eta * (b * cosine - a * sine)
+        return states
 
     def common_motion(
         self, time: Floats, phase: Floats, position: Floats, velocity: Floats
@@ -226,11 +226,11 @@ class ClosedForm:
         """Return the derivative of states by tau: the right-hand side of (6), shape (n, 4)."""
         which = oscillators(contact)
         drive = np.sin(phase)[:, None] + self.offset[0] * self.stiffness[0]
-        found = np.empty((len(phase), 4))
-        found[:, :2] = state[:, 2:]
-        found[:, 2:] = drive - 2.0 * self.damping[which] * state[:, 2:]
-        found[:, 2:] -= self.stiffness[which] * state[:, :2]
-        return found
+        rates = np.empty((len(phase), 4))
+        rates[:, :2] = state[:, 2:]
+        rates[:, 2:] = drive - 2.0 * self.damping[which] * state[:, 2:]
+        rates[:, 2:] -= self.stiffness[which] * state[:, :2]
+        return rates
 
     def force(self, position: Floats, velocity: Floats) -> Floats:
         """Return the contact force f (18): negative where the masses are pressed together."""

@@ -30,8 +30,8 @@ class AttractorSettings:
     transient : int
         Periods dropped, at least: more where damping is weak and periods are long.
     settle : float
-        Periods dropped at least, over eta: more where damping is weak. A decay e^{-D tau} with
-        D = 0.005 goes on for a factor of ten thousand.
+        At least ``settle * eta`` periods are dropped: more where damping is weak. By default a
+        decay e^{-D tau} with D = 0.005 goes on for a factor of ten thousand.
     samples : int
         Periods kept: more where attractors repeat after more than half as many.
     converged : float

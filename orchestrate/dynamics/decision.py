@@ -39,11 +39,11 @@ SPREAD = (0.999, 1.001)  # of the frequency, which does not vary: its scale alon
 RESIDUAL = 1e-9  # of an orbit's equations in units of a eta^2, at most
 MARGIN = 1e-9  # by which the multipliers of a stable orbit are smaller than 1 at least
 NEAR = 0.1  # distance over the motion's size from which a response may be coming to an orbit
-SHRINKS = 0.1  # to which part of itself a deviation is followed
-NOTHING = 1e-9  # a deviation over the motion's size that is rounding
-OTHER_PHASE = 2.4  # rad: where a response is looked at that does not repeat at phase 0
+SHRUNK = 0.1  # a deviation is followed until it should have become so much of itself
+ROUNDING = 1e-9  # a deviation over the motion's size that is no more than rounding
+OTHER_PHASE = 2.4  # rad: where a response is sampled that does not repeat at phase 0
 PIECES = 64  # of a period, among which a stretch without impacts is sought
-MOST_NODES = 400  # of an orbit that Newton's method is tried on
+MAX_NODES = 400  # of an orbit that Newton's method is tried on
 
 
 class MotionDecider:
@@ -54,8 +54,8 @@ class MotionDecider:
     plain : Instance
         Of ``TwoMassImpactOscillator``.
     eventful : EventInstance, optional
-        For impacts one by one; None where the FMU is FMI 2.0, which tells none: responses then are
-        decided by repeated states alone.
+        For impacts one by one. None where the FMU is FMI 2.0, which reports none: then repeated
+        states alone decide.
     point : Point
     settings : AttractorSettings
 
@@ -76,7 +76,7 @@ class MotionDecider:
         excitation = point.excitation
         given = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
         limits = ((excitation.frequency * SPREAD[0], excitation.frequency * SPREAD[1]),)
-        self.setting = Setting(point.structure, given, ("frequency",), limits)
+        self.system = Setting(point.structure, given, ("frequency",), limits)
         self.values = np.array([excitation.frequency])
         self.known: list[SettledMotion] = []
 
@@ -87,9 +87,9 @@ class MotionDecider:
         response, done = run_until_settled(self.plain, self.point, state, self.settings)
         unstable = False
         while True:
-            found, doubtful = self.periodic_motion(response)
-            if found is not None:
-                return found, found.states[found.nearest(response.end)[0]]
+            motion, doubtful = self.periodic_motion(response)
+            if motion is not None:
+                return motion, motion.states[motion.nearest(response.end)[0]]
             unstable |= doubtful
             dropped = min(done, self.settings.longest - done)
             if dropped <= 0:
@@ -124,9 +124,9 @@ class MotionDecider:
             if largest_multiplier(orbit) >= 1.0 - MARGIN:
                 unstable = True
                 continue
-            found = SettledMotion.from_orbit(self.point, orbit, free_phase)
-            if self.converges_to(response.end, found):
-                return self.remember(found), False
+            motion = SettledMotion.from_orbit(self.point, orbit, free_phase)
+            if self.converges_to(response.end, motion):
+                return self.remember(motion), False
         return None, unstable
 
     def possible_periods(self, response: Response) -> list[int]:
@@ -135,8 +135,8 @@ class MotionDecider:
             self.plain, self.point, response, self.settings.irregular_samples
         )
         close, nearly = self.settings.converged, self.settings.apart * self.settings.converged
-        found = [seen.repetition(tolerance).multiplicity for tolerance in (close, nearly)]
-        return [n for n in dict.fromkeys(found) if n]
+        counts = [seen.repetition(tolerance).multiplicity for tolerance in (close, nearly)]
+        return [n for n in dict.fromkeys(counts) if n]
 
     def motion_without_orbit(
         self, response: Response, unstable: bool
@@ -145,14 +145,14 @@ class MotionDecider:
         n, state = response.multiplicity, np.array(response.end)
         if not n or response.repetition(self.settings.converged).multiplicity != n:  # nearly is not
             states, impacts = response.samples, response.impacts_per_period
-            found = SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
-            return found, state
+            motion = SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
+            return motion, state
         states = response.samples[-n:].copy()
         impacts = count_impacts(self.plain, self.point, response.end, n) / n
         decided = UNDECIDED if unstable else REPEATED
-        found = SettledMotion(self.point, decided, states, n, impacts, response.x_rel_max)
-        self.known.append(found)
-        return found, state
+        motion = SettledMotion(self.point, decided, states, n, impacts, response.x_rel_max)
+        self.known.append(motion)
+        return motion, state
 
     # -- known motions ----------------------------------------------------------------------------
 
@@ -198,13 +198,13 @@ class MotionDecider:
         if before < SAME or not before < NEAR:
             return before < SAME
         rate = max(motion.multiplier, 1e-3)
-        turns = math.ceil(math.log(SHRINKS) / math.log(rate))
+        turns = math.ceil(math.log(SHRUNK) / math.log(rate))
         turns = max(1, min(turns, self.settings.longest // periods))
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)
         after = states.nearest(self.plain.get(*STATE))[1]
-        return after <= max(0.5 * (1.0 + rate**turns) * before, NOTHING)
+        return after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
 
     # -- orbits -----------------------------------------------------------------------------------
 
@@ -224,11 +224,11 @@ class MotionDecider:
         return self.solve(guess), free_phase
 
     def solve(self, guess: Guess) -> PeriodicOrbit | None:
-        """Return the orbit of a guess over its least period; None where it is no possible motion."""
-        if len(guess[0].kinds) > MOST_NODES:
+        """Return the orbit of a guess over its least period; None if it is no possible motion."""
+        if len(guess[0].kinds) > MAX_NODES:
             return None
         try:
-            family, root = solve_orbit(self.setting, guess, self.values)
+            family, root = solve_orbit(self.system, guess, self.values)
         except NoConvergenceError:
             return None
         orbit = family.orbit(root.unknowns)
@@ -240,7 +240,7 @@ class MotionDecider:
         """Return the impacts of some periods, from amid the longest stretch without any."""
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
-        form, span = self.setting.form(self.values), periods * self.point.excitation.period
+        form, span = self.system.form(self.values), periods * self.point.excitation.period
         start(instance, self.point, form, state)
         times = instance.impacts(0.0, span).time
         if not len(times):
@@ -251,8 +251,8 @@ class MotionDecider:
         start(instance, self.point, form, state)
         if begun > 0.0:
             instance.impacts(0.0, begun)
-        found = instance.impacts(begun, begun + span)
-        return from_impacts(found, self.point, form, periods), frequency * begun
+        impacts = instance.impacts(begun, begun + span)
+        return from_impacts(impacts, self.point, form, periods), frequency * begun
 
     def continue_orbit(self, motion: SettledMotion) -> SettledMotion | None:
         """Return the stable orbit here of the sequence of an orbit at another value."""

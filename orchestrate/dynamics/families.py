@@ -52,13 +52,13 @@ class Setting:
 
     def orbit_call(self, values: Floats, period: int, guess: str) -> str:
         """Return the call that asks for the orbit at values of the parameters."""
-        found, told = self.point(values), dict(self.excitation)
-        told.update(zip(self.over, map(float, values), strict=True))
-        shown = {name: told[name] for name in ASKED if name in told}
+        point, arguments = self.point(values), dict(self.excitation)
+        arguments.update(zip(self.over, map(float, values), strict=True))
+        shown = {name: arguments[name] for name in ASKED if name in arguments}
         if self.acceleration(values):
             shown[ACCELERATION] = self.acceleration(values)
         parts = [f"{name}={value!r}" for name, value in {**shown, "period": period}.items()]
-        return f"orbit({', '.join([repr(found.structure), *parts, f'guess={guess}'])})"
+        return f"orbit({', '.join([repr(point.structure), *parts, f'guess={guess}'])})"
 
     def acceleration(self, values: Floats) -> float:
         """Return the box's constant acceleration there."""
@@ -79,10 +79,10 @@ class Setting:
 
     def over_first_alone(self, values: Floats) -> Setting:
         """Return the same, with all parameters but the first one fixed at values."""
-        told = dict(zip(self.over[1:], map(float, values[1:]), strict=True))
-        acceleration = told.pop(ACCELERATION, self.box_acceleration)
-        excitation = {**dict(self.excitation), **{k: v for k, v in told.items() if k in ASKED}}
-        changes: dict[str, Any] = {k: v for k, v in told.items() if k not in ASKED}
+        fixed = dict(zip(self.over[1:], map(float, values[1:]), strict=True))
+        acceleration = fixed.pop(ACCELERATION, self.box_acceleration)
+        excitation = {**dict(self.excitation), **{k: v for k, v in fixed.items() if k in ASKED}}
+        changes: dict[str, Any] = {k: v for k, v in fixed.items() if k not in ASKED}
         structure = self.structure.replace(**changes)
         rest = tuple(excitation.items())
         return Setting(structure, rest, self.over[:1], self.limits[:1], acceleration)
@@ -189,5 +189,5 @@ def central_difference(
         moved[which] = min(max(place, min(low, value)), max(high, value))
         ends.append((function(moved), moved[which]))
     (before, first), (after, last) = ends
-    found: Floats = (after - before) / (last - first)
-    return found
+    slope: Floats = (after - before) / (last - first)
+    return slope

@@ -115,8 +115,8 @@ class FollowingQuestion(OnwardQuestion, ABC):
 def end_states(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
     """Return states at the ends of a sweep's responses, m and m/s; the nearest value's."""
     rows = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
-    found: NDArray[np.float64] = rows.values * series.scales()
-    return found
+    states: NDArray[np.float64] = rows.values * series.scales()
+    return states
 
 
 def start_states(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:

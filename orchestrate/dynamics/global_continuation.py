@@ -146,12 +146,12 @@ class Value:
     def lead_from(self, motion: SettledMotion) -> tuple[int, int]:
         """Return where an attractor of a neighbour leads here: the attractor's number, and how."""
         state = motion.states[0] / motion.point.scale * self.decider.point.scale
-        found, _ = self.decider.decide(state)
-        if motion.orbit is not None and may_differ(motion, found):
+        reached, _ = self.decider.decide(state)
+        if motion.orbit is not None and may_differ(motion, reached):
             followed = self.decider.continue_orbit(motion)
             if followed is not None:
                 return self.index(followed), FOLLOWED
-        return self.index(found), FLOWS
+        return self.index(reached), FLOWS
 
 
 def may_differ(one: SettledMotion, other: SettledMotion) -> bool:
@@ -255,8 +255,8 @@ def number_attractors(values: Sequence[Value], links: Links) -> list[list[int]]:
         chains.append(own)
     shares = np.zeros(count)
     for value, own in zip(values, chains, strict=True):
-        found = np.bincount(value.labels, minlength=len(own))
-        shares[own] += found / max(1, len(value.labels))
+        counts = np.bincount(value.labels, minlength=len(own))
+        shares[own] += counts / max(1, len(value.labels))
     rank = np.empty(count, dtype=int)
     rank[np.argsort(-shares.round(12), kind="stable")] = np.arange(count)
     return [[int(rank[number]) for number in own] for own in chains]

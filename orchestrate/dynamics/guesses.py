@@ -42,8 +42,8 @@ def from_state(
     periods : int
     """
     start(instance, point, form, state)
-    found = instance.impacts(0.0, periods * point.excitation.period)
-    return from_impacts(found, point, form, periods)
+    impacts = instance.impacts(0.0, periods * point.excitation.period)
+    return from_impacts(impacts, point, form, periods)
 
 
 def start(instance: EventInstance, point: Point, form: ClosedForm, state: Floats) -> None:
@@ -110,7 +110,7 @@ def close_returns(
     periods : int
         After which they come back.
     transient, most : int
-        Periods dropped, and looked at.
+        Periods dropped, and searched.
 
     Yields
     ------

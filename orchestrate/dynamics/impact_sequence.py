@@ -96,9 +96,9 @@ class PeriodicOrbit:
     @cached_property
     def ends(self) -> Floats:
         """Phases at which they end."""
-        found = np.roll(self.begins, -1)
-        found[-1] += TURN * self.sequence.periods
-        return found
+        phases = np.roll(self.begins, -1)
+        phases[-1] += TURN * self.sequence.periods
+        return phases
 
     @cached_property
     def durations(self) -> Floats:
@@ -125,10 +125,10 @@ class PeriodicOrbit:
     @cached_property
     def flows(self) -> Floats:
         """Their flow matrices, shape (k, 4, 4)."""
-        found = self.form.flight(self.durations)
+        matrices = self.form.flight(self.durations)
         if self.contact.any():
-            found[self.contact] = self.form.contact(self.durations[self.contact])
-        return found
+            matrices[self.contact] = self.form.contact(self.durations[self.contact])
+        return matrices
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
         """Return states inside segments.
@@ -181,14 +181,14 @@ class PeriodicOrbit:
         if not self.count:
             return np.zeros(0)
         after = np.roll(self.nodes, -1, axis=0)
-        found = self.arrivals @ self.reduction.T
-        found[:, 1:] -= after[:, 1:]
+        residual = self.arrivals @ self.reduction.T
+        residual[:, 1:] -= after[:, 1:]
         released = np.roll(self.sequence.releases, -1)
         if released.any():
             _, position, velocity, closing = after[released].T
-            found[released, 0] = self.form.force(position, velocity)
-            found[released, 3] = closing
-        return found.ravel()
+            residual[released, 0] = self.form.force(position, velocity)
+            residual[released, 3] = closing
+        return residual.ravel()
 
     def blocks(self) -> tuple[Floats, Floats]:
         """Return derivatives of each segment's equations by the node before and the one after it.
@@ -228,11 +228,11 @@ class PeriodicOrbit:
         """
         before, after = self.blocks()
         k = self.count
-        found = np.zeros((k, 4, k, 4), dtype=complex if isinstance(turn, complex) else float)
+        matrix = np.zeros((k, 4, k, 4), dtype=complex if isinstance(turn, complex) else float)
         for i in range(k):
-            found[i, :, i] += before[i]
-            found[i, :, (i + 1) % k] += after[i] * (turn if i == k - 1 else 1.0)
-        return found.reshape(4 * k, 4 * k)
+            matrix[i, :, i] += before[i]
+            matrix[i, :, (i + 1) % k] += after[i] * (turn if i == k - 1 else 1.0)
+        return matrix.reshape(4 * k, 4 * k)
 
     def monodromy(self) -> Floats:
         """Return the matrix of a deviation at the first node over one run through the orbit.
@@ -243,20 +243,20 @@ class PeriodicOrbit:
         if not self.count:
             return self.flows[0]
         before, after = self.blocks()
-        found = np.eye(4)
+        product = np.eye(4)
         for step in -np.linalg.solve(after, before):
-            found = step @ found
-        return found
+            product = step @ product
+        return product
 
     def multipliers(self) -> NDArray[np.complex128]:
         """Return the Floquet multipliers, the largest first; infinite where an impact grazes."""
         try:
-            found = np.linalg.eigvals(self.monodromy()).astype(complex)
+            values = np.linalg.eigvals(self.monodromy()).astype(complex)
         except np.linalg.LinAlgError:
             return np.full(4, complex(np.inf))
         if self.contact.any():
-            found[np.argsort(np.abs(found))[:2]] = 0.0
-        return found[np.lexsort((found.imag, found.real.round(12), -np.abs(found).round(12)))]
+            values[np.argsort(np.abs(values))[:2]] = 0.0
+        return values[np.lexsort((values.imag, values.real.round(12), -np.abs(values).round(12)))]
 
     @property
     def stable(self) -> bool:

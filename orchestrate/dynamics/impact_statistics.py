@@ -1,4 +1,4 @@
-"""What settled responses look like impact by impact: how many, how strong, how far apart."""
+"""Statistics of the impacts of settled responses: how many, how strong, how far apart."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ class ImpactStatisticsJob(FollowingQuestion):
 
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
         """Return the numbers in the order of ``FIELDS``."""
-        found = statistics(impacts, item, self.periods)
-        return [found[name] for name in FIELDS]
+        numbers = statistics(impacts, item, self.periods)
+        return [numbers[name] for name in FIELDS]
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return one variable a property, over the parameter."""
@@ -80,8 +80,8 @@ def statistics(impacts: Impacts, item: Followed, periods: int) -> dict[str, floa
     structure, excitation = item.point
     eta = excitation.eta(structure)
     span = period(eta)
-    found: Exponent | None = None if len(impacts.time) else without_impacts(structure)
-    exponent = found or largest_exponent(impacts, periods * span, item.point)
+    known: Exponent | None = None if len(impacts.time) else without_impacts(structure)
+    exponent = known or largest_exponent(impacts, periods * span, item.point)
     return {
         **count_impacts(impacts, span, periods),
         "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
@@ -181,7 +181,8 @@ def impact_statistics(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is out
+        of its range.
 
     Notes
     -----

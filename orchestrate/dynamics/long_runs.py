@@ -104,13 +104,13 @@ def follow_parts(
         Excitation periods of each part.
     parts : int
     """
-    eta, found = point.excitation.eta(point.structure), []
+    eta, exponents = point.excitation.eta(point.structure), []
     for _ in range(parts):
         impacts = follow_impacts(instance, point, start, periods)
         start = tuple(instance.get(*STATE))
         end = periods * period(eta)
-        found.append(largest_exponent(impacts, end, point, BLOCKS, BATCHES))
-    return found, start
+        exponents.append(largest_exponent(impacts, end, point, BLOCKS, BATCHES))
+    return exponents, start
 
 
 def wander_error(periods: int, eta: float, wander: float = WANDER) -> float:
@@ -147,14 +147,14 @@ def long_run(
     """
     floor = wander_error(periods, point.excitation.eta(point.structure))
     _, start = follow_parts(instance, point, start, periods, 1)
-    found: list[Exponent] = []
+    exponents: list[Exponent] = []
     for run in range(runs):
-        found, start = follow_parts(instance, point, start, periods, parts)
-        values, errors = np.transpose(found)
+        exponents, start = follow_parts(instance, point, start, periods, parts)
+        values, errors = np.transpose(exponents)
         if parts_agree(values, errors, floor):
             outcome = ENDED if run else STEADY
-            return LongRun(mean_exponent(found), outcome, periods * (1 + parts * (run + 1)))
-    return LongRun(mean_exponent(found), UNDECIDED, periods * (1 + parts * runs))
+            return LongRun(mean_exponent(exponents), outcome, periods * (1 + parts * (run + 1)))
+    return LongRun(mean_exponent(exponents), UNDECIDED, periods * (1 + parts * runs))
 
 
 def another_start(point: Point, start: State, seed: NDArray[np.int64] | Sequence[int]) -> State:

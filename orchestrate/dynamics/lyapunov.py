@@ -98,7 +98,7 @@ def largest_exponent(
         tau at the span's end.
     point : Point
     blocks : int
-        Products of matrices whose growth is told apart.
+        Products of matrices whose growth is averaged.
     batches : int
         Groups of blocks; the spread of their means is the uncertainty.
 
@@ -179,8 +179,8 @@ def verdict(
     """
     value = np.asarray(exponent, dtype=float)
     distance = np.fmax(sigmas * np.asarray(error, dtype=float), floor)
-    found = np.where(value > distance, CHAOTIC, np.where(value < -distance, PERIODIC, NEUTRAL))
-    return found.astype(np.int8)
+    verdicts = np.where(value > distance, CHAOTIC, np.where(value < -distance, PERIODIC, NEUTRAL))
+    return verdicts.astype(np.int8)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,11 +236,11 @@ class LyapunovJob(FollowingQuestion):
 
         along, (exponent, error, impacts) = self.series.name, table["rows"].T
         spans = self.periods * np.array([period(eta) for eta in self.series.etas])
-        found = verdict(exponent, error, np.log(self.wander) / spans, self.sigmas)
+        verdicts = verdict(exponent, error, np.log(self.wander) / spans, self.sigmas)
         variables: dict[str, Variable] = {
             "exponent": variable(along, exponent, "1", f"{LARGEST}, per unit of tau"),
             "standard_error": variable(along, error, "1", "standard error of the exponent"),
-            "verdict": flags(along, found, "what the exponent says of the response", WORDS),
+            "verdict": flags(along, verdicts, "what the exponent says of the response", WORDS),
             "impacts_per_period": variable(along, impacts, "1", "impacts per excitation period"),
         }
         title = f"{LARGEST} along {along}: {self.structure.label()}"
@@ -284,9 +284,9 @@ def lyapunov(
         for each; or what :func:`orchestrate.sweep` has answered for the same values, whose
         responses are followed on. At rest by default.
     blocks : int
-        Products of the impacts' matrices whose growth is told apart.
+        Products of the impacts' matrices whose growth is averaged.
     batches : int
-        Groups of them whose spread is the uncertainty.
+        Groups of them whose spread is the uncertainty (batch means).
     sigmas : float
         Standard errors that an exponent must be away from zero for a verdict.
     wander : float

@@ -1,4 +1,4 @@
-"""What is told of periodic orbits: one row an orbit, for a single one and along a branch alike."""
+"""Records of periodic orbits: one row an orbit, for a single one and along a branch alike."""
 
 from __future__ import annotations
 
@@ -80,10 +80,10 @@ class OrbitRecord:
 def pad(rows: Rows[Floats], fill: float) -> Floats:
     """Return arrays of different lengths as one, the shorter ones filled up."""
     most = max(len(row) for row in rows)
-    found = np.full((len(rows), most, *rows[0].shape[1:]), fill)
+    table = np.full((len(rows), most, *rows[0].shape[1:]), fill)
     for index, row in enumerate(rows):
-        found[index, : len(row)] = row
-    return found
+        table[index, : len(row)] = row
+    return table
 
 
 def table_of(records: Rows[OrbitRecord]) -> Table:
@@ -117,9 +117,9 @@ def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]
     along.update(
         {n: table["values"][:, i] for i, n in enumerate(setting.over) if n != ACCELERATION}
     )
-    found = {name: parameter(name, row, values) for name, values in along.items()}
+    parameters = {name: parameter(name, row, values) for name, values in along.items()}
     if ACCELERATION in setting.over:
-        found[ACCELERATION] = variable(
+        parameters[ACCELERATION] = variable(
             row,
             table["values"][:, setting.over.index(ACCELERATION)],
             "m/s2",
@@ -127,7 +127,7 @@ def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]
         )
     periods = np.arange(table["zero"].shape[1])
     return {
-        **found,
+        **parameters,
         **nondimensional_state(),
         "part": variable("part", PARTS, "1", "of a complex number"),
         "sample": variable("sample", periods, "1", "excitation period of the orbit"),
@@ -207,13 +207,13 @@ def sizes(table: Table, row: str) -> dict[str, Variable]:
         "xi2_max": "largest distance of mass 2 from the box's middle over a eta^2",
         "xi_rel_max": "largest gap over a eta^2",
     }
-    found = {
+    data = {
         name: variable(row, table["amplitudes"][:, i], "1", text)
         for i, (name, text) in enumerate(texts.items())
     }
     text = "smallest gap at which the masses turn away from each other without an impact"
-    found["clearance"] = variable(row, table["clearance"], "1", f"{text}; infinite: none")
-    return found
+    data["clearance"] = variable(row, table["clearance"], "1", f"{text}; infinite: none")
+    return data
 
 
 def checks(table: Table, row: str) -> dict[str, Variable]:

@@ -1,4 +1,4 @@
-"""One periodic orbit: by Newton's method, what makes a root a motion, and the FMU's word on it."""
+"""Search for a periodic orbit by Newton's method, and run it through in the FMU."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PHASES = 24  # at which a single impact is tried
 
 @dataclass(frozen=True)
 class FmuCheck:
-    """What the FMU makes of an orbit.
+    """Whether the FMU runs through an orbit.
 
     Attributes
     ----------
@@ -104,17 +104,17 @@ def run_in_fmu(
     state = phase_zero(orbit)[0]
     start(instance, point, orbit.form, state * point.scale)
     end = orbit.sequence.periods * point.excitation.period
-    found = instance.impacts(0.0, end)
+    observed = instance.impacts(0.0, end)
     after = instance.read("x1", "x2", "v1", "v2") / point.scale
     away = float(np.abs(after - state).max())
     wanted, first = from_phase_zero(orbit.nodes, orbit.sequence.periods)
     kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
     impacts = kinds != 2
-    if len(found.time) != impacts.sum():
+    if len(observed.time) != impacts.sum():
         return FmuCheck(False, away)
-    phases = point.excitation.frequency * found.time
+    phases = point.excitation.frequency * observed.time
     near = np.abs(phases - wanted[impacts, PHASE]).max(initial=0.0) < SAME_PHASE
-    sticking = (found.sticks == (kinds[impacts] == 1)).all()
+    sticking = (observed.sticks == (kinds[impacts] == 1)).all()
     return FmuCheck(bool(near and sticking), away)
 
 

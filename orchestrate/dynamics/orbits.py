@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
 
-MOST_PERIODS = 1000
+MAX_PERIODS = 1000
 SHIFTS = 12  # of all impact times in common, that are tried
 NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
 SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
@@ -76,7 +76,7 @@ class OrbitJob(Question):
     Attributes
     ----------
     excitation : tuple of (str, float)
-        As the user told it.
+        As the user gave it.
     box_acceleration : float
         m/s2.
     period : int
@@ -100,10 +100,10 @@ class OrbitJob(Question):
     def call(self) -> str:
         """Return the call that asks it."""
         frequency = self.setting.point(np.array([self.excitation[0][1]])).excitation.frequency
-        told = {**dict(self.excitation), "period": self.period}
+        arguments = {**dict(self.excitation), "period": self.period}
         if self.box_acceleration:
-            told[ACCELERATION] = self.box_acceleration
-        parts = [f"{self.structure!r}", *(f"{name}={value!r}" for name, value in told.items())]
+            arguments[ACCELERATION] = self.box_acceleration
+        parts = [f"{self.structure!r}", *(f"{name}={value!r}" for name, value in arguments.items())]
         if self.guess is None:
             parts += [f"{name}={getattr(self, name)}" for name in ("transient", "search", "tries")]
         else:
@@ -266,14 +266,14 @@ def orbit(
         Excitation periods after which the orbit closes.
     guess : array_like of 4 floats, or mapping, optional
         What Newton's method begins with: a state x1, x2 in m, v1, v2 in m/s at phase 0, from which
-        the FMU tells the impacts; or a mapping with ``impact_time``, times of all impacts in s, of
-        which the distances matter most; or an orbit found before, at another parameter. By default
+        the FMU is run; or a mapping with ``impact_time``, times of all impacts in s, of which the
+        distances matter most; or an orbit found before, at another parameter. By default
         the closest returns of the response from rest, then orbits with a single impact: the first
         stable orbit among what is found, or the first.
     box_acceleration : float
         Constant acceleration of the box beside the harmonic one, m/s2: it opens or closes the gap.
     transient, search, tries : int
-        Periods of the response that are dropped and looked at for close returns, and how many of
+        Periods of the response that are dropped and searched for close returns, and how many of
         these are tried, where there is no guess.
     **running
         ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.
@@ -291,13 +291,13 @@ def orbit(
     Raises
     ------
     InputError
-        Where the question is not whole, or no orbit is found.
+        Where arguments are missing or contradict each other, or no orbit is found.
 
     Notes
     -----
     See :mod:`orchestrate.dynamics.impact_sequence` for the equations. Where chattering ends in
     permanent contact the deviation of the gap dies there: two multipliers are zero. The other two
-    tell the stability; the sequence of the last impacts is that of the structure's ``gamma``.
+    decide the stability; the sequence of the last impacts is that of the structure's ``gamma``.
 
     Examples
     --------
@@ -312,7 +312,7 @@ def orbit(
     given = one_point(structure, eta, frequency, amplitude)
     require_delaminated(structure)
     given.excitation.check(structure)
-    count = whole("period", period, 1, MOST_PERIODS)
+    count = whole("period", period, 1, MAX_PERIODS)
     job = OrbitJob(
         name=f"orbit_{structure.label()}_{count}T",
         structure=structure,

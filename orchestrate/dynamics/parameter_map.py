@@ -99,7 +99,7 @@ class MapJob(Question):
     transient : int
         Periods dropped at least.
     settle : float
-        Periods dropped at least, over eta.
+        At least ``settle * eta`` periods are dropped.
     samples : int
         Periods kept.
     tolerance : float
@@ -140,9 +140,9 @@ class MapJob(Question):
 
     def parameters(self) -> dict[str, Any]:
         """Return all that decides the numbers, the parameters by their own names."""
-        found = super().parameters()
-        del found["given"]
-        return {**{name: plain(value) for name, value in self.given}, **found}
+        others = super().parameters()
+        del others["given"]
+        return {**{name: plain(value) for name, value in self.given}, **others}
 
     def count(self) -> int:
         """Number of points."""
@@ -167,8 +167,12 @@ class MapJob(Question):
         if decided == REPEATED:
             turn = period(item.excitation.eta(item.structure))
             rate = int((impacts.time <= n * turn).sum()) / n
-        found = [rate, n, decided, response.x_rel_max / item.length, impulse]
-        return [*found, *self.exponent_at(eventful, item, response.end)] if self.exponent else found
+        numbers = [rate, n, decided, response.x_rel_max / item.length, impulse]
+        return (
+            [*numbers, *self.exponent_at(eventful, item, response.end)]
+            if self.exponent
+            else numbers
+        )
 
     def response(self, instance: Instance, item: Point) -> tuple[Response, Decision]:
         """Run a point on, for as long as before each time its multiplicity is undecided."""
@@ -219,14 +223,14 @@ def map_points(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> 
     Raises
     ------
     InputError
-        Where there are not two lists, the excitation is not whole, or a number is out of its range.
+        Where there are not two lists, the excitation is incomplete, or a number is out of range.
     """
     values = dict(given)
     check_form(values.keys() & ASKED.keys())
     lists = {name: value for name, value in given if isinstance(value, tuple)}
     if len(lists) != 2:
-        found = ", ".join(lists) or "none"
-        raise InputError(f"lists of values: {found}; expected two of the parameters as lists")
+        names = ", ".join(lists) or "none"
+        raise InputError(f"lists of values: {names}; expected two of the parameters as lists")
     for name, column in lists.items():
         if len(set(column)) < len(column):
             raise InputError(f"{name}: a value twice; expected each once")
@@ -262,7 +266,7 @@ def map(
     transient : int
         Periods dropped at least.
     settle : float
-        Periods dropped at least, over eta: a slow decay takes time, not periods.
+        At least ``settle * eta`` periods are dropped: a slow decay takes time, not periods.
     samples : int
         Periods kept.
     tolerance : float
@@ -293,7 +297,8 @@ def map(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is out
+        of its range.
 
     Notes
     -----
@@ -314,11 +319,11 @@ def map(
         if name not in known:
             raise InputError(f"{name}: no parameter; {one_of(name, (*PARAMETERS, *known))}")
     asked: dict[str, Any] = {"eta": eta, "frequency": frequency, "amplitude": amplitude, **others}
-    told = {name: numbers(name, asked[name]) for name in asked if name not in running}
+    arguments = {name: numbers(name, asked[name]) for name in asked if name not in running}
     job = MapJob(
         structure=checked_structure(structure),
         name=f"map_{structure.label()}",
-        given=tuple((name, value) for name, value in told.items() if value is not None),
+        given=tuple((name, value) for name, value in arguments.items() if value is not None),
         transient=whole("transient", transient, 0),
         settle=positive("settle", settle),
         samples=whole("samples", samples, 4),

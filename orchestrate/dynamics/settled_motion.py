@@ -92,7 +92,7 @@ class SettledMotion:
         return [self.multiplicity, self.impacts_per_period, gap, *means]
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
-        """Return the period whose first state is nearest to a state at phase 0, and its distance."""
+        """Return the period whose first state is nearest to one at phase 0, and its distance."""
         return self._known.nearest(state)
 
     @cached_property
@@ -107,8 +107,8 @@ class SettledMotion:
         begin = self.orbit.begins[0]
         shifted = begin + np.mod(wanted - begin, TURN * self.multiplicity)
         segment = np.searchsorted(self.orbit.begins, shifted, side="right") - 1
-        found = self.orbit.states(segment, shifted) * self.point.scale
-        return KnownStates.from_states(found, self.point.excitation.frequency, self.gap)
+        states = self.orbit.states(segment, shifted) * self.point.scale
+        return KnownStates.from_states(states, self.point.excitation.frequency, self.gap)
 
     def is_orbit_of(self, other: SettledMotion) -> bool:
         """Return whether both are one orbit.
@@ -146,12 +146,12 @@ class KnownStates:
     def from_states(cls, states: Floats, frequency: float, gap: float) -> KnownStates:
         """Return states, SI, for a frequency in rad/s and a largest gap in m to compare with."""
         matrix = LENGTHS / np.array([1.0, 1.0, frequency, frequency])[:, np.newaxis]
-        found = states @ matrix
-        size = float(np.abs(found[:, :4]).max()) or 1.0
+        values = states @ matrix
+        size = float(np.abs(values[:, :4]).max()) or 1.0
         of_gap = max(gap, LEAST_GAP * size)
-        of_rate = max(of_gap, float(np.abs(found[:, 5]).max()))
+        of_rate = max(of_gap, float(np.abs(values[:, 5]).max()))
         sizes = np.array([size, size, size, size, of_gap, of_rate])
-        return cls(states, found / sizes, matrix / sizes)
+        return cls(states, values / sizes, matrix / sizes)
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
         """Return the period whose state is nearest to a state, and the distance over the size."""

@@ -222,14 +222,14 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         self, step: BranchStep[Point], kinds: Sequence[BifurcationKind]
     ) -> list[Located[Point]]:
         """Locate the bifurcations of some kinds in a step, in order."""
-        found = [
+        crossings = [
             Located(kind, *step.root_of(kind, *bracket))
             for kind in kinds
             for bracket in step.brackets(kind)
         ]
         confirmed = [
             each
-            for each in found
+            for each in crossings
             if self.confirms(each.kind, each.point, each.position / step.length)
         ]
         return sorted(confirmed, key=lambda each: each.position)
@@ -325,8 +325,8 @@ class BranchStep(Generic[Point]):
     def turns_back(self, kind: BifurcationKind) -> bool:
         """Return whether two bifurcations of a kind are possible: the test falls, then rises.
 
-        It is looked at where the test could have come to zero if it changed faster than in the step
-        before, by the factor ``SPEED_UP``.
+        Slopes are computed only where the test could have come to zero if it changed ``SPEED_UP``
+        times as fast as in the step before.
         """
         value = self.tracer.test(self.before, kind)
         reach = SPEED_UP * abs(self.rates.get(kind, np.inf)) * self.length

@@ -12,9 +12,9 @@ from .impact_sequence import PHASE, PeriodicOrbit
 
 XI_1, XI_2, GAP = range(3)  # quantities that turn, as weights of the two masses
 WEIGHTS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]])
-LOOKS = 24  # at the motion, in a period of its fastest oscillation
-FEWEST = 8  # and in a segment
-REFINEMENTS = 6
+SAMPLES_PER_PERIOD = 24  # of the fastest oscillation: extrema lie further apart
+MIN_SAMPLES = 8  # in a segment, however short
+REFINEMENTS = 6  # Newton steps: each doubles the digits of a bracketed extremum
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class TurningPoints:
 
 def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
     """Return segments and phases at which a motion is sampled, in order, inside segments."""
-    counts = FEWEST + np.ceil(
-        LOOKS * np.abs(orbit.durations) * orbit.form.fastest / (2.0 * np.pi)
+    counts = MIN_SAMPLES + np.ceil(
+        SAMPLES_PER_PERIOD * np.abs(orbit.durations) * orbit.form.fastest / (2.0 * np.pi)
     ).astype(int)
     segment = np.repeat(np.arange(len(counts)), counts)
     place = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -56,13 +56,13 @@ def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
     which, quantity = np.nonzero(turned)
     low, high, segment = phase[which], phase[which + 1], segment[which]
     first, last = rates[which, quantity], rates[which + 1, quantity]
-    found = low + (high - low) * first / (first - last)
+    phases = low + (high - low) * first / (first - last)
     for _ in range(REFINEMENTS):
-        rate, curvature, _ = derivatives(orbit, segment, quantity, found)
+        rate, curvature, _ = derivatives(orbit, segment, quantity, phases)
         step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
-        found = np.clip(found - orbit.form.eta * step, low, high)
-    _, curvature, value = derivatives(orbit, segment, quantity, found)
-    return TurningPoints(segment, quantity, found, value, curvature)
+        phases = np.clip(phases - orbit.form.eta * step, low, high)
+    _, curvature, value = derivatives(orbit, segment, quantity, phases)
+    return TurningPoints(segment, quantity, phases, value, curvature)
 
 
 def derivatives(
@@ -134,12 +134,12 @@ def weakest_force(orbit: PeriodicOrbit) -> float:
     if not turned.any():
         return np.inf
     low, high, segment = phase[:-1][turned], phase[1:][turned], segment[1:][turned]
-    found = 0.5 * (low + high)
+    phases = 0.5 * (low + high)
     for _ in range(REFINEMENTS):
-        _, rate, curvature = pressing_force(orbit, segment, found)
+        _, rate, curvature = pressing_force(orbit, segment, phases)
         step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
-        found = np.clip(found - orbit.form.eta * step, low, high)
-    return float(pressing_force(orbit, segment, found)[0].min())
+        phases = np.clip(phases - orbit.form.eta * step, low, high)
+    return float(pressing_force(orbit, segment, phases)[0].min())
 
 
 def pressing_force(
@@ -173,7 +173,7 @@ def from_phase_zero(nodes: Floats, periods: int) -> tuple[Floats, int]:
     turn = 2.0 * np.pi * periods
     phase = np.mod(nodes[:, PHASE], turn)
     first = int(phase.argmin()) if len(nodes) else 0
-    found = np.roll(nodes, -first, axis=0)
+    ordered = np.roll(nodes, -first, axis=0)
     if len(nodes):
-        found[:, PHASE] = np.roll(phase, -first)
-    return found, first
+        ordered[:, PHASE] = np.roll(phase, -first)
+    return ordered, first

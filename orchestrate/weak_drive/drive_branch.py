@@ -251,11 +251,11 @@ def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Va
     }
     largest = numbers[..., len(COLUMNS) :]
     text = "Floquet multipliers of the largest size"
-    for part, word, values in (
+    for part, name, values in (
         ("real", "real", largest.real),
         ("imag", "imaginary", largest.imag),
     ):
-        attributes = labels("1", f"{text}, {word} part")
+        attributes = labels("1", f"{text}, {name} part")
         variables[f"multiplier_{part}"] = ((*dims, "multiplier"), values, attributes)
     return variables
 
@@ -320,9 +320,9 @@ def drive_branch(
     is the one that is missing then. Bifurcations are roots on the branch, of the tangent's voltage
     (fold) and of products of the multipliers (the others), to 1e-6 of a step. The angle's own
     multiplier, 1 for every motion, is not among those given. A branch ends where an impact or a
-    flight grazes; it is told by the smallest closing speed and the smallest gap of a turning, which
-    fall to 0 there, and is a bifurcation where less than 1e-4 is left of the way. Of motions nearer
-    than that to the last one only that is kept.
+    flight grazes: there the smallest closing speed, or the smallest gap at which the masses turn
+    away from each other, falls to 0. The grazing is a bifurcation of the answer where the last
+    motion is nearer to it than 1e-4; other motions that are nearer to the last one are left out.
 
     A motion is accepted by what it leaves of the equations, 1e-9 of the amplitude at most (1e-13 is
     usual), and by its impacts, which are those of the motion before. Derivatives are by differences

@@ -109,10 +109,10 @@ def next_grazing(
     kind, distance = None, math.inf
     for last in range(BACK, len(last_motions)):
         first = last - BACK
-        way = float(np.linalg.norm(places[last] - places[first]))
+        distance_back = float(np.linalg.norm(places[last] - places[first]))
         for i, each in enumerate((TOUCHING, GRAZING)):
             before, now = float(falling[first, i]), float(falling[last, i])
-            ahead = way * now / (before - now) if now < before < math.inf else math.inf
+            ahead = distance_back * now / (before - now) if now < before < math.inf else math.inf
             if ahead < min(distance, REACH):
                 kind, distance = each, ahead
     return kind, distance

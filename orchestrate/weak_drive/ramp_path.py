@@ -2,7 +2,7 @@
 
 Branches turn back at folds, and have more of them than a ramp takes. It follows the stable motion
 that it begins with, to the first fold; there the speed jumps to another motion at that voltage, and
-the ramp goes on from there. Where the branches do not tell how it goes on, the path says so.
+the ramp goes on from there. Where the branches do not decide how it goes on, the path says so.
 """
 
 from __future__ import annotations

@@ -282,14 +282,14 @@ class Shooter:
         """
         if at_root or not self.matrix.size:
             return self.renew_jacobian(unknowns)
-        found = self.residual(unknowns)
+        residual = self.residual(unknowns)
         if self._last is not None:
-            way = unknowns - self._last[0]
-            length = float(way @ way)
-            if length > 0.0:
-                change = found - self._last[1] - self.matrix @ way
-                self.matrix = self.matrix + np.outer(change, way) / length
-        self._last = unknowns.copy(), found
+            change = unknowns - self._last[0]
+            square = float(change @ change)
+            if square > 0.0:
+                missed = residual - self._last[1] - self.matrix @ change
+                self.matrix = self.matrix + np.outer(missed, change) / square
+        self._last = unknowns.copy(), residual
         return self.matrix
 
     def restart(self, root: Floats, matrix: Floats) -> None:
