@@ -1,4 +1,4 @@
-"""Coexisting attractors: random starts, followed until settled and told apart."""
+"""Coexisting attractors: random starts run on until they are settled, then grouped."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from ..response.questions import (
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .clusters import ABOUT, FEATURES, Telling, response_from
+from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
-from .global_continuation import Instances, MatchedAttractors, Starts, continued
+from .global_continuation import Instances, MatchedAttractors, Starts, continue_attractors
 from .settled_motion import ABSENT, DECIDED, SettledMotion
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ DECIDED_BY = (
     "undecided: states repeat nearly, near an unstable orbit"
 )
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
-LOOKED_AT, LOOKS = 8, 64  # periods of the response from rest, and states in each
+SIZE_PERIODS, SAMPLES_PER_PERIOD = 8, 64  # of the response from rest, to measure its size
 AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: the second box
 
 
@@ -86,8 +86,8 @@ class AttractorsJob(SeriesQuestion):
     width : float
         Half width in units of the largest gap there, where no scale is given.
     follows : str
-        Name of a sweep over the same parameter that tells the gaps instead of responses from rest.
-    telling : Telling
+        Name of a sweep over the same parameter whose gaps are taken instead of those from rest.
+    settings : AttractorSettings
     """
 
     starts: int = 60
@@ -95,7 +95,7 @@ class AttractorsJob(SeriesQuestion):
     scale: Numbers | None = None
     width: float = 3.0
     follows: str = ""
-    telling: Telling = Telling()
+    settings: AttractorSettings = AttractorSettings()
     asked: ClassVar[str] = "attractors"
     chunk: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
@@ -112,7 +112,7 @@ class AttractorsJob(SeriesQuestion):
             )
 
     def needs(self) -> tuple[str, ...]:
-        """The sweep, if any."""
+        """Return the name of the sweep, if any."""
         return (self.follows,) if self.follows else ()
 
     def count(self) -> int:
@@ -120,7 +120,7 @@ class AttractorsJob(SeriesQuestion):
         return self.starts * super().count() + 1
 
     def items(self, inputs: Inputs) -> Sequence[Start | None]:
-        """Every start at every value; None: gather them."""
+        """Return every start at every value, then None for gathering their attractors."""
         points = self.series.points
         scales = self.scales(inputs)
         starts = [
@@ -131,7 +131,7 @@ class AttractorsJob(SeriesQuestion):
         return [*starts, None]
 
     def scales(self, inputs: Inputs) -> Sequence[float | None]:
-        """Half widths of the boxes of starts, where they are known."""
+        """Return the half widths of the boxes of starts; None: by the response from rest."""
         series = self.series
         if self.follows:
             along = {series.name: list(series.values)}
@@ -145,64 +145,66 @@ class AttractorsJob(SeriesQuestion):
         return [self.scale] * len(series.points)
 
     def aside(self, first: int) -> str:
-        """The last item is no start."""
+        """Say that the last item is no start."""
         return "attractors carried to neighbours" if first == self.count() - 1 else ""
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Start | None], carry: Table | None
     ) -> Table:
-        """Some starts; or all attractors, carried along the parameter and matched."""
+        """Run some starts on until they are settled; or gather the attractors of all of them."""
         starts = [item for item in items if item is not None]
         with Instances(fmus[OSCILLATOR]) as instances:
             if not starts:
                 assert carry is not None
-                return self.gathered(instances, carry)
+                return self.gather_attractors(instances, carry)
             rows = SettledRows()
             for place, some in itertools.groupby(starts, lambda item: item.place):
                 group = list(some)
-                decider = MotionDecider(*instances, group[0].point, self.telling)
-                for state in self.drawn(decider.plain, place, group):
+                decider = MotionDecider(*instances, group[0].point, self.settings)
+                for state in self.draw_starts(decider.plain, place, group):
                     rows.add(*decider.decide(state))
             return rows.table()
 
-    def drawn(
+    def draw_starts(
         self, instance: Instance, place: int, group: Sequence[Start]
     ) -> Iterator[NDArray[np.float64]]:
-        """States of some starts at one value."""
+        """Yield the states of some starts at one value."""
         point, scale = group[0].point, group[0].scale
         seed = (self.seed, place)
         if self.scale is not None:
             assert scale is not None
             states = random_starts(self.starts, scale, seed, point.structure.omega)
         else:
-            size = size_from_rest(instance, point, self.telling)
+            size = size_from_rest(instance, point, self.settings)
             gap = scale or self.width * (size.gap or point.length)
             states = starts_in_both_boxes(self.starts, gap, size, seed, point)
         for item in group:
             yield states[item.number]
 
-    def gathered(self, instances: tuple[Instance, EventInstance | None], table: Table) -> Table:
-        """Attractors of all values, in arrays with one entry."""
+    def gather_attractors(
+        self, instances: tuple[Instance, EventInstance | None], table: Table
+    ) -> Table:
+        """Match the attractors of all values, and return arrays with one entry."""
         series, order = self.series, self.order()
         shape = len(series.points), self.starts
         features = table["features"].reshape(*shape, len(FEATURES))
         ends, decided = table["end"].reshape(*shape, 4), table["decided"].reshape(shape)
-        found = continued(
+        matched = continue_attractors(
             instances,
             [series.points[i] for i in order],
             [Starts(features[i], ends[i], decided[i]) for i in order],
-            self.telling,
+            self.settings,
         )
         back = np.argsort(order)
-        columns = {name: rows[back] for name, rows in columns_of(found).items()}
+        columns = {name: rows[back] for name, rows in attractor_columns(matched).items()}
         return {name: rows[np.newaxis] for name, rows in columns.items()}
 
     def order(self) -> NDArray[np.intp]:
-        """Indices of the values in increasing order: neighbours are next to each other."""
+        """Return the indices that sort the values: neighbours are next to each other."""
         return np.argsort(self.series.values, kind="stable")
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The attractors of each value with their shares of starts."""
+        """Return the attractors of each value with their shares of starts."""
         import xarray as xr
 
         along, shape = self.series.name, (len(self.series.values), self.starts)
@@ -211,8 +213,8 @@ class AttractorsJob(SeriesQuestion):
         text = "attractor that the start leads to"
         variables = {
             "number": variable(along, there.sum(axis=1), "1", "attractors found"),
-            **of_attractors({name: table[name][0] for name in COLUMNS}, (along,), "starts"),
-            **self.ends(there),
+            **attractor_variables({name: table[name][0] for name in COLUMNS}, (along,), "starts"),
+            **self.ranges_found(there),
             "attractor_of": variable((along, "start"), table["labels"][0], "1", text),
             "features": variable(
                 (along, "start", "feature"), rows, "1", f"what responses have settled to{ABOUT}"
@@ -228,8 +230,8 @@ class AttractorsJob(SeriesQuestion):
         title = f"Coexisting attractors along {along}: {self.structure.label()}"
         return xr.Dataset(variables, coordinates, {"title": title})
 
-    def ends(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
-        """Between which values each attractor has been found."""
+    def ranges_found(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
+        """Return between which values each attractor has been found."""
         values = np.array(self.series.values)[:, np.newaxis]
         first = np.where(there, values, np.inf).min(axis=0)
         last = np.where(there, values, -np.inf).max(axis=0)
@@ -250,19 +252,19 @@ class SettledRows:
     decided: list[int] = field(default_factory=list)
 
     def add(self, motion: SettledMotion, state: NDArray[np.float64]) -> None:
-        """One response, with a state of it at phase 0."""
+        """Add what one response has settled to, with a state of it at phase 0."""
         self.features.append(motion.features)
         self.ends.append(state)
         self.decided.append(motion.decided)
 
-    def add_none(self) -> None:
-        """No response."""
+    def add_absent(self) -> None:
+        """Add a row for a start that is none."""
         self.features.append([np.nan] * len(FEATURES))
         self.ends.append(np.full(4, np.nan))
         self.decided.append(ABSENT)
 
     def table(self) -> Table:
-        """As arrays."""
+        """Return the rows as arrays."""
         return {
             "features": np.array(self.features, dtype=float),
             "end": np.array(self.ends, dtype=float),
@@ -270,33 +272,35 @@ class SettledRows:
         }
 
 
-def columns_of(found: MatchedAttractors) -> Table:
-    """Attractors along a parameter as arrays, a row a value; ABSENT where one does not exist."""
-    shape = len(found.motions), found.count
+def attractor_columns(matched: MatchedAttractors) -> Table:
+    """Return attractors along a parameter as arrays, a row a value; ABSENT where there is none."""
+    shape = len(matched.motions), matched.count
     columns = {name: np.full(shape, np.nan) for name in (*OF_ATTRACTORS, "multiplier")}
     how, share = np.zeros(shape, dtype=np.int8), np.zeros(shape)
     states = np.full((*shape, 4), np.nan)
-    for i, motions in enumerate(found.motions):
-        for number, motion in zip(found.numbers[i], motions, strict=True):
+    for i, motions in enumerate(matched.motions):
+        for number, motion in zip(matched.numbers[i], motions, strict=True):
             columns["multiplicity"][i, number] = motion.multiplicity
             columns["impacts_per_period"][i, number] = motion.impacts_per_period
             columns["xi_rel_max"][i, number] = motion.gap / motion.point.length
             columns["multiplier"][i, number] = motion.multiplier
             how[i, number], states[i, number] = motion.decided, motion.states[0]
-            share[i, number] = np.mean(found.labels[i] == number) if len(found.labels[i]) else 0.0
+            share[i, number] = (
+                np.mean(matched.labels[i] == number) if len(matched.labels[i]) else 0.0
+            )
     return {
         **columns,
         "how": how,
         "share": share,
         "state": states,
-        "labels": np.array(found.labels),
+        "labels": np.array(matched.labels),
     }
 
 
-def of_attractors(
+def attractor_variables(
     columns: Mapping[str, Any], along: tuple[str, ...], of: str
 ) -> dict[str, Variable]:
-    """Variables over ``attractor``; share 0 and NaN where one does not exist."""
+    """Return variables over ``attractor``; share 0 and NaN where one does not exist."""
     dims = (*along, "attractor")
     text = "a state on it at phase 0: x1, x2 in m, v1, v2 in m/s"
     return {
@@ -311,7 +315,7 @@ def of_attractors(
 def random_starts(
     count: int, scale: float, seed: tuple[int, int], omega: float
 ) -> NDArray[np.float64]:
-    """Starts in a box.
+    """Draw starts in a box, uniformly.
 
     Parameters
     ----------
@@ -351,12 +355,12 @@ class SizeFromRest(NamedTuple):
     gap: float
 
 
-def size_from_rest(instance: Instance, point: Point, telling: Telling) -> SizeFromRest:
-    """The size of the response from rest."""
-    response = response_from(instance, point, REST, telling).response
+def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings) -> SizeFromRest:
+    """Measure the response from rest."""
+    response = run_until_settled(instance, point, REST, settings).response
     begin(instance, *point, response.end)
-    span = LOOKED_AT * point.excitation.period
-    states = sampled(instance, 0.0, span, LOOKED_AT * LOOKS)
+    span = SIZE_PERIODS * point.excitation.period
+    states = sampled(instance, 0.0, span, SIZE_PERIODS * SAMPLES_PER_PERIOD)
     displacement = float(np.abs(states[:, :2]).max())
     return SizeFromRest(np.array(response.end), displacement, response.x_rel_max)
 
@@ -364,7 +368,7 @@ def size_from_rest(instance: Instance, point: Point, telling: Telling) -> SizeFr
 def starts_in_both_boxes(
     count: int, scale: float, size: SizeFromRest, seed: tuple[int, int], point: Point
 ) -> NDArray[np.float64]:
-    """Starts in two boxes in turn: around zero, and around the response from rest.
+    """Draw starts in two boxes in turn: around zero, and around the response from rest.
 
     Parameters
     ----------
@@ -383,25 +387,25 @@ def starts_in_both_boxes(
         mass 1 lie within 0.7 of the largest displacement from those of the response from rest, the
         gap in [0, 3 G] and its rate in +-3 G Omega with the largest gap G.
     """
-    found = random_starts(count, scale, seed, point.structure.omega)
+    states = random_starts(count, scale, seed, point.structure.omega)
     draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (count, 4))
     frequency = point.excitation.frequency
     around, gap = AROUND * size.displacement, BEYOND * (size.gap or point.length)
     x1 = size.state[0] + around * draws[:, 0]
     v1 = size.state[2] + frequency * around * draws[:, 2]
     x2, v2 = x1 + gap * np.abs(draws[:, 1]), v1 + frequency * gap * draws[:, 3]
-    found[1::2] = np.column_stack([x1, x2, v1, v2])[1::2]
-    return found
+    states[1::2] = np.column_stack([x1, x2, v1, v2])[1::2]
+    return states
 
 
-def told_apart(**given: Any) -> Telling:
-    """What tells responses apart, checked: keywords of :class:`.clusters.Telling`."""
+def attractor_settings(**given: Any) -> AttractorSettings:
+    """Check keywords of :class:`.clusters.AttractorSettings`, and return these settings."""
     least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
     checked: dict[str, Any] = {
         name: whole(name, value, least[name]) if name in least else positive(name, value)
         for name, value in given.items()
     }
-    return Telling(**checked)
+    return AttractorSettings(**checked)
 
 
 def attractors(
@@ -425,7 +429,7 @@ def attractors(
     alike_irregular: float = 0.25,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Coexisting attractors: how many, what they are, and how many random starts lead to each.
+    """Find coexisting attractors, and how many random starts lead to each.
 
     Parameters
     ----------
@@ -452,7 +456,7 @@ def attractors(
     settle : float
         Periods dropped at least, over eta: a slow decay takes time, not periods.
     samples : int
-        Periods looked at.
+        Periods kept: more where attractors repeat after more than half as many.
     converged : float
         Relative deviation within which a repeated state decides.
     longest : int
@@ -483,7 +487,8 @@ def attractors(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is out
+        of its range.
 
     Notes
     -----
@@ -493,8 +498,8 @@ def attractors(
     possible motion, if its multipliers lie inside the unit circle, and if the response comes nearer
     to it as they say. So multiplicity and impacts are those of the orbit, and two attractors are
     two orbits. What has not repeated after ``longest`` periods is irregular, a torus or chaos; how
-    many of these there are depends on ``alike_irregular``. An FMU without events (FMI 2.0) tells no
-    impacts: there states that repeat decide.
+    many of these there are depends on ``alike_irregular``. An FMU without events (FMI 2.0)
+    reports no impacts: there states that repeat decide.
 
     Global continuation (Datseris, Rossi and Wagemakers, Chaos 33, 073151, 2023): every attractor
     is carried to both neighbouring values, its state as a further start, or its orbit by Newton's
@@ -514,9 +519,9 @@ def attractors(
         name=f"attractors_{structure.label()}",
         starts=whole("starts", starts, 1),
         seed=whole("seed", seed, 0, 2**32 - 1),
-        scale=checked_scale(scale),
+        scale=check_scale(scale),
         width=positive("width", width),
-        telling=told_apart(
+        settings=attractor_settings(
             transient=transient,
             settle=settle,
             samples=samples,
@@ -529,17 +534,17 @@ def attractors(
     return answer(job, running, finder(running))
 
 
-def checked_scale(given: ArrayLike | None) -> Numbers | None:
-    """Half widths above zero.
+def check_scale(given: ArrayLike | None) -> Numbers | None:
+    """Return half widths above zero.
 
     Raises
     ------
     InputError
         Where one is not.
     """
-    found = numbers("scale", given)
-    each = found if isinstance(found, tuple) else () if found is None else (found,)
+    scale = numbers("scale", given)
+    each = scale if isinstance(scale, tuple) else () if scale is None else (scale,)
     wrong = [value for value in each if value <= 0.0]
     if wrong:
         raise InputError(f"scale = {wrong[0]!r}: expected numbers > 0, m")
-    return found
+    return scale

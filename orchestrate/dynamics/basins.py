@@ -23,14 +23,14 @@ from .attractors import (
     ATTRACTOR,
     COLUMNS,
     SettledRows,
+    attractor_columns,
+    attractor_settings,
+    attractor_variables,
     attractors,
-    columns_of,
-    of_attractors,
-    told_apart,
 )
-from .clusters import Telling
+from .clusters import AttractorSettings
 from .decision import MotionDecider
-from .global_continuation import Instances, Starts, continued
+from .global_continuation import Instances, Starts, continue_attractors
 from .settled_motion import ABSENT
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ class Side(NamedTuple):
     number: int
 
     def values(self) -> Floats:
-        """The coordinate's values."""
+        """Return the coordinate's values."""
         return np.linspace(self.low, self.high, self.number)
 
 
@@ -97,22 +97,22 @@ class Plane(NamedTuple):
     at: tuple[float, ...]
 
     def starts(self) -> tuple[Floats, Floats]:
-        """States of all starts, shape (y.number * x.number, 4), and phases, row by row."""
+        """Return states of all starts, shape (y.number * x.number, 4), and phases, row by row."""
         y, x = np.meshgrid(self.y.values(), self.x.values(), indexing="ij")
         given = {self.x.name: x.ravel(), self.y.name: y.ravel()}
         columns = dict(zip(STATE, np.array(self.at)[:, None] + np.zeros(x.size), strict=True))
         columns |= {name: values for name, values in given.items() if name in STATE}
         for name, (one, two) in GAPS.items():
             if name in given:
-                columns[one], columns[two] = apart(given, name, columns[one], columns[two])
+                columns[one], columns[two] = mass_values(given, name, columns[one], columns[two])
         phase = given.get("phase", np.full(x.size, self.point.excitation.phase))
         return np.column_stack([columns[name] for name in STATE]), phase
 
 
-def apart(
+def mass_values(
     given: Mapping[str, Floats], name: str, one: Floats, two: Floats
 ) -> tuple[Floats, Floats]:
-    """What both masses have, from the difference and what one has, or their mean."""
+    """Return what both masses have, from the difference and what one has, or their mean."""
     first, second = GAPS[name]
     if first in given:
         return one, one + given[name]
@@ -142,7 +142,7 @@ class BasinJob(Question):
     at : tuple of float
     known : tuple of tuple of float
         States on attractors that are known, at phase 0.
-    telling : Telling
+    settings : AttractorSettings
     """
 
     excitation: Excitation
@@ -150,14 +150,14 @@ class BasinJob(Question):
     y: Side
     at: tuple[float, ...] = REST
     known: tuple[tuple[float, ...], ...] = ()
-    telling: Telling = Telling()
+    settings: AttractorSettings = AttractorSettings()
     asked: ClassVar[str] = "basin"
     chunk: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"
 
     def plane(self, inputs: Inputs) -> Plane:
-        """What is looked at; another job may find it in what it starts from."""
+        """Return the plane; another job may find it in what it starts from."""
         return Plane(Point(self.structure, self.excitation), self.x, self.y, self.at)
 
     def count(self) -> int:
@@ -165,7 +165,7 @@ class BasinJob(Question):
         return self.x.number * self.y.number + 1
 
     def items(self, inputs: Inputs) -> Sequence[Start | Point]:
-        """Every start; the point itself: gather them."""
+        """Return every start, then the point itself for gathering their attractors."""
         plane = self.plane(inputs)
         states, phases = plane.starts()
         rows = zip(map(tuple, states.tolist()), phases.tolist(), strict=True)
@@ -174,35 +174,37 @@ class BasinJob(Question):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Start | Point], carry: Table | None
     ) -> Table:
-        """Some starts, nothing where the masses would overlap; or the attractors of all."""
+        """Run some starts on, but those whose masses overlap; or gather the attractors of all."""
         with Instances(fmus[OSCILLATOR]) as instances:
             if isinstance(items[0], Point):
                 assert carry is not None
-                return self.gathered(instances, items[0], carry)
+                return self.gather_attractors(instances, items[0], carry)
             rows, decider = SettledRows(), None
             for item in items:
                 assert isinstance(item, Start)
-                decider = decider or MotionDecider(*instances, item.point, self.telling)
+                decider = decider or MotionDecider(*instances, item.point, self.settings)
                 if item.state[1] < item.state[0]:
-                    rows.add_none()
+                    rows.add_absent()
                 else:
-                    rows.add(*decider.decide(at_phase_zero(decider.plain, item)))
+                    rows.add(*decider.decide(run_to_phase_zero(decider.plain, item)))
             return rows.table()
 
-    def gathered(
+    def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], point: Point, table: Table
     ) -> Table:
-        """The attractors, in arrays with one entry."""
+        """Match the attractors, and return arrays with one entry."""
         there = table["decided"] != ABSENT
         names = "features", "end", "decided"
         starts = Starts(*(table[name][there] for name in names))
-        columns = columns_of(continued(instances, [point], [starts], self.telling, self.known))
+        columns = attractor_columns(
+            continue_attractors(instances, [point], [starts], self.settings, self.known)
+        )
         labels = np.full((1, len(there)), -1, dtype=np.int16)
         labels[0, there] = columns.pop("labels")[0]
         return {**columns, "labels": labels}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The attractor that each start leads to."""
+        """Return the attractor that each start leads to."""
         import xarray as xr
 
         plane = self.plane(inputs)
@@ -211,7 +213,7 @@ class BasinJob(Question):
         labels = table["labels"][0].reshape([side.number for side in sides])
         variables = {
             "attractor_of": variable(tuple(side.name for side in sides), labels, "1", text),
-            **of_attractors({name: table[name][0] for name in COLUMNS}, (), "plane"),
+            **attractor_variables({name: table[name][0] for name in COLUMNS}, (), "plane"),
         }
         count = len(table["share"][0])
         coordinates = {
@@ -224,8 +226,8 @@ class BasinJob(Question):
         return xr.Dataset(variables, coordinates, {"title": title})
 
 
-def at_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
-    """The state at the first phase 0 from a start on."""
+def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
+    """Return the state at the first phase 0 from a start on."""
     left = -start.phase % (2.0 * math.pi)
     if left == 0.0:
         return start.state
@@ -236,7 +238,7 @@ def at_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
 
 
 def side(name: str, given: Any) -> Side:
-    """A side of the plane, checked.
+    """Return a side of the plane from what the user gave.
 
     Raises
     ------
@@ -275,7 +277,7 @@ def basin(
     alike_irregular: float = 0.25,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Basins of attraction: the attractor that each start of a plane leads to.
+    """Find basins of attraction: the attractor that each start of a plane leads to.
 
     Parameters
     ----------
@@ -313,7 +315,8 @@ def basin(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is out
+        of its range.
 
     Notes
     -----
@@ -330,7 +333,7 @@ def basin(
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
     point = one_point(structure, eta, frequency, amplitude)
-    telling = told_apart(
+    settings = attractor_settings(
         transient=transient,
         settle=settle,
         samples=samples,
@@ -341,7 +344,7 @@ def basin(
     )
     known: Known | None = None
     if x is None or y is None:
-        known = known_attractors(point, telling, running)
+        known = find_known_attractors(point, settings, running)
         if x is None and y is None and at is None:
             at = known.middle()
     sides = (
@@ -358,7 +361,7 @@ def basin(
         y=sides[1],
         at=state("at", at, structure),
         known=known.states if known else (),
-        telling=telling,
+        settings=settings,
     )
     check_plane(job)
     return answer(job, running, finder(running))
@@ -384,7 +387,7 @@ class Known(NamedTuple):
     gap: float
 
     def side(self, name: str) -> Side:
-        """A side of the plane for the gap or for its velocity, twice as wide as the attractors."""
+        """Return a side for the gap or for its velocity, twice as wide as the attractors."""
         gap = self.gap or self.point.length
         if name == "x_rel":
             return Side(name, 0.0, two_digits(BEYOND * gap), COUNT)
@@ -393,35 +396,37 @@ class Known(NamedTuple):
         return Side(name, -high, high, COUNT)
 
     def middle(self) -> tuple[float, ...]:
-        """The mean of all states."""
+        """Return the mean of all states."""
         return tuple(self.samples.mean(axis=0).tolist())
 
 
-def known_attractors(point: Point, telling: Telling, running: Mapping[str, Any]) -> Known:
-    """What a few random starts lead to."""
+def find_known_attractors(
+    point: Point, settings: AttractorSettings, running: Mapping[str, Any]
+) -> Known:
+    """Find what a few random starts lead to, to lay a plane around it."""
     excitation = {"frequency": point.excitation.frequency, "amplitude": point.excitation.amplitude}
     kept = {name: value for name, value in running.items() if name in ("fmu", "build_folder")}
-    asked = {name: getattr(telling, name) for name in SETTINGS}
+    asked = {name: getattr(settings, name) for name in SETTINGS}
     search: Any = {**excitation, **asked, **kept, "jobs": 1, "progress": False}
-    found = attractors(point.structure, starts=SEARCH, **search).isel(frequency=0)
-    states = tuple(map(tuple, found.state.values.tolist()))
+    known = attractors(point.structure, starts=SEARCH, **search).isel(frequency=0)
+    states = tuple(map(tuple, known.state.values.tolist()))
     samples = []
     with Instance(finder(running)(OSCILLATOR).path) as instance:
-        for state, n in zip(states, found.multiplicity.values, strict=True):
+        for state, n in zip(states, known.multiplicity.values, strict=True):
             begin(instance, *point, state)
-            periods = int(n) or telling.irregular_samples
+            periods = int(n) or settings.irregular_samples
             samples.append(sample(instance, point.excitation.period, 0, periods)[0].copy())
-    gap = float(found.xi_rel_max.max()) * point.length
+    gap = float(known.xi_rel_max.max()) * point.length
     return Known(point, states, np.concatenate(samples), gap)
 
 
 def two_digits(value: float) -> float:
-    """A number above zero to two digits: ends of an axis."""
+    """Round a number above zero to two digits, for the end of an axis."""
     return float(f"{value:.1e}")
 
 
 def check_plane(job: BasinJob) -> None:
-    """Whether there is a start, and whether the masses can part at all."""
+    """Check that there is a start, and that the masses can part at all."""
     if job.structure.bonded:
         raise InputError("structure: is bonded; expected one whose masses can part")
     states, _ = job.plane({}).starts()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -17,24 +17,22 @@ from ..response.questions import Question, checked_structure, numbers, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .bifurcations import KINDS, TORUS, Look
-from .border_curve import Border
-from .branch_walk import LIMIT, LONG, STUCK
-from .branches import begin_of, check_inside, check_start, excitation_of
-from .continuation import NoConvergenceError, Root, Walk, corrected, held
-from .families import ACCELERATION, Family, Setting, check_names, knocking
+from .bifurcation_curve import BifurcationCurve, BifurcationTracer
+from .bifurcations import KINDS, TORUS
+from .branches import check_inside, check_start, complete_excitation, first_nodes
+from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
+from .families import ACCELERATION, Family, Setting, check_parameters, require_delaminated
+from .orbit_point import OrbitPoint
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
-from .orbit_search import solve, verdict
-from .orbits import FirstGuess, finite, told
+from .orbit_search import run_in_fmu, solve_orbit
+from .orbits import FirstGuess, excitation_arguments, finite_number
+from .tracer import BranchSegment, ContinuationSettings
 
 if TYPE_CHECKING:
     import xarray as xr
     from typing_extensions import Unpack
 
     from ..running.options import Running
-
-FIRST_STEP = 1e-3
-HALVINGS = 24
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,35 +62,35 @@ class BorderJob(Question):
     asked: ClassVar[str] = "border"
 
     def call(self) -> str:
-        """The call that asks it, with the orbit at the bifurcation for the branch."""
+        """Return the call that asks it, with the orbit at the bifurcation for the branch."""
         setting, values = self.setting, np.array(self.values)
-        guess = self.start.told(setting.point(values).excitation.frequency)
-        start = f"start={setting.first_orbit(values, self.period, guess)}"
+        guess = self.start.as_argument(setting.point(values).excitation.frequency)
+        start = f"start={setting.orbit_call(values, self.period, guess)}"
         given = [f"bifurcation={KINDS[self.kind]!r}", f"over={setting.over!r}"]
         given += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
         return f"border({', '.join([repr(self.structure), start, *given])})"
 
     def count(self) -> int:
-        """One curve."""
+        """Return one: a curve."""
         return 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Its number."""
+        """Return the number of the curve."""
         return [0]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
         """Follow it."""
-        border, root = begin(self)
-        legs = [followed(border, one, self) for one in (turned(root), root)]
-        roots = [*reversed(legs[0][0][1:]), *legs[1][0]]
+        curve, root = first_root(self)
+        back, forth = (trace(self, curve, start) for start in (root.reversed(), root))
+        roots = [*reversed(back.points[1:]), *forth.points]
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            rows = [record(instance, border, root) for root in roots]
+            rows = [record(instance, curve, root) for root in roots]
         angles = [root.unknowns[-1] if self.kind == TORUS else np.nan for root in roots]
-        ends = {"ends": np.array([leg[1] for leg in legs])}
-        return {**table_of(rows), "angle": np.array(angles), **ends}
+        ends = np.array([back.end, forth.end])
+        return {**table_of(rows), "angle": np.array(angles), "ends": ends}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The curve, labelled."""
+        """Return the curve, labelled."""
         import xarray as xr
 
         setting, ends = self.setting, [str(text) for text in table["ends"]]
@@ -100,14 +98,14 @@ class BorderJob(Question):
         title = f"{KINDS[self.kind]} over {' and '.join(setting.over)}: {self.structure.label()}"
         attributes = {"title": title, "kind": KINDS[self.kind], "over": list(setting.over)}
         attributes.update(first_end=ends[0], last_end=ends[1])
-        found = {**variables(setting, table, "point"), **names}
+        data = {**variables(setting, table, "point"), **names}
         text = "angle of the multipliers on the unit circle"
-        found["angle"] = variable("point", table["angle"], "rad", text)
-        return xr.Dataset(found, attrs=attributes).set_coords(list(names))
+        data["angle"] = variable("point", table["angle"], "rad", text)
+        return xr.Dataset(data, attrs=attributes).set_coords(list(names))
 
 
-def begin(job: BorderJob) -> tuple[Border, Root]:
-    """The bifurcation where the curve begins.
+def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
+    """Solve for the bifurcation where the curve begins.
 
     Raises
     ------
@@ -117,67 +115,31 @@ def begin(job: BorderJob) -> tuple[Border, Root]:
     setting, nodes = job.setting, np.array(job.start.nodes).reshape(-1, 4)
     sequence, values = job.start.sequence(job.period), np.array(job.values)
     try:
-        look = Look(*solve(setting.first_alone(values), (sequence, nodes), values[:1]))
-        border = Border.of(Family.near(setting, sequence, look.ring.nodes), look, job.kind)
-        guess = np.concatenate([look.ring.nodes.ravel(), values, border.extra])
-        border.lean(guess)
-        root = corrected(border, guess, held(border, border.parameters + 1))
+        alone = setting.over_first_alone(values)
+        point = OrbitPoint(*solve_orbit(alone, (sequence, nodes), values[:1]))
+        family = Family.from_nodes(setting, sequence, point.orbit.nodes)
+        curve = BifurcationCurve.from_orbit(family, point, job.kind)
+        guess = np.concatenate([point.orbit.nodes.ravel(), values, curve.extra])
+        curve.update_border(guess)
+        second = unit_vector(len(guess), curve.first_parameter + 1)
+        return curve, newton_correct(curve, guess, second)
     except NoConvergenceError as reason:
         expected = "expected a branch of this structure"
         raise InputError(f"start: no bifurcation found there ({reason}); {expected}") from None
-    border.lean(root.unknowns)
-    return border, root
 
 
-def turned(root: Root) -> Root:
-    """The same root with the curve's other direction."""
-    return replace(root, tangent=-root.tangent)
+def trace(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment[Root]:
+    """Trace the curve in one direction."""
+    settings = ContinuationSettings(job.longest, job.most)
+    return BifurcationTracer(curve, start, settings).trace(start)
 
 
-def followed(border: Border, start: Root, job: BorderJob) -> tuple[list[Root], str]:
-    """Roots in one direction, and why they end."""
-    walk = Walk(border, start, min(FIRST_STEP, job.longest), job.longest)
-    roots = [start]
-    limits = job.setting.limits
-    while len(roots) <= job.most:
-        try:
-            root, length, arrived = walk.inside(border.parameters, limits)
-        except NoConvergenceError:
-            return roots, STUCK
-        reason = border.no_motion(root.unknowns)
-        if reason:
-            return [*roots, *last_motion(walk, length)], reason
-        roots.append(root)
-        if arrived:
-            return roots, LIMIT
-        walk.root = root
-        border.lean(root.unknowns)
-    return roots, LONG
-
-
-def last_motion(walk: Walk[Border], length: float) -> list[Root]:
-    """The last root of a step that is a bifurcation of a motion, by halving."""
-    low, high = 0.0, length
-    found: list[Root] = []
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        try:
-            root = walk.at(middle)
-        except NoConvergenceError:
-            return found
-        if walk.curve.no_motion(root.unknowns):
-            high = middle
-        else:
-            low, found = middle, [root]
-    return found
-
-
-def record(instance: EventInstance, border: Border, root: Root) -> OrbitRecord:
-    """An orbit on the curve, run through in the FMU."""
-    unknowns = root.unknowns[: border.family.size + 2]
-    ring = border.ring(root.unknowns)
-    word = verdict(instance, border.family.setting, unknowns[border.family.size :], ring)
-    return OrbitRecord.of(border.family, unknowns, root.residual, word)
+def record(instance: EventInstance, curve: BifurcationCurve, root: Root) -> OrbitRecord:
+    """Return the record of an orbit on the curve, run through in the FMU."""
+    unknowns = root.unknowns[: curve.family.size + 2]
+    orbit = curve.orbit(root.unknowns)
+    check = run_in_fmu(instance, curve.family.setting, unknowns[curve.family.size :], orbit)
+    return OrbitRecord.from_root(curve.family, unknowns, root.residual, check)
 
 
 def border(
@@ -195,7 +157,7 @@ def border(
     most: int = 500,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """A bifurcation of a branch, followed over two parameters.
+    """Follow a bifurcation of a branch over two parameters.
 
     Parameters
     ----------
@@ -221,14 +183,14 @@ def border(
     Returns
     -------
     xarray.Dataset
-        Along ``point``: both parameters, the orbit there as :func:`orchestrate.orbit` tells it, and
+        Along ``point``: both parameters, the orbit there as :func:`orchestrate.orbit` has it, and
         the ``angle`` of the multipliers at a Neimark-Sacker bifurcation. Attributes: ``kind``, and
         ``first_end`` and ``last_end``, why the curve ends.
 
     Raises
     ------
     InputError
-        Where the question is not whole, or there is no such bifurcation.
+        Where arguments contradict each other, or there is no such bifurcation.
 
     Examples
     --------
@@ -242,24 +204,26 @@ def border(
     >>> curve.attrs["kind"], curve.e.values[[0, -1]]
     ('Neimark-Sacker', array([0.69, 0.71]))
     """
-    knocking(checked_structure(structure))
+    require_delaminated(checked_structure(structure))
     check_start(start, several=True)
     names = tuple(over)
-    check_names(names)
+    check_parameters(names)
     if len(names) != 2 or names[0] != start.attrs.get("over"):
         raise InputError(
             f"over = {names!r}: expected two names, the first one that of start, "
             f"{start.attrs.get('over')!r}"
         )
-    pairs = checked_limits(names, limits)
-    nodes, kind = begin_of(start, "bifurcation", bifurcation)
+    pairs = check_both_limits(names, limits)
+    nodes, kind = first_nodes(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
-    given = excitation_of(start.isel(point=0), names[0], told(eta, frequency, amplitude), pairs[0])
+    given = complete_excitation(
+        start.isel(point=0), names[0], excitation_arguments(eta, frequency, amplitude), pairs[0]
+    )
     second = second_value(structure, names[1], given, box_acceleration)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):
         check_inside(name, number, pair)
     fixed = tuple((name, number) for name, number in given if name not in names)
-    setting = Setting(structure, fixed, names, pairs, finite(ACCELERATION, box_acceleration))
+    setting = Setting(structure, fixed, names, pairs, finite_number(ACCELERATION, box_acceleration))
     for i in range(2):  # what is out of range is said before any work
         setting.form(np.array([pairs[0][i], pairs[1][i]]))
     job = BorderJob(
@@ -270,14 +234,14 @@ def border(
         period=start.sizes["sample"],
         kind=kind,
         values=(value, second),
-        longest=finite("longest", longest),
+        longest=finite_number("longest", longest),
         most=whole("most", most, 1),
     )
     return answer(job, running, finder(running))
 
 
-def checked_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
-    """Limits of both parameters."""
+def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
+    """Return the limits of both parameters."""
     try:
         rows = [numbers(name, row) for name, row in zip(names, limits, strict=True)]
     except (TypeError, ValueError):
@@ -293,7 +257,7 @@ def checked_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, fl
 def second_value(
     structure: Structure, name: str, given: tuple[tuple[str, float], ...], box_acceleration: float
 ) -> float:
-    """The second parameter's value where the curve begins."""
+    """Return the second parameter's value where the curve begins."""
     if name == ACCELERATION:
         return box_acceleration
     return dict(given)[name] if name in dict(given) else structure.get(name)

@@ -1,4 +1,4 @@
-"""Orbits followed along a parameter, stable and unstable, with the bifurcations on the way."""
+"""Branches of orbits along a parameter, stable and unstable, with their bifurcations."""
 
 from __future__ import annotations
 
@@ -17,13 +17,16 @@ from ..response.questions import Question, checked_structure, numbers, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .bifurcations import KINDS, Look
-from .branch_walk import Event, Leg, Pace, backwards, follow, leaving
+from .bifurcations import KINDS
+from .branch_switching import leaving_branch
 from .continuation import NoConvergenceError
-from .families import ACCELERATION, Setting, check_names, knocking
+from .families import ACCELERATION, Setting, check_parameters, require_delaminated
+from .orbit_point import OrbitPoint
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
-from .orbit_search import solve, verdict
-from .orbits import FirstGuess, finite, from_result, orbit, told
+from .orbit_search import run_in_fmu, solve_orbit
+from .orbit_tracer import OrbitTracer
+from .orbits import FirstGuess, excitation_arguments, finite_number, from_result, orbit
+from .tracer import Bifurcation, BranchSegment, ContinuationSettings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,10 +34,11 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
 
-TOLD = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual")
+REPORTED = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual")
 NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_closing")
-KEPT = (*TOLD, *NODES)  # of what is told of orbits, also of those at bifurcations
+KEPT = (*REPORTED, *NODES)  # variables of orbits that those at bifurcations have, too
 BIFURCATION = "bifurcation"
+OrbitSegment = BranchSegment[OrbitPoint]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,10 +72,10 @@ class BranchJob(Question):
     asked: ClassVar[str] = "branch"
 
     def call(self) -> str:
-        """The call that asks it; where it leaves another branch, that one is not told."""
+        """Return the call that asks it; of a branch that leaves another one, without that one."""
         setting, values = self.setting, np.array([self.value])
-        guess = self.start.told(setting.point(values).excitation.frequency)
-        start = f"start={setting.first_orbit(values, self.period, guess)}"
+        guess = self.start.as_argument(setting.point(values).excitation.frequency)
+        start = f"start={setting.orbit_call(values, self.period, guess)}"
         switch = [f"switch={KINDS[self.switch]!r}"] if self.switch >= 0 else []
         steps = [f"longest={self.longest!r}", f"most={self.most}"]
         (over,), (limits,) = setting.over, setting.limits
@@ -86,36 +90,36 @@ class BranchJob(Question):
         return f"branch({', '.join(parts)})"
 
     def count(self) -> int:
-        """One branch."""
+        """Return one: a branch."""
         return 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Its number."""
+        """Return the number of the branch."""
         return [0]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
         """Follow it."""
-        legs = followed(self)
+        segments = trace(self)
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return table(instance, self.setting, legs)
+            return table(instance, self.setting, segments)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Everything along the branch."""
+        """Return everything along the branch."""
         import xarray as xr
 
         setting, (name,) = self.setting, self.setting.over
         along = {key: table[key] for key in table if not key.startswith(BIFURCATION)}
-        found = {**variables(setting, along, "point"), **coordinates(setting, along, "point")}
+        data = {**variables(setting, along, "point"), **coordinates(setting, along, "point")}
         ends = [str(text) for text in table["bifurcation_ends"]]
         periods = along["zero"].shape[1]
         title = f"Branch of orbits of {periods} periods along {name}: {self.structure.label()}"
         attributes = {"title": title, "over": name, "first_end": ends[0], "last_end": ends[1]}
-        dataset = xr.Dataset({**found, **at_bifurcations(setting, table)}, attrs=attributes)
+        dataset = xr.Dataset({**data, **bifurcation_variables(setting, table)}, attrs=attributes)
         return dataset.set_coords(list(coordinates(setting, along, "point")))
 
 
-def followed(job: BranchJob) -> list[Leg]:
-    """The branch in both directions; in one, where it leaves another.
+def trace(job: BranchJob) -> list[OrbitSegment]:
+    """Trace the branch in both directions; in one, where it leaves another.
 
     Raises
     ------
@@ -123,76 +127,79 @@ def followed(job: BranchJob) -> list[Leg]:
         Where there is no orbit at its start.
     """
     guess = job.start.sequence(job.period), np.array(job.start.nodes).reshape(-1, 4)
-    pace = Pace(job.longest, job.most)
+    settings = ContinuationSettings(job.longest, job.most)
     try:
-        family, root = solve(job.setting, guess, np.array([job.value]))
-        start = Look(family, root)
-        if job.switch >= 0:
-            return [follow(leaving(job.switch, start), pace)]
+        start = OrbitPoint(*solve_orbit(job.setting, guess, np.array([job.value])))
+        starts = (
+            [start.reversed(), start] if job.switch < 0 else [leaving_branch(job.switch, start)]
+        )
     except NoConvergenceError as reason:
         expected = "expected an orbit of this structure"
         raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
-    return [follow(look, pace) for look in (backwards(start), start)]
+    return [OrbitTracer(point, settings).trace(point) for point in starts]
 
 
-def table(instance: EventInstance, setting: Setting, legs: list[Leg]) -> Table:
-    """Arrays along the branch, and those of its bifurcations, in the order along it."""
-    looks, events = joined(legs)
-    ends = [legs[0].end if len(legs) > 1 else "start", legs[-1].end]
-    found = table_of([record(instance, setting, look) for look in looks])
-    at = table_of([record(instance, setting, one.look) for one in events]) if events else {}
+def table(instance: EventInstance, setting: Setting, segments: list[OrbitSegment]) -> Table:
+    """Return arrays along the branch, and those of its bifurcations, in the order along it."""
+    points, bifurcations = joined(segments)
+    ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
+    along = table_of([record(instance, setting, point) for point in points])
+    at = [record(instance, setting, each.point) for each in bifurcations]
     return {
-        **found,
-        **{f"{BIFURCATION}_{name}": values for name, values in at.items()},
-        "bifurcation_kind": np.array([one.kind for one in events], dtype=int),
-        "bifurcation_place": np.array([one.place for one in events]),
+        **along,
+        **{f"{BIFURCATION}_{name}": rows for name, rows in (table_of(at) if at else {}).items()},
+        "bifurcation_kind": np.array([each.kind for each in bifurcations], dtype=int),
+        "bifurcation_place": np.array([each.position for each in bifurcations]),
         "bifurcation_ends": np.array(ends),
     }
 
 
-def joined(legs: list[Leg]) -> tuple[list[Look], list[Event]]:
-    """Orbits and bifurcations of one direction, or of both in the order along the branch."""
-    last = legs[-1]
-    if len(legs) == 1:
-        return last.looks, last.events
-    back, middle = legs[0], len(legs[0].looks) - 1.0
-    events = [replace(one, place=middle - one.place) for one in reversed(back.events)]
-    events += [replace(one, place=middle + one.place) for one in last.events]
-    return [*reversed(back.looks[1:]), *last.looks], events
+def joined(
+    segments: list[OrbitSegment],
+) -> tuple[list[OrbitPoint], list[Bifurcation[OrbitPoint]]]:
+    """Return orbits and bifurcations of one direction, or of both in the order along the branch."""
+    forth = segments[-1]
+    if len(segments) == 1:
+        return forth.points, forth.bifurcations
+    back, middle = segments[0], len(segments[0].points) - 1.0
+    bifurcations = [
+        *(replace(each, position=middle - each.position) for each in reversed(back.bifurcations)),
+        *(replace(each, position=middle + each.position) for each in forth.bifurcations),
+    ]
+    return [*reversed(back.points[1:]), *forth.points], bifurcations
 
 
-def record(instance: EventInstance, setting: Setting, look: Look) -> OrbitRecord:
-    """An orbit on the branch, verified."""
-    unknowns = look.root.unknowns
-    word = verdict(instance, setting, unknowns[look.family.size :], look.ring)
-    return OrbitRecord.of(look.family, unknowns, look.root.residual, word)
+def record(instance: EventInstance, setting: Setting, point: OrbitPoint) -> OrbitRecord:
+    """Return the record of an orbit on the branch, run through in the FMU."""
+    check = run_in_fmu(instance, setting, point.values, point.orbit)
+    return OrbitRecord.from_root(point.family, point.root.unknowns, point.root.residual, check)
 
 
-def at_bifurcations(setting: Setting, table: Table) -> dict[str, Variable]:
-    """What is told of the bifurcations."""
+def bifurcation_variables(setting: Setting, table: Table) -> dict[str, Variable]:
+    """Return the variables of the bifurcations."""
     (name,) = setting.over
     kinds = flags(BIFURCATION, table["bifurcation_kind"], "kind of bifurcation", KINDS)
     place = "position along the branch's points: between two where not whole"
-    found = {
+    data = {
         "bifurcation_kind": kinds,
         "bifurcation_place": variable(BIFURCATION, table["bifurcation_place"], "1", place),
     }
     if not len(table["bifurcation_kind"]):
-        found["bifurcation_value"] = variable(BIFURCATION, np.zeros(0), "1", name)
-        return found
+        data["bifurcation_value"] = variable(BIFURCATION, np.zeros(0), "1", name)
+        return data
     rows = {
         key.removeprefix(f"{BIFURCATION}_"): values
         for key, values in table.items()
         if key.startswith(BIFURCATION)
     }
     parameters = coordinates(setting, rows, BIFURCATION)
-    found["bifurcation_value"] = parameters[name]
+    data["bifurcation_value"] = parameters[name]
     for key, (dims, values, attributes) in variables(setting, rows, BIFURCATION).items():
         if key in KEPT:
             each = (dims,) if isinstance(dims, str) else dims
             own = tuple(f"{BIFURCATION}_node" if dim == "node" else dim for dim in each)
-            found[f"{BIFURCATION}_{key}"] = own, values, attributes
-    return found
+            data[f"{BIFURCATION}_{key}"] = own, values, attributes
+    return data
 
 
 def branch(
@@ -211,7 +218,7 @@ def branch(
     most: int = 1000,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """The branch of periodic orbits through one of them, along a parameter.
+    """Follow the branch of periodic orbits through one of them, along a parameter.
 
     Parameters
     ----------
@@ -244,14 +251,14 @@ def branch(
     Returns
     -------
     xarray.Dataset
-        Along ``point``: the parameter, and all that :func:`orchestrate.orbit` tells. Along
+        Along ``point``: the parameter, and all variables of :func:`orchestrate.orbit`. Along
         ``bifurcation``: ``bifurcation_kind`` and ``bifurcation_value``, the orbit there, and its
         multipliers. ``first_end`` and ``last_end`` among the attributes say why it ends.
 
     Raises
     ------
     InputError
-        Where the question is not whole, or no orbit is found to begin with.
+        Where arguments are missing or contradict each other, or no orbit is found to begin with.
 
     Notes
     -----
@@ -269,12 +276,14 @@ def branch(
     >>> found.bifurcation_value.values.round(8)
     array([2.64796105, 2.7855415 ])
     """
-    check_names((over,))
-    knocking(checked_structure(structure))
+    check_parameters((over,))
+    require_delaminated(checked_structure(structure))
     if start is not None:
         check_start(start, several=switch is not None)
-    low_high = checked_limits(over, limits)
-    given = excitation_of(start, over, told(eta, frequency, amplitude), low_high)
+    low_high = check_limits(over, limits)
+    given = complete_excitation(
+        start, over, excitation_arguments(eta, frequency, amplitude), low_high
+    )
     if start is None:
         start, value = first_orbit(
             structure, over, low_high, given, period, box_acceleration, running
@@ -282,10 +291,10 @@ def branch(
     else:
         value = start_value(start, over, switch, structure)
     check_inside(over, value, low_high)
-    nodes, kind = begin_of(start, "switch", switch)
+    nodes, kind = first_nodes(start, "switch", switch)
     fixed = tuple((name, number) for name, number in given if name != over)
     setting = Setting(
-        structure, fixed, (over,), (low_high,), finite(ACCELERATION, box_acceleration)
+        structure, fixed, (over,), (low_high,), finite_number(ACCELERATION, box_acceleration)
     )
     for limit in low_high:  # what is out of range is said before any work
         setting.form(np.array([limit]))
@@ -297,15 +306,16 @@ def branch(
         period=start.sizes["sample"],
         value=value,
         switch=kind,
-        longest=finite("longest", longest),
+        longest=finite_number("longest", longest),
         most=whole("most", most, 1),
     )
     return answer(job, running, finder(running))
 
 
 def check_start(start: Any, several: bool) -> None:
-    """Whether a branch can begin with it; several orbits will do where one of its bifurcations is
-    named.
+    """Check that a branch can begin with it.
+
+    Several orbits will do where one of their bifurcations is named.
 
     Raises
     ------
@@ -314,7 +324,7 @@ def check_start(start: Any, several: bool) -> None:
     if not hasattr(start, "sizes"):
         raise InputError(
             f"start = {start!r}: expected a dataset of orbit or branch; a number of the parameter "
-            "is told by its name, as eta = 1.5"
+            "is given by its name, as eta=1.5"
         )
     if "node_kind" not in start:
         raise InputError("start: without node_kind; expected a dataset of orbit or branch")
@@ -324,21 +334,21 @@ def check_start(start: Any, several: bool) -> None:
         )
 
 
-def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
-    """The limits, if they are two numbers in order."""
-    found = numbers(over, limits)
-    if not isinstance(found, tuple) or len(found) != 2 or not found[0] < found[1]:
+def check_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
+    """Return the limits, if they are two numbers in order."""
+    pair = numbers(over, limits)
+    if not isinstance(pair, tuple) or len(pair) != 2 or not pair[0] < pair[1]:
         raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
-    return found[0], found[1]
+    return pair[0], pair[1]
 
 
-def excitation_of(
+def complete_excitation(
     start: xr.Dataset | None,
     over: str,
     given: tuple[tuple[str, float], ...],
     limits: tuple[float, float],
 ) -> tuple[tuple[str, float], ...]:
-    """The excitation's numbers, with the one that varies where it starts."""
+    """Return the excitation's numbers, with the one that varies where it starts."""
     names = [name for name, _ in given]
     if start is not None and not given:
         wanted = ("frequency", "amplitude") if over in ("frequency", "amplitude") else ("eta",)
@@ -357,7 +367,7 @@ def first_orbit(
     box_acceleration: float,
     running: Mapping[str, Any],
 ) -> tuple[xr.Dataset, float]:
-    """The orbit that a branch begins with where the user names none, and the parameter there."""
+    """Find the orbit that a branch begins with by default, and the parameter there."""
     excitation: dict[str, Any] = dict(given)
     quiet: dict[str, Any] = {
         name: value
@@ -372,14 +382,14 @@ def first_orbit(
         value = own if limits[0] <= own <= limits[1] else limits[0]
         structure = structure.replace(**{over: value})
     check_inside(over, value, limits)
-    found = orbit(
+    start = orbit(
         structure, period=period, box_acceleration=box_acceleration, **excitation, **quiet
     )
-    return found, value
+    return start, value
 
 
 def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
-    """See that a branch starts between its limits.
+    """Check that a branch starts between its limits.
 
     Raises
     ------
@@ -392,9 +402,9 @@ def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
 
 
 def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Structure) -> float:
-    """The parameter's value at the start."""
+    """Return the parameter's value at the start."""
     if switch is not None:
-        return float(start["bifurcation_value"].values[number_of(start, "switch", switch)])
+        return float(start["bifurcation_value"].values[check_number(start, "switch", switch)])
     if over in start.coords:
         return float(start[over])
     if over == ACCELERATION:
@@ -402,18 +412,18 @@ def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Str
     return structure.get(over)
 
 
-def number_of(start: xr.Dataset, name: str, number: int) -> int:
-    """A bifurcation's number, if there is one."""
+def check_number(start: xr.Dataset, name: str, number: int) -> int:
+    """Return a bifurcation's number, if there is one of that number."""
     count = start.sizes.get(BIFURCATION, 0)
     if not count:
         raise InputError(f"{name} = {number!r}: start has no bifurcations; expected a branch")
     return whole(name, number, 0, count - 1)
 
 
-def begin_of(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
-    """Nodes of the orbit to begin with, and the kind of the bifurcation that ``name`` gives."""
+def first_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
+    """Return the nodes to begin with, and the kind of the bifurcation that ``name`` gives."""
     if number is None:
         return from_result(start), -1
-    found = start.isel({BIFURCATION: number_of(start, name, number)})
-    nodes = {name: found[f"{BIFURCATION}_{name}"].values for name in NODES}
-    return from_result(nodes), int(found["bifurcation_kind"])
+    at = start.isel({BIFURCATION: check_number(start, name, number)})
+    nodes = {name: at[f"{BIFURCATION}_{name}"].values for name in NODES}
+    return from_result(nodes), int(at["bifurcation_kind"])

@@ -14,21 +14,20 @@ from numpy.typing import NDArray
 from ..structures import Excitation, Structure
 
 Floats = NDArray[np.float64]
-
-
-BOTH = slice(0, 2)
+CRITICAL = 1e-14  # of omega_i^2: so near to critical damping it is critical but for rounding
+MASSES = slice(0, 2)  # oscillators 1 and 2
 
 
 def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
-    """Which two oscillators two masses are: 1 and 2, or twice 3 where they are one."""
+    """Return which two oscillators two masses are: 1 and 2, or twice 3 where they are one."""
     if not np.any(contact):
-        return BOTH
+        return MASSES
     return np.where(np.reshape(contact, (-1, 1)), 2, np.arange(2))
 
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """The numbers that the motion between impacts is made of.
+    """The coefficients of the motion between impacts.
 
     Attributes
     ----------
@@ -57,10 +56,10 @@ class ClosedForm:
     force_x: float
 
     @classmethod
-    def of(
+    def from_structure(
         cls, structure: Structure, excitation: Excitation, box_acceleration: float = 0.0
     ) -> ClosedForm:
-        """The numbers of a structure under an excitation.
+        """Return the numbers of a structure under an excitation.
 
         Parameters
         ----------
@@ -69,12 +68,11 @@ class ClosedForm:
         box_acceleration : float
             Constant acceleration of the box beside the harmonic one, m/s2.
 
-        Raises
-        ------
-        InputError
-            On a natural frequency with no damping, or next to none: amplitudes grow there.
+        Notes
+        -----
+        On a natural frequency without damping there is no steady response: its numbers are
+        infinite, or none. See :meth:`.Excitation.check`.
         """
-        excitation.check(structure)
         omega, m1, m2 = structure.omega, structure.m1, structure.m2
         both, springs = m1 + m2, structure.k1 + structure.k2
         unit = omega * omega
@@ -87,7 +85,11 @@ class ClosedForm:
         stiffness[0] = 1.0
         detuning, loss = stiffness - eta * eta, 2.0 * damping * eta
         reach = detuning**2 + loss**2
-        push = -box_acceleration / (excitation.amplitude * excitation.frequency**2)
+        push = 0.0
+        if box_acceleration:
+            push = -box_acceleration / (excitation.amplitude * excitation.frequency**2)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cosine, sine = -loss / reach, detuning / reach
         return cls(
             eta=eta,
             mu=m2 / m1,
@@ -95,8 +97,8 @@ class ClosedForm:
             gamma=structure.gamma,
             damping=damping,
             stiffness=stiffness,
-            cosine=-loss / reach,
-            sine=detuning / reach,
+            cosine=cosine,
+            sine=sine,
             offset=push / stiffness,
             force_v=float(2.0 * (damping[0] - damping[1])),
             force_x=float(stiffness[0] - stiffness[1]),
@@ -109,21 +111,28 @@ class ClosedForm:
         return float(max(self.eta, swinging.max()))
 
     def basis(self, i: int, time: Floats) -> tuple[Floats, Floats]:
-        """``e^{-D t} cos(nu t)`` and ``e^{-D t} sin(nu t)/nu`` of an oscillator, overdamped too."""
+        """Return ``e^{-D t} cos(nu t)`` and ``e^{-D t} sin(nu t)/nu`` of (10), overdamped too.
+
+        Parameters
+        ----------
+        i : int
+            Of the oscillator.
+        time : ndarray
+        """
         damping, square = self.damping[i], self.stiffness[i]
-        nu_squared = square - damping * damping
-        if abs(nu_squared) <= 1e-14 * square:  # critical
+        nu_squared = square - damping * damping  # (11)
+        if abs(nu_squared) <= CRITICAL * square:
             decay = np.exp(-damping * time)
             return decay, time * decay
         nu = np.sqrt(abs(nu_squared))
         if nu_squared > 0.0:
             decay = np.exp(-damping * time)
             return decay * np.cos(nu * time), decay * np.sin(nu * time) / nu
-        slow, fast = np.exp(-square / (damping + nu) * time), np.exp(-(damping + nu) * time)
-        return 0.5 * (slow + fast), 0.5 * (slow - fast) / nu
+        slow, faster = np.exp(-square / (damping + nu) * time), np.expm1(-2.0 * nu * time)
+        return slow * (1.0 + 0.5 * faster), -0.5 * slow * faster / nu
 
     def oscillator(self, i: int, time: Floats) -> Floats:
-        """Flow matrices of oscillator ``i`` without excitation, the free part of (10).
+        """Return flow matrices of oscillator ``i`` without excitation, the free part of (10).
 
         Parameters
         ----------
@@ -135,30 +144,30 @@ class ClosedForm:
         ndarray, shape (n, 2, 2)
         """
         cosine, sine = self.basis(i, time)
-        found = np.empty((len(time), 2, 2))
-        found[:, 0, 0] = cosine + self.damping[i] * sine
-        found[:, 0, 1] = sine
-        found[:, 1, 0] = -self.stiffness[i] * sine
-        found[:, 1, 1] = cosine - self.damping[i] * sine
-        return found
+        matrices = np.empty((len(time), 2, 2))
+        matrices[:, 0, 0] = cosine + self.damping[i] * sine
+        matrices[:, 0, 1] = sine
+        matrices[:, 1, 0] = -self.stiffness[i] * sine
+        matrices[:, 1, 1] = cosine - self.damping[i] * sine
+        return matrices
 
     def flight(self, time: Floats) -> Floats:
-        """Flow matrices with both masses free, shape (n, 4, 4)."""
-        found = np.zeros((len(time), 4, 4))
-        found[:, 0::2, 0::2] = self.oscillator(0, time)
-        found[:, 1::2, 1::2] = self.oscillator(1, time)
-        return found
+        """Return flow matrices with both masses free, shape (n, 4, 4)."""
+        matrices = np.zeros((len(time), 4, 4))
+        matrices[:, 0::2, 0::2] = self.oscillator(0, time)
+        matrices[:, 1::2, 1::2] = self.oscillator(1, time)
+        return matrices
 
     def contact(self, time: Floats) -> Floats:
-        """Flow matrices with both masses as one, shape (n, 4, 4); of states on the boundary."""
+        """Return flow matrices with both masses as one, shape (n, 4, 4), for states without gap."""
         common = self.oscillator(2, time)
-        found = np.zeros((len(time), 4, 4))
-        found[:, 0::2, 0::2] = common
-        found[:, 1::2, 1::2] = common
-        return found
+        matrices = np.zeros((len(time), 4, 4))
+        matrices[:, 0::2, 0::2] = common
+        matrices[:, 1::2, 1::2] = common
+        return matrices
 
     def steady(self, phase: Floats, contact: NDArray[np.bool_] | bool = False) -> Floats:
-        """The forced response, the harmonic part of (10).
+        """Return the steady response to the excitation, the harmonic part of (10).
 
         Parameters
         ----------
@@ -174,23 +183,55 @@ class ClosedForm:
         which = oscillators(contact)
         cosine, sine = np.cos(phase)[:, None], np.sin(phase)[:, None]
         a, b = self.cosine[which], self.sine[which]
-        found = np.empty((len(phase), 4))
-        found[:, :2] = a * cosine + b * sine + self.offset[which]
-        found[:, 2:] = self.eta * (b * cosine - a * sine)
-        return found
+        states = np.empty((len(phase), 4))
+        states[:, :2] = a * cosine + b * sine + self.offset[which]
+        states[:, 2:] = self.eta * (b * cosine - a * sine)
+        return states
+
+    def common_motion(
+        self, time: Floats, phase: Floats, position: Floats, velocity: Floats
+    ) -> tuple[Floats, Floats]:
+        """Return displacement and velocity in permanent contact: (10) and (11) with i = 3.
+
+        Parameters
+        ----------
+        time : ndarray
+            Since the contact began.
+        phase, position, velocity : ndarray
+            Then; all arrays are broadcast against each other.
+        """
+        cosine, sine = self.basis(2, time)
+        damping, square = self.damping[2], self.stiffness[2]
+        x, v = self.common_response(phase)
+        free, rate = position - x, velocity - v
+        x, v = self.common_response(phase + self.eta * time)
+        x = x + (cosine + damping * sine) * free + sine * rate
+        return x, v - square * sine * free + (cosine - damping * sine) * rate
+
+    def common_response(self, phase: Floats) -> tuple[Floats, Floats]:
+        """Return displacement and velocity of both masses as one in their steady response."""
+        cosine, sine = np.cos(phase), np.sin(phase)
+        a, b = self.cosine[2], self.sine[2]
+        x: Floats = a * cosine + b * sine + self.offset[2]
+        return x, self.eta * (b * cosine - a * sine)
+
+    def centre(self) -> Floats:
+        """Return the projection of states to the motion of the centre of mass, shape (4, 4)."""
+        weights = np.array([[1.0, self.mu], [1.0, self.mu]]) / (1.0 + self.mu)
+        return np.asarray(np.kron(np.eye(2), weights), dtype=float)
 
     def field(
         self, state: Floats, phase: Floats, contact: NDArray[np.bool_] | bool = False
     ) -> Floats:
-        """The derivative of states by tau: the right-hand side of (6), shape (n, 4)."""
+        """Return the derivative of states by tau: the right-hand side of (6), shape (n, 4)."""
         which = oscillators(contact)
         drive = np.sin(phase)[:, None] + self.offset[0] * self.stiffness[0]
-        found = np.empty((len(phase), 4))
-        found[:, :2] = state[:, 2:]
-        found[:, 2:] = drive - 2.0 * self.damping[which] * state[:, 2:]
-        found[:, 2:] -= self.stiffness[which] * state[:, :2]
-        return found
+        rates = np.empty((len(phase), 4))
+        rates[:, :2] = state[:, 2:]
+        rates[:, 2:] = drive - 2.0 * self.damping[which] * state[:, 2:]
+        rates[:, 2:] -= self.stiffness[which] * state[:, :2]
+        return rates
 
     def force(self, position: Floats, velocity: Floats) -> Floats:
-        """The contact force f (18): negative where the masses are pressed together."""
+        """Return the contact force f (18): negative where the masses are pressed together."""
         return self.force_v * velocity + self.force_x * position

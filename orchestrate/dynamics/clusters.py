@@ -22,27 +22,28 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Telling:
-    """How responses from many starts are told apart.
+class AttractorSettings:
+    """Settings for settling and clustering responses from many starts.
 
     Parameters
     ----------
     transient : int
-        Periods dropped, at least.
+        Periods dropped, at least: more where damping is weak and periods are long.
     settle : float
-        Periods dropped at least, times eta: a decay e^{-D tau} with D = 0.005 by a factor of ten
-        thousand.
+        At least ``settle * eta`` periods are dropped: more where damping is weak. By default a
+        decay e^{-D tau} with D = 0.005 goes on for a factor of ten thousand.
     samples : int
-        Periods looked at.
+        Periods kept: more where attractors repeat after more than half as many.
     converged : float
         Relative deviation within which a repeated state decides.
     apart : float
         Over ``converged``: within so much a state nearly repeats; states differ by more after fewer
         periods than those of the response.
     longest : int
-        Periods after which a response that does not repeat is irregular.
+        Periods after which a response that does not repeat is irregular: more where transients are
+        long, near bifurcations.
     irregular_samples : int
-        Periods looked at then.
+        Periods kept of an irregular response.
     alike : float
         Distance over the motion's size within which responses that repeat are one attractor where
         Newton's method finds no stable orbit.
@@ -65,8 +66,8 @@ class Telling:
     count_weight: float = 0.2
 
 
-def settling(transient: int, settle: float, eta: float) -> int:
-    """Periods to drop from a start far from the response: more where periods are short."""
+def transient_periods(transient: int, settle: float, eta: float) -> int:
+    """Return the periods to drop from a start far from the response: more where they are short."""
     return max(transient, round(settle * eta))
 
 
@@ -85,41 +86,45 @@ class Settled(NamedTuple):
     periods: int
 
 
-def response_from(instance: Instance, point: Point, start: ArrayLike, telling: Telling) -> Settled:
-    """The response from a state at phase 0, in m and m/s, run on until a repeated state decides.
+def run_until_settled(
+    instance: Instance, point: Point, start: ArrayLike, settings: AttractorSettings
+) -> Settled:
+    """Run the response from a state at phase 0, in m and m/s, on until a repeated state decides.
 
     Each time it does not repeat, it is run on for as long as before. One that nearly repeats at the
     end counts as periodic if it did so before and its deviation shrinks, else it is a narrow torus.
     """
-    dropped = settling(telling.transient, telling.settle, point.excitation.eta(point.structure))
+    dropped = transient_periods(
+        settings.transient, settings.settle, point.excitation.eta(point.structure)
+    )
     done, before = 0, Repetition(0, np.inf)
     while True:
-        response = respond(instance, *point, start, dropped, telling.samples, telling.converged)
-        done, start = done + dropped + telling.samples, response.end
-        if response.multiplicity and decided(response, telling):
+        response = respond(instance, *point, start, dropped, settings.samples, settings.converged)
+        done, start = done + dropped + settings.samples, response.end
+        if response.multiplicity and repeats_first(response, settings):
             return Settled(response, done)
-        nearly = response.repetition(telling.apart * telling.converged)
-        if done >= telling.longest:
+        nearly = response.repetition(settings.apart * settings.converged)
+        if done >= settings.longest:
             break
-        before, dropped = nearly, min(done, telling.longest - done)
+        before, dropped = nearly, min(done, settings.longest - done)
     same = nearly.multiplicity == before.multiplicity
     if nearly.multiplicity and same and 2.0 * nearly.deviation < before.deviation:
-        return Settled(replace(response, tolerance=telling.apart * telling.converged), done)
-    response = respond(instance, *point, start, 0, telling.irregular_samples, telling.converged)
-    return Settled(response, done + telling.irregular_samples)
+        return Settled(replace(response, tolerance=settings.apart * settings.converged), done)
+    response = respond(instance, *point, start, 0, settings.irregular_samples, settings.converged)
+    return Settled(response, done + settings.irregular_samples)
 
 
-def decided(response: Response, telling: Telling) -> bool:
-    """Whether a state that repeats does so after no fewer periods.
+def repeats_first(response: Response, settings: AttractorSettings) -> bool:
+    """Return whether a state that repeats does not nearly do so after fewer periods.
 
     A deviation that dies while it turns round is smaller after some periods than after one.
     """
-    nearly = response.repetition(telling.apart * telling.converged)
+    nearly = response.repetition(settings.apart * settings.converged)
     return nearly.multiplicity == response.multiplicity
 
 
 def features(response: Response, length: float) -> list[float]:
-    """What tells a response apart, by ``FEATURES``: none of it depends on the phase of its samples.
+    """Return the numbers of ``FEATURES``, none of which depends on the phase of the samples.
 
     Parameters
     ----------
@@ -135,19 +140,20 @@ def features(response: Response, length: float) -> list[float]:
     return [n, impacts, response.x_rel_max / length, float(gaps.mean()), float(gaps.std())]
 
 
-def irregular_clusters(rows: ArrayLike, telling: Telling) -> NDArray[np.intp]:
-    """Labels 0, 1, ... of irregular attractors, in the order in which they are met.
+def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[np.intp]:
+    """Group irregular responses into attractors by single-linkage clustering of their features.
 
     Parameters
     ----------
     rows : array_like, shape (n, 5)
         Features of irregular responses. Those belong together that a chain of responses connects,
-        each like the next (single linkage).
-    telling : Telling
+        each like the next.
+    settings : AttractorSettings
 
     Returns
     -------
     ndarray of int, shape (n,)
+        Labels 0, 1, ... in the order in which the attractors are met.
     """
     table = np.asarray(rows, dtype=float).reshape(-1, len(FEATURES))
     scale = np.maximum(np.abs(table[:, 2]), 1e-300)
@@ -156,17 +162,17 @@ def irregular_clusters(rows: ArrayLike, telling: Telling) -> NDArray[np.intp]:
             np.log(scale),
             table[:, 3] / scale,
             table[:, 4] / scale,
-            telling.count_weight * table[:, 1],
+            settings.count_weight * table[:, 1],
         ]
     )
-    return connected(points, telling.alike_irregular)
+    return single_linkage(points, settings.alike_irregular)
 
 
-def connected(points: Floats, radius: float) -> NDArray[np.intp]:
-    """Labels 0, 1, ... of points that chains of steps no longer than ``radius`` connect.
+def single_linkage(points: Floats, radius: float) -> NDArray[np.intp]:
+    """Cluster points by single linkage: chains of steps no longer than ``radius`` connect them.
 
-    The clusters of single linkage at that distance, in memory that grows with the number of
-    points and not with its square.
+    The memory grows with the number of points, and not with its square as that of
+    :func:`scipy.cluster.hierarchy.linkage`.
 
     Parameters
     ----------
@@ -176,7 +182,7 @@ def connected(points: Floats, radius: float) -> NDArray[np.intp]:
     Returns
     -------
     ndarray of int, shape (n,)
-        In the order in which the clusters are met.
+        Labels 0, 1, ... in the order in which the clusters are met.
     """
     labels = np.full(len(points), -1, dtype=np.intp)
     left = np.arange(len(points))

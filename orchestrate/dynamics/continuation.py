@@ -1,17 +1,18 @@
-"""Curves of roots followed by their arclength, whatever the equations are.
+"""Pseudo-arclength continuation of curves of roots, whatever the equations are.
 
-A curve is what n equations leave of n + 1 unknowns. It is followed by Keller's pseudo-arclength
-method: a step along the tangent, then Newton's method in the plane across it. It goes round folds,
-where no unknown serves as the curve's parameter. (Packages for continuation in Python look for
-branch points of smooth systems themselves; what ends a branch here are impacts, so this small
-engine only follows, and leaves it to the caller to look.)
+A curve is the set of roots of n equations in n + 1 unknowns. It is followed by Keller's method
+(Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977): a step along the
+tangent, then Newton's method in the plane orthogonal to it. It goes round folds, where no unknown
+serves as the curve's parameter. (Packages for continuation in Python detect branch points of smooth
+systems themselves; what ends a branch here are impacts, so this module only steps, and
+:mod:`.tracer` detects.)
 """
 
 from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -20,12 +21,15 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from .closed_form import Floats
 
-DENSE = 40  # equations up to which they are solved as if no coefficient were zero
-NEARLY = 1e-6  # a step that shrinks no more from here on is rounding
-ROUNDED = 0.05
-POLISHING = 2  # Newton steps after convergence, with the derivative at the root itself
-ACROSS = 1e-6  # cosine below which a tangent lies across the direction that should orient it
-LARGE = 0.9  # of the largest component: the first one above it orients a vector
+DENSE_LIMIT = 40  # equations: up to so many a dense solver is faster than a sparse one
+ROUNDING_STEP = 1e-6  # a Newton step below this that shrinks no more has reached rounding
+SLOW_SHRINKING = 0.05  # of the step before: a step that is not smaller shrinks no more
+POLISHING_STEPS = 2  # after convergence, with the derivative at the root itself
+ORTHOGONAL = 1e-6  # cosine below which a tangent has no side of the row that should orient it
+LARGE = 0.9  # of the largest component: the first one above it fixes a vector's sign
+SHORTENED_FAILED, SHORTENED_BENT = 0.35, 0.5  # of a step: after no root, after a sharp bend
+LENGTHENED = 1.6  # of a step that was easy: nearly straight, and few iterations
+EASY_COSINE, EASY_ITERATIONS = 0.993, 4
 
 
 class NoConvergenceError(Exception):
@@ -42,10 +46,10 @@ class Curve(Protocol):
         """Largest residual of a root, in the units of the equations."""
 
     def residual(self, unknowns: Floats) -> Floats:
-        """What is left of the equations, shape (n,)."""
+        """Return the residual of the equations, shape (n,)."""
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Its derivative, shape (n, n + 1): at a root exact, on the way to it perhaps an estimate.
+        """Return its derivative, shape (n, n + 1): exact at a root, perhaps an estimate elsewhere.
 
         Raises
         ------
@@ -54,7 +58,7 @@ class Curve(Protocol):
         """
 
 
-Followed = TypeVar("Followed", bound=Curve)
+AnyCurve = TypeVar("AnyCurve", bound=Curve)
 
 
 @dataclass(frozen=True)
@@ -67,8 +71,9 @@ class Root:
     tangent : ndarray, shape (n + 1,)
         Of length 1, in unknowns over their scale.
     residual : float
-        Largest absolute value of what is left of the equations.
+        Largest absolute residual of the equations.
     iterations : int
+        Of Newton's method.
     """
 
     unknowns: Floats
@@ -76,31 +81,33 @@ class Root:
     residual: float
     iterations: int
 
+    def reversed(self) -> Root:
+        """Return the same root with the tangent in the other direction of the curve."""
+        return replace(self, tangent=-self.tangent)
 
-def corrected(
+
+def newton_correct(
     curve: Curve,
     guess: Floats,
-    across: Floats,
+    normal: Floats,
     *,
     tolerance: float = 1e-8,
-    most: int = 8,
-    furthest: float = 0.5,
+    max_iterations: int = 8,
+    max_distance: float = 0.5,
 ) -> Root:
-    """The root near a guess, in the plane across a direction.
+    """Find the root near a guess, in the plane through the guess with a given normal.
 
     Parameters
     ----------
     curve : Curve
     guess : ndarray, shape (n + 1,)
-    across : ndarray, shape (n + 1,)
-        Direction in unknowns over their scale; the root differs from the guess across it alone. A
-        unit vector holds an unknown fixed.
+    normal : ndarray, shape (n + 1,)
+        Of the plane, in unknowns over their scale. A unit vector keeps an unknown fixed.
     tolerance : float
         Largest last step before the root is polished, in unknowns over their scale.
-    most : int
-        Iterations.
-    furthest : float
-        Longest way from the guess, in unknowns over their scale.
+    max_iterations : int
+    max_distance : float
+        Of the root from the guess, in each unknown over its scale.
 
     Raises
     ------
@@ -111,25 +118,25 @@ def corrected(
     -----
     A short step alone does not make a root: with a wrong derivative steps are short anywhere. So
     the derivative is made anew where the steps have become short, two more steps are taken with
-    it, and the root is accepted by what is left of the equations then, ``curve.accuracy`` at most.
-    It is known to rounding, and so is its tangent: nothing that is decided by them depends on how
-    another processor rounds.
+    it, and the root is accepted by its residual then, ``curve.accuracy`` at most. It is known to
+    rounding, and so is its tangent: nothing that is decided by them depends on how another
+    processor rounds.
     """
-    way, length = np.zeros_like(guess), np.inf
-    for iteration in range(1, most + 1):
-        way, step = newton_step(curve, guess, way, across)
-        before, length = length, float(np.abs(step).max())
-        if not length < np.inf or float(np.abs(way).max()) > furthest:
+    offset, size = np.zeros_like(guess), np.inf
+    for iteration in range(1, max_iterations + 1):
+        offset, step = newton_step(curve, guess, offset, normal)
+        before, size = size, float(np.abs(step).max())
+        if not size < np.inf or float(np.abs(offset).max()) > max_distance:
             raise NoConvergenceError("Newton's method went too far")
-        if length <= tolerance or before * ROUNDED <= length <= before <= NEARLY:
-            return polished(curve, guess, way, across, iteration)
-    raise NoConvergenceError(f"no root after {most} iterations")
+        if size <= tolerance or before * SLOW_SHRINKING <= size <= before <= ROUNDING_STEP:
+            return polish_root(curve, guess, offset, normal, iteration)
+    raise NoConvergenceError(f"no root after {max_iterations} iterations")
 
 
 def newton_step(
-    curve: Curve, guess: Floats, way: Floats, across: Floats, jacobian: Floats | None = None
+    curve: Curve, guess: Floats, offset: Floats, normal: Floats, jacobian: Floats | None = None
 ) -> tuple[Floats, Floats]:
-    """One step of Newton's method: the way from the guess after it, and the step.
+    """Take one step of Newton's method: return the new offset from the guess, and the step.
 
     The derivative is the curve's own where none is given.
 
@@ -140,46 +147,48 @@ def newton_step(
     """
     try:
         with np.errstate(over="ignore", invalid="ignore"):
-            unknowns = guess + curve.scale * way
+            unknowns = guess + curve.scale * offset
             jacobian = curve.jacobian(unknowns) if jacobian is None else jacobian
-            left = np.append(curve.residual(unknowns), across @ way)
-            step = solved(np.vstack([jacobian * curve.scale, across]), left)
+            residual = np.append(curve.residual(unknowns), normal @ offset)
+            step = solve_linear(np.vstack([jacobian * curve.scale, normal]), residual)
     except (np.linalg.LinAlgError, InputError) as error:
         raise NoConvergenceError(str(error)) from None
-    return way - step, step
+    return offset - step, step
 
 
-def polished(curve: Curve, guess: Floats, way: Floats, across: Floats, iterations: int) -> Root:
-    """The root that Newton's method has come near to, with its tangent.
+def polish_root(
+    curve: Curve, guess: Floats, offset: Floats, normal: Floats, iterations: int
+) -> Root:
+    """Return the root that Newton's method has come near to, with its tangent.
 
     Raises
     ------
     NoConvergenceError
-        Where it is none.
+        Where its residual is too large.
     """
     try:
-        jacobian = curve.jacobian(guess + curve.scale * way, at_root=True)
-        for _ in range(POLISHING):
-            way, _ = newton_step(curve, guess, way, across, jacobian)
-        unknowns = guess + curve.scale * way
-        left = float(np.abs(curve.residual(unknowns)).max(initial=0.0))
+        jacobian = curve.jacobian(guess + curve.scale * offset, at_root=True)
+        for _ in range(POLISHING_STEPS):
+            offset, _ = newton_step(curve, guess, offset, normal, jacobian)
+        unknowns = guess + curve.scale * offset
+        residual = float(np.abs(curve.residual(unknowns)).max(initial=0.0))
     except InputError as error:
         raise NoConvergenceError(str(error)) from None
-    if not left <= curve.accuracy:
-        raise NoConvergenceError(f"no root: {left:.0e} is left of the equations")
-    tangent = null_vector(np.vstack([jacobian * curve.scale, across]))
-    return Root(unknowns, tangent, left, iterations)
+    if not residual <= curve.accuracy:
+        raise NoConvergenceError(f"no root: the residual is {residual:.0e}")
+    tangent = unit_tangent(np.vstack([jacobian * curve.scale, normal]))
+    return Root(unknowns, tangent, residual, iterations)
 
 
-def solved(matrix: Floats, right: Floats) -> Floats:
-    """The solution of linear equations; of many, most of whose coefficients are zero.
+def solve_linear(matrix: Floats, right: Floats) -> Floats:
+    """Solve linear equations; large systems as sparse ones, as most of their coefficients are zero.
 
     Raises
     ------
     numpy.linalg.LinAlgError
         Where the matrix is singular.
     """
-    if len(right) <= DENSE:
+    if len(right) <= DENSE_LIMIT:
         return np.asarray(np.linalg.solve(matrix, right), dtype=float)
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
@@ -187,150 +196,163 @@ def solved(matrix: Floats, right: Floats) -> Floats:
     if not np.isfinite(matrix).all():
         raise np.linalg.LinAlgError("not finite")
     try:
-        found: Floats = splu(csc_array(matrix)).solve(right)
+        solution: Floats = splu(csc_array(matrix)).solve(right)
     except RuntimeError as error:
         raise np.linalg.LinAlgError(str(error)) from None
-    return found
+    return solution
 
 
-def null_vector(matrix: Floats) -> Floats:
-    """The direction of length 1 that all rows but the last map to zero, on the side of the last.
+def unit_tangent(matrix: Floats) -> Floats:
+    """Return the unit tangent: null vector of the Jacobian, fix_sign along the last row.
 
-    Where it is across the last row, as at a fold of a parameter that was held, it has no side: a
-    component orients it.
+    The matrix is the Jacobian with that row below it. Where the tangent is orthogonal to the row,
+    as at a fold of a parameter that was kept fixed, :func:`fix_sign` orients it.
     """
-    last = np.zeros(len(matrix))
-    last[-1] = 1.0
+    last = unit_vector(len(matrix), -1)
     try:
-        found = solved(matrix, last)
+        vector = solve_linear(matrix, last)
     except np.linalg.LinAlgError:
-        found = np.linalg.svd(matrix[:-1])[2][-1]
-    tangent: Floats = found / np.linalg.norm(found)
-    return tangent if abs(float(matrix[-1] @ tangent)) > ACROSS else oriented(tangent)
+        vector = np.linalg.svd(matrix[:-1])[2][-1]
+    tangent: Floats = vector / np.linalg.norm(vector)
+    return tangent if abs(float(matrix[-1] @ tangent)) > ORTHOGONAL else fix_sign(tangent)
 
 
-def oriented(vector: Floats) -> Floats:
-    """A vector or its opposite: linear algebra leaves it to the processor which one comes out."""
-    return vector if vector[oriented_by(vector)] > 0.0 else -vector
+def fix_sign(vector: Floats) -> Floats:
+    """Return a vector or its opposite, the same on every processor.
+
+    Linear algebra leaves it to the processor which of both comes out.
+    """
+    return vector if vector[leading_component(vector)] > 0.0 else -vector
 
 
-def oriented_by(vector: NDArray[np.inexact]) -> int:
-    """The first component that is about as large as the largest one."""
+def leading_component(vector: NDArray[np.inexact]) -> int:
+    """Return the index of the first component that is about as large as the largest one."""
     size = np.abs(vector)
     return int(np.argmax(size > LARGE * size.max()))
 
 
-def held(curve: Curve, unknown: int) -> Floats:
-    """The direction to correct across where an unknown is to stay as it is."""
-    found = np.zeros_like(curve.scale)
-    found[unknown] = 1.0
-    return found
+def unit_vector(size: int, component: int) -> Floats:
+    """Return the unit vector along a component: as a normal it keeps that unknown fixed."""
+    vector = np.zeros(size)
+    vector[component] = 1.0
+    return vector
 
 
 @dataclass
-class Walk(Generic[Followed]):
-    """A walk along a curve, with steps as long as the curve is straight.
+class ArclengthStepper(Generic[AnyCurve]):
+    """Steps along a curve, as long as the curve is straight.
 
     Attributes
     ----------
     curve : Curve
     root : Root
-        Where it stands; the walk goes on along the tangent.
-    step : float
-        Length of the next step, in unknowns over their scale.
-    longest, shortest : float
+        Where the stepper is; the next step goes along its tangent.
+    length : float
+        Of the next step, in unknowns over their scale.
+    max_length, min_length : float
         Steps allowed.
-    sharpest : float
-        Cosine of the largest angle between successive tangents.
+    min_cosine : float
+        Smallest cosine between successive tangents.
     tolerance : float
-        As :func:`corrected` has it.
+        As :func:`newton_correct` has it.
     """
 
-    curve: Followed
+    curve: AnyCurve
     root: Root
-    step: float
-    longest: float
-    shortest: float = 1e-7
-    sharpest: float = 0.97
+    length: float
+    max_length: float
+    min_length: float = 1e-7
+    min_cosine: float = 0.97
     tolerance: float = 1e-8
 
-    def at(self, length: float) -> Root:
-        """The root a length along the tangent from where the walk stands."""
+    def root_after(self, length: float) -> Root:
+        """Return the root a length along the tangent from here."""
         root = self.root
         guess = root.unknowns + length * root.tangent * self.curve.scale
-        return corrected(self.curve, guess, root.tangent, tolerance=self.tolerance)
+        return newton_correct(self.curve, guess, root.tangent, tolerance=self.tolerance)
 
-    def ahead(self, acceptable: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
-        """The next root, and the length of the step to it: straight and acceptable.
+    def step(self, accepts: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
+        """Return the next root that is accepted, and the length of the step to it.
 
         Raises
         ------
         NoConvergenceError
             Where no step is short enough.
         """
-        length = self.step
-        while length >= self.shortest:
+        length = self.length
+        while length >= self.min_length:
             try:
-                found = self.at(length)
+                root = self.root_after(length)
             except NoConvergenceError:
-                length *= 0.35
+                length *= SHORTENED_FAILED
                 continue
-            cosine = float(found.tangent @ self.root.tangent)
-            if cosine >= self.sharpest and acceptable(found):
-                easy = cosine > 0.993 and found.iterations <= 4
-                self.step = min(self.longest, length * (1.6 if easy else 1.0))
-                return found, length
-            length *= 0.5
+            cosine = float(root.tangent @ self.root.tangent)
+            if cosine >= self.min_cosine and accepts(root):
+                easy = cosine > EASY_COSINE and root.iterations <= EASY_ITERATIONS
+                self.length = min(self.max_length, length * (LENGTHENED if easy else 1.0))
+                return root, length
+            length *= SHORTENED_BENT
         raise NoConvergenceError("no step is short enough")
 
-    def inside(
+    def step_within(
         self,
         first: int,
         limits: Sequence[tuple[float, float]],
-        acceptable: Callable[[Root], bool] = lambda root: True,
+        accepts: Callable[[Root], bool] = lambda root: True,
     ) -> tuple[Root, float, bool]:
-        """The next root inside limits, as :meth:`ahead`, and whether it lies on one of them.
+        """Take one step; stop exactly on a limit of a parameter if it is reached.
 
         Parameters
         ----------
         first : int
-            Number of the first unknown that has limits.
+            Index of the first unknown that has limits.
         limits : sequence of (float, float)
             Of that one and those after it.
-        acceptable : callable
+        accepts : callable
+            Whether a root may be the next one.
+
+        Returns
+        -------
+        root : Root
+        length : float
+            Of the step.
+        at_limit : bool
+
+        Raises
+        ------
+        NoConvergenceError
+            Where no step is short enough.
         """
-        limit = self.limit_ahead(first, limits)
+        limit = self.next_limit(first, limits)
         if limit is not None:
             with contextlib.suppress(NoConvergenceError):
-                found = self.land(*limit)
-                if found.tangent @ self.root.tangent >= self.sharpest and acceptable(found):
-                    way = (found.unknowns - self.root.unknowns) / self.curve.scale
-                    return found, float(way @ self.root.tangent), True
-            self.step *= 0.5
-        return *self.ahead(acceptable), False
+                root = self.solve_at(*limit)
+                if root.tangent @ self.root.tangent >= self.min_cosine and accepts(root):
+                    offset = (root.unknowns - self.root.unknowns) / self.curve.scale
+                    return root, float(offset @ self.root.tangent), True
+            self.length *= SHORTENED_BENT
+        return *self.step(accepts), False
 
-    def limit_ahead(
+    def next_limit(
         self, first: int, limits: Sequence[tuple[float, float]]
     ) -> tuple[int, float] | None:
-        """The unknown that the next step takes past its limit, and the limit."""
+        """Return the unknown that the next step takes past its limit, and the limit."""
         rates = self.root.tangent * self.curve.scale
-        found, nearest = None, self.step
+        nearest, shortest = None, self.length
         for unknown, ends in enumerate(limits, first):
             rate = float(rates[unknown])
             limit = ends[1] if rate > 0.0 else ends[0]
-            way = (limit - self.root.unknowns[unknown]) / rate if rate else np.inf
-            if way <= nearest:
-                found, nearest = (unknown, limit), way
-        return found
+            length = (limit - self.root.unknowns[unknown]) / rate if rate else np.inf
+            if length <= shortest:
+                nearest, shortest = (unknown, limit), length
+        return nearest
 
-    def land(self, unknown: int, value: float) -> Root:
-        """The root near here at which an unknown has a value."""
+    def solve_at(self, unknown: int, value: float) -> Root:
+        """Return the root near here at which an unknown has a value."""
         rate = self.root.tangent[unknown] * self.curve.scale[unknown]
         length = (value - self.root.unknowns[unknown]) / rate
         guess = self.root.unknowns + length * self.root.tangent * self.curve.scale
         guess[unknown] = value
-        across = held(self.curve, unknown)
-        found = corrected(self.curve, guess, across, tolerance=self.tolerance)
-        if found.tangent @ self.root.tangent < 0.0:
-            return Root(found.unknowns, -found.tangent, found.residual, found.iterations)
-        return found
+        normal = unit_vector(len(guess), unknown)
+        root = newton_correct(self.curve, guess, normal, tolerance=self.tolerance)
+        return root.reversed() if root.tangent @ self.root.tangent < 0.0 else root

@@ -18,12 +18,12 @@ from ..access import STATE, EventInstance, Instance, begin
 from ..errors import FmuError, InputError
 from ..response.questions import Point
 from ..response.respond import Response, respond, sample
-from .clusters import Telling, response_from
+from .clusters import AttractorSettings, run_until_settled
 from .continuation import NoConvergenceError
 from .families import Setting
 from .guesses import Guess, from_impacts, start
-from .impact_sequence import TURN, Ring, Sequence
-from .orbit_search import least_periods, solve, why_no_motion
+from .impact_sequence import TURN, ImpactSequence, PeriodicOrbit
+from .orbit_search import least_periods, solve_orbit, why_no_motion
 from .settled_motion import (
     IRREGULAR,
     ORBIT,
@@ -33,17 +33,17 @@ from .settled_motion import (
     Floats,
     SettledMotion,
 )
-from .turning_points import in_order
+from .turning_points import from_phase_zero
 
 SPREAD = (0.999, 1.001)  # of the frequency, which does not vary: its scale alone matters
 RESIDUAL = 1e-9  # of an orbit's equations in units of a eta^2, at most
 MARGIN = 1e-9  # by which the multipliers of a stable orbit are smaller than 1 at least
 NEAR = 0.1  # distance over the motion's size from which a response may be coming to an orbit
-SHRINKS = 0.1  # to which part of itself a deviation is followed
-NOTHING = 1e-9  # a deviation over the motion's size that is rounding
-OTHER_PHASE = 2.4  # rad: where a response is looked at that does not repeat at phase 0
+SHRUNK = 0.1  # a deviation is followed until it should have become so much of itself
+ROUNDING = 1e-9  # a deviation over the motion's size that is no more than rounding
+OTHER_PHASE = 2.4  # rad: where a response is sampled that does not repeat at phase 0
 PIECES = 64  # of a period, among which a stretch without impacts is sought
-MOST_NODES = 400  # of an orbit that Newton's method is tried on
+MAX_NODES = 400  # of an orbit that Newton's method is tried on
 
 
 class MotionDecider:
@@ -54,10 +54,10 @@ class MotionDecider:
     plain : Instance
         Of ``TwoMassImpactOscillator``.
     eventful : EventInstance, optional
-        For impacts one by one; None where the FMU is FMI 2.0, which tells none: responses then are
-        decided by repeated states alone.
+        For impacts one by one. None where the FMU is FMI 2.0, which reports none: then repeated
+        states alone decide.
     point : Point
-    telling : Telling
+    settings : AttractorSettings
 
     Attributes
     ----------
@@ -66,229 +66,250 @@ class MotionDecider:
     """
 
     def __init__(
-        self, plain: Instance, eventful: EventInstance | None, point: Point, telling: Telling
+        self,
+        plain: Instance,
+        eventful: EventInstance | None,
+        point: Point,
+        settings: AttractorSettings,
     ) -> None:
-        self.plain, self.eventful, self.point, self.telling = plain, eventful, point, telling
+        self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
         excitation = point.excitation
         given = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
         limits = ((excitation.frequency * SPREAD[0], excitation.frequency * SPREAD[1]),)
-        self.setting = Setting(point.structure, given, ("frequency",), limits)
+        self.system = Setting(point.structure, given, ("frequency",), limits)
         self.values = np.array([excitation.frequency])
         self.known: list[SettledMotion] = []
 
     # -- responses --------------------------------------------------------------------------------
 
     def decide(self, state: ArrayLike) -> tuple[SettledMotion, Floats]:
-        """What the response from a state at phase 0 settles to, and a state on it at phase 0."""
-        response, done = response_from(self.plain, self.point, state, self.telling)
+        """Decide what the response from a state at phase 0 settles to; return a state on it too."""
+        response, done = run_until_settled(self.plain, self.point, state, self.settings)
         unstable = False
         while True:
-            found, doubtful = self.settled_to(response)
-            if found is not None:
-                return found, found.states[found.nearest(response.end)[0]]
+            motion, doubtful = self.periodic_motion(response)
+            if motion is not None:
+                return motion, motion.states[motion.nearest(response.end)[0]]
             unstable |= doubtful
-            dropped = min(done, self.telling.longest - done)
+            dropped = min(done, self.settings.longest - done)
             if dropped <= 0:
-                return self.left_over(response, unstable)
+                return self.motion_without_orbit(response, unstable)
             response = self.run_on(response, dropped)
-            done += dropped + self.telling.samples
+            done += dropped + self.settings.samples
 
     def run_on(self, response: Response, dropped: int) -> Response:
-        """The response after some more periods."""
-        samples, converged = self.telling.samples, self.telling.converged
+        """Return the response after some more periods."""
+        samples, converged = self.settings.samples, self.settings.converged
         return respond(self.plain, *self.point, response.end, dropped, samples, converged)
 
-    def settled_to(self, response: Response) -> tuple[SettledMotion | None, bool]:
-        """The periodic motion that a response is on, if any, and whether it is near an unstable
-        orbit.
+    def periodic_motion(self, response: Response) -> tuple[SettledMotion | None, bool]:
+        """Return the periodic motion that a response is on, if any.
+
+        Returns
+        -------
+        motion : SettledMotion or None
+        near_unstable : bool
+            Whether the response is near an unstable orbit.
         """
         n = response.multiplicity
         if n:
-            known = self.known_at(response.end, n)
+            known = self.known_motion_at(response.end, n)
             if known is not None:
                 return known, False
         unstable = False
         for periods in [n] if n else self.possible_periods(response):
-            ring, free_phase = self.orbit(response.end, periods)
-            if ring is None:
+            orbit, free_phase = self.orbit_near(response.end, periods)
+            if orbit is None:
                 continue
-            if largest(ring) >= 1.0 - MARGIN:
+            if largest_multiplier(orbit) >= 1.0 - MARGIN:
                 unstable = True
                 continue
-            found = SettledMotion.from_orbit(self.point, ring, free_phase)
-            if self.comes_to(response.end, found):
-                return self.remembered(found), False
+            motion = SettledMotion.from_orbit(self.point, orbit, free_phase)
+            if self.converges_to(response.end, motion):
+                return self.remember(motion), False
         return None, unstable
 
     def possible_periods(self, response: Response) -> list[int]:
-        """Periods after which a response may repeat that does not at phase 0: an impact at that
-        phase hides it, or it still converges.
-        """
-        seen = at_another_phase(self.plain, self.point, response, self.telling.irregular_samples)
-        close, nearly = self.telling.converged, self.telling.apart * self.telling.converged
-        found = [seen.repetition(tolerance).multiplicity for tolerance in (close, nearly)]
-        return [n for n in dict.fromkeys(found) if n]
+        """Return after how many periods a response may repeat that does not do so at phase 0."""
+        seen = sample_at_another_phase(
+            self.plain, self.point, response, self.settings.irregular_samples
+        )
+        close, nearly = self.settings.converged, self.settings.apart * self.settings.converged
+        counts = [seen.repetition(tolerance).multiplicity for tolerance in (close, nearly)]
+        return [n for n in dict.fromkeys(counts) if n]
 
-    def left_over(self, response: Response, unstable: bool) -> tuple[SettledMotion, Floats]:
-        """What is known of a response that comes to no stable orbit."""
+    def motion_without_orbit(
+        self, response: Response, unstable: bool
+    ) -> tuple[SettledMotion, Floats]:
+        """Return what is known of a response that comes to no stable orbit, and its state."""
         n, state = response.multiplicity, np.array(response.end)
-        if not n or response.repetition(self.telling.converged).multiplicity != n:  # nearly is not
+        if not n or response.repetition(self.settings.converged).multiplicity != n:  # nearly is not
             states, impacts = response.samples, response.impacts_per_period
-            found = SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
-            return found, state
+            motion = SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
+            return motion, state
         states = response.samples[-n:].copy()
-        impacts = whole_impacts(self.plain, self.point, response.end, n) / n
+        impacts = count_impacts(self.plain, self.point, response.end, n) / n
         decided = UNDECIDED if unstable else REPEATED
-        found = SettledMotion(self.point, decided, states, n, impacts, response.x_rel_max)
-        self.known.append(found)
-        return found, state
+        motion = SettledMotion(self.point, decided, states, n, impacts, response.x_rel_max)
+        self.known.append(motion)
+        return motion, state
 
     # -- known motions ----------------------------------------------------------------------------
 
-    def known_at(self, state: ArrayLike, n: int) -> SettledMotion | None:
-        """The known motion that a response is on which repeats after some periods."""
+    def known_motion_at(self, state: ArrayLike, n: int) -> SettledMotion | None:
+        """Return the known motion that a response is on which repeats after some periods."""
         for motion in self.known:
             distance = motion.nearest(state)[1]
-            within = SAME if motion.decided == ORBIT else self.telling.alike
+            within = SAME if motion.decided == ORBIT else self.settings.alike
             if distance < within and motion.multiplicity == n:
                 return motion
             near = motion.decided == ORBIT and distance < NEAR
-            if near and self.comes_to(state, motion):
+            if near and self.converges_to(state, motion):
                 return motion
         return None
 
-    def remembered(self, orbit: SettledMotion) -> SettledMotion:
-        """A stable orbit, or in its place the known one that is the same."""
+    def remember(self, motion: SettledMotion) -> SettledMotion:
+        """Keep a stable orbit, or return the known one that is the same."""
         for known in self.known:
-            if known.is_orbit_of(orbit):
+            if known.is_orbit_of(motion):
                 return known
-        self.known.append(orbit)
-        return orbit
+        self.known.append(motion)
+        return motion
 
-    def orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
-        """The stable orbit near a state at phase 0 that repeats after some periods."""
-        ring, free_phase = self.orbit(state, periods)
-        if ring is None or largest(ring) >= 1.0 - MARGIN:
+    def stable_orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
+        """Return the stable orbit near a state at phase 0 that repeats after some periods."""
+        orbit, free_phase = self.orbit_near(state, periods)
+        if orbit is None or largest_multiplier(orbit) >= 1.0 - MARGIN:
             return None
-        return self.remembered(SettledMotion.from_orbit(self.point, ring, free_phase))
+        return self.remember(SettledMotion.from_orbit(self.point, orbit, free_phase))
 
-    def comes_to(self, state: ArrayLike, orbit: SettledMotion) -> bool:
-        """Whether the response from a state at phase 0 is on a stable orbit: in its neighbourhood,
-        and nearer to it, as its multipliers say, after some of its periods.
+    def converges_to(self, state: ArrayLike, motion: SettledMotion) -> bool:
+        """Return whether the response from a state at phase 0 settles to a stable orbit.
+
+        It does where it is in the orbit's neighbourhood, and nearer to it after some periods, as
+        the multipliers say.
         """
-        excitation, periods = self.point.excitation, orbit.multiplicity
+        excitation, periods = self.point.excitation, motion.multiplicity
         begin(self.plain, *self.point, state)
-        if orbit.free_phase > 0.0:
-            self.plain.step(0.0, orbit.free_phase / excitation.frequency)
-        there, states = self.plain.get(*STATE), orbit.free_states
+        if motion.free_phase > 0.0:
+            self.plain.step(0.0, motion.free_phase / excitation.frequency)
+        there, states = self.plain.get(*STATE), motion.free_states
         before = states.nearest(there)[1]
         if before < SAME or not before < NEAR:
             return before < SAME
-        rate = max(orbit.multiplier, 1e-3)
-        turns = math.ceil(math.log(SHRINKS) / math.log(rate))
-        turns = max(1, min(turns, self.telling.longest // periods))
-        shifted = excitation.replace(phase=orbit.free_phase % TURN)
+        rate = max(motion.multiplier, 1e-3)
+        turns = math.ceil(math.log(SHRUNK) / math.log(rate))
+        turns = max(1, min(turns, self.settings.longest // periods))
+        shifted = excitation.replace(phase=motion.free_phase % TURN)
         begin(self.plain, self.point.structure, shifted, there)
         self.plain.step(0.0, turns * periods * excitation.period)
         after = states.nearest(self.plain.get(*STATE))[1]
-        return after <= max(0.5 * (1.0 + rate**turns) * before, NOTHING)
+        return after <= max(0.5 * (1.0 + rate**turns) * before, ROUNDING)
 
     # -- orbits -----------------------------------------------------------------------------------
 
-    def orbit(self, state: ArrayLike, periods: int) -> tuple[Ring | None, float]:
-        """The orbit near the response from a state at phase 0, with its least period, and a phase
-        of it far from impacts; no orbit where Newton's method finds no possible motion.
+    def orbit_near(self, state: ArrayLike, periods: int) -> tuple[PeriodicOrbit | None, float]:
+        """Return the orbit near the response from a state at phase 0, over its least period.
+
+        Returns
+        -------
+        orbit : PeriodicOrbit or None
+            None where Newton's method finds no possible motion.
+        phase : float
+            Of the orbit, far from impacts, rad.
         """
         if self.eventful is None:
             return None, 0.0
-        guess, free_phase = self.impacts_from(np.array(state), periods)
-        return self.solved(guess), free_phase
+        guess, free_phase = self.guess_from(np.array(state), periods)
+        return self.solve(guess), free_phase
 
-    def solved(self, guess: Guess) -> Ring | None:
-        """The orbit of a guess, with its least period; None where there is no possible motion."""
-        if len(guess[0].kinds) > MOST_NODES:
+    def solve(self, guess: Guess) -> PeriodicOrbit | None:
+        """Return the orbit of a guess over its least period; None if it is no possible motion."""
+        if len(guess[0].kinds) > MAX_NODES:
             return None
         try:
-            family, root = solve(self.setting, guess, self.values)
+            family, root = solve_orbit(self.system, guess, self.values)
         except NoConvergenceError:
             return None
-        ring = family.ring(root.unknowns)
-        if root.residual > RESIDUAL or why_no_motion(ring):
+        orbit = family.orbit(root.unknowns)
+        if root.residual > RESIDUAL or why_no_motion(orbit):
             return None
-        return without_copies(ring)
+        return without_copies(orbit)
 
-    def impacts_from(self, state: Floats, periods: int) -> tuple[Guess, float]:
-        """The impacts of some periods, from the middle of the longest stretch without any."""
+    def guess_from(self, state: Floats, periods: int) -> tuple[Guess, float]:
+        """Return the impacts of some periods, from amid the longest stretch without any."""
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
-        form, span = self.setting.form(self.values), periods * self.point.excitation.period
+        form, span = self.system.form(self.values), periods * self.point.excitation.period
         start(instance, self.point, form, state)
         times = instance.impacts(0.0, span).time
         if not len(times):
-            return (Sequence(periods, ()), np.zeros((0, 4))), 0.0
+            return (ImpactSequence(periods, ()), np.zeros((0, 4))), 0.0
         stretches = np.diff(np.append(times, times[0] + span))
         longest = int(stretches.argmax())
         begun = float(times[longest] + 0.5 * stretches[longest]) % span
         start(instance, self.point, form, state)
         if begun > 0.0:
             instance.impacts(0.0, begun)
-        found = instance.impacts(begun, begun + span)
-        return from_impacts(found, self.point, form, periods), frequency * begun
+        impacts = instance.impacts(begun, begun + span)
+        return from_impacts(impacts, self.point, form, periods), frequency * begun
 
-    def followed(self, orbit: SettledMotion) -> SettledMotion | None:
-        """The stable orbit here of the sequence of an orbit at another value of the parameter."""
-        if orbit.ring is None or self.eventful is None:
+    def continue_orbit(self, motion: SettledMotion) -> SettledMotion | None:
+        """Return the stable orbit here of the sequence of an orbit at another value."""
+        if motion.orbit is None or self.eventful is None:
             return None
-        ring = self.solved((orbit.ring.sequence, orbit.ring.nodes))
-        if ring is None or largest(ring) >= 1.0 - MARGIN:
+        orbit = self.solve((motion.orbit.sequence, motion.orbit.nodes))
+        if orbit is None or largest_multiplier(orbit) >= 1.0 - MARGIN:
             return None
-        found = SettledMotion.from_orbit(self.point, ring, free_phase_of(ring))
-        if not self.returns(found):
+        found = SettledMotion.from_orbit(self.point, orbit, phase_far_from_impacts(orbit))
+        if not self.stays_on(found):
             return None
-        own = self.orbit_at(found.states[0], found.multiplicity)  # with the impacts of the FMU
+        own = self.stable_orbit_at(
+            found.states[0], found.multiplicity
+        )  # with the impacts of the FMU
         return own if own is not None and own.nearest(found.states[0])[1] < SAME else None
 
-    def returns(self, orbit: SettledMotion) -> bool:
-        """Whether the FMU that begins on an orbit stays there."""
+    def stays_on(self, motion: SettledMotion) -> bool:
+        """Return whether the FMU that begins on an orbit stays there."""
         excitation = self.point.excitation
-        shifted = excitation.replace(phase=orbit.free_phase % TURN)
+        shifted = excitation.replace(phase=motion.free_phase % TURN)
         try:
-            begin(self.plain, self.point.structure, shifted, orbit.free_states.states[0])
+            begin(self.plain, self.point.structure, shifted, motion.free_states.states[0])
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
-        self.plain.step(0.0, orbit.multiplicity * excitation.period)
-        return orbit.free_states.nearest(self.plain.get(*STATE))[1] < SAME
+        self.plain.step(0.0, motion.multiplicity * excitation.period)
+        return motion.free_states.nearest(self.plain.get(*STATE))[1] < SAME
 
 
-def largest(ring: Ring) -> float:
-    """The largest absolute value of an orbit's multipliers."""
-    return float(np.abs(ring.multipliers()).max(initial=0.0))
+def largest_multiplier(orbit: PeriodicOrbit) -> float:
+    """Return the largest absolute value of an orbit's multipliers."""
+    return float(np.abs(orbit.multipliers()).max(initial=0.0))
 
 
-def without_copies(ring: Ring) -> Ring:
-    """An orbit over the least number of periods after which it closes."""
-    periods, least = ring.sequence.periods, least_periods(ring)
+def without_copies(orbit: PeriodicOrbit) -> PeriodicOrbit:
+    """Return an orbit over the least number of periods after which it closes."""
+    periods, least = orbit.sequence.periods, least_periods(orbit)
     if least == periods:
-        return ring
-    nodes, first = in_order(ring.nodes, periods)
+        return orbit
+    nodes, first = from_phase_zero(orbit.nodes, periods)
     count = len(nodes) * least // periods
-    kinds = np.roll(np.array(ring.sequence.kinds, dtype=int), -first)[:count]
-    return Ring(Sequence(least, tuple(kinds.tolist())), ring.form, nodes[:count])
+    kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)[:count]
+    return PeriodicOrbit(ImpactSequence(least, tuple(kinds.tolist())), orbit.form, nodes[:count])
 
 
-def free_phase_of(ring: Ring) -> float:
-    """A phase of an orbit in the middle of its longest segment."""
-    if not ring.count:
+def phase_far_from_impacts(orbit: PeriodicOrbit) -> float:
+    """Return a phase of an orbit in the middle of its longest segment."""
+    if not orbit.count:
         return 0.0
-    longest = int(ring.durations.argmax())
-    middle = 0.5 * (ring.begins[longest] + ring.ends[longest])
-    return float(middle % (TURN * ring.sequence.periods))
+    longest = int(orbit.durations.argmax())
+    middle = 0.5 * (orbit.begins[longest] + orbit.ends[longest])
+    return float(middle % (TURN * orbit.sequence.periods))
 
 
-def at_another_phase(
+def sample_at_another_phase(
     instance: Instance, point: Point, response: Response, samples: int
 ) -> Response:
-    """A response that goes on, sampled at a phase other than 0."""
+    """Return a response that goes on, sampled at a phase other than 0."""
     begin(instance, *point, response.end)
     instance.step(0.0, OTHER_PHASE / point.excitation.frequency)
     there = instance.get(*STATE)
@@ -297,9 +318,11 @@ def at_another_phase(
     return replace(response, samples=states, x_rel_max=gap)
 
 
-def whole_impacts(instance: Instance, point: Point, state: ArrayLike, periods: int) -> int:
-    """Impacts of a response in some of its periods, from a phase in the middle of a stretch without
-    any, so that none is counted twice or left out.
+def count_impacts(instance: Instance, point: Point, state: ArrayLike, periods: int) -> int:
+    """Count the impacts of a response in some of its periods.
+
+    They are counted from a phase in the middle of a stretch without any, so that none is counted
+    twice or left out.
     """
     begin(instance, *point, state)
     width = point.excitation.period / PIECES
@@ -318,7 +341,7 @@ def whole_impacts(instance: Instance, point: Point, state: ArrayLike, periods: i
 
 
 def middle_of_longest_run(flags: NDArray[np.bool_]) -> int:
-    """The place in the middle of the longest run of true flags on a ring; 0 where there is none."""
+    """Return the middle of the longest run of true flags on a circle; 0 where there is none."""
     if flags.all() or not flags.any():
         return 0
     first = int(np.flatnonzero(~flags)[0])

@@ -13,7 +13,7 @@ from ..response.questions import ASKED, Point, point
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import one_of
 from .closed_form import ClosedForm, Floats
-from .impact_sequence import POSITION, Ring, Sequence
+from .impact_sequence import POSITION, ImpactSequence, PeriodicOrbit
 
 ACCELERATION = "box_acceleration"
 SMALLEST = 1e-3  # scale of displacements and velocities over a eta^2
@@ -45,44 +45,51 @@ class Setting:
     box_acceleration: float = 0.0
 
     def point(self, values: Floats) -> Point:
-        """The structure under its excitation at values of the parameters."""
+        """Return the structure under its excitation at values of the parameters."""
         given = {**dict(self.excitation), **dict(zip(self.over, map(float, values), strict=True))}
         given.pop(ACCELERATION, None)
         return point(self.structure, given)
 
-    def first_orbit(self, values: Floats, period: int, guess: str) -> str:
-        """The call that asks for the orbit at values of the parameters."""
-        found, told = self.point(values), dict(self.excitation)
-        told.update(zip(self.over, map(float, values), strict=True))
-        shown = {name: told[name] for name in ASKED if name in told}
+    def orbit_call(self, values: Floats, period: int, guess: str) -> str:
+        """Return the call that asks for the orbit at values of the parameters."""
+        point, arguments = self.point(values), dict(self.excitation)
+        arguments.update(zip(self.over, map(float, values), strict=True))
+        shown = {name: arguments[name] for name in ASKED if name in arguments}
         if self.acceleration(values):
             shown[ACCELERATION] = self.acceleration(values)
         parts = [f"{name}={value!r}" for name, value in {**shown, "period": period}.items()]
-        return f"orbit({', '.join([repr(found.structure), *parts, f'guess={guess}'])})"
+        return f"orbit({', '.join([repr(point.structure), *parts, f'guess={guess}'])})"
 
     def acceleration(self, values: Floats) -> float:
-        """The box's constant acceleration there."""
+        """Return the box's constant acceleration there."""
         given = dict(zip(self.over, map(float, values), strict=True))
         return given.get(ACCELERATION, self.box_acceleration)
 
     def form(self, values: Floats) -> ClosedForm:
-        """The closed form there."""
-        found = self.point(values)
-        return ClosedForm.of(found.structure, found.excitation, self.acceleration(values))
+        """Return the closed form there.
 
-    def first_alone(self, values: Floats) -> Setting:
-        """The same, with all parameters but the first one at values."""
-        told = dict(zip(self.over[1:], map(float, values[1:]), strict=True))
-        acceleration = told.pop(ACCELERATION, self.box_acceleration)
-        excitation = {**dict(self.excitation), **{k: v for k, v in told.items() if k in ASKED}}
-        changes: dict[str, Any] = {k: v for k, v in told.items() if k not in ASKED}
+        Raises
+        ------
+        InputError
+            On a natural frequency with no damping, or next to none: amplitudes grow there.
+        """
+        point = self.point(values)
+        point.excitation.check(point.structure)
+        return ClosedForm.from_structure(*point, self.acceleration(values))
+
+    def over_first_alone(self, values: Floats) -> Setting:
+        """Return the same, with all parameters but the first one fixed at values."""
+        fixed = dict(zip(self.over[1:], map(float, values[1:]), strict=True))
+        acceleration = fixed.pop(ACCELERATION, self.box_acceleration)
+        excitation = {**dict(self.excitation), **{k: v for k, v in fixed.items() if k in ASKED}}
+        changes: dict[str, Any] = {k: v for k, v in fixed.items() if k not in ASKED}
         structure = self.structure.replace(**changes)
         rest = tuple(excitation.items())
         return Setting(structure, rest, self.over[:1], self.limits[:1], acceleration)
 
 
-def knocking(structure: Structure) -> Structure:
-    """A structure whose masses knock.
+def require_delaminated(structure: Structure) -> Structure:
+    """Return a structure, if its masses knock.
 
     Raises
     ------
@@ -94,8 +101,8 @@ def knocking(structure: Structure) -> Structure:
     return structure
 
 
-def check_names(over: tuple[str, ...]) -> None:
-    """Whether these are parameters that can vary.
+def check_parameters(over: tuple[str, ...]) -> None:
+    """Check that these are parameters that can vary.
 
     Raises
     ------
@@ -114,18 +121,18 @@ class Family:
     Attributes
     ----------
     setting : Setting
-    sequence : Sequence
+    sequence : ImpactSequence
     scale : ndarray
         Sizes of the unknowns.
     """
 
     setting: Setting
-    sequence: Sequence
+    sequence: ImpactSequence
     scale: Floats = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
-    def near(cls, setting: Setting, sequence: Sequence, nodes: Floats) -> Family:
-        """With scales from the nodes of one of its orbits, which count as one."""
+    def from_nodes(cls, setting: Setting, sequence: ImpactSequence, nodes: Floats) -> Family:
+        """Return the family with scales from the nodes of one of its orbits."""
         size = max(float(np.abs(nodes[:, 1:]).max(initial=0.0)), SMALLEST)
         spans = [high - low for low, high in setting.limits]
         return cls(setting, sequence, np.append(node_scales(size, len(nodes)), spans))
@@ -142,30 +149,30 @@ class Family:
             return RESIDUAL
         return RESIDUAL * float(self.scale[POSITION]) / np.sqrt(len(self.sequence.kinds))
 
-    def ring(self, unknowns: Floats) -> Ring:
-        """The orbit's nodes and equations."""
+    def orbit(self, unknowns: Floats) -> PeriodicOrbit:
+        """Return the orbit of some unknowns."""
         nodes, values = unknowns[: self.size], unknowns[self.size :]
-        return Ring(self.sequence, self.setting.form(values), nodes.reshape(-1, 4))
+        return PeriodicOrbit(self.sequence, self.setting.form(values), nodes.reshape(-1, 4))
 
     def residual(self, unknowns: Floats) -> Floats:
-        """What is left of the equations."""
-        return self.ring(unknowns).residual()
+        """Return the residual of the orbit's equations."""
+        return self.orbit(unknowns).residual()
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Its derivative: exact by the nodes, by differences by the parameters."""
+        """Return its derivative: exact by the nodes, by differences by the parameters."""
         columns = [
-            difference(self.residual, unknowns, self.size + i, *limits)[:, None]
+            central_difference(self.residual, unknowns, self.size + i, *limits)[:, None]
             for i, limits in enumerate(self.setting.limits)
         ]
-        return np.hstack([self.ring(unknowns).jacobian().real, *columns])
+        return np.hstack([self.orbit(unknowns).jacobian().real, *columns])
 
 
 def node_scales(size: float, count: int) -> Floats:
-    """Scales of the unknowns of some nodes, in a motion of some size."""
+    """Return scales of the unknowns of some nodes, in a motion of some size."""
     return np.tile([1.0, size, size, size], count) * np.sqrt(max(count, 1))
 
 
-def difference(
+def central_difference(
     function: Callable[[Floats], Floats],
     unknowns: Floats,
     which: int,
@@ -173,7 +180,7 @@ def difference(
     high: float,
     step: float = 0.0,
 ) -> Floats:
-    """Derivative of a function by one unknown, by a central difference inside limits."""
+    """Return the derivative of a function by one unknown, by a central difference inside limits."""
     value = unknowns[which]
     step = step or RELATIVE_STEP * max(abs(value), 1e-3 * (high - low))
     ends = []
@@ -182,5 +189,5 @@ def difference(
         moved[which] = min(max(place, min(low, value)), max(high, value))
         ends.append((function(moved), moved[which]))
     (before, first), (after, last) = ends
-    found: Floats = (after - before) / (last - first)
-    return found
+    slope: Floats = (after - before) / (last - first)
+    return slope

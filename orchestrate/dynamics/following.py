@@ -59,15 +59,15 @@ class OnwardQuestion(SeriesQuestion, ABC):
     follows: str = ""
 
     def needs(self) -> tuple[str, ...]:
-        """The sweep, if any."""
+        """Return the name of the sweep, if any."""
         return (self.follows,) if self.follows else ()
 
     def items(self, inputs: Inputs) -> Sequence[Followed]:
-        """What is followed, for each value."""
+        """Return what is followed, for each value."""
         series = self.series
         rows = np.reshape(self.start, (-1, 4))
         if self.follows:
-            rows = ends_of(inputs[self.follows], series)
+            rows = end_states(inputs[self.follows], series)
         starts = np.broadcast_to(rows, (len(series.points), 4)).tolist()
         return [Followed(*item) for item in zip(series.points, map(tuple, starts), strict=True)]
 
@@ -88,20 +88,20 @@ class FollowingQuestion(OnwardQuestion, ABC):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
     ) -> Table:
-        """Some responses, settled and followed."""
+        """Follow some responses after their transients."""
         rows = []
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             for item in items:
-                start = settled(plain, item, self.transient)
-                first = touches(eventful, item.point, start)
-                impacts = impacts_of(eventful, item.point, start, self.periods)
+                start = state_after(plain, item, self.transient)
+                first = starts_in_contact(eventful, item.point, start)
+                impacts = follow_impacts(eventful, item.point, start, self.periods)
                 last = eventful.flag("in_contact")()
                 rows.append(self.row(impacts, Followed(item.point, start, (first, last))))
         return {"rows": np.array(rows, dtype=float)}
 
     @abstractmethod
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
-        """What is told of one response.
+        """Return the numbers of one response.
 
         Parameters
         ----------
@@ -112,15 +112,15 @@ class FollowingQuestion(OnwardQuestion, ABC):
         """
 
 
-def ends_of(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
-    """States at the ends of a sweep's responses, m and m/s; each value's, or the nearest one's."""
+def end_states(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
+    """Return states at the ends of a sweep's responses, m and m/s; the nearest value's."""
     rows = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
-    found: NDArray[np.float64] = rows.values * series.scales()
-    return found
+    states: NDArray[np.float64] = rows.values * series.scales()
+    return states
 
 
-def starts_of(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:
-    """States that a user's responses start from, one after the other.
+def start_states(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:
+    """Return the states that a user's responses start from, one after the other.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def starts_of(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion) ->
                 f"start: a dataset over {', '.join(map(str, there))}; expected a sweep in one "
                 f"direction over the same values of {series.name}"
             )
-        return tuple(ends_of(swept, series).ravel().tolist())
+        return tuple(end_states(swept, series).ravel().tolist())
     rows = states("start", given, question.structure)
     if len(rows) not in (1, len(series.values)):
         raise InputError(
@@ -154,8 +154,8 @@ def starts_of(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion) ->
     return tuple(rows.ravel().tolist())
 
 
-def settled(instance: Instance, item: Followed, transient: int) -> State:
-    """The state after a transient, at phase 0 again."""
+def state_after(instance: Instance, item: Followed, transient: int) -> State:
+    """Return the state after a transient, at phase 0 again."""
     if not transient:
         return item.start
     begin(instance, *item.point, item.start)
@@ -163,13 +163,15 @@ def settled(instance: Instance, item: Followed, transient: int) -> State:
     return tuple(instance.get(*STATE))
 
 
-def touches(instance: EventInstance, point: Point, start: ArrayLike) -> bool:
-    """Whether a state at phase 0 is one of permanent contact."""
+def starts_in_contact(instance: EventInstance, point: Point, start: ArrayLike) -> bool:
+    """Return whether a state at phase 0 is one of permanent contact."""
     begin(instance, *point, start)
     return instance.flag("in_contact")()
 
 
-def impacts_of(instance: EventInstance, point: Point, start: ArrayLike, periods: int) -> Impacts:
-    """Non-dimensional impacts of some periods from a state at phase 0."""
+def follow_impacts(
+    instance: EventInstance, point: Point, start: ArrayLike, periods: int
+) -> Impacts:
+    """Return the non-dimensional impacts of some periods from a state at phase 0."""
     begin(instance, *point, start)
     return nondimensional(instance.impacts(0.0, periods * point.excitation.period), point)

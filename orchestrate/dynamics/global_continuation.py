@@ -20,7 +20,7 @@ from ..access import EventInstance, Instance, begin
 from ..access.description import describe
 from ..response.questions import Point
 from ..response.respond import sample
-from .clusters import Telling, irregular_clusters
+from .clusters import AttractorSettings, irregular_clusters
 from .decision import MotionDecider
 from .settled_motion import IRREGULAR, ORBIT, Floats, SettledMotion
 
@@ -87,30 +87,30 @@ class Value:
     motions: list[SettledMotion] = field(default_factory=list)
     labels: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
-    def gather(self, starts: Starts, telling: Telling) -> None:
-        """The attractors of random starts."""
+    def gather(self, starts: Starts, settings: AttractorSettings) -> None:
+        """Collect the attractors of random starts."""
         self.labels = np.full(len(starts.ends), -1, dtype=np.intp)
         seen: dict[bytes, int] = {}
         for i in np.flatnonzero(starts.decided != IRREGULAR):
             row = starts.features[i]
             key = row.tobytes()
             if key not in seen:
-                motion = self.again(row, starts.ends[i], int(starts.decided[i]))
+                motion = self.restored(row, starts.ends[i], int(starts.decided[i]))
                 seen[key] = self.index(motion)
             self.labels[i] = seen[key]
         irregular = np.flatnonzero(starts.decided == IRREGULAR)
-        groups = irregular_clusters(starts.features[irregular], telling)
+        groups = irregular_clusters(starts.features[irregular], settings)
         for group in range(int(groups.max(initial=-1)) + 1):
             members = irregular[groups == group]
             self.motions.append(self.irregular(starts.features[members], starts.ends[members[0]]))
             self.labels[members] = len(self.motions) - 1
 
-    def again(self, row: Floats, state: Floats, decided: int) -> SettledMotion:
-        """A motion that has been decided, from its features and a state on it."""
+    def restored(self, row: Floats, state: Floats, decided: int) -> SettledMotion:
+        """Return a motion that has been decided, from its features and a state on it."""
         decider, n = self.decider, int(row[0])
-        known = decider.known_at(state, n)
+        known = decider.known_motion_at(state, n)
         if known is None and decided == ORBIT:
-            known = decider.orbit_at(state, n)
+            known = decider.stable_orbit_at(state, n)
         if known is None:
             begin(decider.plain, *decider.point, state)
             states, _ = sample(decider.plain, decider.point.excitation.period, 0, n)
@@ -120,7 +120,7 @@ class Value:
         return known
 
     def irregular(self, rows: Floats, state: Floats) -> SettledMotion:
-        """What irregular responses have in common."""
+        """Return what irregular responses have in common."""
         _, impacts, gap = np.median(rows[:, :3], axis=0)
         length = self.decider.point.length
         return SettledMotion(
@@ -128,7 +128,7 @@ class Value:
         )
 
     def index(self, motion: SettledMotion) -> int:
-        """The number of a motion, which is added where it is new.
+        """Return the number of a motion, which is added where it is new.
 
         An irregular response belongs to the irregular attractor with the nearest gap: means over
         few periods are no reason for one more.
@@ -143,19 +143,19 @@ class Value:
         self.motions.append(motion)
         return len(self.motions) - 1
 
-    def lead(self, motion: SettledMotion) -> tuple[int, int]:
-        """Where an attractor of a neighbour leads here: the attractor's number, and how."""
+    def lead_from(self, motion: SettledMotion) -> tuple[int, int]:
+        """Return where an attractor of a neighbour leads here: the attractor's number, and how."""
         state = motion.states[0] / motion.point.scale * self.decider.point.scale
-        found, _ = self.decider.decide(state)
-        if motion.ring is not None and unlike(motion, found):
-            followed = self.decider.followed(motion)
+        reached, _ = self.decider.decide(state)
+        if motion.orbit is not None and may_differ(motion, reached):
+            followed = self.decider.continue_orbit(motion)
             if followed is not None:
                 return self.index(followed), FOLLOWED
-        return self.index(found), FLOWS
+        return self.index(reached), FLOWS
 
 
-def unlike(one: SettledMotion, other: SettledMotion) -> bool:
-    """Whether two motions at neighbouring values may be of different branches."""
+def may_differ(one: SettledMotion, other: SettledMotion) -> bool:
+    """Return whether two motions at neighbouring values may be of different branches."""
     if (one.multiplicity, one.impacts_per_period) != (
         other.multiplicity,
         other.impacts_per_period,
@@ -189,14 +189,14 @@ class MatchedAttractors:
         return 1 + max(max(row) for row in self.numbers)
 
 
-def continued(
+def continue_attractors(
     instances: tuple[Instance, EventInstance | None],
     points: Sequence[Point],
     starts: Sequence[Starts],
-    telling: Telling,
+    settings: AttractorSettings,
     seeds: Sequence[Sequence[float]] = (),
 ) -> MatchedAttractors:
-    """The attractors that random starts lead to, carried along a parameter and matched.
+    """Find the attractors that random starts lead to; carry them along a parameter and match them.
 
     Parameters
     ----------
@@ -204,17 +204,17 @@ def continued(
     points : sequence of Point
         In the order of the parameter: neighbours are next to each other.
     starts : sequence of Starts
-    telling : Telling
+    settings : AttractorSettings
     seeds : sequence of 4 floats
         States on attractors that are known at the first value, at phase 0.
     """
-    values = [Value(MotionDecider(*instances, point, telling)) for point in points]
+    values = [Value(MotionDecider(*instances, point, settings)) for point in points]
     for value, some in zip(values, starts, strict=True):
-        value.gather(some, telling)
+        value.gather(some, settings)
     for seed in seeds:
         values[0].index(values[0].decider.decide(seed)[0])
-    links = carried(values)
-    numbers = matched(values, links)
+    links = carry_to_neighbours(values)
+    numbers = number_attractors(values, links)
     labels = [
         np.array([row[label] for label in value.labels], dtype=np.intp)
         for value, row in zip(values, numbers, strict=True)
@@ -225,7 +225,7 @@ def continued(
 Links = dict[tuple[int, int, int], tuple[int, int]]  # value, attractor, neighbour: where, how
 
 
-def carried(values: Sequence[Value]) -> Links:
+def carry_to_neighbours(values: Sequence[Value]) -> Links:
     """Carry every attractor to both neighbours, those that are added on the way too."""
     links: Links = {}
     waiting = deque((i, k) for i, value in enumerate(values) for k in range(len(value.motions)))
@@ -235,19 +235,19 @@ def carried(values: Sequence[Value]) -> Links:
             if not 0 <= j < len(values):
                 continue
             before = len(values[j].motions)
-            links[i, k, j] = values[j].lead(values[i].motions[k])
+            links[i, k, j] = values[j].lead_from(values[i].motions[k])
             waiting.extend((j, new) for new in range(before, len(values[j].motions)))
     return links
 
 
-def matched(values: Sequence[Value], links: Links) -> list[list[int]]:
-    """Numbers of attractors along the parameter, the most frequent one first."""
+def number_attractors(values: Sequence[Value], links: Links) -> list[list[int]]:
+    """Return numbers of attractors along the parameter, the most frequent one first."""
     chains: list[list[int]] = []
     count = 0
     for j, value in enumerate(values):
         own = [-1] * len(value.motions)
         if j:
-            for a, b in pairs(values[j - 1], value, j - 1, links):
+            for a, b in match_neighbours(values[j - 1], value, j - 1, links):
                 own[b] = chains[j - 1][a]
         for b, number in enumerate(own):
             if number < 0:
@@ -255,16 +255,18 @@ def matched(values: Sequence[Value], links: Links) -> list[list[int]]:
         chains.append(own)
     shares = np.zeros(count)
     for value, own in zip(values, chains, strict=True):
-        found = np.bincount(value.labels, minlength=len(own))
-        shares[own] += found / max(1, len(value.labels))
+        counts = np.bincount(value.labels, minlength=len(own))
+        shares[own] += counts / max(1, len(value.labels))
     rank = np.empty(count, dtype=int)
     rank[np.argsort(-shares.round(12), kind="stable")] = np.arange(count)
     return [[int(rank[number]) for number in own] for own in chains]
 
 
-def pairs(before: Value, value: Value, i: int, links: Links) -> list[tuple[int, int]]:
-    """Attractors of two neighbouring values that are one: each leads to the other; else the orbit
-    of one is followed to the other; else one leads to the other and looks the same.
+def match_neighbours(before: Value, value: Value, i: int, links: Links) -> list[tuple[int, int]]:
+    """Return pairs of attractors of two neighbouring values that are one.
+
+    Each leads to the other; else the orbit of one is followed to the other; else one leads to the
+    other and looks the same.
     """
     j = i + 1
     forth = [links[i, a, j] for a in range(len(before.motions))]
@@ -272,11 +274,11 @@ def pairs(before: Value, value: Value, i: int, links: Links) -> list[tuple[int, 
     candidates: list[tuple[int, int, int]] = []
     for a, (b, how) in enumerate(forth):
         mutual = back[b][0] == a
-        alike = not unlike(before.motions[a], value.motions[b])
+        alike = not may_differ(before.motions[a], value.motions[b])
         if mutual or how == FOLLOWED or alike:
             candidates.append((0 if mutual else 1 if how == FOLLOWED else 2, a, b))
     for b, (a, how) in enumerate(back):
-        alike = not unlike(value.motions[b], before.motions[a])
+        alike = not may_differ(value.motions[b], before.motions[a])
         if how == FOLLOWED or alike:
             candidates.append((1 if how == FOLLOWED else 2, a, b))
     taken: list[tuple[int, int]] = []

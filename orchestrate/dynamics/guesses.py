@@ -10,17 +10,26 @@ from ..access import EventInstance, Impacts, begin
 from ..response.questions import Point
 from .closed_form import ClosedForm, Floats
 from .families import ACCELERATION
-from .impact_sequence import CLOSING, IMPACT, PHASE, RELEASE, STICK, TURN, Ring, Sequence
-from .turning_points import in_order
+from .impact_sequence import (
+    CLOSING,
+    IMPACT,
+    PHASE,
+    RELEASE,
+    STICK,
+    TURN,
+    ImpactSequence,
+    PeriodicOrbit,
+)
+from .release import contact_durations
+from .turning_points import from_phase_zero
 
-LOOKS = 64  # at the contact force, in a period of the fastest oscillation
-Guess = tuple[Sequence, Floats]
+Guess = tuple[ImpactSequence, Floats]
 
 
 def from_state(
     instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
 ) -> Guess:
-    """The sequence that the FMU runs through from a state at phase 0.
+    """Return the sequence that the FMU runs through from a state at phase 0.
 
     Parameters
     ----------
@@ -33,8 +42,8 @@ def from_state(
     periods : int
     """
     start(instance, point, form, state)
-    found = instance.impacts(0.0, periods * point.excitation.period)
-    return from_impacts(found, point, form, periods)
+    impacts = instance.impacts(0.0, periods * point.excitation.period)
+    return from_impacts(impacts, point, form, periods)
 
 
 def start(instance: EventInstance, point: Point, form: ClosedForm, state: Floats) -> None:
@@ -47,7 +56,7 @@ def start(instance: EventInstance, point: Point, form: ClosedForm, state: Floats
 
 
 def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
-    """The nodes of impacts, with the releases between them."""
+    """Return the nodes of impacts, with the releases between them."""
     state, mu = impacts.state / point.scale, form.mu
     phase = point.excitation.frequency * impacts.time
     velocity = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
@@ -62,36 +71,28 @@ def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int)
         if released is not None:
             kinds.append(RELEASE)
             rows.append(released)
-    ordered, first = in_order(np.array(rows).reshape(-1, 4), periods)
-    return Sequence(periods, tuple(kinds[first:] + kinds[:first])), ordered
+    ordered, first = from_phase_zero(np.array(rows).reshape(-1, 4), periods)
+    return ImpactSequence(periods, tuple(kinds[first:] + kinds[:first])), ordered
 
 
 def release(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
-    """The node where permanent contact ends (19), before a phase; none where it does not."""
-    begun, position, velocity, _ = stick
-    duration = (until - begun) / form.eta
-    count = LOOKS + int(LOOKS * duration * form.fastest / TURN)
-    time = np.linspace(0.0, duration, count)
-    phase = begun + form.eta * time
-    free = np.array([position, position, velocity, velocity]) - form.steady(phase[:1], True)[0]
-    state = form.contact(time) @ free + form.steady(phase, True)
-    force = form.force(state[:, 0], state[:, 2])
-    opens = np.flatnonzero((force[1:] >= 0.0) & (force[:-1] < 0.0))
-    if not len(opens):
+    """Return the node where permanent contact ends (19), before a phase; None where it does not."""
+    phase, position, velocity = stick[PHASE:CLOSING, None]
+    span = (until - phase) / form.eta
+    duration = contact_durations(form, phase, position, velocity, span)
+    if not np.isfinite(duration).all():
         return None
-    i = opens[0]
-    part = force[i] / (force[i] - force[i + 1])
-    row = state[i] + part * (state[i + 1] - state[i])
-    return np.array([phase[i] + part * (phase[i + 1] - phase[i]), row[0], row[2], 0.0])
+    motion = form.common_motion(duration, phase, position, velocity)
+    return np.concatenate([phase + form.eta * duration, *motion, np.zeros(1)])
 
 
-def from_phases(form: ClosedForm, sequence: Sequence, phases: Floats) -> Guess:
-    """Nodes at given phases: the equations left are linear, and are met as well as can be."""
+def from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats) -> Guess:
+    """Return nodes at given phases that solve the other equations, which are linear, best."""
     nodes = np.zeros((len(phases), 4))
     nodes[:, PHASE] = phases
-    ring = Ring(sequence, form, nodes)
+    orbit = PeriodicOrbit(sequence, form, nodes)
     others = np.arange(4 * len(phases)) % 4 != PHASE
-    found = np.linalg.lstsq(ring.jacobian().real[:, others], -ring.residual(), rcond=None)[0]
+    found = np.linalg.lstsq(orbit.jacobian().real[:, others], -orbit.residual(), rcond=None)[0]
     nodes[:, PHASE + 1 :] = found.reshape(-1, CLOSING)
     return sequence, nodes
 
@@ -99,7 +100,7 @@ def from_phases(form: ClosedForm, sequence: Sequence, phases: Floats) -> Guess:
 def close_returns(
     instance: EventInstance, point: Point, form: ClosedForm, periods: int, transient: int, most: int
 ) -> Iterator[tuple[Floats, float]]:
-    """States of the response from rest that come back after some periods, the closest first.
+    """Yield states of the response from rest that come back after some periods, closest first.
 
     Parameters
     ----------
@@ -109,7 +110,7 @@ def close_returns(
     periods : int
         After which they come back.
     transient, most : int
-        Periods dropped, and looked at.
+        Periods dropped, and searched.
 
     Yields
     ------
@@ -121,15 +122,15 @@ def close_returns(
     period = point.excitation.period
     start(instance, point, form, np.zeros(4))
     instance.advance(0.0, transient * period)
-    states = strobed(instance, point, transient, most)
+    states = stroboscopic_states(instance, point, transient, most)
     scale = np.maximum(np.abs(states).max(axis=0), 1e-300)
     distance = (np.abs(states[periods:] - states[:-periods]) / scale).max(axis=1)
     for i in np.argsort(distance, kind="stable"):
         yield states[i], float(distance[i])
 
 
-def strobed(instance: EventInstance, point: Point, first: int, count: int) -> Floats:
-    """States at phase 0 of successive periods, shape (count, 4)."""
+def stroboscopic_states(instance: EventInstance, point: Point, first: int, count: int) -> Floats:
+    """Return states at phase 0 of successive periods, shape (count, 4)."""
     period = point.excitation.period
     states = np.empty((count, 4))
     for i in range(count):

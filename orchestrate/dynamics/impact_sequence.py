@@ -25,7 +25,7 @@ ON_CIRCLE = 1e-7  # of a multiplier's size: nearer to the unit circle no orbit i
 
 
 @dataclass(frozen=True)
-class Sequence:
+class ImpactSequence:
     """What happens in an orbit.
 
     Attributes
@@ -54,32 +54,32 @@ class Sequence:
         """Number of impacts."""
         return len(self.kinds) - self.kinds.count(RELEASE)
 
-    def doubled(self) -> Sequence:
-        """The same orbit run through twice."""
-        return Sequence(2 * self.periods, self.kinds * 2)
+    def doubled(self) -> ImpactSequence:
+        """Return the same orbit run through twice."""
+        return ImpactSequence(2 * self.periods, self.kinds * 2)
 
-    def without(self, node: int) -> Sequence:
-        """The sequence with one node less."""
-        return Sequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
+    def without(self, node: int) -> ImpactSequence:
+        """Return the sequence with one node less."""
+        return ImpactSequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
 
-    def with_impact(self, before: int) -> Sequence:
-        """The sequence with one impact more, before a node."""
-        return Sequence(self.periods, (*self.kinds[:before], IMPACT, *self.kinds[before:]))
+    def with_impact(self, before: int) -> ImpactSequence:
+        """Return the sequence with one impact more, before a node."""
+        return ImpactSequence(self.periods, (*self.kinds[:before], IMPACT, *self.kinds[before:]))
 
 
 @dataclass(frozen=True)
-class Ring:
+class PeriodicOrbit:
     """Nodes of a sequence at given unknowns, and the equations between them.
 
     Attributes
     ----------
-    sequence : Sequence
+    sequence : ImpactSequence
     form : ClosedForm
     nodes : ndarray, shape (k, 4)
         Phase in rad, displacement, velocity of the centre of mass, closing speed.
     """
 
-    sequence: Sequence
+    sequence: ImpactSequence
     form: ClosedForm
     nodes: Floats
 
@@ -96,9 +96,9 @@ class Ring:
     @cached_property
     def ends(self) -> Floats:
         """Phases at which they end."""
-        found = np.roll(self.begins, -1)
-        found[-1] += TURN * self.sequence.periods
-        return found
+        phases = np.roll(self.begins, -1)
+        phases[-1] += TURN * self.sequence.periods
+        return phases
 
     @cached_property
     def durations(self) -> Floats:
@@ -125,13 +125,13 @@ class Ring:
     @cached_property
     def flows(self) -> Floats:
         """Their flow matrices, shape (k, 4, 4)."""
-        found = self.form.flight(self.durations)
+        matrices = self.form.flight(self.durations)
         if self.contact.any():
-            found[self.contact] = self.form.contact(self.durations[self.contact])
-        return found
+            matrices[self.contact] = self.form.contact(self.durations[self.contact])
+        return matrices
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
-        """States inside segments.
+        """Return states inside segments.
 
         Parameters
         ----------
@@ -173,7 +173,7 @@ class Ring:
         )
 
     def residual(self) -> Floats:
-        """What is left of the equations, shape (4 k,).
+        """Return the residual of the equations, shape (4 k,).
 
         Each segment must arrive at the node after it: with no gap, at its displacement and
         velocity, and with its closing speed; at a release with f = 0 (19) and no closing speed.
@@ -181,17 +181,17 @@ class Ring:
         if not self.count:
             return np.zeros(0)
         after = np.roll(self.nodes, -1, axis=0)
-        found = self.arrivals @ self.reduction.T
-        found[:, 1:] -= after[:, 1:]
+        residual = self.arrivals @ self.reduction.T
+        residual[:, 1:] -= after[:, 1:]
         released = np.roll(self.sequence.releases, -1)
         if released.any():
             _, position, velocity, closing = after[released].T
-            found[released, 0] = self.form.force(position, velocity)
-            found[released, 3] = closing
-        return found.ravel()
+            residual[released, 0] = self.form.force(position, velocity)
+            residual[released, 3] = closing
+        return residual.ravel()
 
     def blocks(self) -> tuple[Floats, Floats]:
-        """Derivatives of each segment's equations by the node before and the node after it.
+        """Return derivatives of each segment's equations by the node before and the one after it.
 
         Returns
         -------
@@ -218,7 +218,7 @@ class Ring:
         return before, after
 
     def jacobian(self, turn: complex = 1.0) -> NDArray[np.inexact]:
-        """Derivative of the residual by the unknowns, shape (4 k, 4 k).
+        """Return the derivative of the residual by the unknowns, shape (4 k, 4 k).
 
         Parameters
         ----------
@@ -228,14 +228,14 @@ class Ring:
         """
         before, after = self.blocks()
         k = self.count
-        found = np.zeros((k, 4, k, 4), dtype=complex if isinstance(turn, complex) else float)
+        matrix = np.zeros((k, 4, k, 4), dtype=complex if isinstance(turn, complex) else float)
         for i in range(k):
-            found[i, :, i] += before[i]
-            found[i, :, (i + 1) % k] += after[i] * (turn if i == k - 1 else 1.0)
-        return found.reshape(4 * k, 4 * k)
+            matrix[i, :, i] += before[i]
+            matrix[i, :, (i + 1) % k] += after[i] * (turn if i == k - 1 else 1.0)
+        return matrix.reshape(4 * k, 4 * k)
 
     def monodromy(self) -> Floats:
-        """How a deviation at the first node is mapped by one run through the orbit, shape (4, 4).
+        """Return the matrix of a deviation at the first node over one run through the orbit.
 
         Its eigenvalues are the Floquet multipliers: those of the stroboscopic map too. In permanent
         contact the deviation of the gap is gone, so with a contact two of them are zero.
@@ -243,20 +243,20 @@ class Ring:
         if not self.count:
             return self.flows[0]
         before, after = self.blocks()
-        found = np.eye(4)
+        product = np.eye(4)
         for step in -np.linalg.solve(after, before):
-            found = step @ found
-        return found
+            product = step @ product
+        return product
 
     def multipliers(self) -> NDArray[np.complex128]:
-        """Floquet multipliers, the largest first, shape (4,); infinite where an impact grazes."""
+        """Return the Floquet multipliers, the largest first; infinite where an impact grazes."""
         try:
-            found = np.linalg.eigvals(self.monodromy()).astype(complex)
+            values = np.linalg.eigvals(self.monodromy()).astype(complex)
         except np.linalg.LinAlgError:
             return np.full(4, complex(np.inf))
         if self.contact.any():
-            found[np.argsort(np.abs(found))[:2]] = 0.0
-        return found[np.lexsort((found.imag, found.real.round(12), -np.abs(found).round(12)))]
+            values[np.argsort(np.abs(values))[:2]] = 0.0
+        return values[np.lexsort((values.imag, values.real.round(12), -np.abs(values).round(12)))]
 
     @property
     def stable(self) -> bool:
@@ -266,8 +266,8 @@ class Ring:
         """
         return bool(np.abs(self.multipliers()).max() < 1.0 - ON_CIRCLE)
 
-    def dictated(self) -> float:
-        """The multipliers' product, by Liouville's formula and e^2 for each impact."""
+    def multiplier_product(self) -> float:
+        """Return the multipliers' product, by Liouville's formula and e^2 for each impact."""
         lost = float(self.form.damping[0] + self.form.damping[1])
         time = TURN * self.sequence.periods / self.form.eta
         if self.contact.any():

@@ -1,4 +1,4 @@
-"""What settled responses look like impact by impact: how many, how strong, how far apart."""
+"""Statistics of the impacts of settled responses: how many, how strong, how far apart."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from ..response.questions import asked_along, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import Followed, FollowingQuestion, starts_of
+from .following import Followed, FollowingQuestion, start_states
 from .lyapunov import Exponent, largest_exponent, without_impacts
-from .variational import period, releases
+from .variational import contact_times, period
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,12 +50,12 @@ class ImpactStatisticsJob(FollowingQuestion):
     chunk: ClassVar[int] = 40
 
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
-        """In the order of ``FIELDS``."""
-        found = statistics(impacts, item, self.periods)
-        return [found[name] for name in FIELDS]
+        """Return the numbers in the order of ``FIELDS``."""
+        numbers = statistics(impacts, item, self.periods)
+        return [numbers[name] for name in FIELDS]
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """One variable a property, over the parameter."""
+        """Return one variable a property, over the parameter."""
         import xarray as xr
 
         along = self.series.name
@@ -68,7 +68,7 @@ class ImpactStatisticsJob(FollowingQuestion):
 
 
 def statistics(impacts: Impacts, item: Followed, periods: int) -> dict[str, float]:
-    """What a response looks like impact by impact, by the names of ``FIELDS``.
+    """Return the numbers of a response by the names of ``FIELDS``.
 
     Parameters
     ----------
@@ -80,19 +80,19 @@ def statistics(impacts: Impacts, item: Followed, periods: int) -> dict[str, floa
     structure, excitation = item.point
     eta = excitation.eta(structure)
     span = period(eta)
-    found: Exponent | None = None if len(impacts.time) else without_impacts(structure)
-    exponent = found or largest_exponent(impacts, periods * span, eta, structure)
+    known: Exponent | None = None if len(impacts.time) else without_impacts(structure)
+    exponent = known or largest_exponent(impacts, periods * span, item.point)
     return {
-        **counts(impacts, span, periods),
+        **count_impacts(impacts, span, periods),
         "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
-        **strengths(impacts, span, periods),
+        **impact_extremes(impacts, span, periods),
         "exponent": exponent.value,
         "standard_error": exponent.error,
     }
 
 
-def counts(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
-    """Numbers of impacts; those of a chattering are all counted."""
+def count_impacts(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
+    """Return numbers of impacts; those of a chattering are all counted."""
     which = np.minimum((impacts.time / span).astype(int), periods - 1)
     each = np.bincount(which, minlength=periods)
     return {
@@ -104,7 +104,7 @@ def counts(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
 
 
 def contact_time(impacts: Impacts, item: Followed, end: float) -> float:
-    """Time in permanent contact until ``end``, in units of tau.
+    """Return the time in permanent contact until ``end``, in units of tau.
 
     From each impact that begins it to the release (19), or to the end; and from the beginning where
     the masses are in contact there. Contact begins by impacts alone: without any, masses that
@@ -120,13 +120,12 @@ def contact_time(impacts: Impacts, item: Followed, end: float) -> float:
             np.append(0.0, impacts.closing),
             np.append(True, impacts.sticks),
         )
-    structure, excitation = item.point
     ends = np.append(impacts.time[1:], end)
-    return float(releases(impacts, ends, excitation.eta(structure), structure).sum())
+    return float(contact_times(impacts, ends, item.point).sum())
 
 
-def strengths(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
-    """Closing velocities, and times between impacts; NaN where there is none."""
+def impact_extremes(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
+    """Return closing velocities, and times between impacts; NaN where there is none."""
     distances, closing = np.diff(impacts.time) / span, impacts.closing
     return {
         "closing_max": closing.max() if len(closing) else math.nan,
@@ -150,7 +149,7 @@ def impact_statistics(
     start: ArrayLike | xr.Dataset | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """What settled responses look like impact by impact.
+    """Count and measure the impacts of settled responses.
 
     Parameters
     ----------
@@ -182,7 +181,8 @@ def impact_statistics(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is out
+        of its range.
 
     Notes
     -----
@@ -204,6 +204,6 @@ def impact_statistics(
         **question,
         transient=whole("transient", transient, 0),
         periods=whole("periods", periods, 1),
-        start=starts_of(start, ImpactStatisticsJob(name=name, **question)),
+        start=start_states(start, ImpactStatisticsJob(name=name, **question)),
     )
     return answer(job, running, finder(running))

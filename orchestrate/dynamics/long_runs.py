@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import STATE, EventInstance
 from ..response.questions import Point
-from .following import State, impacts_of
+from .following import State, follow_impacts
 from .lyapunov import WANDER, Exponent, largest_exponent
 from .variational import period
 
@@ -49,8 +49,8 @@ class LongRun(NamedTuple):
     periods: int
 
 
-def agree(values: ArrayLike, errors: ArrayLike, floor: float, batches: int = BATCHES) -> bool:
-    """Whether the exponents of successive parts scatter no more than their own errors say.
+def parts_agree(values: ArrayLike, errors: ArrayLike, floor: float, batches: int = BATCHES) -> bool:
+    """Return whether the exponents of successive parts scatter no more than their errors say.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ def agree(values: ArrayLike, errors: ArrayLike, floor: float, batches: int = BAT
 
     Examples
     --------
-    >>> agree([0.25, 0.26, 0.24], [0.01, 0.01, 0.01], 0.0)
+    >>> parts_agree([0.25, 0.26, 0.24], [0.01, 0.01, 0.01], 0.0)
     True
-    >>> agree([0.25, 0.26, 0.01], [0.01, 0.01, 0.01], 0.0)
+    >>> parts_agree([0.25, 0.26, 0.01], [0.01, 0.01, 0.01], 0.0)
     False
     """
     from scipy.stats import f
@@ -83,8 +83,8 @@ def agree(values: ArrayLike, errors: ArrayLike, floor: float, batches: int = BAT
     return bool(f.sf(ratio, *freedom) > RARELY)
 
 
-def mean_of(parts: Sequence[Exponent]) -> Exponent:
-    """The mean over parts of equal length, with the standard error by their scatter."""
+def mean_exponent(parts: Sequence[Exponent]) -> Exponent:
+    """Return the mean over parts of equal length, with the standard error by their scatter."""
     values = np.array([part.value for part in parts])
     return Exponent(float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values))))
 
@@ -92,7 +92,7 @@ def mean_of(parts: Sequence[Exponent]) -> Exponent:
 def follow_parts(
     instance: EventInstance, point: Point, start: State, periods: int, parts: int
 ) -> tuple[list[Exponent], State]:
-    """Exponents of successive parts of a motion, and the state at its end.
+    """Return the exponents of successive parts of a motion, and the state at its end.
 
     Parameters
     ----------
@@ -104,17 +104,17 @@ def follow_parts(
         Excitation periods of each part.
     parts : int
     """
-    eta, found = point.excitation.eta(point.structure), []
+    eta, exponents = point.excitation.eta(point.structure), []
     for _ in range(parts):
-        impacts = impacts_of(instance, point, start, periods)
+        impacts = follow_impacts(instance, point, start, periods)
         start = tuple(instance.get(*STATE))
         end = periods * period(eta)
-        found.append(largest_exponent(impacts, end, eta, point.structure, BLOCKS, BATCHES))
-    return found, start
+        exponents.append(largest_exponent(impacts, end, point, BLOCKS, BATCHES))
+    return exponents, start
 
 
-def wandering(periods: int, eta: float, wander: float = WANDER) -> float:
-    """Error that a deviation which wanders by a factor ``wander`` makes over some periods."""
+def wander_error(periods: int, eta: float, wander: float = WANDER) -> float:
+    """Return the error that a deviation makes which wanders by a factor over some periods."""
     floor: float = np.log(wander) / (periods * period(eta))
     return floor
 
@@ -127,7 +127,7 @@ def long_run(
     parts: int,
     runs: int,
 ) -> LongRun:
-    """The exponent of a response that is followed until successive parts agree.
+    """Follow a response until the exponents of successive parts agree.
 
     Where the parts of a run do not agree, the motion is followed on for as many parts again, which
     are then judged by themselves: a transient that ended is left behind.
@@ -145,20 +145,20 @@ def long_run(
     runs : int
         At most; after that the exponent is undecided.
     """
-    floor = wandering(periods, point.excitation.eta(point.structure))
+    floor = wander_error(periods, point.excitation.eta(point.structure))
     _, start = follow_parts(instance, point, start, periods, 1)
-    found: list[Exponent] = []
+    exponents: list[Exponent] = []
     for run in range(runs):
-        found, start = follow_parts(instance, point, start, periods, parts)
-        values, errors = np.transpose(found)
-        if agree(values, errors, floor):
+        exponents, start = follow_parts(instance, point, start, periods, parts)
+        values, errors = np.transpose(exponents)
+        if parts_agree(values, errors, floor):
             outcome = ENDED if run else STEADY
-            return LongRun(mean_of(found), outcome, periods * (1 + parts * (run + 1)))
-    return LongRun(mean_of(found), UNDECIDED, periods * (1 + parts * runs))
+            return LongRun(mean_exponent(exponents), outcome, periods * (1 + parts * (run + 1)))
+    return LongRun(mean_exponent(exponents), UNDECIDED, periods * (1 + parts * runs))
 
 
 def another_start(point: Point, start: State, seed: NDArray[np.int64] | Sequence[int]) -> State:
-    """A state near another one, from which a chaotic motion goes its own way.
+    """Return a state near another one, from which a chaotic motion goes its own way.
 
     Parameters
     ----------

@@ -19,12 +19,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import Impacts, finder
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import asked_along, positive, whole
+from ..response.questions import Point, asked_along, positive, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import Followed, FollowingQuestion, starts_of
-from .variational import Branches, period, slowest_rate, steps
+from .following import Followed, FollowingQuestion, start_states
+from .variational import impact_matrices, period
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,8 +46,8 @@ class Exponent(NamedTuple):
     error: float
 
 
-def products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
-    """Products of ``size`` matrices in turn, scaled, with the logarithms of the scales.
+def scaled_products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
+    """Return products of ``size`` matrices in turn, scaled, with the logarithms of the scales.
 
     Parameters
     ----------
@@ -77,19 +77,18 @@ def products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
 
 
 def fewest_impacts(batches: int = BATCHES) -> int:
-    """Impacts from which an exponent has an uncertainty."""
+    """Return how many impacts an exponent with an uncertainty takes."""
     return 2 * batches
 
 
 def largest_exponent(
     impacts: Impacts,
     end: float,
-    eta: float,
-    structure: Structure,
+    point: Point,
     blocks: int = BLOCKS,
     batches: int = BATCHES,
 ) -> Exponent:
-    """The largest Lyapunov exponent over a span.
+    """Return the largest Lyapunov exponent over a span.
 
     Parameters
     ----------
@@ -97,10 +96,9 @@ def largest_exponent(
         Of the span, non-dimensional; time 0 is at phase 0.
     end : float
         tau at the span's end.
-    eta : float
-    structure : Structure
+    point : Point
     blocks : int
-        Products of matrices whose growth is told apart.
+        Products of matrices whose growth is averaged.
     batches : int
         Groups of blocks; the spread of their means is the uncertainty.
 
@@ -113,9 +111,9 @@ def largest_exponent(
     """
     if len(impacts.time) < fewest_impacts(batches):
         return Exponent(math.nan, math.nan)
-    matrices = steps(impacts, end, eta, structure)
+    matrices = impact_matrices(impacts, end, point)
     size = max(1, len(matrices) // blocks)
-    growth = growth_of(*products(matrices, size))
+    growth = log_growth(*scaled_products(matrices, size))
     if growth is None:
         return Exponent(-math.inf, math.nan)
     durations = np.diff(np.append(impacts.time[::size], end))
@@ -126,8 +124,8 @@ def largest_exponent(
     return Exponent(float(mean), float(means.std(ddof=1) / np.sqrt(len(means))))
 
 
-def growth_of(blocks: Floats, logs: Floats) -> Floats | None:
-    """Logarithms of the growth of a vector by each block in turn; None where it vanishes."""
+def log_growth(blocks: Floats, logs: Floats) -> Floats | None:
+    """Return logarithms of a vector's growth by each block in turn; None where it vanishes."""
     growth, vector = np.empty(len(blocks)), np.array([1.0, 0.7, 0.3, -0.5])
     for i, (block, log) in enumerate(zip(blocks, logs, strict=True)):
         vector = block @ vector
@@ -139,23 +137,36 @@ def growth_of(blocks: Floats, logs: Floats) -> Floats | None:
 
 
 def without_impacts(structure: Structure) -> Exponent | None:
-    """The exponent of a structure whose masses never part, or are alike: both move as linear ones.
+    """Return the exponent of a structure that moves as a linear one: bonded, or of alike masses.
 
     Returns
     -------
     Exponent or None
         Exact; None for all other structures.
     """
-    one, two, both = Branches.of(structure)
-    if not structure.bonded and one != two:
+    mu, kappa = structure.mu, structure.kappa
+    alike = structure.D1 == structure.D2 and kappa / mu == 1.0
+    if not (structure.bonded or alike):
         return None
-    return Exponent(-slowest_rate(both), 0.0)
+    return Exponent(-decay_rate(structure.D3, (1.0 + kappa) / (1.0 + mu)), 0.0)
+
+
+def decay_rate(damping: float, square: float) -> float:
+    """Return the rate at which the free motion of an oscillator decays in the long run.
+
+    Parameters
+    ----------
+    damping, square : float
+        D_i (8) and omega_i^2 (7): of an overdamped one, the slower part decays at that rate.
+    """
+    excess = square - damping**2
+    return damping if excess >= 0.0 else square / (damping + math.sqrt(-excess))
 
 
 def verdict(
     exponent: ArrayLike, error: ArrayLike, floor: ArrayLike, sigmas: float = SIGMAS
 ) -> NDArray[np.int8]:
-    """Periodic, neutral (quasi-periodic, or not decided) or chaotic.
+    """Decide whether responses are periodic, neutral (quasi-periodic, or undecided) or chaotic.
 
     Parameters
     ----------
@@ -168,8 +179,8 @@ def verdict(
     """
     value = np.asarray(exponent, dtype=float)
     distance = np.fmax(sigmas * np.asarray(error, dtype=float), floor)
-    found = np.where(value > distance, CHAOTIC, np.where(value < -distance, PERIODIC, NEUTRAL))
-    return found.astype(np.int8)
+    verdicts = np.where(value > distance, CHAOTIC, np.where(value < -distance, PERIODIC, NEUTRAL))
+    return verdicts.astype(np.int8)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,11 +204,11 @@ class LyapunovJob(FollowingQuestion):
     chunk: ClassVar[int] = 5
 
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
-        """Exponent, error, impacts per period."""
+        """Return exponent, error, impacts per period."""
         return [*self.exponent(impacts, item), len(impacts.time) / self.periods]
 
     def exponent(self, impacts: Impacts, item: Followed) -> Exponent:
-        """Of one response.
+        """Return the exponent of one response.
 
         Raises
         ------
@@ -217,19 +228,19 @@ class LyapunovJob(FollowingQuestion):
                 f"expected periods with at least {needed} impacts{enough}"
             )
         end = self.periods * period(eta)
-        return largest_exponent(impacts, end, eta, structure, self.blocks, self.batches)
+        return largest_exponent(impacts, end, item.point, self.blocks, self.batches)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Exponent, error and verdict over the parameter."""
+        """Return exponent, error and verdict over the parameter."""
         import xarray as xr
 
         along, (exponent, error, impacts) = self.series.name, table["rows"].T
         spans = self.periods * np.array([period(eta) for eta in self.series.etas])
-        found = verdict(exponent, error, np.log(self.wander) / spans, self.sigmas)
+        verdicts = verdict(exponent, error, np.log(self.wander) / spans, self.sigmas)
         variables: dict[str, Variable] = {
             "exponent": variable(along, exponent, "1", f"{LARGEST}, per unit of tau"),
             "standard_error": variable(along, error, "1", "standard error of the exponent"),
-            "verdict": flags(along, found, "what the exponent says of the response", WORDS),
+            "verdict": flags(along, verdicts, "what the exponent says of the response", WORDS),
             "impacts_per_period": variable(along, impacts, "1", "impacts per excitation period"),
         }
         title = f"{LARGEST} along {along}: {self.structure.label()}"
@@ -253,7 +264,7 @@ def lyapunov(
     wander: float = WANDER,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Largest Lyapunov exponents of responses: periodic, neutral or chaotic.
+    """Compute largest Lyapunov exponents of responses: periodic, neutral or chaotic.
 
     Parameters
     ----------
@@ -273,9 +284,9 @@ def lyapunov(
         for each; or what :func:`orchestrate.sweep` has answered for the same values, whose
         responses are followed on. At rest by default.
     blocks : int
-        Products of the impacts' matrices whose growth is told apart.
+        Products of the impacts' matrices whose growth is averaged.
     batches : int
-        Groups of them whose spread is the uncertainty.
+        Groups of them whose spread is the uncertainty (batch means).
     sigmas : float
         Standard errors that an exponent must be away from zero for a verdict.
     wander : float
@@ -318,7 +329,7 @@ def lyapunov(
         **question,
         transient=whole("transient", transient, 0),
         periods=whole("periods", periods, 1),
-        start=starts_of(start, LyapunovJob(name=name, **question)),
+        start=start_states(start, LyapunovJob(name=name, **question)),
         blocks=whole("blocks", blocks, 1),
         batches=whole("batches", batches, 3),
         sigmas=positive("sigmas", sigmas),

@@ -1,4 +1,4 @@
-"""What is told of periodic orbits: one row an orbit, for a single one and along a branch alike."""
+"""Records of periodic orbits: one row an orbit, for a single one and along a branch alike."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from ..running.job import Table
 from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
 from .impact_sequence import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
-from .orbit_search import Verdict
-from .turning_points import Amplitudes, in_order, nearest, phase_zero, turning_points
+from .orbit_search import FmuCheck
+from .turning_points import Amplitudes, from_phase_zero, nearest_miss, phase_zero, turning_points
 
 KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
 PARTS = np.array(["real", "imaginary"])
@@ -40,7 +40,7 @@ class OrbitRecord:
     clearance : float
         Smallest gap at which the masses turn away from each other without an impact.
     residual : float
-    verdict : Verdict
+    fmu : FmuCheck
     """
 
     values: Floats
@@ -52,44 +52,46 @@ class OrbitRecord:
     amplitudes: Amplitudes
     clearance: float
     residual: float
-    verdict: Verdict
+    fmu: FmuCheck
 
     @classmethod
-    def of(cls, family: Family, unknowns: Floats, residual: float, verdict: Verdict) -> OrbitRecord:
-        """All about a root."""
-        ring = family.ring(unknowns)
-        turns = turning_points(ring)
-        nodes, first = in_order(ring.nodes, ring.sequence.periods)
-        multipliers = ring.multipliers()
+    def from_root(
+        cls, family: Family, unknowns: Floats, residual: float, fmu: FmuCheck
+    ) -> OrbitRecord:
+        """Return the record of a root."""
+        orbit = family.orbit(unknowns)
+        turns = turning_points(orbit)
+        nodes, first = from_phase_zero(orbit.nodes, orbit.sequence.periods)
+        multipliers = orbit.multipliers()
         return cls(
             values=unknowns[family.size :],
-            kinds=np.roll(np.array(ring.sequence.kinds, dtype=int), -first),
+            kinds=np.roll(np.array(orbit.sequence.kinds, dtype=int), -first),
             nodes=nodes,
-            zero=phase_zero(ring),
+            zero=phase_zero(orbit),
             multipliers=np.stack([multipliers.real, multipliers.imag], axis=1),
-            product=ring.dictated(),
-            amplitudes=Amplitudes.of(ring, turns),
-            clearance=nearest(ring, turns)[0],
+            product=orbit.multiplier_product(),
+            amplitudes=Amplitudes.from_orbit(orbit, turns),
+            clearance=nearest_miss(orbit, turns)[0],
             residual=residual,
-            verdict=verdict,
+            fmu=fmu,
         )
 
 
-def padded(rows: Rows[Floats], fill: float) -> Floats:
-    """Arrays of different lengths as one, the shorter ones filled up."""
+def pad(rows: Rows[Floats], fill: float) -> Floats:
+    """Return arrays of different lengths as one, the shorter ones filled up."""
     most = max(len(row) for row in rows)
-    found = np.full((len(rows), most, *rows[0].shape[1:]), fill)
+    table = np.full((len(rows), most, *rows[0].shape[1:]), fill)
     for index, row in enumerate(rows):
-        found[index, : len(row)] = row
-    return found
+        table[index, : len(row)] = row
+    return table
 
 
 def table_of(records: Rows[OrbitRecord]) -> Table:
-    """Arrays with one row an orbit."""
+    """Return arrays with one row an orbit."""
     return {
         "values": np.array([r.values for r in records]),
-        "kinds": padded([r.kinds for r in records], -1).astype(int),
-        "nodes": padded([r.nodes for r in records], np.nan),
+        "kinds": pad([r.kinds for r in records], -1).astype(int),
+        "nodes": pad([r.nodes for r in records], np.nan),
         "zero": np.array([r.zero for r in records]),
         "multipliers": np.array([r.multipliers for r in records]),
         "product": np.array([r.product for r in records]),
@@ -98,13 +100,13 @@ def table_of(records: Rows[OrbitRecord]) -> Table:
         ),
         "clearance": np.array([r.clearance for r in records]),
         "residual": np.array([r.residual for r in records]),
-        "same": np.array([r.verdict.same for r in records]),
-        "away": np.array([r.verdict.away for r in records]),
+        "same": np.array([r.fmu.same for r in records]),
+        "away": np.array([r.fmu.away for r in records]),
     }
 
 
 def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
-    """Parameters along the rows, and the names of what has several parts."""
+    """Return the parameters along the rows, and the names of what has several parts."""
     points = [setting.point(values) for values in table["values"]]
     excitations = [point.excitation for point in points]
     along: dict[str, Any] = {
@@ -115,9 +117,9 @@ def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]
     along.update(
         {n: table["values"][:, i] for i, n in enumerate(setting.over) if n != ACCELERATION}
     )
-    found = {name: parameter(name, row, values) for name, values in along.items()}
+    parameters = {name: parameter(name, row, values) for name, values in along.items()}
     if ACCELERATION in setting.over:
-        found[ACCELERATION] = variable(
+        parameters[ACCELERATION] = variable(
             row,
             table["values"][:, setting.over.index(ACCELERATION)],
             "m/s2",
@@ -125,7 +127,7 @@ def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]
         )
     periods = np.arange(table["zero"].shape[1])
     return {
-        **found,
+        **parameters,
         **nondimensional_state(),
         "part": variable("part", PARTS, "1", "of a complex number"),
         "sample": variable("sample", periods, "1", "excitation period of the orbit"),
@@ -133,7 +135,7 @@ def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]
 
 
 def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
-    """All that is told of the orbits."""
+    """Return all variables of the orbits."""
     points = [setting.point(values) for values in table["values"]]
     scale = np.array([point.scale for point in points])
     frequency = np.array([point.excitation.frequency for point in points])
@@ -149,7 +151,7 @@ def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
 
 
 def states(table: Table, scale: Floats, row: str) -> dict[str, Variable]:
-    """Where the orbits are at each phase 0."""
+    """Return where the orbits are at each phase 0."""
     zero, along = table["zero"], (row, "sample", "coordinate")
     text = "states at phase 0: x1, x2 in m, v1, v2 in m/s"
     gap = zero[:, :, 1] - zero[:, :, 0]
@@ -161,7 +163,7 @@ def states(table: Table, scale: Floats, row: str) -> dict[str, Variable]:
 
 
 def impacts(table: Table, scale: Floats, frequency: Floats, row: str) -> dict[str, Variable]:
-    """Their impacts; of nodes that are none, not a number."""
+    """Return their impacts; of nodes that are none, not a number."""
     nodes, along, periods = table["nodes"], (row, "node"), table["zero"].shape[1]
     there = (table["kinds"] >= 0) & (table["kinds"] != RELEASE)
     times = np.where(there, nodes[:, :, PHASE] / frequency[:, None], np.nan)
@@ -177,7 +179,7 @@ def impacts(table: Table, scale: Floats, frequency: Floats, row: str) -> dict[st
 
 
 def stability(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
-    """Their multipliers, and what follows."""
+    """Return their multipliers, and what follows."""
     multipliers, time = table["multipliers"], table["zero"].shape[1] * 2.0 * np.pi / eta
     size = np.hypot(*np.moveaxis(multipliers, -1, 0))
     with np.errstate(divide="ignore"):
@@ -199,23 +201,23 @@ def stability(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
 
 
 def sizes(table: Table, row: str) -> dict[str, Variable]:
-    """How large an orbit is."""
+    """Return how large the orbits are."""
     texts = {
         "xi1_max": "largest distance of mass 1 from the box's middle over a eta^2",
         "xi2_max": "largest distance of mass 2 from the box's middle over a eta^2",
         "xi_rel_max": "largest gap over a eta^2",
     }
-    found = {
+    data = {
         name: variable(row, table["amplitudes"][:, i], "1", text)
         for i, (name, text) in enumerate(texts.items())
     }
     text = "smallest gap at which the masses turn away from each other without an impact"
-    found["clearance"] = variable(row, table["clearance"], "1", f"{text}; infinite: none")
-    return found
+    data["clearance"] = variable(row, table["clearance"], "1", f"{text}; infinite: none")
+    return data
 
 
 def checks(table: Table, row: str) -> dict[str, Variable]:
-    """How well an orbit is known."""
+    """Return how well the orbits are known."""
     return {
         "residual": variable(
             row, table["residual"], "1", "what Newton's method leaves of the equations"
@@ -230,7 +232,7 @@ def checks(table: Table, row: str) -> dict[str, Variable]:
 
 
 def node_variables(table: Table, row: str) -> dict[str, Variable]:
-    """The orbit's nodes: what Newton's method solves for, and another one may begin with."""
+    """Return the nodes: what Newton's method solves for, and another orbit may begin with."""
     nodes = table["nodes"]
     along = (row, "node")
     text = "closing speed before the impact over omega a eta^2"

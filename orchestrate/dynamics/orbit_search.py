@@ -1,4 +1,4 @@
-"""One periodic orbit: by Newton's method, what makes a root a motion, and the FMU's word on it."""
+"""Search for a periodic orbit by Newton's method, and run it through in the FMU."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 
 from ..access import EventInstance
 from .closed_form import ClosedForm, Floats
-from .continuation import NoConvergenceError, Root, corrected, held
+from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, Setting
 from .guesses import Guess, from_phases, start
-from .impact_sequence import CLOSING, IMPACT, PHASE, TURN, Ring, Sequence
-from .turning_points import in_order, nearest, phase_zero, turning_points, weakest_force
+from .impact_sequence import CLOSING, IMPACT, PHASE, TURN, ImpactSequence, PeriodicOrbit
+from .turning_points import from_phase_zero, nearest_miss, phase_zero, turning_points, weakest_force
 
 SAME_PHASE = 1e-6  # rad: impacts of the FMU at these are the orbit's own
 SAME_ORBIT = 1e-6  # of the nodes over their size: an orbit is as at its beginning again
@@ -21,8 +21,8 @@ PHASES = 24  # at which a single impact is tried
 
 
 @dataclass(frozen=True)
-class Verdict:
-    """What the FMU makes of an orbit.
+class FmuCheck:
+    """Whether the FMU runs through an orbit.
 
     Attributes
     ----------
@@ -36,10 +36,15 @@ class Verdict:
     away: float
 
 
-def solve(
-    setting: Setting, guess: Guess, values: Floats, *, most: int = 25, furthest: float = 100.0
+def solve_orbit(
+    setting: Setting,
+    guess: Guess,
+    values: Floats,
+    *,
+    max_iterations: int = 25,
+    max_distance: float = 100.0,
 ) -> tuple[Family, Root]:
-    """The orbit of a guess's sequence at values of the parameters, by Newton's method.
+    """Solve for the orbit of a guess's sequence at values of the parameters, by Newton's method.
 
     Raises
     ------
@@ -47,38 +52,41 @@ def solve(
         Where there is none near.
     """
     sequence, nodes = guess
-    family = Family.near(setting, sequence, nodes)
+    family = Family.from_nodes(setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), values)
-    across = held(family, family.size)
-    return family, corrected(family, unknowns, across, most=most, furthest=furthest)
+    across = unit_vector(len(unknowns), family.size)
+    return family, newton_correct(
+        family, unknowns, across, max_iterations=max_iterations, max_distance=max_distance
+    )
 
 
-def why_no_motion(ring: Ring) -> str:
-    """Why a root of the equations is no motion; empty where it is one."""
-    if (ring.durations <= 0.0).any():
+def why_no_motion(orbit: PeriodicOrbit) -> str:
+    """Say why a root of the equations is no motion; empty where it is one."""
+    if (orbit.durations <= 0.0).any():
         return "its impacts are out of order"
-    closing = ring.nodes[~ring.sequence.releases, CLOSING] if ring.count else np.ones(1)
+    closing = orbit.nodes[~orbit.sequence.releases, CLOSING] if orbit.count else np.ones(1)
     if not (closing > 0.0).all():
         return "an impact has no closing speed"
-    if nearest(ring, turning_points(ring))[0] < 0.0:
+    if nearest_miss(orbit, turning_points(orbit))[0] < 0.0:
         return "the masses would go through each other"
-    if weakest_force(ring) < 0.0:
+    if weakest_force(orbit) < 0.0:
         return "the contact would pull"
     return ""
 
 
-def least_periods(ring: Ring) -> int:
-    """The least number of periods after which an orbit closes, wherever its impacts lie: phases are
-    compared on a circle, so that one at phase 0 may be told as 2 pi.
+def least_periods(orbit: PeriodicOrbit) -> int:
+    """Return the least number of periods after which an orbit closes.
+
+    Phases are compared on a circle, so that one at phase 0 may also be 2 pi.
     """
-    periods, count = ring.sequence.periods, ring.count
-    kinds, span = np.array(ring.sequence.kinds), TURN * ring.sequence.periods
-    size = float(np.abs(ring.nodes[:, 1:]).max(initial=0.0)) or 1.0
+    periods, count = orbit.sequence.periods, orbit.count
+    kinds, span = np.array(orbit.sequence.kinds), TURN * orbit.sequence.periods
+    size = float(np.abs(orbit.nodes[:, 1:]).max(initial=0.0)) or 1.0
     for part in range(1, periods):
         if periods % part or count * part % periods:
             continue
         shift = count * part // periods
-        away = np.roll(ring.nodes, -shift, axis=0) - ring.nodes
+        away = np.roll(orbit.nodes, -shift, axis=0) - orbit.nodes
         away[:, PHASE] -= TURN * part
         away[:, PHASE] -= span * np.round(away[:, PHASE] / span)
         away[:, 1:] /= size
@@ -88,30 +96,32 @@ def least_periods(ring: Ring) -> int:
     return periods
 
 
-def verdict(instance: EventInstance, setting: Setting, values: Floats, ring: Ring) -> Verdict:
+def run_in_fmu(
+    instance: EventInstance, setting: Setting, values: Floats, orbit: PeriodicOrbit
+) -> FmuCheck:
     """Run the orbit through in the FMU."""
     point = setting.point(values)
-    state = phase_zero(ring)[0]
-    start(instance, point, ring.form, state * point.scale)
-    end = ring.sequence.periods * point.excitation.period
-    found = instance.impacts(0.0, end)
+    state = phase_zero(orbit)[0]
+    start(instance, point, orbit.form, state * point.scale)
+    end = orbit.sequence.periods * point.excitation.period
+    observed = instance.impacts(0.0, end)
     after = instance.read("x1", "x2", "v1", "v2") / point.scale
     away = float(np.abs(after - state).max())
-    wanted, first = in_order(ring.nodes, ring.sequence.periods)
-    kinds = np.roll(np.array(ring.sequence.kinds, dtype=int), -first)
+    wanted, first = from_phase_zero(orbit.nodes, orbit.sequence.periods)
+    kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
     impacts = kinds != 2
-    if len(found.time) != impacts.sum():
-        return Verdict(False, away)
-    phases = point.excitation.frequency * found.time
+    if len(observed.time) != impacts.sum():
+        return FmuCheck(False, away)
+    phases = point.excitation.frequency * observed.time
     near = np.abs(phases - wanted[impacts, PHASE]).max(initial=0.0) < SAME_PHASE
-    sticking = (found.sticks == (kinds[impacts] == 1)).all()
-    return Verdict(bool(near and sticking), away)
+    sticking = (observed.sticks == (kinds[impacts] == 1)).all()
+    return FmuCheck(bool(near and sticking), away)
 
 
 def first_motion(
     setting: Setting, guesses: Iterable[Guess], values: Floats, *, stable: bool = False
 ) -> tuple[Family, Root]:
-    """The first orbit that Newton's method finds and that is a motion of just its periods.
+    """Return the first orbit of Newton's method that is a motion of just its periods.
 
     Parameters
     ----------
@@ -129,13 +139,13 @@ def first_motion(
     reason, unstable = "", None
     for guess in guesses:
         try:
-            family, root = solve(setting, guess, values)
+            family, root = solve_orbit(setting, guess, values)
         except NoConvergenceError as error:
             reason = reason or str(error)
             continue
-        ring = family.ring(root.unknowns)
-        why = why_no_motion(ring) or why_shorter(ring, guess[0].periods)
-        if not why and (not stable or ring.stable):
+        orbit = family.orbit(root.unknowns)
+        why = why_no_motion(orbit) or why_shorter(orbit, guess[0].periods)
+        if not why and (not stable or orbit.stable):
             return family, root
         unstable = unstable or (None if why else (family, root))
         reason = reason or why
@@ -144,14 +154,14 @@ def first_motion(
     raise NoConvergenceError(reason or "there is no impact to begin with")
 
 
-def why_shorter(ring: Ring, periods: int) -> str:
-    """Why an orbit is none of so many periods; empty where it is one."""
-    shorter = least_periods(ring)
+def why_shorter(orbit: PeriodicOrbit, periods: int) -> str:
+    """Say why an orbit is none of so many periods; empty where it is one."""
+    shorter = least_periods(orbit)
     return f"the orbit found repeats after {shorter} already" if shorter < periods else ""
 
 
 def single_impacts(form: ClosedForm, periods: int) -> Iterator[Guess]:
-    """Guesses with one impact in all, at phases all around."""
-    sequence = Sequence(periods, (IMPACT,))
+    """Yield guesses with one impact in all, at phases all around."""
+    sequence = ImpactSequence(periods, (IMPACT,))
     for phase in np.arange(PHASES) * TURN / PHASES:
         yield from_phases(form, sequence, np.array([phase]))

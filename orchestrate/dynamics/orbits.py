@@ -20,12 +20,11 @@ from ..running.runner import answer
 from ..structures import Structure
 from .closed_form import Floats
 from .continuation import NoConvergenceError
-from .families import ACCELERATION, Setting, knocking
+from .families import ACCELERATION, Setting, require_delaminated
 from .guesses import Guess, close_returns, from_phases, from_state
-from .impact_sequence import IMPACT, PHASE, RELEASE, TURN
-from .impact_sequence import Sequence as ImpactSequence
+from .impact_sequence import IMPACT, PHASE, RELEASE, TURN, ImpactSequence
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
-from .orbit_search import first_motion, single_impacts, verdict
+from .orbit_search import first_motion, run_in_fmu, single_impacts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
 
-MOST_PERIODS = 1000
+MAX_PERIODS = 1000
 SHIFTS = 12  # of all impact times in common, that are tried
 NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
 SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
@@ -57,8 +56,8 @@ class FirstGuess:
     kinds: tuple[int, ...] = ()
     nodes: tuple[tuple[float, ...], ...] = ()
 
-    def told(self, frequency: float) -> str:
-        """As a user would write it; contacts are left to the FMU."""
+    def as_argument(self, frequency: float) -> str:
+        """Return the guess as a user would write it; contacts are left to the FMU."""
         if self.state:
             return f"{self.state!r}"
         rows = zip(self.kinds, self.nodes, strict=True)
@@ -66,7 +65,7 @@ class FirstGuess:
         return f"{{'impact_time': {times!r}}}"
 
     def sequence(self, periods: int) -> ImpactSequence:
-        """The sequence of its nodes."""
+        """Return the sequence of its nodes."""
         return ImpactSequence(periods, self.kinds)
 
 
@@ -77,7 +76,7 @@ class OrbitJob(Question):
     Attributes
     ----------
     excitation : tuple of (str, float)
-        As the user told it.
+        As the user gave it.
     box_acceleration : float
         m/s2.
     period : int
@@ -99,16 +98,16 @@ class OrbitJob(Question):
     asked: ClassVar[str] = "orbit"
 
     def call(self) -> str:
-        """The call that asks it."""
+        """Return the call that asks it."""
         frequency = self.setting.point(np.array([self.excitation[0][1]])).excitation.frequency
-        told = {**dict(self.excitation), "period": self.period}
+        arguments = {**dict(self.excitation), "period": self.period}
         if self.box_acceleration:
-            told[ACCELERATION] = self.box_acceleration
-        parts = [f"{self.structure!r}", *(f"{name}={value!r}" for name, value in told.items())]
+            arguments[ACCELERATION] = self.box_acceleration
+        parts = [f"{self.structure!r}", *(f"{name}={value!r}" for name, value in arguments.items())]
         if self.guess is None:
             parts += [f"{name}={getattr(self, name)}" for name in ("transient", "search", "tries")]
         else:
-            parts.append(f"guess={self.guess.told(frequency)}")
+            parts.append(f"guess={self.guess.as_argument(frequency)}")
         return f"orbit({', '.join(parts)})"
 
     @property
@@ -119,20 +118,20 @@ class OrbitJob(Question):
         return Setting(self.structure, self.excitation, (name,), limits, self.box_acceleration)
 
     def count(self) -> int:
-        """One orbit."""
+        """Return one: an orbit."""
         return 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """The orbit's number."""
+        """Return the number of the orbit."""
         return [0]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
         """Find it."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return table_of([found(instance, self)])
+            return table_of([find_orbit(instance, self)])
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The orbit, labelled."""
+        """Return the orbit, labelled."""
         import xarray as xr
 
         setting = self.setting
@@ -145,8 +144,8 @@ class OrbitJob(Question):
         return whole_table.isel(point=0)
 
 
-def found(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
-    """The orbit that is asked for.
+def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
+    """Find the orbit that is asked for.
 
     Raises
     ------
@@ -163,15 +162,14 @@ def found(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
         raise InputError(
             f"period = {job.period}: no orbit found ({reason}); expected {expected}"
         ) from None
-    ring = family.ring(root.unknowns)
-    word = verdict(instance, setting, values, ring)
-    return OrbitRecord.of(family, root.unknowns, root.residual, word)
+    check = run_in_fmu(instance, setting, values, family.orbit(root.unknowns))
+    return OrbitRecord.from_root(family, root.unknowns, root.residual, check)
 
 
 def guesses(
     instance: EventInstance, job: OrbitJob, setting: Setting, values: Floats
 ) -> Iterator[Guess]:
-    """The user's guess; or close returns of the response, then single impacts."""
+    """Yield the user's guess; or close returns of the response, then single impacts."""
     point, form, guess = setting.point(values), setting.form(values), job.guess
     if guess is not None and guess.state:
         yield from_state(instance, point, form, np.array(guess.state), job.period)
@@ -192,7 +190,7 @@ def guesses(
 def first_guess(
     given: Any, structure: Structure, frequency: float, period: int
 ) -> FirstGuess | None:
-    """A user's guess in one of its forms.
+    """Return a user's guess in one of its forms as plain numbers.
 
     Raises
     ------
@@ -217,7 +215,7 @@ def first_guess(
 
 
 def from_result(given: Mapping[Any, Any]) -> FirstGuess:
-    """The nodes of an orbit that was found before.
+    """Return the nodes of an orbit that was found before.
 
     Raises
     ------
@@ -233,10 +231,10 @@ def from_result(given: Mapping[Any, Any]) -> FirstGuess:
     return FirstGuess(kinds=tuple(map(int, kinds[there])), nodes=rows)
 
 
-def told(
+def excitation_arguments(
     eta: ArrayLike | None, frequency: ArrayLike | None, amplitude: ArrayLike | None
 ) -> tuple[tuple[str, float], ...]:
-    """An excitation as plain numbers."""
+    """Return an excitation as plain numbers."""
     given = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
     return tuple((name, float(np.asarray(v))) for name, v in given.items() if v is not None)
 
@@ -255,7 +253,7 @@ def orbit(
     tries: int = 20,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """A periodic orbit by Newton's method, stable or unstable.
+    """Find a periodic orbit by Newton's method, stable or unstable.
 
     Parameters
     ----------
@@ -268,14 +266,14 @@ def orbit(
         Excitation periods after which the orbit closes.
     guess : array_like of 4 floats, or mapping, optional
         What Newton's method begins with: a state x1, x2 in m, v1, v2 in m/s at phase 0, from which
-        the FMU tells the impacts; or a mapping with ``impact_time``, times of all impacts in s, of
-        which the distances matter most; or an orbit found before, at another parameter. By default
+        the FMU is run; or a mapping with ``impact_time``, times of all impacts in s, of which the
+        distances matter most; or an orbit found before, at another parameter. By default
         the closest returns of the response from rest, then orbits with a single impact: the first
         stable orbit among what is found, or the first.
     box_acceleration : float
         Constant acceleration of the box beside the harmonic one, m/s2: it opens or closes the gap.
     transient, search, tries : int
-        Periods of the response that are dropped and looked at for close returns, and how many of
+        Periods of the response that are dropped and searched for close returns, and how many of
         these are tried, where there is no guess.
     **running
         ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.
@@ -293,13 +291,13 @@ def orbit(
     Raises
     ------
     InputError
-        Where the question is not whole, or no orbit is found.
+        Where arguments are missing or contradict each other, or no orbit is found.
 
     Notes
     -----
     See :mod:`orchestrate.dynamics.impact_sequence` for the equations. Where chattering ends in
     permanent contact the deviation of the gap dies there: two multipliers are zero. The other two
-    tell the stability; the sequence of the last impacts is that of the structure's ``gamma``.
+    decide the stability; the sequence of the last impacts is that of the structure's ``gamma``.
 
     Examples
     --------
@@ -312,14 +310,14 @@ def orbit(
     array([-3.3595, -0.5903, -0.5903, -0.1421])
     """
     given = one_point(structure, eta, frequency, amplitude)
-    knocking(structure)
+    require_delaminated(structure)
     given.excitation.check(structure)
-    count = whole("period", period, 1, MOST_PERIODS)
+    count = whole("period", period, 1, MAX_PERIODS)
     job = OrbitJob(
         name=f"orbit_{structure.label()}_{count}T",
         structure=structure,
-        excitation=told(eta, frequency, amplitude),
-        box_acceleration=finite("box_acceleration", box_acceleration),
+        excitation=excitation_arguments(eta, frequency, amplitude),
+        box_acceleration=finite_number("box_acceleration", box_acceleration),
         period=count,
         guess=first_guess(guess, structure, given.excitation.frequency, count),
         transient=whole("transient", transient, 0),
@@ -329,8 +327,8 @@ def orbit(
     return answer(job, running, finder(running))
 
 
-def finite(name: str, given: ArrayLike) -> float:
-    """One finite number.
+def finite_number(name: str, given: ArrayLike) -> float:
+    """Return one finite number.
 
     Raises
     ------

@@ -40,8 +40,8 @@ from ..running.options import Running, RunOptions
 from ..running.runner import answer
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import check_flag, one_of
-from .clusters import settling
-from .following import impacts_of
+from .clusters import transient_periods
+from .following import follow_impacts
 from .lyapunov import largest_exponent, without_impacts
 from .variational import period
 
@@ -99,7 +99,7 @@ class MapJob(Question):
     transient : int
         Periods dropped at least.
     settle : float
-        Periods dropped at least, over eta.
+        At least ``settle * eta`` periods are dropped.
     samples : int
         Periods kept.
     tolerance : float
@@ -131,7 +131,7 @@ class MapJob(Question):
     @property
     def points(self) -> tuple[Point, ...]:
         """Structure and excitation of each point, row by row."""
-        return points_of(self.structure, self.given)
+        return map_points(self.structure, self.given)
 
     @property
     def axes(self) -> tuple[Axis, ...]:
@@ -139,41 +139,45 @@ class MapJob(Question):
         return tuple(Axis(name, value) for name, value in self.given if isinstance(value, tuple))
 
     def parameters(self) -> dict[str, Any]:
-        """All that decides the numbers, the parameters by their own names."""
-        found = super().parameters()
-        del found["given"]
-        return {**{name: plain(value) for name, value in self.given}, **found}
+        """Return all that decides the numbers, the parameters by their own names."""
+        others = super().parameters()
+        del others["given"]
+        return {**{name: plain(value) for name, value in self.given}, **others}
 
     def count(self) -> int:
         """Number of points."""
         return len(self.points)
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """The points."""
+        """Return the points."""
         return self.points
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
-        """Some points."""
+        """Compute some points."""
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
-            rows = [self.at(plain, eventful, item) for item in items]
+            rows = [self.row(plain, eventful, item) for item in items]
         return {"rows": np.array(rows, dtype=float)}
 
-    def at(self, plain: Instance, eventful: EventInstance, item: Point) -> list[float]:
-        """One point, in the order of ``FIELDS`` and ``EXPONENT``."""
+    def row(self, plain: Instance, eventful: EventInstance, item: Point) -> list[float]:
+        """Return the numbers of one point, in the order of ``FIELDS`` and ``EXPONENT``."""
         response, (n, decided) = self.response(plain, item)
-        impacts = impacts_of(eventful, item, response.end, self.samples // 2)
+        impacts = follow_impacts(eventful, item, response.end, self.samples // 2)
         impulse = impacts.impulse(item.structure).max(initial=0.0) / item.structure.m1
         rate = response.impacts_per_period
         if decided == REPEATED:
             turn = period(item.excitation.eta(item.structure))
             rate = int((impacts.time <= n * turn).sum()) / n
-        found = [rate, n, decided, response.x_rel_max / item.length, impulse]
-        return [*found, *self.exponent_of(eventful, item, response.end)] if self.exponent else found
+        numbers = [rate, n, decided, response.x_rel_max / item.length, impulse]
+        return (
+            [*numbers, *self.exponent_at(eventful, item, response.end)]
+            if self.exponent
+            else numbers
+        )
 
     def response(self, instance: Instance, item: Point) -> tuple[Response, Decision]:
-        """The response, run on for as long as before each time its multiplicity is undecided."""
+        """Run a point on, for as long as before each time its multiplicity is undecided."""
         eta = item.excitation.eta(item.structure)
-        dropped, done, start = settling(self.transient, self.settle, eta), 0, self.start
+        dropped, done, start = transient_periods(self.transient, self.settle, eta), 0, self.start
         while True:
             response = respond(instance, *item, start, dropped, self.samples, self.tolerance)
             decision = response.decision(self.tolerance)
@@ -182,17 +186,17 @@ class MapJob(Question):
                 return response, decision
             dropped = min(done, self.longest - done)
 
-    def exponent_of(
+    def exponent_at(
         self, eventful: EventInstance, item: Point, start: ArrayLike
     ) -> tuple[float, float]:
-        """The exponent and its error; NaN where there are too few impacts."""
+        """Return the exponent and its error; NaN where there are too few impacts."""
         structure, eta = item.structure, item.excitation.eta(item.structure)
-        impacts: Impacts = impacts_of(eventful, item, start, self.periods)
+        impacts: Impacts = follow_impacts(eventful, item, start, self.periods)
         known = None if len(impacts.time) else without_impacts(structure)
-        return known or largest_exponent(impacts, self.periods * period(eta), eta, structure)
+        return known or largest_exponent(impacts, self.periods * period(eta), item)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The fields over both parameters."""
+        """Return the fields over both parameters."""
         import xarray as xr
 
         names = tuple(axis.name for axis in self.axes)
@@ -213,20 +217,20 @@ class MapJob(Question):
 
 
 @lru_cache(maxsize=4)
-def points_of(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> tuple[Point, ...]:
-    """Structures and excitations of a map, row by row.
+def map_points(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> tuple[Point, ...]:
+    """Return structures and excitations of a map, row by row.
 
     Raises
     ------
     InputError
-        Where there are not two lists, the excitation is not whole, or a number is out of its range.
+        Where there are not two lists, the excitation is incomplete, or a number is out of range.
     """
     values = dict(given)
     check_form(values.keys() & ASKED.keys())
     lists = {name: value for name, value in given if isinstance(value, tuple)}
     if len(lists) != 2:
-        found = ", ".join(lists) or "none"
-        raise InputError(f"lists of values: {found}; expected two of the parameters as lists")
+        names = ", ".join(lists) or "none"
+        raise InputError(f"lists of values: {names}; expected two of the parameters as lists")
     for name, column in lists.items():
         if len(set(column)) < len(column):
             raise InputError(f"{name}: a value twice; expected each once")
@@ -250,7 +254,7 @@ def map(
     periods: int = 500,
     **others: Unpack[Parameters],
 ) -> xr.Dataset:
-    """Responses over two parameters, each from the same start.
+    """Compute responses over two parameters, each from the same start.
 
     Parameters
     ----------
@@ -262,7 +266,7 @@ def map(
     transient : int
         Periods dropped at least.
     settle : float
-        Periods dropped at least, over eta: a slow decay takes time, not periods.
+        At least ``settle * eta`` periods are dropped: a slow decay takes time, not periods.
     samples : int
         Periods kept.
     tolerance : float
@@ -293,7 +297,8 @@ def map(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is out
+        of its range.
 
     Notes
     -----
@@ -314,11 +319,11 @@ def map(
         if name not in known:
             raise InputError(f"{name}: no parameter; {one_of(name, (*PARAMETERS, *known))}")
     asked: dict[str, Any] = {"eta": eta, "frequency": frequency, "amplitude": amplitude, **others}
-    told = {name: numbers(name, asked[name]) for name in asked if name not in running}
+    arguments = {name: numbers(name, asked[name]) for name in asked if name not in running}
     job = MapJob(
         structure=checked_structure(structure),
         name=f"map_{structure.label()}",
-        given=tuple((name, value) for name, value in told.items() if value is not None),
+        given=tuple((name, value) for name, value in arguments.items() if value is not None),
         transient=whole("transient", transient, 0),
         settle=positive("settle", settle),
         samples=whole("samples", samples, 4),

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..response.multiplicity import LEAST_GAP
 from ..response.questions import Point
-from .impact_sequence import PHASE, TURN, Ring
+from .impact_sequence import PHASE, TURN, PeriodicOrbit
 from .turning_points import Amplitudes, phase_zero, turning_points
 
 Floats = NDArray[np.float64]
@@ -49,7 +49,7 @@ class SettledMotion:
         Largest gap, m.
     multiplier : float
         Largest absolute value of the orbit's Floquet multipliers; NaN where there is no orbit.
-    ring : Ring, optional
+    orbit : PeriodicOrbit, optional
         The orbit.
     free_phase : float
         Phase in rad at which it is far from impacts.
@@ -62,24 +62,24 @@ class SettledMotion:
     impacts_per_period: float
     gap: float
     multiplier: float = np.nan
-    ring: Ring | None = None
+    orbit: PeriodicOrbit | None = None
     free_phase: float = 0.0
 
     @classmethod
-    def from_orbit(cls, point: Point, ring: Ring, free_phase: float) -> SettledMotion:
-        """A stable orbit."""
-        periods, scale = ring.sequence.periods, point.scale
-        states = phase_zero(ring) * scale
+    def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
+        """Return the motion of a stable orbit."""
+        periods, scale = orbit.sequence.periods, point.scale
+        states = phase_zero(orbit) * scale
         states[:, 1] = np.maximum(states[:, 0], states[:, 1])  # in contact, within rounding
         return cls(
             point=point,
             decided=ORBIT,
             states=states,
             multiplicity=periods,
-            impacts_per_period=ring.sequence.impacts / periods,
-            gap=Amplitudes.of(ring, turning_points(ring)).gap * point.length,
-            multiplier=float(np.abs(ring.multipliers()).max(initial=0.0)),
-            ring=ring,
+            impacts_per_period=orbit.sequence.impacts / periods,
+            gap=Amplitudes.from_orbit(orbit, turning_points(orbit)).gap * point.length,
+            multiplier=float(np.abs(orbit.multipliers()).max(initial=0.0)),
+            orbit=orbit,
             free_phase=free_phase,
         )
 
@@ -92,7 +92,7 @@ class SettledMotion:
         return [self.multiplicity, self.impacts_per_period, gap, *means]
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
-        """The period whose first state is nearest to a state at phase 0, and its distance."""
+        """Return the period whose first state is nearest to one at phase 0, and its distance."""
         return self._known.nearest(state)
 
     @cached_property
@@ -102,21 +102,23 @@ class SettledMotion:
     @cached_property
     def free_states(self) -> KnownStates:
         """States of an orbit at its free phase in successive periods."""
-        assert self.ring is not None, "no orbit"
+        assert self.orbit is not None, "no orbit"
         wanted = self.free_phase + TURN * np.arange(self.multiplicity)
-        begin = self.ring.begins[0]
+        begin = self.orbit.begins[0]
         shifted = begin + np.mod(wanted - begin, TURN * self.multiplicity)
-        segment = np.searchsorted(self.ring.begins, shifted, side="right") - 1
-        found = self.ring.states(segment, shifted) * self.point.scale
-        return KnownStates.from_states(found, self.point.excitation.frequency, self.gap)
+        segment = np.searchsorted(self.orbit.begins, shifted, side="right") - 1
+        states = self.orbit.states(segment, shifted) * self.point.scale
+        return KnownStates.from_states(states, self.point.excitation.frequency, self.gap)
 
     def is_orbit_of(self, other: SettledMotion) -> bool:
-        """Whether both are one orbit: the same nodes, begun in another period or not; or the same
-        states, where chattering that ends in contact has one more of its smallest impacts.
+        """Return whether both are one orbit.
+
+        They have the same nodes, begun in the same period or not; or the same states, where
+        chattering that ends in contact has one more of its smallest impacts.
         """
-        if self.ring is None or other.ring is None or self.multiplicity != other.multiplicity:
+        if self.orbit is None or other.orbit is None or self.multiplicity != other.multiplicity:
             return False
-        return same_nodes(self.ring, other.ring) or self.nearest(other.states[0])[1] < SAME
+        return same_nodes(self.orbit, other.orbit) or self.nearest(other.states[0])[1] < SAME
 
 
 @dataclass(frozen=True)
@@ -142,24 +144,24 @@ class KnownStates:
 
     @classmethod
     def from_states(cls, states: Floats, frequency: float, gap: float) -> KnownStates:
-        """Some states, SI, with the excitation's frequency in rad/s and the largest gap in m."""
+        """Return states, SI, for a frequency in rad/s and a largest gap in m to compare with."""
         matrix = LENGTHS / np.array([1.0, 1.0, frequency, frequency])[:, np.newaxis]
-        found = states @ matrix
-        size = float(np.abs(found[:, :4]).max()) or 1.0
+        values = states @ matrix
+        size = float(np.abs(values[:, :4]).max()) or 1.0
         of_gap = max(gap, LEAST_GAP * size)
-        of_rate = max(of_gap, float(np.abs(found[:, 5]).max()))
+        of_rate = max(of_gap, float(np.abs(values[:, 5]).max()))
         sizes = np.array([size, size, size, size, of_gap, of_rate])
-        return cls(states, found / sizes, matrix / sizes)
+        return cls(states, values / sizes, matrix / sizes)
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
-        """The period whose state is nearest to a state, and its distance over the motion's size."""
+        """Return the period whose state is nearest to a state, and the distance over the size."""
         distances = np.abs(self.scaled - np.asarray(state) @ self.matrix).max(axis=1)
         period = int(distances.argmin())
         return period, float(distances[period])
 
 
-def same_nodes(one: Ring, other: Ring) -> bool:
-    """Whether two orbits of as many periods have the same nodes, whole periods apart or not."""
+def same_nodes(one: PeriodicOrbit, other: PeriodicOrbit) -> bool:
+    """Return whether two orbits of as many periods have the same nodes, up to whole periods."""
     kinds, others = np.array(one.sequence.kinds), np.array(other.sequence.kinds)
     if len(kinds) != len(others):
         return False

@@ -27,12 +27,12 @@ class StableWindow(NamedTuple):
     above: str
 
 
-def stable_windows(found: xr.Dataset) -> list[StableWindow]:
-    """The stable parts of a branch, in the order along it.
+def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
+    """Return the stable parts of a branch, in the order along it.
 
     Parameters
     ----------
-    found : xarray.Dataset
+    branch : xarray.Dataset
         Of :func:`orchestrate.branch`.
 
     Examples
@@ -43,25 +43,25 @@ def stable_windows(found: xr.Dataset) -> list[StableWindow]:
     >>> stable_windows(found)[0].high.__round__(8), stable_windows(found)[0].above
     (2.64796105, 'Neimark-Sacker')
     """
-    over = found[found.attrs["over"]].values
-    order = np.argsort(found.bifurcation_place.values)
-    places = [0.0, *found.bifurcation_place.values[order], found.sizes["point"] - 1.0]
-    values = [over[0], *found.bifurcation_value.values[order], over[-1]]
-    names = kind_names(found)
-    kinds = [names[kind] for kind in found.bifurcation_kind.values[order].tolist()]
-    reasons = [found.attrs["first_end"], *kinds, found.attrs["last_end"]]
+    over = branch[branch.attrs["over"]].values
+    order = np.argsort(branch.bifurcation_place.values)
+    places = [0.0, *branch.bifurcation_place.values[order], branch.sizes["point"] - 1.0]
+    values = [over[0], *branch.bifurcation_value.values[order], over[-1]]
+    names = kind_names(branch)
+    kinds = [names[kind] for kind in branch.bifurcation_kind.values[order].tolist()]
+    reasons = [branch.attrs["first_end"], *kinds, branch.attrs["last_end"]]
     ends = list(zip(map(float, values), reasons, strict=True))
     windows = []
     for i, (first, last) in enumerate(zip(places[:-1], places[1:], strict=True)):
-        inside = found.stable.values[int(np.ceil(first + 1e-9)) : int(np.floor(last - 1e-9)) + 1]
+        inside = branch.stable.values[int(np.ceil(first + 1e-9)) : int(np.floor(last - 1e-9)) + 1]
         if inside.size and inside.all():
             (low, below), (high, above) = sorted(ends[i : i + 2])
             windows.append(StableWindow(low, high, below, above))
     return windows
 
 
-def kind_names(found: xr.Dataset) -> dict[int, str]:
-    """Names of the kinds of bifurcations by number."""
-    words = found.bifurcation_kind.attrs
+def kind_names(branch: xr.Dataset) -> dict[int, str]:
+    """Return the names of the kinds of bifurcations by number."""
+    words = branch.bifurcation_kind.attrs
     names = [word.replace("_", " ") for word in words["flag_meanings"].split()]
     return dict(zip(map(int, words["flag_values"]), names, strict=True))

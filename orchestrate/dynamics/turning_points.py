@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .closed_form import Floats
-from .impact_sequence import PHASE, Ring
+from .impact_sequence import PHASE, PeriodicOrbit
 
 XI_1, XI_2, GAP = range(3)  # quantities that turn, as weights of the two masses
 WEIGHTS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]])
-LOOKS = 24  # at the motion, in a period of its fastest oscillation
-FEWEST = 8  # and in a segment
-REFINEMENTS = 6
+SAMPLES_PER_PERIOD = 24  # of the fastest oscillation: extrema lie further apart
+MIN_SAMPLES = 8  # in a segment, however short
+REFINEMENTS = 6  # Newton steps: each doubles the digits of a bracketed extremum
 
 
 @dataclass(frozen=True)
@@ -35,42 +35,42 @@ class TurningPoints:
     curvature: Floats
 
 
-def looks(ring: Ring) -> tuple[NDArray[np.int_], Floats]:
-    """Segments and phases at which to look at a motion, in order; the ends of segments left out."""
-    counts = FEWEST + np.ceil(
-        LOOKS * np.abs(ring.durations) * ring.form.fastest / (2.0 * np.pi)
+def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
+    """Return segments and phases at which a motion is sampled, in order, inside segments."""
+    counts = MIN_SAMPLES + np.ceil(
+        SAMPLES_PER_PERIOD * np.abs(orbit.durations) * orbit.form.fastest / (2.0 * np.pi)
     ).astype(int)
     segment = np.repeat(np.arange(len(counts)), counts)
     place = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     part = (place + 0.5) / counts[segment]
-    return segment, ring.begins[segment] + part * (ring.ends - ring.begins)[segment]
+    return segment, orbit.begins[segment] + part * (orbit.ends - orbit.begins)[segment]
 
 
-def turning_points(ring: Ring) -> TurningPoints:
-    """All turning points of both displacements and, in flight, of the gap."""
-    segment, phase = looks(ring)
-    rates = ring.states(segment, phase)[:, 2:] @ WEIGHTS.T
+def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
+    """Find all turning points of both displacements and, in flight, of the gap."""
+    segment, phase = sample_grid(orbit)
+    rates = orbit.states(segment, phase)[:, 2:] @ WEIGHTS.T
     same = segment[1:] == segment[:-1]
     turned = (np.sign(rates[1:]) != np.sign(rates[:-1])) & same[:, None]
-    turned[:, GAP] &= ~ring.contact[segment[1:]]
+    turned[:, GAP] &= ~orbit.contact[segment[1:]]
     which, quantity = np.nonzero(turned)
     low, high, segment = phase[which], phase[which + 1], segment[which]
     first, last = rates[which, quantity], rates[which + 1, quantity]
-    found = low + (high - low) * first / (first - last)
+    phases = low + (high - low) * first / (first - last)
     for _ in range(REFINEMENTS):
-        rate, curvature, _ = measured(ring, segment, quantity, found)
+        rate, curvature, _ = derivatives(orbit, segment, quantity, phases)
         step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
-        found = np.clip(found - ring.form.eta * step, low, high)
-    _, curvature, value = measured(ring, segment, quantity, found)
-    return TurningPoints(segment, quantity, found, value, curvature)
+        phases = np.clip(phases - orbit.form.eta * step, low, high)
+    _, curvature, value = derivatives(orbit, segment, quantity, phases)
+    return TurningPoints(segment, quantity, phases, value, curvature)
 
 
-def measured(
-    ring: Ring, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
+def derivatives(
+    orbit: PeriodicOrbit, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """First and second derivative by tau, and value, of quantities inside segments."""
-    state = ring.states(segment, phase)
-    field = ring.form.field(state, phase, ring.contact[segment])
+    """Return first and second derivative by tau, and value, of quantities inside segments."""
+    state = orbit.states(segment, phase)
+    field = orbit.form.field(state, phase, orbit.contact[segment])
     weights = WEIGHTS[quantity]
     rate, curvature = (weights * field[:, :2]).sum(axis=1), (weights * field[:, 2:]).sum(axis=1)
     return rate, curvature, (weights * state[:, :2]).sum(axis=1)
@@ -93,16 +93,16 @@ class Amplitudes:
     gap: float
 
     @classmethod
-    def of(cls, ring: Ring, turns: TurningPoints) -> Amplitudes:
-        """From the turning points; a displacement may also be largest at an impact."""
-        ends = np.abs(ring.arrivals[:, :2]).max(axis=0)
+    def from_orbit(cls, orbit: PeriodicOrbit, turns: TurningPoints) -> Amplitudes:
+        """Return those of an orbit; a displacement may also be largest at an impact."""
+        ends = np.abs(orbit.arrivals[:, :2]).max(axis=0)
         inside = [np.abs(turns.value[turns.quantity == which]) for which in range(3)]
         largest = [max(values, default=0.0) for values in inside]
         return cls(max(ends[0], largest[0]), max(ends[1], largest[1]), float(largest[GAP]))
 
 
-def nearest(ring: Ring, turns: TurningPoints) -> tuple[float, int, float]:
-    """The flight that comes nearest to one more impact.
+def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
+    """Find the flight that comes nearest to one more impact.
 
     Returns
     -------
@@ -119,32 +119,34 @@ def nearest(ring: Ring, turns: TurningPoints) -> tuple[float, int, float]:
     return float(turns.value[lowest]), int(turns.segment[lowest]), float(turns.phase[lowest])
 
 
-def weakest_force(ring: Ring) -> float:
-    """How near permanent contact comes to an earlier release: the smallest -f (18) where f turns.
+def weakest_force(orbit: PeriodicOrbit) -> float:
+    """Return the smallest -f (18) where f turns: it is 0 at an earlier release.
 
     Infinite where there is no contact, or f does not turn there.
     """
-    if not ring.contact.any():
+    if not orbit.contact.any():
         return np.inf
-    segment, phase = looks(ring)
-    inside = ring.contact[segment]
+    segment, phase = sample_grid(orbit)
+    inside = orbit.contact[segment]
     segment, phase = segment[inside], phase[inside]
-    rate = pressing(ring, segment, phase)[1]
+    rate = pressing_force(orbit, segment, phase)[1]
     turned = (rate[1:] > 0.0) & (rate[:-1] <= 0.0) & (segment[1:] == segment[:-1])
     if not turned.any():
         return np.inf
     low, high, segment = phase[:-1][turned], phase[1:][turned], segment[1:][turned]
-    found = 0.5 * (low + high)
+    phases = 0.5 * (low + high)
     for _ in range(REFINEMENTS):
-        _, rate, curvature = pressing(ring, segment, found)
+        _, rate, curvature = pressing_force(orbit, segment, phases)
         step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
-        found = np.clip(found - ring.form.eta * step, low, high)
-    return float(pressing(ring, segment, found)[0].min())
+        phases = np.clip(phases - orbit.form.eta * step, low, high)
+    return float(pressing_force(orbit, segment, phases)[0].min())
 
 
-def pressing(ring: Ring, segment: NDArray[np.int_], phase: Floats) -> tuple[Floats, Floats, Floats]:
-    """-f (18) inside permanent contact, and its first two derivatives by tau."""
-    form, state = ring.form, ring.states(segment, phase)
+def pressing_force(
+    orbit: PeriodicOrbit, segment: NDArray[np.int_], phase: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Return -f (18) inside permanent contact, and its first two derivatives by tau."""
+    form, state = orbit.form, orbit.states(segment, phase)
     position, velocity = state[:, 0], state[:, 2]
     acceleration = form.field(state, phase, True)[:, 2]
     jerk = form.eta * np.cos(phase) - 2.0 * form.damping[2] * acceleration
@@ -156,22 +158,22 @@ def pressing(ring: Ring, segment: NDArray[np.int_], phase: Floats) -> tuple[Floa
     )
 
 
-def phase_zero(ring: Ring) -> Floats:
-    """States at multiples of 2 pi of the phase, in their order, shape (periods, 4)."""
-    turn, periods = 2.0 * np.pi, ring.sequence.periods
+def phase_zero(orbit: PeriodicOrbit) -> Floats:
+    """Return states at multiples of 2 pi of the phase, in their order, shape (periods, 4)."""
+    turn, periods = 2.0 * np.pi, orbit.sequence.periods
     wanted = turn * np.arange(periods)
-    begin = ring.begins[0]
+    begin = orbit.begins[0]
     shifted = begin + np.mod(wanted - begin, turn * periods)
-    segment = np.searchsorted(ring.begins, shifted, side="right") - 1
-    return ring.states(segment, shifted)
+    segment = np.searchsorted(orbit.begins, shifted, side="right") - 1
+    return orbit.states(segment, shifted)
 
 
-def in_order(nodes: Floats, periods: int) -> tuple[Floats, int]:
-    """Nodes from phase 0 on, with the number of the one that is first now."""
+def from_phase_zero(nodes: Floats, periods: int) -> tuple[Floats, int]:
+    """Return nodes from phase 0 on, with the index of the one that is first now."""
     turn = 2.0 * np.pi * periods
     phase = np.mod(nodes[:, PHASE], turn)
     first = int(phase.argmin()) if len(nodes) else 0
-    found = np.roll(nodes, -first, axis=0)
+    ordered = np.roll(nodes, -first, axis=0)
     if len(nodes):
-        found[:, PHASE] = np.roll(phase, -first)
-    return found, first
+        ordered[:, PHASE] = np.roll(phase, -first)
+    return ordered, first

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access import OSCILLATOR, Instance
-from ..dynamics.clusters import Telling, response_from
+from ..dynamics.clusters import AttractorSettings, run_until_settled
 from ..response.curves import KINDS, trace
 from ..response.labels import flags, variable
 from ..response.questions import Point
@@ -97,9 +97,9 @@ class CurvesJob(Job):
 
     def settled(self, fmu: Path, panel: Panel) -> Panel:
         """The response that a panel shows, in a worker, with the multiplicity that it has then."""
-        telling = Telling(transient=self.skip, settle=0.0)
+        settling = AttractorSettings(transient=self.skip, settle=0.0)
         with Instance(fmu) as instance:
-            response, _ = response_from(instance, panel.point, panel.start, telling)
+            response, _ = run_until_settled(instance, panel.point, panel.start, settling)
         return replace(panel, multiplicity=response.multiplicity)
 
     def items(self, inputs: Inputs) -> list[tuple[int, Panel]]:

@@ -24,7 +24,7 @@ from ..dynamics.long_runs import (
     LongRun,
     another_start,
     long_run,
-    wandering,
+    wander_error,
 )
 from ..response.labels import flags, variable
 from ..response.questions import Point
@@ -156,7 +156,9 @@ class LargestJob(Job):
         Chaos may have ended before the first part that counts, or the other start may lead to
         another attractor.
         """
-        lost = screened - found.exponent.value > max(0.5 * screened, wandering(self.periods, eta))
+        lost = screened - found.exponent.value > max(
+            0.5 * screened, wander_error(self.periods, eta)
+        )
         return LOST if found.outcome == STEADY and screened > 0.0 and lost else found.outcome
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..access import OSCILLATOR, REST, EventInstance, begin
 from ..dynamics.closed_form import ClosedForm
-from ..dynamics.following import impacts_of
+from ..dynamics.following import follow_impacts
 from ..response.labels import variable
 from ..response.questions import Point
 from ..running.job import Inputs, Job, Table
@@ -75,8 +75,8 @@ class LowSpeedJob(Job):
     def counted(self, instance: EventInstance, point: Point) -> list[int]:
         """What is counted of one motion, by ``COUNTS``."""
         begin(instance, *point, REST)
-        impacts = impacts_of(instance, point, REST, self.periods)
-        form = ClosedForm.of(point.structure, point.excitation)
+        impacts = follow_impacts(instance, point, REST, self.periods)
+        form = ClosedForm.from_structure(*point)
         state, mu = impacts.state, form.mu
         force = form.force(state[:, 0], (state[:, 2] + mu * state[:, 3]) / (1.0 + mu))
         fastest = impacts.closing.max(initial=0.0)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..dynamics.attractors import AttractorsJob
 from ..dynamics.basins import Side
-from ..dynamics.clusters import Telling
+from ..dynamics.clusters import AttractorSettings
 from ..dynamics.impact_statistics import ImpactStatisticsJob
 from ..dynamics.lyapunov import LyapunovJob
 from ..dynamics.parameter_map import MapJob
@@ -111,7 +111,7 @@ def settled_job(sweep: SweepJob, resolution: Resolution) -> SettledJob:
         structure=sweep.structure,
         eta=tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5],
         follows=sweep.name,
-        telling=Telling(transient=0, settle=0.0, longest=resolution.longest),
+        settings=AttractorSettings(transient=0, settle=0.0, longest=resolution.longest),
     )
 
 
@@ -209,7 +209,7 @@ def attractors_job(sweep: SweepJob, resolution: Resolution) -> AttractorsJob:
         seed=2026,
         width=3.0,
         follows=sweep.name,
-        telling=Telling(transient=resolution.settle, longest=resolution.settle_most),
+        settings=AttractorSettings(transient=resolution.settle, longest=resolution.settle_most),
     )
 
 
@@ -222,7 +222,7 @@ def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution
         excitation=Excitation.nondimensional(1.0, sweep.structure),  # replaced by what is found
         x=Side("x_rel", 0.0, 3.0, side),
         y=Side("v_rel", -3.0, 3.0, side),
-        telling=attractors.telling,
+        settings=attractors.settings,
         attractors=attractors.name,
         sweep=sweep.name,
     )

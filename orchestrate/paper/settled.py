@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access import OSCILLATOR, Instance
-from ..dynamics.clusters import Telling, features, response_from
+from ..dynamics.clusters import AttractorSettings, features, run_until_settled
 from ..dynamics.following import Followed, OnwardQuestion
 from ..response.labels import nondimensional_state, variable, yes_or_no
 from ..response.respond import impacts_in
@@ -37,10 +37,10 @@ class SettledJob(OnwardQuestion):
 
     Attributes
     ----------
-    telling : Telling
+    settings : AttractorSettings
     """
 
-    telling: Telling = Telling(transient=0, settle=0.0)
+    settings: AttractorSettings = AttractorSettings(transient=0, settle=0.0)
     chunk: ClassVar[int] = 20
 
     def work(
@@ -50,7 +50,9 @@ class SettledJob(OnwardQuestion):
         rows, ends, contacts = [], [], []
         with Instance(fmus[OSCILLATOR]) as instance:
             for item in items:
-                response, periods = response_from(instance, item.point, item.start, self.telling)
+                response, periods = run_until_settled(
+                    instance, item.point, item.start, self.settings
+                )
                 n, impacts, gap = features(response, item.point.length)[:3]
                 if n:  # over the response's own period
                     impacts = impacts_in(instance, item.point, response.end, int(n)) / n

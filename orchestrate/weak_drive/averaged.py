@@ -22,10 +22,11 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
+from ..dynamics import bifurcations
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 
-FOLD, TORUS = "fold", "Neimark-Sacker"
+FOLD, TORUS = bifurcations.FOLD.label, bifurcations.TORUS.label
 
 
 class Place(NamedTuple):

@@ -19,31 +19,27 @@ import numpy as np
 from ..access.exported import finder
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
+from ..dynamics.bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
 from ..dynamics.continuation import NoConvergenceError
+from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError
+from ..response.questions import whole
 from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
 from .couple import checked_motor
-from .drive_walk import (
+from .drive_tracer import (
     ENDS,
-    FLIP,
     HALVED,
-    LIMIT,
-    NONE,
+    NO_START,
     NOT_BEGUN,
-    TESTS,
-    Bifurcation,
-    Leg,
     Motion,
-    Pace,
-    doubled,
-    follow,
+    double_period,
     motion_near,
+    trace_branch,
 )
-from .grazing import FLIGHT, IMPACT
 from .schedule import check
 from .shooting import Shooter
 
@@ -53,13 +49,14 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
 
-KINDS = ("bonded", "delaminated")
+STRUCTURES = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
+BIFURCATIONS = (FOLD, FLIP, TORUS, TOUCHING, GRAZING)  # that are located on these branches
 REPEATS = 1e-6  # of the unit: change of a motion in a part of its period, after which it repeats
-EVENTS = (*TESTS, FLIGHT, IMPACT)
-KNOWN = 1e-7  # to which multipliers are known: on the unit circle no motion is called stable
+ON_CIRCLE = 1e-7  # to which multipliers are known: on the unit circle no motion is called stable
 MULTIPLIERS = 4  # the largest ones, that are kept
-TOLD: dict[str, tuple[str, str]] = {  # of a motion, with units
+GRID = 2001  # speeds at which the averaged theory's largest amplitude is sought
+COLUMNS: dict[str, tuple[str, str]] = {  # numbers of a motion, with units
     "speed": ("rad/s", "mean speed"),
     "voltage": ("V", "voltage that holds the speed"),
     "amplitude": ("m", "half the range of x1 over a period"),
@@ -67,6 +64,7 @@ TOLD: dict[str, tuple[str, str]] = {  # of a motion, with units
     "revolutions": ("1", "revolutions after which the motion repeats"),
 }
 Variable = tuple[Any, np.ndarray, dict[str, str]]
+Leg = BranchSegment[Motion]
 
 
 @dataclass(frozen=True)
@@ -79,19 +77,23 @@ class DriveBranchJob(Job):
     drive : Drive
     speeds : (float, float)
         rad/s, rising.
-    pace : Pace
+    longest : float
+        Longest step, in unknowns.
+    most : int
+        Points in one direction.
     period : int
         Most revolutions after which the delaminated motion repeats.
     steps : int
         Communication steps in a revolution.
     settle : float
-        Time in which the first motion is found by simulation, s.
+        Time in which the first motion is approached by simulation, s.
     """
 
     structure: Structure
     drive: Drive
     speeds: tuple[float, float]
-    pace: Pace
+    longest: float
+    most: int
     period: int
     steps: int
     settle: float
@@ -100,78 +102,84 @@ class DriveBranchJob(Job):
     item: ClassVar[str] = "branch"
 
     def count(self) -> int:
-        """Bonded and delaminated."""
-        return len(KINDS)
+        """Return two: bonded and delaminated."""
+        return len(STRUCTURES)
 
     def items(self, inputs: Inputs) -> Sequence[Structure]:
-        """Both structures."""
+        """Return both structures."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Structure], carry: Table | None
     ) -> Table:
-        """Branches of some structures: each a row of legs, NaN beyond a leg's end."""
-        found = []
+        """Trace the branches of some structures: each a row of legs, NaN beyond a leg's end."""
+        rows = []
         for structure in items:
-            with Instance(fmus[OSCILLATOR]) as one, Instance(fmus[SHAKER]) as other:
-                found.append(self.legs((one, other), structure))
-        motions = [[leg.motions for leg in legs] for legs in found]
-        events = [[[event.motion for event in leg.bifurcations] for leg in legs] for legs in found]
-        kinds = [[[event.kind for event in leg.bifurcations] for leg in legs] for legs in found]
+            with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
+                rows.append(self.legs((oscillator, shaker), structure))
+        at = [[[each.point for each in leg.bifurcations] for leg in legs] for legs in rows]
         return {
-            "points": np.array([[self.rows(part) for part in row] for row in motions]),
-            "events": np.array([[self.rows(part) for part in row] for row in events]),
-            "kinds": np.array([[self.codes(part) for part in row] for row in kinds]),
-            "ends": np.array([[ENDS.index(leg.end) for leg in legs] for legs in found]),
+            "points": np.array([[self.numbers(leg.points) for leg in legs] for legs in rows]),
+            "events": np.array([[self.numbers(motions) for motions in legs] for legs in at]),
+            "kinds": np.array([[self.codes(leg) for leg in legs] for legs in rows]),
+            "ends": np.array([[ENDS.index(leg.end) for leg in legs] for legs in rows]),
         }
 
+    @property
+    def settings(self) -> ContinuationSettings:
+        """Those of the tracer, which does not count the start as a point."""
+        return ContinuationSettings(self.longest, self.most - 1)
+
+    def max_turns(self, structure: Structure) -> int:
+        """Return the most revolutions after which a motion may repeat."""
+        return 1 if structure.bonded else self.period
+
     def legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
-        """The branch from the lowest speed and, where that ends on the way, from the highest; then
-        those of twice the period off the first doublings of both.
+        """Trace the branch from the lowest speed; from the highest too where that one ends before.
+
+        Then those of twice the period, off the first doublings of both.
         """
         omega, drive = structure.omega, self.drive
         low, high = (speed / omega for speed in self.speeds)
-        sizes = averaged.amplitude(structure, drive, np.linspace(low, high, 2001))
+        sizes = averaged.amplitude(structure, drive, np.linspace(low, high, GRID))
         length = float(sizes.max()) * drive.length
-        turns = 1 if structure.bonded else self.period
+        turns = self.max_turns(structure)
         shooter = Shooter(fmus, structure, drive, turns, self.steps, length)
         below = self.leg(shooter, (low, high), up=True)
-        passed = below.end == LIMIT and below.motions[-1].root.unknowns[-1] > 0.5 * (low + high)
+        passed = below.end == LIMIT and below.points[-1].place[1] > 0.5 * (low + high)
         above = Leg(end=NOT_BEGUN) if passed else self.leg(shooter, (low, high), up=False)
-        found = [below, above]
+        legs = [below, above]
         for leg in (below, above):
             for flip in leg.bifurcations:
-                if len(found) < len(LEGS) and self.is_to_double(flip, found, structure):
-                    found.append(self.doubled_leg(shooter, flip.motion, (low, high)))
-        return [*found, *(Leg(end=NOT_BEGUN) for _ in LEGS[len(found) :])]
+                if len(legs) < len(LEGS) and self.is_to_double(flip, legs, turns):
+                    legs.append(self.doubled_leg(shooter, flip.point, (low, high)))
+        return [*legs, *(Leg(end=NOT_BEGUN) for _ in LEGS[len(legs) :])]
 
-    def is_to_double(self, flip: Bifurcation, legs: Sequence[Leg], structure: Structure) -> bool:
-        """Whether a branch of twice the period begins here that is wanted, and not known yet."""
-        turns = 1 if structure.bonded else self.period
-        if flip.kind != FLIP or 2 * flip.motion.period.revolutions > turns:
+    def is_to_double(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
+        """Return whether a branch of twice the period begins here that is not traced yet."""
+        if flip.kind != FLIP or 2 * flip.point.period.revolutions > turns:
             return False
-        place = flip.motion.root.unknowns[-2:]
-        ends = [leg.motions[-1].root.unknowns[-2:] for leg in legs if leg.end == HALVED]
-        return not any(np.abs(place - end).max() < 2.0 * self.pace.longest for end in ends)
+        ends = [leg.points[-1].place for leg in legs if leg.end == HALVED]
+        return not any(np.abs(flip.point.place - end).max() < 2.0 * self.longest for end in ends)
 
     def doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
-        """The branch of twice the period off a period doubling."""
+        """Trace the branch of twice the period off a period doubling."""
         try:
-            return follow(shooter, doubled(shooter, flip), speeds, self.pace)
+            return trace_branch(shooter, double_period(shooter, flip), speeds, self.settings)
         except NoConvergenceError:
-            return Leg(end=NONE)
+            return Leg(end=NO_START)
 
     def leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
-        """The branch from one of two speeds over omega, which a simulation is held at.
+        """Trace the branch from one of two speeds over omega, at which a simulation is held.
 
-        It is followed with the shortest period after which it repeats.
+        It is traced with the shortest period after which its first motion repeats.
         """
         speed = speeds[0] if up else speeds[1]
         voltage = float(averaged.no_load_speed(shooter.structure, self.drive, speed))
         omega = shooter.structure.omega
         state = shooter.settle(voltage * shooter.volts, speed * omega, self.settle)
         guess = np.append(state, [voltage, speed])
-        turns = 1 if shooter.structure.bonded else self.period
+        turns = self.max_turns(shooter.structure)
         try:
             shooter.repeat_after(turns)
             start = motion_near(shooter, guess, up)
@@ -181,81 +189,75 @@ class DriveBranchJob(Job):
                     start = motion_near(shooter, start.root.unknowns, up)
                     break
         except NoConvergenceError:
-            return Leg(end=NONE)
-        return follow(shooter, start, speeds, self.pace)
+            return Leg(end=NO_START)
+        return trace_branch(shooter, start, speeds, self.settings)
 
-    def rows(self, motions: Sequence[Motion]) -> np.ndarray:
-        """Numbers of motions, NaN beyond them, shape (most, numbers)."""
-        table = np.full((self.pace.most, len(TOLD) + MULTIPLIERS), np.nan, dtype=complex)
+    def numbers(self, motions: Sequence[Motion]) -> np.ndarray:
+        """Return numbers of motions, NaN beyond them, shape (most, numbers)."""
+        table = np.full((self.most, len(COLUMNS) + MULTIPLIERS), np.nan, dtype=complex)
         volts, omega = self.drive.volts(self.structure), self.structure.omega
         for row, motion in zip(table, motions, strict=False):
-            voltage, speed = motion.root.unknowns[-2:]
-            period = motion.period
-            impacts = period.impacts / period.revolutions
-            told = (speed * omega, voltage * volts, period.amplitude, impacts, period.revolutions)
-            row[:] = [*told, *motion.multipliers[:MULTIPLIERS]]
+            voltage, speed = motion.place
+            turns = motion.period.revolutions
+            sizes = motion.period.amplitude, motion.period.impacts / turns, turns
+            row[:] = [speed * omega, voltage * volts, *sizes, *motion.multipliers[:MULTIPLIERS]]
         return table
 
-    def codes(self, kinds: Sequence[str]) -> np.ndarray:
-        """Kinds as numbers, -1 beyond them."""
-        numbers = np.full(self.pace.most, -1)
-        known = [EVENTS.index(kind) for kind in kinds][: self.pace.most]
-        numbers[: len(known)] = known
+    def codes(self, leg: Leg) -> np.ndarray:
+        """Return the kinds of a leg's bifurcations as numbers, -1 beyond them."""
+        numbers = np.full(self.most, -1)
+        codes = [BIFURCATIONS.index(each.kind) for each in leg.bifurcations][: self.most]
+        numbers[: len(codes)] = codes
         return numbers
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Both branches, and their bifurcations."""
+        """Return both branches, and their bifurcations."""
         import xarray as xr
 
         points = table["points"]
         points = points[:, :, : max(1, int(np.isfinite(points[..., 0]).sum(axis=2).max()))]
         along = ("structure", "leg", "point")
-        found = told(along, points)
-        stable = np.nan_to_num(np.abs(points[..., len(TOLD)]), nan=np.inf) < 1.0 - KNOWN
-        found["stable"] = (along, stable, labels("1", "whether the motion is stable"))
+        variables = motion_variables(along, points)
+        largest = np.nan_to_num(np.abs(points[..., len(COLUMNS)]), nan=np.inf)
+        text = "whether the motion is stable"
+        variables["stable"] = (along, largest < 1.0 - ON_CIRCLE, labels("1", text))
         ends = np.array(ENDS)[table["ends"]]
-        found["end"] = (along[:2], ends, labels("1", "why the branch ends"))
+        variables["end"] = (along[:2], ends, labels("1", "why the branch ends"))
         kinds = table["kinds"]
-        chosen = kinds >= 0
-        places = np.argwhere(chosen)
-        found |= {
-            f"bifurcation_{name}": values
-            for name, values in told(("bifurcation",), table["events"][chosen]).items()
-        }
-        for name, values, text in (
-            ("structure", np.array(KINDS)[places[:, 0]], "structure"),
-            ("kind", np.array(EVENTS)[kinds[chosen]], "kind of bifurcation"),
-        ):
-            found[f"bifurcation_{name}"] = (("bifurcation",), values, labels("1", text))
+        located = kinds >= 0
+        at = motion_variables(("bifurcation",), table["events"][located])
+        structures = np.array(STRUCTURES)[np.argwhere(located)[:, 0]]
+        names = np.array([KINDS[kind] for kind in BIFURCATIONS])[kinds[located]]
+        at["structure"] = (("bifurcation",), structures, labels("1", "structure"))
+        at["kind"] = (("bifurcation",), names, labels("1", "kind of bifurcation"))
+        variables |= {f"bifurcation_{name}": values for name, values in at.items()}
         coordinates = {
-            "structure": ("structure", list(KINDS), {"long_name": "structure"}),
+            "structure": ("structure", list(STRUCTURES), {"long_name": "structure"}),
             "leg": ("leg", list(LEGS), {"long_name": "where the branch was begun"}),
         }
-        return xr.Dataset(found, coordinates, {"title": "Branches of the weak drive"})
+        return xr.Dataset(variables, coordinates, {"title": "Branches of the weak drive"})
 
 
 def labels(unit: str, text: str) -> dict[str, str]:
-    """Attributes of a variable."""
+    """Return the attributes of a variable."""
     return {"units": unit, "long_name": text}
 
 
-def told(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Variable]:
-    """Numbers of motions as variables: the last axis is shared out."""
-    found: dict[str, Variable] = {
+def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Variable]:
+    """Return numbers of motions as variables: the last axis is that of ``COLUMNS``."""
+    variables: dict[str, Variable] = {
         name: (dims, numbers[..., i].real, labels(unit, text))
-        for i, (name, (unit, text)) in enumerate(TOLD.items())
+        for i, (name, (unit, text)) in enumerate(COLUMNS.items())
     }
-    largest = numbers[..., len(TOLD) :]
+    largest = numbers[..., len(COLUMNS) :]
     text = "Floquet multipliers of the largest size"
-    parts = {"real": largest.real, "imag": largest.imag}
-    for part, values in parts.items():
-        word = "real" if part == "real" else "imaginary"
-        found[f"multiplier_{part}"] = (
-            (*dims, "multiplier"),
-            values,
-            labels("1", f"{text}, {word} part"),
-        )
-    return found
+    for part, name, values in (
+        ("real", "real", largest.real),
+        ("imag", "imaginary", largest.imag),
+    ):
+        attributes = labels("1", f"{text}, {name} part")
+        variables[f"multiplier_{part}"] = ((*dims, "multiplier"), values, attributes)
+    return variables
 
 
 def drive_branch(
@@ -270,7 +272,7 @@ def drive_branch(
     settle: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Stationary motions of structure and motor together, stable and unstable, round all folds.
+    """Trace stationary motions of structure and motor together, stable and unstable, round folds.
 
     Parameters
     ----------
@@ -318,9 +320,9 @@ def drive_branch(
     is the one that is missing then. Bifurcations are roots on the branch, of the tangent's voltage
     (fold) and of products of the multipliers (the others), to 1e-6 of a step. The angle's own
     multiplier, 1 for every motion, is not among those given. A branch ends where an impact or a
-    flight grazes; it is told by the smallest closing speed and the smallest gap of a turning, which
-    fall to 0 there, and is a bifurcation where less than 1e-4 is left of the way. Of motions nearer
-    than that to the last one only that is kept.
+    flight grazes: there the smallest closing speed, or the smallest gap at which the masses turn
+    away from each other, falls to 0. The grazing is a bifurcation of the answer where the last
+    motion is nearer to it than 1e-4; other motions that are nearer to the last one are left out.
 
     A motion is accepted by what it leaves of the equations, 1e-9 of the amplitude at most (1e-13 is
     usual), and by its impacts, which are those of the motion before. Derivatives are by differences
@@ -345,9 +347,6 @@ def drive_branch(
     first, last = (0.95 * resonance, 1.25 * resonance) if speed is None else map(float, speed)
     if not (0.0 < first < last < math.inf):
         raise InputError(f"speed = {speed} rad/s: expected (first, last) with 0 < first < last")
-    for name, number, least in (("most", most, 2), ("period", period, 1), ("steps", steps, 16)):
-        if not isinstance(number, int) or number < least:
-            raise InputError(f"{name} = {number}: expected a whole number >= {least}")
     check("longest", longest, "", low=1e-4, high=1.0)
     settle = 600.0 / omega if settle is None else float(settle)
     check("settle", settle, "s", low=0.0)
@@ -356,9 +355,10 @@ def drive_branch(
         structure,
         drive,
         (first, last),
-        Pace(float(longest), most),
-        period,
-        steps,
+        float(longest),
+        whole("most", most, 2),
+        whole("period", period, 1),
+        whole("steps", steps, 16),
         settle,
     )
     return answer(job, running, finder(running))

@@ -12,19 +12,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..dynamics.bifurcations import GRAZING, KINDS, TOUCHING
+from ..dynamics.bifurcations import GRAZING, KINDS, TOUCHING, BifurcationKind
 from ..dynamics.closed_form import Floats
 from ..structures.structure import Structure
 from .exchange import OscillatorOutputs
 from .shooting import Shooter
 
 IMPACT, FLIGHT = KINDS[GRAZING], KINDS[TOUCHING]
-REACH = 5e-3  # along the branch, voltage over K omega and speed over omega
-BACK = 3  # motions over which it is told how fast the margins fall
+REACH = 5e-3  # of voltage over K omega and speed over omega: further on, no fall is extrapolated
+BACK = 3  # motions over which the slope of a margin is taken
 
 
 class Margins(NamedTuple):
-    """What is 0 at a grazing, over the unit of length.
+    """What falls to 0 at a grazing, over the unit of length.
 
     Attributes
     ----------
@@ -38,8 +38,8 @@ class Margins(NamedTuple):
     impact: float
 
 
-def margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
-    """How near gaps and impacts of a motion's period are to grazing; infinite where it has none.
+def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
+    """Return how near a motion's gaps and impacts are to grazing; infinite where it has none.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
         Of the motor where its period begins, rad.
     """
     shooter.angle = angle
-    master, voltage = shooter.begin(unknowns)
+    master, voltage = shooter.begin_period(unknowns)
     gaps, closing = [math.inf], [math.inf]
     for _ in range(shooter.count):
         before = master.motion
@@ -67,10 +67,10 @@ def margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
 def turning_gap(
     structure: Structure, before: OscillatorOutputs, after: OscillatorOutputs, h: float
 ) -> float:
-    """The smallest gap in a step without an impact, at whose ends it shrinks and grows, m.
+    """Return the smallest gap in a step without an impact, at whose ends it shrinks and grows, m.
 
-    By the quintic through gap, velocity and acceleration at both ends; the box's acceleration is
-    the same for both masses.
+    It is that of the quintic through gap, velocity and acceleration at both ends; the box's
+    acceleration is the same for both masses.
     """
     from scipy.interpolate import BPoly, PPoly
 
@@ -83,8 +83,10 @@ def turning_gap(
     return float(gap(gap.derivative().roots(extrapolate=False)).min())
 
 
-def grazing_ahead(shooter: Shooter, motions: Sequence[tuple[Floats, float]]) -> tuple[str, float]:
-    """What grazes next on the way along motions, and how far on.
+def next_grazing(
+    shooter: Shooter, motions: Sequence[tuple[Floats, float]]
+) -> tuple[BifurcationKind | None, float]:
+    """Return what grazes next along a branch, and how far on, from its last motions.
 
     A margin is taken to fall as it did over the last motions. The very last ones may be beyond.
 
@@ -96,20 +98,21 @@ def grazing_ahead(shooter: Shooter, motions: Sequence[tuple[Floats, float]]) -> 
 
     Returns
     -------
-    kind : str
-        ``""`` where nothing is near.
+    kind : BifurcationKind or None
+        None where nothing grazes within ``REACH``.
     distance : float
         In voltage over K omega and speed over omega.
     """
-    seen = motions[-2 * BACK :]
-    near = np.array([margins(shooter, *motion) for motion in seen])
-    places = np.array([unknowns[-2:] for unknowns, _ in seen])
-    nearest = "", math.inf
-    for first, last in zip(range(len(seen)), range(BACK, len(seen)), strict=False):
-        way = float(np.linalg.norm(places[last] - places[first]))
-        for i, kind in enumerate((FLIGHT, IMPACT)):
-            before, now = float(near[first, i]), float(near[last, i])
-            ahead = way * now / (before - now) if now < before < math.inf else math.inf
-            if ahead < min(nearest[1], REACH):
-                nearest = kind, ahead
-    return nearest
+    last_motions = motions[-2 * BACK :]
+    falling = np.array([grazing_margins(shooter, *motion) for motion in last_motions])
+    places = np.array([unknowns[-2:] for unknowns, _ in last_motions])
+    kind, distance = None, math.inf
+    for last in range(BACK, len(last_motions)):
+        first = last - BACK
+        distance_back = float(np.linalg.norm(places[last] - places[first]))
+        for i, each in enumerate((TOUCHING, GRAZING)):
+            before, now = float(falling[first, i]), float(falling[last, i])
+            ahead = distance_back * now / (before - now) if now < before < math.inf else math.inf
+            if ahead < min(distance, REACH):
+                kind, distance = each, ahead
+    return kind, distance

@@ -2,7 +2,7 @@
 
 Branches turn back at folds, and have more of them than a ramp takes. It follows the stable motion
 that it begins with, to the first fold; there the speed jumps to another motion at that voltage, and
-the ramp goes on from there. Where the branches do not tell how it goes on, the path says so.
+the ramp goes on from there. Where the branches do not decide how it goes on, the path says so.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .averaged import FOLD, TORUS
-from .drive_walk import FLIP, LIMIT
+from ..dynamics.bifurcations import FLIP, FOLD, KINDS, TORUS
+from ..dynamics.tracer import LIMIT
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,8 +55,8 @@ class Motions(NamedTuple):
     revolutions: np.ndarray
     end: str
 
-    def from_place(self, first: int, forward: bool) -> Motions:
-        """Those from a place on, one way or the other; backward to where its leg was begun."""
+    def from_index(self, first: int, forward: bool) -> Motions:
+        """Return those from an index on, in one direction; backward to where the leg was begun."""
         rows = slice(first, None) if forward else slice(first, None, -1)
         end = self.end if forward else LIMIT
         columns = (self.voltage, self.speed, self.stable, self.revolutions)
@@ -94,12 +94,12 @@ class Branches:
         self.spans = np.array([self.span("voltage"), self.span("speed")])
 
     def span(self, name: str) -> float:
-        """The range of a quantity over all legs; 1 where there is none."""
+        """Return the range of a quantity over all legs; 1 where there is none."""
         values = np.concatenate([getattr(leg, name) for leg in self.legs.values()] or [np.zeros(1)])
         return float(np.ptp(values)) or 1.0
 
     def nearest(self, motions: Motions, i: int, kind: str) -> int | None:
-        """The bifurcation of a kind between a motion and the next one; None without any."""
+        """Return the bifurcation of a kind between a motion and the next one; None without any."""
         ends = np.stack([motions.voltage[i : i + 2], motions.speed[i : i + 2]], 1) / self.spans
         own = [
             k
@@ -113,9 +113,9 @@ class Branches:
         return int(own[int(away.argmin())]) if away.min() <= max(step, 1e-3) else None
 
     def path(self, up: bool) -> Path:
-        """What a slow ramp meets that goes up from the lowest speed, or down from the highest."""
+        """Return what a slow ramp meets, up from the lowest speed or down from the highest."""
         path, sign = Path(), 1.0 if up else -1.0
-        motions = self.first(up, sign)
+        motions = self.first_leg(up, sign)
         if motions is None:
             path.end = "its branch begins with no stable motion"
             return path
@@ -126,16 +126,16 @@ class Branches:
         path.end = "more than it is worth to follow"
         return path
 
-    def first(self, up: bool, sign: float) -> Motions | None:
-        """The leg that a ramp begins on, from its first stable motion before the voltage turns."""
+    def first_leg(self, up: bool, sign: float) -> Motions | None:
+        """Return the leg that a ramp begins on, from its first stable motion."""
         leg, below = self.legs.get(FIRST_LEG[up]), self.legs.get(FIRST_LEG[True])
         if leg is None and not up and below is not None and below.end == LIMIT:
-            leg = below.from_place(len(below.speed) - 1, forward=False)
+            leg = below.from_index(len(below.speed) - 1, forward=False)
         if leg is None or not leg.stable.any():
             return None
         begin = int(np.argmax(leg.stable))
         turned = (sign * np.diff(leg.voltage[: begin + 1]) < 0.0).any()
-        return None if turned else leg.from_place(begin, forward=True)
+        return None if turned else leg.from_index(begin, forward=True)
 
     def follow(self, motions: Motions, path: Path, sign: float) -> Motions | None:
         """Go on to where the ramp leaves its motions; those it goes on with, None at the end."""
@@ -144,7 +144,9 @@ class Branches:
             turned = sign * (motions.voltage[i + 1] - motions.voltage[i]) < 0.0
             if not turned and (lost or motions.stable[i + 1]):
                 continue
-            fold, torus, flip = (self.nearest(motions, i, kind) for kind in (FOLD, TORUS, FLIP))
+            fold, torus, flip = (
+                self.nearest(motions, i, KINDS[kind]) for kind in (FOLD, TORUS, FLIP)
+            )
             if torus is not None and not lost:
                 path.slow_losses.append(torus)
                 lost = True
@@ -157,7 +159,7 @@ class Branches:
         return None
 
     def jump(self, fold: int | None, path: Path, sign: float) -> Motions | None:
-        """The motions that a ramp jumps to, from where it lands."""
+        """Return the motions that a ramp jumps to, from where it lands."""
         if fold is None:
             path.end = "its motion turns back at a fold that was not located"
             return None
@@ -172,10 +174,10 @@ class Branches:
         path.landings.append(float(speeds[0]))
         motions, i = landings[0]
         forward = sign * (motions.voltage[i + 1] - motions.voltage[i]) > 0.0
-        return motions.from_place(i + 1 if forward else i, forward)
+        return motions.from_index(i + 1 if forward else i, forward)
 
     def stable_at(self, voltage: float, speed: float, sign: float) -> list[tuple[Motions, int]]:
-        """Legs with a stable motion at a voltage, beyond a speed, and the place before it."""
+        """Return legs with a stable motion at a voltage beyond a speed, and the index before."""
         found = []
         for motions in self.legs.values():
             for i in range(len(motions.speed) - 1):
@@ -187,7 +189,7 @@ class Branches:
 
     @staticmethod
     def landing_speed(motions: Motions, i: int, voltage: float) -> float:
-        """The speed at a voltage between two motions, rad/s."""
+        """Return the speed at a voltage between two motions, rad/s."""
         low, high = motions.voltage[i : i + 2]
         part = (voltage - low) / (high - low) if high != low else 0.0
         return float(motions.speed[i] + part * (motions.speed[i + 1] - motions.speed[i]))
@@ -195,7 +197,7 @@ class Branches:
     def double(
         self, flip: int | None, motions: Motions, i: int, path: Path, sign: float
     ) -> Motions | None:
-        """The stable motions of twice the period that go on from a period doubling."""
+        """Return the stable motions of twice the period that go on from a period doubling."""
         voltage = float(motions.voltage[i])
         if flip is not None:
             voltage = float(self.places[flip][0])
@@ -213,7 +215,7 @@ class Branches:
 
 
 def ramp_paths(data: xr.Dataset, structure: str) -> dict[str, Path]:
-    """What slow ramps meet, ``"up"`` and ``"down"``.
+    """Return what slow ramps meet, ``"up"`` and ``"down"``.
 
     Parameters
     ----------

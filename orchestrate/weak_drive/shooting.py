@@ -15,7 +15,7 @@ import numpy as np
 
 from ..access.instance import Instance
 from ..dynamics.closed_form import Floats
-from ..dynamics.continuation import NoConvergenceError, oriented
+from ..dynamics.continuation import NoConvergenceError, fix_sign
 from ..errors import FmuError
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -75,7 +75,7 @@ class Shot(NamedTuple):
     contact: bool
 
     def like(self, other: Shot) -> bool:
-        """Whether no grazing lies between two motions: the end is smooth between them.
+        """Return whether no grazing lies between two motions: the end is smooth between them.
 
         In a chattering that ends in contact the last impacts come and go with next to no speed.
         """
@@ -146,12 +146,12 @@ class Shooter:
         self._last: tuple[Floats, Floats] | None = None
 
     def repeat_after(self, revolutions: int) -> None:
-        """From now on motions are to repeat after another number of revolutions."""
+        """Set after how many revolutions motions are to repeat from now on."""
         self.turns, self.count = revolutions, self.count // self.turns * revolutions
         self.matrix, self._last = np.empty((0, 0)), None
 
     def change_in(self, unknowns: Floats, revolutions: int) -> Floats:
-        """What the state changes in some revolutions, of a motion that repeats after more."""
+        """Return the change of the state in some of the revolutions after which it repeats."""
         turns, matrix, last = self.turns, self.matrix, self._last
         self.repeat_after(revolutions)
         try:
@@ -162,8 +162,8 @@ class Shooter:
 
     # -- both FMUs over a period --
 
-    def master(self, state: Floats, voltage: float, h: float) -> Master:
-        """Both FMUs, started from a state."""
+    def start_master(self, state: Floats, voltage: float, h: float) -> Master:
+        """Start both FMUs from a state."""
         oscillator, shaker = self.fmus
         if self.used:
             oscillator.reset()
@@ -179,21 +179,21 @@ class Shooter:
         shaker.initialize(**self.drive.parameters(), **starts, **more)
         return master_of(oscillator, shaker, self.structure, Scheme("rollback", h))
 
-    def begin(self, unknowns: Floats) -> tuple[Master, float]:
-        """Both FMUs at the start of a period, and the voltage, V."""
+    def begin_period(self, unknowns: Floats) -> tuple[Master, float]:
+        """Start both FMUs at the begin of a period; return the voltage, V, too."""
         voltage = float(unknowns[-2]) * self.volts
         period = self.turns * TURN / (float(unknowns[-1]) * self.structure.omega)
-        return self.master(unknowns[:-2], voltage, period / self.count), voltage
+        return self.start_master(unknowns[:-2], voltage, period / self.count), voltage
 
-    def state_of(self, master: Master) -> Floats:
-        """The state of both, each quantity over its unit."""
+    def state(self, master: Master) -> Floats:
+        """Return the state of both, each quantity over its unit."""
         values = {**master.motion._asdict(), **master.shaking._asdict()}
         if "motor_current" in self.names:
             values["motor_current"] = self.fmus[1].get("motor_current")[0]
         return np.array([values[name] for name in self.names]) / self.units
 
     def settle(self, voltage: float, speed: float, time: float) -> Floats:
-        """The state after a time at a speed, with the masses apart unless they are bonded.
+        """Return the state after a time at a speed, with the masses apart unless they are bonded.
 
         The speed is held by a heavy rotor: so motions are found that a motor would not stay on.
         """
@@ -205,13 +205,13 @@ class Shooter:
             current = (voltage - own.motor_constant * speed) / own.armature_resistance
             state[-1] = current / self.units[-1]
         try:
-            master = self.master(state, voltage, 0.1 / self.structure.omega)
+            master = self.start_master(state, voltage, 0.1 / self.structure.omega)
             while master.time < time or self._touching(master):
                 master.step(voltage)
         finally:
             self.drive = own
         self.angle = master.shaking.angle % TURN
-        found = self.state_of(master)
+        found = self.state(master)
         master.close()
         return found
 
@@ -227,20 +227,20 @@ class Shooter:
             Where the FMUs cannot begin there, as with masses through each other.
         """
         try:
-            master, voltage = self.begin(unknowns)
+            master, voltage = self.begin_period(unknowns)
             kept = np.empty((self.count, len(master.memory())))
             master.run([voltage] * self.count, kept=kept)
         except FmuError as error:
             raise NoConvergenceError(str(error)) from None
         turned = master.shaking.angle - self.angle - self.turns * TURN
-        end = np.append(self.state_of(master), turned)
+        end = np.append(self.state(master), turned)
         master.close()
         contact = bool((kept[:, PLACES["x1"]] == kept[:, PLACES["x2"]]).any())
         return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
 
-    def look(self, unknowns: Floats) -> Period:
-        """What a motion does over a period."""
-        master, voltage = self.begin(unknowns)
+    def observe_period(self, unknowns: Floats) -> Period:
+        """Run a motion over a period, and return what is seen of it."""
+        master, voltage = self.begin_period(unknowns)
         ends = master.motion, master.shaking
         seen = master.revolution = Revolution.begin(*ends, turn=math.nan)  # never complete
         kept = np.empty((self.count + 1, len(master.memory())))
@@ -255,17 +255,17 @@ class Shooter:
 
     def begin_later(self, unknowns: Floats, steps: int) -> Floats:
         """Begin periods some steps later from now on; the unknowns of the same motion there."""
-        master, voltage = self.begin(unknowns)
+        master, voltage = self.begin_period(unknowns)
         master.run([voltage] * steps)
         self.angle = master.shaking.angle % TURN
-        found = np.append(self.state_of(master), unknowns[-2:])
+        found = np.append(self.state(master), unknowns[-2:])
         master.close()
         return found
 
     # -- the equations --
 
     def residual(self, unknowns: Floats) -> Floats:
-        """What a period changes: of the state, and of the angle beyond full turns."""
+        """Return the change in a period: of the state, and of the angle beyond full turns."""
         if self._last is not None and np.array_equal(self._last[0], unknowns):
             return self._last[1]
         found = self.shoot(unknowns).end
@@ -273,7 +273,7 @@ class Shooter:
         return found
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """The residual's derivative: by differences, or by the secant from where it was asked last.
+        """Return the residual's derivative: by differences, or updated by a secant (Broyden).
 
         Raises
         ------
@@ -281,23 +281,23 @@ class Shooter:
             Where there is no derivative.
         """
         if at_root or not self.matrix.size:
-            return self.renew(unknowns)
-        found = self.residual(unknowns)
+            return self.renew_jacobian(unknowns)
+        residual = self.residual(unknowns)
         if self._last is not None:
-            way = unknowns - self._last[0]
-            length = float(way @ way)
-            if length > 0.0:
-                change = found - self._last[1] - self.matrix @ way
-                self.matrix = self.matrix + np.outer(change, way) / length
-        self._last = unknowns.copy(), found
+            change = unknowns - self._last[0]
+            square = float(change @ change)
+            if square > 0.0:
+                missed = residual - self._last[1] - self.matrix @ change
+                self.matrix = self.matrix + np.outer(missed, change) / square
+        self._last = unknowns.copy(), residual
         return self.matrix
 
     def restart(self, root: Floats, matrix: Floats) -> None:
         """Go on from a root with its Jacobian, whatever has been tried from there."""
         self.matrix, self._last = matrix, (root, np.zeros(self.size + 1))
 
-    def renew(self, unknowns: Floats) -> Floats:
-        """The Jacobian by differences, at a root or near one.
+    def renew_jacobian(self, unknowns: Floats) -> Floats:
+        """Make the Jacobian anew by differences, at a root or near one.
 
         Raises
         ------
@@ -305,15 +305,17 @@ class Shooter:
             Where there is none.
         """
         base = self.shoot(unknowns)
-        matrix = np.stack([self.column(unknowns, i, base) for i in range(len(unknowns))], axis=1)
+        matrix = np.stack(
+            [self.derivative(unknowns, i, base) for i in range(len(unknowns))], axis=1
+        )
         matrix[: self.size, : self.size] -= np.eye(self.size)
         self.matrix, residual = matrix, base.end.copy()
         residual[: self.size] -= unknowns[: self.size]
         self._last = unknowns.copy(), residual
         return self.matrix
 
-    def column(self, unknowns: Floats, which: int, base: Shot) -> Floats:
-        """The derivative of a period's end by one unknown.
+    def derivative(self, unknowns: Floats, which: int, base: Shot) -> Floats:
+        """Return the derivative of a period's end by one unknown.
 
         Raises
         ------
@@ -324,7 +326,7 @@ class Shooter:
         known: dict[float, Shot] = {0.0: base}
 
         def end(change: float) -> Floats | None:
-            """The end after a change, where no grazing lies between."""
+            """Return the end after a change; None where a grazing lies between."""
             if change not in known:
                 moved = unknowns.copy()
                 moved[which] += change
@@ -342,38 +344,38 @@ class Shooter:
         raise NoConvergenceError("a grazing is too near for a derivative")
 
     def multipliers(self) -> np.ndarray:
-        """Floquet multipliers by the Jacobian: of the map from the angle at the start to itself.
+        """Return Floquet multipliers: of the map from the angle at the start to itself.
 
         The angle's own, 1 for every motion, is not among them.
         """
-        values = np.linalg.eigvals(self.section())
+        values = np.linalg.eigvals(self.map_derivative())
         return np.asarray(values[np.argsort(-np.abs(values))])
 
-    def section(self) -> Floats:
-        """The derivative of the map from the angle at the start to itself, by the Jacobian."""
+    def map_derivative(self) -> Floats:
+        """Return the derivative of the map from the angle at the start to itself."""
         count = self.size
         flow = self.matrix[:, :count] + np.eye(count + 1, count)
         drift = self.matrix[:, -1]  # a longer period is a slower mean speed
         return np.asarray(flow[:count] - np.outer(drift[:count], flow[count]) / drift[count])
 
-    def alternating(self) -> Floats:
-        """The direction of length 1 of the state that the map turns round: multiplier -1."""
-        values, vectors = np.linalg.eig(self.section())
+    def flip_direction(self) -> Floats:
+        """Return the direction of length 1 of the state that the map reverses: multiplier -1."""
+        values, vectors = np.linalg.eig(self.map_derivative())
         found = vectors[:, np.argmin(np.abs(values + 1.0))].real
-        return oriented(np.asarray(found / np.linalg.norm(found)))
+        return fix_sign(np.asarray(found / np.linalg.norm(found)))
 
 
 Ends = Callable[[float], "Floats | None"]  # of a period, by a change of an unknown
 
 
 def central(end: Ends, change: float) -> Floats | None:
-    """A derivative by the ends on both sides; none where one of them is of another kind."""
+    """Return a derivative by the ends on both sides; None where one of them is of another kind."""
     after, before = end(change), end(-change)
     return None if after is None or before is None else (after - before) / (2.0 * change)
 
 
 def one_sided(end: Ends, change: float) -> Floats | None:
-    """The same by one side alone, of the same order."""
+    """Return the same by one side alone, of the same order."""
     here, near, far = end(0.0), end(change), end(2.0 * change)
     if here is None or near is None or far is None:
         return None

@@ -47,11 +47,11 @@ def of_a_drive(case):
     system, most, range_ = case
     decided, places = [], []
     for leg in branch_of(system, most=most, range_=range_)[0]:
-        stable = [int(abs(one.multipliers[0]) < 1.0) for one in leg.motions]
-        kinds = [event.kind for event in leg.bifurcations]
-        impacts = [one.period.impacts for one in leg.motions]
+        stable = [int(abs(one.multipliers[0]) < 1.0) for one in leg.points]
+        kinds = [event.kind.label for event in leg.bifurcations]
+        impacts = [one.period.impacts for one in leg.points]
         decided.append([leg.end, kinds, stable, impacts])
-        motions = [*leg.motions, *(event.motion for event in leg.bifurcations)]
+        motions = [*leg.points, *(event.point for event in leg.bifurcations)]
         places += [float(x) for one in motions for x in one.root.unknowns[-2:]]
     return {"decided": decided, "places": places}
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.attractors import AttractorsJob, attractors, random_starts
-from orchestrate.dynamics.clusters import settling
+from orchestrate.dynamics.clusters import transient_periods
 from orchestrate.errors import InputError
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Structure
@@ -64,7 +64,9 @@ def test_starts_are_states_in_their_box():
 
 def test_scale_is_three_times_the_largest_gap_from_rest():
     gap = float(
-        sweep(PAPER, eta=TWO, transient=settling(300, 300.0, TWO), samples=48).xi_rel_max[0]
+        sweep(PAPER, eta=TWO, transient=transient_periods(300, 300.0, TWO), samples=48).xi_rel_max[
+            0
+        ]
     )
     asked = {**ASKED, "eta": TWO, "starts": 4}
     one, two = attractors(PAPER, **asked), attractors(PAPER, **asked, scale=3.0 * gap)

@@ -5,6 +5,7 @@ import functools
 import numpy as np
 import pytest
 
+from orchestrate.dynamics import borders
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.orbits import orbit
@@ -100,3 +101,16 @@ def test_what_cannot_be_asked(question, words):
     with pytest.raises(InputError, match=words) as caught:
         border(PAPER, **{"start": window(), **good, **question})
     assert "expected" in str(caught.value)
+
+
+def test_one_direction_does_not_depend_on_the_other(monkeypatch):
+    """Each begins with the matrix bordered at the start, not at the far end of the other one."""
+    monkeypatch.setattr(borders, "answer", lambda job, *rest: job)
+    at, limits = number("Neimark-Sacker"), [(3.0, 4.0), (0.65, 0.75)]
+    job = border(PAPER, start=window(), bifurcation=at, limits=limits)
+    curve, start = borders.first_root(job)
+    alone = borders.trace(job, curve, start)
+    borders.trace(job, curve, start.reversed())
+    after_the_other = borders.trace(job, curve, start)
+    for first, second in zip(alone.points, after_the_other.points, strict=True):
+        assert first.unknowns.tobytes() == second.unknowns.tobytes()

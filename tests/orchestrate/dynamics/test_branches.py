@@ -10,7 +10,12 @@ import xarray as xr
 
 from orchestrate.access import OSCILLATOR, EventInstance, begin, find
 from orchestrate.dynamics.branches import branch
-from orchestrate.dynamics.continuation import NoConvergenceError, corrected, null_vector, oriented
+from orchestrate.dynamics.continuation import (
+    NoConvergenceError,
+    fix_sign,
+    newton_correct,
+    unit_tangent,
+)
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.structures import Excitation, Structure
@@ -305,17 +310,17 @@ def test_a_root_is_known_by_its_residual():
         def jacobian(self, unknowns, at_root=False):
             return np.array([[1e9, 0.0]])
 
-    with pytest.raises(NoConvergenceError, match="is left of the equations"):
-        corrected(Steep(), np.zeros(2), np.array([0.0, 1.0]))
+    with pytest.raises(NoConvergenceError, match="the residual is"):
+        newton_correct(Steep(), np.zeros(2), np.array([0.0, 1.0]))
 
 
 def test_directions_have_the_side_that_a_component_gives_them():
     """Singular vectors come out with one sign or the other, as the processor has it."""
     vector = np.array([0.1, -0.7, 0.7])
-    assert oriented(vector) == pytest.approx(-vector)
-    assert oriented(-vector) == pytest.approx(-vector)
+    assert fix_sign(vector) == pytest.approx(-vector)
+    assert fix_sign(-vector) == pytest.approx(-vector)
     fold = np.array([[0.0, 1.0], [0.0, 1.0]])  # the tangent is across the last row
-    assert null_vector(fold) == pytest.approx([1.0, 0.0])
+    assert unit_tangent(fold) == pytest.approx([1.0, 0.0])
 
 
 def test_at_a_bifurcation_no_orbit_is_called_stable():

@@ -10,12 +10,12 @@ from scipy.cluster.hierarchy import fcluster, linkage
 
 from orchestrate.access import OSCILLATOR, REST, Instance, find
 from orchestrate.dynamics.clusters import (
-    Telling,
-    connected,
+    AttractorSettings,
     features,
     irregular_clusters,
-    response_from,
-    settling,
+    run_until_settled,
+    single_linkage,
+    transient_periods,
 )
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import Response, respond
@@ -28,28 +28,28 @@ PAPER = Structure.nondimensional()
 @given(st.integers(0, 10_000), st.integers(2, 60), st.floats(0.01, 0.5))
 def test_chains_are_single_linkage(seed, count, radius):
     points = np.random.default_rng(seed).uniform(size=(count, 3))
-    found = connected(points, radius)
+    found = single_linkage(points, radius)
     expected = fcluster(linkage(points, "single"), radius, "distance")
     assert ((found[:, None] == found) == (expected[:, None] == expected)).all()
 
 
 def test_labels_are_in_the_order_in_which_clusters_are_met():
     points = np.array([[0.0], [5.0], [0.1], [9.0], [5.1], [0.2]])
-    assert connected(points, 0.15).tolist() == [0, 1, 0, 2, 1, 0]
-    assert connected(np.empty((0, 2)), 1.0).tolist() == []
+    assert single_linkage(points, 0.15).tolist() == [0, 1, 0, 2, 1, 0]
+    assert single_linkage(np.empty((0, 2)), 1.0).tolist() == []
 
 
 def test_memory_does_not_grow_with_the_square_of_the_starts():
     points = np.zeros((50_000, 4))  # all pairs would be ten gigabytes
-    assert (connected(points, 0.1) == 0).all()
+    assert (single_linkage(points, 0.1) == 0).all()
 
 
 def test_irregular_responses_are_grouped_by_their_means():
     chain = [[0, 1.4 + 0.02 * k, 2.0 + 0.1 * k, 0.5, 0.3] for k in range(5)]
     rows = [*chain[:2], [0, 1.4, 0.5, 0.1, 0.1], *chain[2:]]
-    assert irregular_clusters(rows, Telling()).tolist() == [0, 0, 1, 0, 0, 0]
-    assert irregular_clusters(rows, Telling(alike_irregular=0.01)).max() == 5
-    assert irregular_clusters(np.empty((0, 5)), Telling()).tolist() == []
+    assert irregular_clusters(rows, AttractorSettings()).tolist() == [0, 0, 1, 0, 0, 0]
+    assert irregular_clusters(rows, AttractorSettings(alike_irregular=0.01)).max() == 5
+    assert irregular_clusters(np.empty((0, 5)), AttractorSettings()).tolist() == []
 
 
 def test_features_of_periodic_responses_are_over_whole_periods():
@@ -75,7 +75,7 @@ def test_features_of_periodic_responses_are_over_whole_periods():
 def test_a_response_is_run_on_until_it_is_known(exported, eta, multiplicity, least, most):
     point = Point(PAPER, Excitation.nondimensional(eta, PAPER))
     with Instance(find(OSCILLATOR).path) as instance:
-        response, periods = response_from(instance, point, REST, Telling())
+        response, periods = run_until_settled(instance, point, REST, AttractorSettings())
     assert response.multiplicity == multiplicity
     assert least <= periods <= most
 
@@ -87,11 +87,11 @@ def test_a_long_transient_is_not_what_it_settles_to(exported):
     near = sweep(damped, eta=1.115, transient=3000, samples=10).end_state.values[0]
     with Instance(find(OSCILLATOR).path) as instance:
         early = respond(instance, *point, near, 500, 200, 1e-2)
-        response, periods = response_from(instance, point, near, Telling())
+        response, periods = run_until_settled(instance, point, near, AttractorSettings())
     assert (early.multiplicity, early.impacts_per_period) == (1, 1.0)
     assert (response.multiplicity, features(response, 1.0)[1]) == (2, 1.5)
     assert periods > 2_000
 
 
 def test_short_periods_take_more_of_them():
-    assert [settling(400, 300.0, eta) for eta in (0.5, 1.5, 8.0)] == [400, 450, 2400]
+    assert [transient_periods(400, 300.0, eta) for eta in (0.5, 1.5, 8.0)] == [400, 450, 2400]

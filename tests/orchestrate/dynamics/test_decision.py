@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 from orchestrate import orbit
 from orchestrate.access import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.clusters import Telling
-from orchestrate.dynamics.decision import MotionDecider, middle_of_longest_run, whole_impacts
+from orchestrate.dynamics.clusters import AttractorSettings
+from orchestrate.dynamics.decision import MotionDecider, count_impacts, middle_of_longest_run
 from orchestrate.dynamics.orbit_search import least_periods
 from orchestrate.dynamics.settled_motion import (
     IRREGULAR,
@@ -29,7 +29,7 @@ from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
-USUAL = Telling()
+USUAL = AttractorSettings()
 CONTACT = Structure.nondimensional(mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291)
 HEAVY = Structure.nondimensional(mu=3.0755, kappa=0.54559, D1=0.01281, D2=0.01196, e=0.30528)
 
@@ -40,11 +40,11 @@ def point_of(structure, eta):
     return Point(structure, Excitation.nondimensional(eta, structure))
 
 
-def decided_from(structure, eta, start=REST, telling=USUAL, form="fmi3"):
+def decided_from(structure, eta, start=REST, settings=USUAL, form="fmi3"):
     path = find(OSCILLATOR, form=form).path
     with Instance(path) as plain, EventInstance(find(OSCILLATOR).path) as eventful:
         events = eventful if form == "fmi3" else None
-        decider = MotionDecider(plain, events, point_of(structure, eta), telling)
+        decider = MotionDecider(plain, events, point_of(structure, eta), settings)
         return decider.decide(start)
 
 
@@ -101,18 +101,18 @@ def test_chattering_that_ends_in_contact_is_decided_by_its_orbit(eta, e):
 
 
 def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
-    motion, _ = decided_from(CONTACT, 3.0952, telling=Telling(transient=2000))
+    motion, _ = decided_from(CONTACT, 3.0952, settings=AttractorSettings(transient=2000))
     assert motion.multiplicity in (2, 11)
     with Instance(find(OSCILLATOR).path) as instance:
         counts = {
-            whole_impacts(instance, motion.point, state, motion.multiplicity)
+            count_impacts(instance, motion.point, state, motion.multiplicity)
             for state in motion.states
         }
     assert counts == {round(motion.impacts_per_period * motion.multiplicity)}
 
 
 def test_an_fmu_without_events_decides_by_repeated_states():
-    motion, _ = decided_from(PAPER, 1.315, form="fmi2", telling=Telling(longest=1500))
+    motion, _ = decided_from(PAPER, 1.315, form="fmi2", settings=AttractorSettings(longest=1500))
     other, _ = decided_from(PAPER, 1.315)
     assert (motion.decided, other.decided) == (REPEATED, ORBIT)
     assert motion.features == pytest.approx(other.features, rel=1e-4)
@@ -123,7 +123,9 @@ def test_what_stays_near_an_unstable_orbit_is_undecided_and_settles_when_run_on(
     damped = PAPER.replace(D=0.05)
     near = sweep(damped, eta=1.115, transient=3000, samples=10).end_state.values[0]
     start = orbit(damped, eta=1.116, guess=near).state.values[0]
-    early, _ = decided_from(damped, 1.116, start, Telling(transient=100, settle=1.0, longest=300))
+    early, _ = decided_from(
+        damped, 1.116, start, AttractorSettings(transient=100, settle=1.0, longest=300)
+    )
     late, _ = decided_from(damped, 1.116, near)
     assert (early.decided, early.impacts_per_period) == (UNDECIDED, 1.0)
     assert (late.decided, late.multiplicity, late.impacts_per_period) == (ORBIT, 2, 1.5)
@@ -140,24 +142,24 @@ def two_periods():
     """A motion of two periods with three impacts."""
     with Instance(find(OSCILLATOR).path) as plain, EventInstance(find(OSCILLATOR).path) as events:
         point = point_of(PAPER, 1.28)
-        motion, _ = MotionDecider(plain, events, point, Telling()).decide(REST)
+        motion, _ = MotionDecider(plain, events, point, AttractorSettings()).decide(REST)
     return motion
 
 
 def test_orbits_are_one_whatever_period_they_begin_with():
-    ring = two_periods().ring
-    nodes = ring.nodes.copy()
+    orbit = two_periods().orbit
+    nodes = orbit.nodes.copy()
     nodes[:, 0] += 2.0 * np.pi
-    later = type(ring)(ring.sequence, ring.form, np.roll(nodes, 1, axis=0))
-    assert same_nodes(ring, later) and same_nodes(later, ring)
+    later = type(orbit)(orbit.sequence, orbit.form, np.roll(nodes, 1, axis=0))
+    assert same_nodes(orbit, later) and same_nodes(later, orbit)
     nodes[0, 3] += 1e-4
-    assert not same_nodes(ring, type(ring)(ring.sequence, ring.form, nodes))
-    twice = type(ring)(
-        ring.sequence.doubled(),
-        ring.form,
-        np.vstack([ring.nodes, ring.nodes + [4.0 * np.pi, 0.0, 0.0, 0.0]]),
+    assert not same_nodes(orbit, type(orbit)(orbit.sequence, orbit.form, nodes))
+    twice = type(orbit)(
+        orbit.sequence.doubled(),
+        orbit.form,
+        np.vstack([orbit.nodes, orbit.nodes + [4.0 * np.pi, 0.0, 0.0, 0.0]]),
     )
-    assert (least_periods(ring), least_periods(twice)) == (2, 2)
+    assert (least_periods(orbit), least_periods(twice)) == (2, 2)
 
 
 def test_distances_compare_gaps_with_the_gap():

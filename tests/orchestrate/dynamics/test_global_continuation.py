@@ -10,9 +10,9 @@ import pytest
 from orchestrate.access import OSCILLATOR, REST, find
 from orchestrate.dynamics import attractors as module
 from orchestrate.dynamics.attractors import attractors
-from orchestrate.dynamics.clusters import Telling
+from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.decision import MotionDecider
-from orchestrate.dynamics.global_continuation import FLOWS, FOLLOWED, Instances, pairs
+from orchestrate.dynamics.global_continuation import FLOWS, FOLLOWED, Instances, match_neighbours
 from orchestrate.dynamics.settled_motion import ORBIT
 from orchestrate.response.questions import Point
 from orchestrate.running import runner
@@ -124,23 +124,23 @@ def test_attractors_that_lead_to_each_other_are_one():
     links = {(0, 0, 1): (1, FLOWS), (0, 1, 1): (0, FLOWS)}
     links |= {(1, 0, 0): (1, FLOWS), (1, 1, 0): (0, FLOWS)}
     before, after = value((1, 1.0), (2, 1.5)), value((2, 1.5), (4, 1.5))
-    assert sorted(pairs(before, after, 0, links)) == [(0, 1), (1, 0)]
+    assert sorted(match_neighbours(before, after, 0, links)) == [(0, 1), (1, 0)]
 
 
 def test_an_attractor_that_jumps_to_another_ends():
     links = {(0, 0, 1): (0, FLOWS), (0, 1, 1): (0, FLOWS), (1, 0, 0): (0, FLOWS)}
-    assert pairs(value((1, 1.0), (2, 1.5)), value((1, 1.0)), 0, links) == [(0, 0)]
+    assert match_neighbours(value((1, 1.0), (2, 1.5)), value((1, 1.0)), 0, links) == [(0, 0)]
 
 
 def test_an_orbit_that_is_followed_is_one_though_its_state_leads_elsewhere():
     links = {(0, 0, 1): (1, FOLLOWED), (1, 0, 0): (0, FLOWS), (1, 1, 0): (0, FLOWS)}
-    found = pairs(value((2, 1.5)), value((1, 1.0), (2, 1.5)), 0, links)
+    found = match_neighbours(value((2, 1.5)), value((1, 1.0), (2, 1.5)), 0, links)
     assert found == [(0, 1)]
 
 
 def test_neither_jump_joins_two_attractors_that_do_not_look_alike():
     links = {(0, 0, 1): (0, FLOWS), (0, 1, 1): (0, FLOWS), (1, 0, 0): (1, FLOWS)}
-    found = pairs(value((1, 1.0), (3, 2.0)), value((2, 1.5)), 0, links)
+    found = match_neighbours(value((1, 1.0), (3, 2.0)), value((2, 1.5)), 0, links)
     assert found == [(1, 0)]
 
 
@@ -164,7 +164,7 @@ def test_chattering_that_gains_an_impact_on_the_way_is_there_once():
 def test_an_orbit_that_is_followed_has_the_impacts_that_the_fmu_runs_through():
     points = [Point(CHATTERING, Excitation.nondimensional(eta, CHATTERING)) for eta in GAINS]
     with Instances(find(OSCILLATOR).path) as instances:
-        before, after = (MotionDecider(*instances, point, Telling()) for point in points)
+        before, after = (MotionDecider(*instances, point, AttractorSettings()) for point in points)
         motion, _ = before.decide(REST)
-        followed = after.followed(motion)
+        followed = after.continue_orbit(motion)
     assert (motion.impacts_per_period, followed.impacts_per_period) == (6.0, 7.0)

@@ -11,9 +11,9 @@ from orchestrate.dynamics.long_runs import (
     ENDED,
     STEADY,
     UNDECIDED,
-    agree,
     another_start,
     long_run,
+    parts_agree,
 )
 from orchestrate.dynamics.lyapunov import Exponent
 from orchestrate.response.questions import Point
@@ -27,16 +27,16 @@ POINT = Point(DAMPED, Excitation.nondimensional(5.175, DAMPED))
 def test_parts_of_a_steady_response_agree_and_those_of_a_transient_do_not():
     own = np.full(10, 0.005)
     noise = 0.005 * np.random.default_rng(1).standard_normal(10)
-    assert agree(0.17 + noise, own, 0.0)
-    assert not agree(np.r_[np.full(7, 0.17), np.full(3, 0.008)] + noise, own, 0.0)
-    assert not agree(np.r_[np.full(9, 0.17), 0.008] + noise, own, 0.0)
-    assert not agree(np.r_[np.full(9, 0.17), np.nan], own, 0.0)
+    assert parts_agree(0.17 + noise, own, 0.0)
+    assert not parts_agree(np.r_[np.full(7, 0.17), np.full(3, 0.008)] + noise, own, 0.0)
+    assert not parts_agree(np.r_[np.full(9, 0.17), 0.008] + noise, own, 0.0)
+    assert not parts_agree(np.r_[np.full(9, 0.17), np.nan], own, 0.0)
 
 
 def test_steady_responses_are_rarely_taken_for_unsteady_ones():
     random = np.random.default_rng(2)
     refused = sum(
-        not agree(0.1 + 0.01 * random.standard_normal(10), np.full(10, 0.01), 0.0)
+        not parts_agree(0.1 + 0.01 * random.standard_normal(10), np.full(10, 0.01), 0.0)
         for _ in range(2000)
     )
     assert refused < 12  # 2 expected
@@ -44,8 +44,8 @@ def test_steady_responses_are_rarely_taken_for_unsteady_ones():
 
 def test_a_deviation_that_wanders_is_no_transient():
     values = np.r_[np.full(5, 1e-4), np.full(5, -1e-4)]
-    assert not agree(values, np.full(10, 1e-9), 0.0)
-    assert agree(values, np.full(10, 1e-9), 3e-4)
+    assert not parts_agree(values, np.full(10, 1e-9), 0.0)
+    assert parts_agree(values, np.full(10, 1e-9), 3e-4)
 
 
 @pytest.mark.parametrize(

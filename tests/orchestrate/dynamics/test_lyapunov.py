@@ -17,7 +17,7 @@ from orchestrate.access import (
     begin,
     find,
 )
-from orchestrate.dynamics.following import impacts_of
+from orchestrate.dynamics.following import follow_impacts
 from orchestrate.dynamics.lyapunov import (
     CHAOTIC,
     NEUTRAL,
@@ -25,7 +25,7 @@ from orchestrate.dynamics.lyapunov import (
     fewest_impacts,
     largest_exponent,
     lyapunov,
-    products,
+    scaled_products,
     verdict,
 )
 from orchestrate.dynamics.variational import monodromy, period
@@ -67,12 +67,12 @@ def test_of_a_periodic_response_it_is_that_of_its_multipliers(instances, structu
     plain, eventful = instances
     point = Point(structure, Excitation.nondimensional(eta, structure))
     start, span = settled(plain, point, 1500), period(eta)
-    impacts = impacts_of(eventful, point, start, 400)
-    exponent, error = largest_exponent(impacts, 400 * span, eta, structure)
+    impacts = follow_impacts(eventful, point, start, 400)
+    exponent, error = largest_exponent(impacts, 400 * span, point)
     first = np.searchsorted(impacts.time, span)
     names = ("time", "state", "closing", "sticks")
     one = Impacts(*(getattr(impacts, name)[:first] for name in names))
-    multiplier = np.abs(np.linalg.eigvals(monodromy(one, eta, structure))).max()
+    multiplier = np.abs(np.linalg.eigvals(monodromy(one, point))).max()
     assert exponent == pytest.approx(math.log(multiplier) / span, abs=5e-4)
     assert 0.0 < error < 5e-4
     assert verdict(exponent, error, 1e-3) == PERIODIC
@@ -85,8 +85,8 @@ def test_it_agrees_with_two_neighbours_of_the_fmu(instances, eta, expected):
     plain, eventful = instances
     point, periods = Point(PAPER, Excitation.nondimensional(eta, PAPER)), 400
     start, span = settled(plain, point, 3000), period(eta)
-    impacts = impacts_of(eventful, point, start, periods)
-    exponent, error = largest_exponent(impacts, periods * span, eta, PAPER)
+    impacts = follow_impacts(eventful, point, start, periods)
+    exponent, error = largest_exponent(impacts, periods * span, point)
     here, growth = start, 0.0
     shift = 1e-8 * np.array([0.5, -0.5, 0.5, 0.5]) * np.abs(start).max()
     scale = np.linalg.norm(shift)
@@ -174,7 +174,7 @@ def test_verdicts():
 
 def test_products_of_matrices():
     matrices = np.random.default_rng(3).normal(size=(23, 4, 4))
-    found, logs = products(matrices, 5)
+    found, logs = scaled_products(matrices, 5)
     for i in range(5):
         expected = np.eye(4)
         for matrix in matrices[5 * i : 5 * i + 5]:

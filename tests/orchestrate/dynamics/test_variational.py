@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 
 import numpy as np
@@ -20,19 +21,10 @@ from orchestrate.access import (
     begin,
     find,
 )
-from orchestrate.dynamics.following import impacts_of
-from orchestrate.dynamics.variational import (
-    Branch,
-    Branches,
-    centre,
-    contact,
-    flight,
-    monodromy,
-    oscillator,
-    period,
-    releases,
-    slowest_rate,
-)
+from orchestrate.dynamics.closed_form import ClosedForm
+from orchestrate.dynamics.following import follow_impacts
+from orchestrate.dynamics.lyapunov import decay_rate
+from orchestrate.dynamics.variational import contact_times, monodromy, period
 from orchestrate.response.questions import Point
 from orchestrate.structures import Excitation, Structure
 
@@ -82,10 +74,10 @@ def test_monodromy_equals_differences_of_the_fmu(instances, structure, eta):
     start = after(plain, point, REST, 200)
     if start[1] - start[0] < 1e-3 * np.abs(start).max():
         start = point.scale * [-0.05, 0.05, 1.0, -1.0]  # in contact there is no neighbour beyond
-    impacts = impacts_of(eventful, point, start, 2)
+    impacts = follow_impacts(eventful, point, start, 2)
     assert len(impacts.time)
     expected = differences(plain, point, start, 2)
-    np.testing.assert_allclose(monodromy(impacts, eta, structure, 2), expected, atol=2e-5)
+    np.testing.assert_allclose(monodromy(impacts, point, 2), expected, atol=2e-5)
 
 
 @pytest.mark.parametrize("structure", [ALIKE[0], *UNLIKE])
@@ -94,9 +86,9 @@ def test_releases_are_those_of_the_fmu(instances, structure, eta):
     plain, eventful = instances
     point = Point(structure, Excitation.nondimensional(eta, structure))
     span = period(eta)
-    impacts = impacts_of(eventful, point, REST, 4)
+    impacts = follow_impacts(eventful, point, REST, 4)
     ends = np.append(impacts.time[1:], 4 * span)
-    found = releases(impacts, ends, eta, structure)
+    found = contact_times(impacts, ends, point)
     for stick in np.flatnonzero(impacts.sticks):
         release = impacts.time[stick] + found[stick]
         touching = []
@@ -112,7 +104,7 @@ def test_permanent_contact_is_in_the_matrices(instances):
     seen = 0
     for structure in (ALIKE[0], *UNLIKE):
         point = Point(structure, Excitation.nondimensional(0.3, structure))
-        seen += impacts_of(eventful, point, REST, 3).sticks.any()
+        seen += follow_impacts(eventful, point, REST, 3).sticks.any()
     assert seen >= 5
 
 
@@ -123,7 +115,7 @@ def test_contacts_shorter_than_a_look_are_seen(instances, eta):
     structure, start = ALIKE[0], (0.01, 0.01, -0.5, -0.5)
     point = Point(structure, Excitation.nondimensional(eta, structure))
     one = Impacts(np.zeros(1), np.array([start]), np.zeros(1), np.ones(1, dtype=bool))
-    found = releases(one, np.array([20.0]), eta, structure).item()
+    found = contact_times(one, np.array([20.0]), point).item()
     assert 0.01 < found < 20.0 / 64.0
     touching = []
     for tau in (found - 1e-9, found + 1e-9):
@@ -133,43 +125,66 @@ def test_contacts_shorter_than_a_look_are_seen(instances, eta):
     assert touching == [True, False]
 
 
+def form_of(structure, eta=0.7):
+    return ClosedForm.from_structure(structure, Excitation.nondimensional(eta, structure))
+
+
+def oscillator(time, damping, square):
+    """Flow matrices of an oscillator of any numbers."""
+    three = np.ones(3)
+    form = dataclasses.replace(form_of(make()), damping=damping * three, stiffness=square * three)
+    return form.oscillator(0, np.atleast_1d(time))
+
+
 @given(st.floats(0.0, 5.0), st.floats(0.1, 5.0), st.floats(0.0, 10.0))
 def test_one_oscillator_is_a_matrix_exponential(damping, square, time):
     matrix = np.array([[0.0, 1.0], [-square, -2.0 * damping]])
-    found = oscillator(np.array([time]), Branch(damping, square))[0]
-    np.testing.assert_allclose(found, expm(matrix * time), atol=1e-9)
+    np.testing.assert_allclose(oscillator(time, damping, square)[0], expm(matrix * time), atol=1e-9)
 
 
-@pytest.mark.parametrize("damping", [1.0, 1.0 + 1e-12, 1.0 - 1e-12, np.nextafter(1.0, 2.0)])
+@pytest.mark.parametrize(
+    "damping", [1.0, 1.0 + 1e-12, 1.0 - 1e-12, 1.0 + 1e-14, np.nextafter(1.0, 2.0)]
+)
 def test_near_critical_damping_nothing_is_lost(damping):
     time = np.array([0.0, 0.5, 3.0])
-    found, critical = (oscillator(time, Branch(d, 1.0)) for d in (damping, 1.0))
-    np.testing.assert_allclose(found, critical, atol=1e-9)
+    np.testing.assert_allclose(
+        oscillator(time, damping, 1.0), oscillator(time, 1.0, 1.0), atol=1e-11
+    )
 
 
 def test_nothing_overflows_in_a_long_flight():
-    structure = make(D1=5.0, D2=50.0)
-    assert np.isfinite(flight(np.array([1e4]), structure)).all()
-    assert np.isfinite(contact(np.array([1e4]), structure)).all()
+    form = form_of(make(D1=5.0, D2=50.0))
+    assert np.isfinite(form.flight(np.array([1e4]))).all()
+    assert np.isfinite(form.contact(np.array([1e4]))).all()
 
 
 @pytest.mark.parametrize("damping", [0.005, 1.0, 3.0])
-def test_slowest_rate_is_that_of_the_matrix(damping):
+def test_decay_rate_is_that_of_the_matrix(damping):
     values = np.linalg.eigvals([[0.0, 1.0], [-1.2, -2.0 * damping]])
-    assert slowest_rate(Branch(damping, 1.2)) == pytest.approx(-values.real.max(), rel=1e-12)
+    assert decay_rate(damping, 1.2) == pytest.approx(-values.real.max(), rel=1e-12)
 
 
 def test_the_centre_of_mass_is_left_in_contact():
-    structure = make(mu=3.0)
-    matrix = centre(structure)
+    matrix = form_of(make(mu=3.0)).centre()
     np.testing.assert_allclose(matrix @ matrix, matrix, atol=1e-15)
     np.testing.assert_allclose(matrix @ [1.0, 1.0, 2.0, 2.0], [1.0, 1.0, 2.0, 2.0])
     np.testing.assert_allclose(matrix @ [3.0, -1.0, 0.0, 0.0], 0.0, atol=1e-15)
 
 
-def test_branches_are_those_of_the_structure():
+@pytest.mark.parametrize("structure", [ALIKE[0], *UNLIKE])
+def test_the_common_motion_is_that_of_the_flow_matrices(structure):
+    form, time = form_of(structure), np.linspace(0.0, 9.0, 7)
+    phase, start = 0.3, np.array([0.2, 0.2, -0.4, -0.4])
+    free = start - form.steady(np.array([phase]), True)[0]
+    states = form.contact(time) @ free + form.steady(phase + form.eta * time, True)
+    found = np.stack(form.common_motion(time, np.array(phase), start[0], start[2]), axis=1)
+    np.testing.assert_allclose(found, states[:, [0, 2]], atol=1e-14)
+
+
+def test_the_numbers_are_those_of_the_structure():
     structure = UNLIKE[-1]
-    one, two, both = Branches.of(structure)
-    assert (one.damping, one.square) == (structure.D1, 1.0)
-    assert (two.damping, two.square) == (structure.D2, pytest.approx(structure.omega_2**2))
-    assert (both.damping, both.square) == (structure.D3, pytest.approx(structure.omega_3**2))
+    form = form_of(structure)
+    expected = [structure.D1, structure.D2, structure.D3]
+    assert form.damping.tolist() == pytest.approx(expected, rel=1e-14)
+    squares = [1.0, structure.omega_2**2, structure.omega_3**2]
+    assert form.stiffness.tolist() == pytest.approx(squares, rel=1e-14)

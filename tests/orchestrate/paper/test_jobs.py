@@ -10,7 +10,7 @@ import pytest
 from orchestrate.access import OSCILLATOR, find, finder
 from orchestrate.dynamics.attractors import AttractorsJob
 from orchestrate.dynamics.basins import Side
-from orchestrate.dynamics.clusters import Telling
+from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.lyapunov import LyapunovJob
 from orchestrate.paper.basin import EvenBasinJob
 from orchestrate.paper.cases import CASES
@@ -155,7 +155,7 @@ def test_spectra_at_the_peak(swept):
 
 def test_basins_where_starts_are_shared(exported):
     sweep = SweepJob(name="sweep", structure=PAPER, eta=(1.29, 1.315), transient=60, samples=20)
-    telling = Telling(transient=100, settle=100.0)
+    settings = AttractorSettings(transient=100, settle=100.0)
     starts = AttractorsJob(
         name="starts",
         structure=PAPER,
@@ -163,7 +163,7 @@ def test_basins_where_starts_are_shared(exported):
         starts=12,
         seed=2026,
         follows="sweep",
-        telling=telling,
+        settings=settings,
     )
     plane = EvenBasinJob(
         name="basin",
@@ -171,7 +171,7 @@ def test_basins_where_starts_are_shared(exported):
         excitation=Excitation.nondimensional(1.0, PAPER),
         x=Side("x_rel", 0.0, 3.0, 4),
         y=Side("v_rel", -3.0, 3.0, 3),
-        telling=telling,
+        settings=settings,
         attractors="starts",
         sweep="sweep",
     )

@@ -9,7 +9,7 @@ from orchestrate.access import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.dynamics.continuation import NoConvergenceError
 from orchestrate.dynamics.families import Setting
 from orchestrate.dynamics.guesses import from_state
-from orchestrate.dynamics.orbit_search import least_periods, solve, why_no_motion
+from orchestrate.dynamics.orbit_search import least_periods, solve_orbit, why_no_motion
 from orchestrate.dynamics.turning_points import phase_zero
 from orchestrate.response.multiplicity import (
     IRREGULAR,
@@ -291,14 +291,14 @@ def newton(instance, point, state, periods):
     values = np.array([excitation.frequency])
     try:
         guess = from_state(instance, point, setting.form(values), np.array(state), periods)
-        family, root = solve(setting, guess, values)
+        family, root = solve_orbit(setting, guess, values)
     except NoConvergenceError:
         return None
-    ring = family.ring(root.unknowns)
-    away = np.abs(phase_zero(ring)[0] - np.array(state) / point.scale).max()
-    if why_no_motion(ring) or away > 1e-3 * np.abs(ring.nodes).max():
+    orbit = family.orbit(root.unknowns)
+    away = np.abs(phase_zero(orbit)[0] - np.array(state) / point.scale).max()
+    if why_no_motion(orbit) or away > 1e-3 * np.abs(orbit.nodes).max():
         return None
-    return least_periods(ring), bool(np.abs(ring.multipliers()).max() < 1.0)
+    return least_periods(orbit), bool(np.abs(orbit.multipliers()).max() < 1.0)
 
 
 def checked_by_newton(points, transient, samples):

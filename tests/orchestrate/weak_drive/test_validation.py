@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from orchestrate import couple
+from orchestrate.dynamics.bifurcations import FOLD
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple_all import ends_of
-from orchestrate.weak_drive.drive_walk import FOLD
 
 from .validation import (
     below_resonance,

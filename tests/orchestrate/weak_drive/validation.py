@@ -12,10 +12,10 @@ import numpy as np
 
 from orchestrate import Drive, Structure, jump_voltages
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.dynamics.bifurcations import FLIP, FOLD, TORUS
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_of
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
-from orchestrate.weak_drive.drive_walk import FLIP, FOLD, TORUS, Pace
 from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, Way, find_passing
 
 from .coupled import BEAM, QUICK, System, master, rest, state_of
@@ -186,8 +186,8 @@ def branch_of(system, most=120, range_=(0.95, 1.15)):
     omega = system.structure.omega
     resonance = averaged.resonance(*system.as_bonded())
     speeds = tuple(share * resonance * omega for share in range_)
-    pace = Pace(0.1, most)
-    job = DriveBranchJob("branch", *system, speeds, pace, period=2, steps=48, settle=600.0 / omega)
+    asked = {"longest": 0.1, "most": most, "period": 2, "steps": 48, "settle": 600.0 / omega}
+    job = DriveBranchJob("branch", *system, speeds, **asked)
     grid = np.linspace(*(speed / omega for speed in speeds), 2001)
     length = float(averaged.amplitude(*system.as_bonded(), grid).max()) * system.drive.length
     with (
@@ -203,8 +203,8 @@ def bifurcations(system, range_=(0.95, 1.15)):
     found = []
     for leg in legs:
         for event in leg.bifurcations:
-            unknowns, turns = event.motion.root.unknowns, event.motion.period.revolutions
-            whole = Whole(system, turns, event.motion.angle, length)
+            unknowns, turns = event.point.root.unknowns, event.point.period.revolutions
+            whole = Whole(system, turns, event.point.angle, length)
             period = turns * 2.0 * np.pi / (unknowns[-1] * system.structure.omega)
             try:
                 truth = whole.locate(event.kind, unknowns[:-1], period)
@@ -308,7 +308,7 @@ def report(system, jumps=True):
         for kind, speed, eta0, truth in found:
             near = [abs(place.eta0 - eta0) for place in exact.get(kind, [])]
             theory = f", averaged {min(near):.1e}" if near else ""
-            text = f"{kind} at {speed:.5f}, eta0 {eta0:.5f}, monolithic {eta0 - truth:+.1e}"
+            text = f"{kind.label} at {speed:.5f}, eta0 {eta0:.5f}, monolithic {eta0 - truth:+.1e}"
             lines.append(f"{name}: {text}{theory}")
         if jumps and known[name]:
             here, whole = ramp_jumps(one, known[name][2])

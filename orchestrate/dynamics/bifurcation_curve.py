@@ -1,0 +1,223 @@
+"""Bifurcations over two parameters: an orbit's equations with those of its bifurcation.
+
+Folds, period doublings and Neimark-Sacker bifurcations are where the orbit's matrix with a
+multiplier on the unit circle is singular. How nearly it is, the bordered system says (Govaerts,
+Numerical Methods for Bifurcations of Dynamical Equilibria, 2000, chapter 4), without a determinant.
+Grazings have equations of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
+from .closed_form import Floats
+from .continuation import ArclengthStepper, NoConvergenceError, Root, leading_component
+from .families import Family, central_difference
+from .impact_sequence import CLOSING, PeriodicOrbit
+from .orbit_point import OrbitPoint
+from .tracer import BranchStep, BranchTracer, ContinuationSettings
+from .turning_points import GAP, derivatives, nearest_miss, turning_points
+
+REAL_MULTIPLIERS: dict[int, float] = {FOLD: 1.0, FLIP: -1.0}  # that lie on the unit circle
+SMOOTH_KINDS = (FOLD, FLIP, TORUS)
+STEP = 1e-6  # of an unknown, over its scale, for differences
+OVERLAP = 1e-9  # over a eta^2: a gap smaller by this than zero is no rounding
+FIRST_STEP = 1e-3  # in unknowns over their scale: short, as the curve is not known yet
+HALVINGS = 24  # of the last step: its end is known to 1e-7 of it
+
+
+@dataclass
+class BifurcationCurve:
+    """The equations of a bifurcation over two parameters.
+
+    Unknowns are those of the nodes, the two parameters, and what the kind adds.
+
+    Attributes
+    ----------
+    family : Family
+        Of two parameters.
+    kind : int
+    place : int
+        Index of the node that grazes, or of the segment that touches.
+    extra : ndarray
+        What the kind adds, at the start: the multiplier's angle, or the phase of touching.
+    """
+
+    family: Family
+    kind: int
+    place: int
+    extra: Floats
+    scale: Floats = field(init=False)
+    columns: NDArray[np.complex128] = field(init=False)
+    rows: NDArray[np.complex128] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.scale = np.append(self.family.scale, np.ones(len(self.extra)))
+
+    @classmethod
+    def from_orbit(cls, family: Family, point: OrbitPoint, kind: int) -> BifurcationCurve:
+        """Return the curve through a bifurcation that was located on a branch.
+
+        Raises
+        ------
+        InputError
+            Where bifurcations of that kind are not followed.
+        """
+        place, extra = -1, np.zeros(0)
+        if kind == TORUS:
+            which = np.abs(np.abs(point.pairs) - 1.0).argmin()
+            extra = np.array([np.angle(point.pairs[which])])
+        elif kind == GRAZING:
+            released = point.orbit.sequence.releases
+            place = int(np.where(released, np.inf, point.orbit.nodes[:, CLOSING]).argmin())
+        elif kind == TOUCHING:
+            _, place, phase = nearest_miss(point.orbit, turning_points(point.orbit))
+            extra = np.array([phase])
+        elif kind not in SMOOTH_KINDS:
+            expected = ", ".join(KINDS[known] for known in (*SMOOTH_KINDS, GRAZING, TOUCHING))
+            raise InputError(f"bifurcation: {KINDS[kind]}; expected one of {expected}")
+        return cls(family, kind, place, extra)
+
+    @property
+    def accuracy(self) -> float:
+        """Largest residual of a root, of the orbit's equations and of the bifurcation's."""
+        return self.family.accuracy
+
+    @property
+    def first_parameter(self) -> int:
+        """Index of the first parameter among the unknowns."""
+        return self.family.size
+
+    def multiplier(self, unknowns: Floats) -> complex:
+        """Return the multiplier on the unit circle."""
+        if self.kind == TORUS:
+            return complex(np.exp(1j * unknowns[-1]))
+        return REAL_MULTIPLIERS[self.kind]
+
+    def orbit(self, unknowns: Floats) -> PeriodicOrbit:
+        """Return the orbit of some unknowns."""
+        return self.family.orbit(unknowns[: self.family.size + 2])
+
+    def update_border(self, unknowns: Floats) -> None:
+        """Border the matrix with the vectors that it all but maps to zero here."""
+        if self.kind in SMOOTH_KINDS:
+            left, _, right = np.linalg.svd(self.matrix(unknowns))
+            self.columns, self.rows = in_phase(left[:, -1]), in_phase(right[-1].conj())
+
+    def matrix(self, unknowns: Floats) -> NDArray[np.complex128]:
+        """Return the matrix that is singular at the bifurcation."""
+        matrix = self.orbit(unknowns).jacobian(self.multiplier(unknowns))
+        return np.asarray(matrix * self.scale[: self.family.size], dtype=complex)
+
+    def condition(self, unknowns: Floats) -> Floats:
+        """Return the residual of the bifurcation's own equations."""
+        if self.kind == GRAZING:
+            return self.orbit(unknowns).nodes[self.place, CLOSING : CLOSING + 1]
+        if self.kind == TOUCHING:
+            which = np.array([self.place]), np.array([GAP])
+            rate, _, gap = derivatives(self.orbit(unknowns), *which, unknowns[-1:])
+            return np.append(gap, rate)
+        size = self.family.size
+        bordered = np.zeros((size + 1, size + 1), dtype=complex)
+        bordered[:size, :size] = self.matrix(unknowns)
+        bordered[:size, size], bordered[size, :size] = self.columns, self.rows.conj()
+        defect = np.linalg.solve(bordered, np.eye(size + 1)[-1])[-1]
+        return np.array([defect.real, defect.imag] if self.kind == TORUS else [defect.real])
+
+    def residual(self, unknowns: Floats) -> Floats:
+        """Return the residual of all equations."""
+        orbit = self.family.residual(unknowns[: self.family.size + 2])
+        return np.append(orbit, self.condition(unknowns))
+
+    def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
+        """Return its derivative; that of the bifurcation's own equations is by differences."""
+        orbit = self.family.jacobian(unknowns[: self.family.size + 2])
+        blank = np.zeros((len(orbit), len(self.extra)))
+        spans = [(-np.inf, np.inf)] * self.family.size
+        limits = [*spans, *self.family.setting.limits, *[(-np.inf, np.inf)] * len(self.extra)]
+        own = [
+            central_difference(self.condition, unknowns, i, *limit, step=STEP * scale)
+            for i, (limit, scale) in enumerate(zip(limits, self.scale, strict=True))
+        ]
+        return np.vstack([np.hstack([orbit, blank]), np.array(own).T])
+
+    def why_no_motion(self, unknowns: Floats) -> str:
+        """Say why a root is no bifurcation of a motion; empty where it is one."""
+        orbit = self.orbit(unknowns)
+        closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
+        if self.kind == GRAZING:
+            closing[self.place] = np.inf
+        if (closing <= 0.0).any():
+            return "another impact grazes"
+        if (orbit.durations <= 0.0).any():
+            return "impacts change their order"
+        if nearest_miss(orbit, turning_points(orbit))[0] < -OVERLAP:
+            return "a flight grazes" if self.kind != TOUCHING else "another flight grazes"
+        if self.kind == TORUS and not 0.0 < unknowns[-1] < np.pi:
+            return "a resonance 1:1 or 1:2"
+        return ""
+
+
+def in_phase(vector: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Return a singular vector with a large component real and positive, as on any processor."""
+    first = vector[leading_component(vector)]
+    return np.asarray(vector * (first.conjugate() / abs(first)), dtype=complex)
+
+
+class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
+    """Traces a bifurcation over two parameters from a root, along its tangent.
+
+    Parameters
+    ----------
+    curve : BifurcationCurve
+    start : Root
+    settings : ContinuationSettings
+    """
+
+    def __init__(
+        self, curve: BifurcationCurve, start: Root, settings: ContinuationSettings
+    ) -> None:
+        first, longest = min(FIRST_STEP, settings.max_step), settings.max_step
+        super().__init__(ArclengthStepper(curve, start, first, longest), settings.max_points)
+
+    def point(self, root: Root) -> Root:
+        """Return the root itself."""
+        return root
+
+    def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
+        """Return those of both parameters."""
+        curve = self.stepper.curve
+        return curve.first_parameter, curve.family.setting.limits
+
+    def go_on_from(self, point: Root) -> Root:
+        """Put the stepper to a root, and border the matrix anew."""
+        self.stepper.root = point
+        self.stepper.curve.update_border(point.unknowns)
+        return point
+
+    def end_before(self, step: BranchStep[Root]) -> tuple[str, Iterable[Root]]:
+        """Say why roots are no motions from somewhere in the step on; and the last that is one."""
+        reason = self.stepper.curve.why_no_motion(step.after.unknowns)
+        return reason, self.last_motion(step) if reason else ()
+
+    def last_motion(self, step: BranchStep[Root]) -> list[Root]:
+        """Return the last root of a step that is a bifurcation of a motion, by bisection."""
+        low, high = 0.0, step.length
+        last: list[Root] = []
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            try:
+                root = self.stepper.root_after(middle)
+            except NoConvergenceError:
+                return last
+            if self.stepper.curve.why_no_motion(root.unknowns):
+                high = middle
+            else:
+                low, last = middle, [root]
+        return last

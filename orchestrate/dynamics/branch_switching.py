@@ -1,0 +1,93 @@
+"""Branches that leave another one at a bifurcation: where they begin, and in which direction."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..errors import InputError
+from .bifurcations import FLIP, GRAZING, KINDS, TOUCHING
+from .closed_form import Floats
+from .continuation import ArclengthStepper, Root, fix_sign, newton_correct, unit_vector
+from .families import Family
+from .impact_sequence import CLOSING, PHASE, TURN, ImpactSequence
+from .orbit_point import OrbitPoint
+from .turning_points import nearest_miss, turning_points
+
+AWAY = 1e-3  # along the new branch, in unknowns over their scale: where its gap is tested
+
+
+def leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
+    """Return the begin of the branch that leaves at a bifurcation, with its direction.
+
+    Raises
+    ------
+    InputError
+        Where none does, or it is no branch of orbits.
+    """
+    if kind == FLIP:
+        return double_period(point)
+    if kind == TOUCHING:
+        return add_touching(point)
+    if kind == GRAZING:
+        return remove_grazing(point)
+    expected = "period doubling or grazing"
+    raise InputError(
+        f"switch: {KINDS[kind]}; no branch of orbits leaves there, expected {expected}"
+    )
+
+
+def double_period(point: OrbitPoint) -> OrbitPoint:
+    """Return twice the orbit, with the direction in which its second half differs from the first.
+
+    That is the eigenvector of the multiplier -1.
+    """
+    family, orbit = point.family, point.orbit
+    singular = orbit.jacobian(-1.0).real * family.scale[: family.size]
+    mode = fix_sign(np.linalg.svd(singular)[2][-1])
+    second = orbit.nodes.copy()
+    second[:, PHASE] += TURN * family.sequence.periods
+    nodes = np.vstack([orbit.nodes, second])
+    sizes = np.tile(family.scale[: family.size], 2) * np.sqrt(2.0)
+    scale = np.append(sizes, family.scale[family.size :])
+    twice = Family(family.setting, family.sequence.doubled(), scale)
+    tangent = np.concatenate([mode, -mode, np.zeros(len(family.setting.over))])
+    unknowns = np.append(nodes.ravel(), point.values)
+    tangent = tangent / np.linalg.norm(tangent)
+    return OrbitPoint(twice, Root(unknowns, tangent, point.root.residual, 0))
+
+
+def add_touching(point: OrbitPoint) -> OrbitPoint:
+    """Return the orbit with the touching as an impact; its closing speed rises along the branch."""
+    orbit = point.orbit
+    _, segment, phase = nearest_miss(orbit, turning_points(orbit))
+    state = orbit.states(np.array([segment]), np.array([phase]))[0]
+    share = orbit.form.mu / (1.0 + orbit.form.mu)
+    row = [phase, state[0], state[2] * (1.0 - share) + state[3] * share, 0.0]
+    if not orbit.count:
+        sequence, nodes, node = ImpactSequence(orbit.sequence.periods, (0,)), np.array([row]), 0
+    else:
+        node = segment + 1
+        sequence = orbit.sequence.with_impact(node)
+        nodes = np.insert(orbit.nodes, node, row, axis=0)
+    begin = same_motion(point, sequence, nodes)
+    rising = begin.root.tangent[4 * node + CLOSING] > 0.0
+    return begin if rising else begin.reversed()
+
+
+def remove_grazing(point: OrbitPoint) -> OrbitPoint:
+    """Return the orbit without the impact that grazes; its gap stays open along the branch."""
+    orbit = point.orbit
+    closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
+    node = int(np.abs(closing).argmin())
+    nodes = np.delete(orbit.nodes, node, axis=0)
+    begin = same_motion(point, orbit.sequence.without(node), nodes)
+    ahead = ArclengthStepper(begin.family, begin.root, AWAY, AWAY).root_after(AWAY)
+    return begin if OrbitPoint(begin.family, ahead).clearance > 0.0 else begin.reversed()
+
+
+def same_motion(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:
+    """Return the same motion as an orbit of another sequence, at the same parameters."""
+    family = Family.from_nodes(point.family.setting, sequence, nodes)
+    unknowns = np.append(nodes.ravel(), point.values)
+    normal = unit_vector(len(unknowns), family.size)
+    return OrbitPoint(family, newton_correct(family, unknowns, normal))

@@ -1,0 +1,85 @@
+"""Impacts of a chattering that come and go along a branch, as (17) ends it earlier or later."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .bifurcations import CONTACT_BEGUN, CONTACT_LOST
+from .closed_form import Floats
+from .continuation import NoConvergenceError
+from .impact_sequence import IMPACT, RELEASE, STICK, ImpactSequence, PeriodicOrbit
+from .orbit_point import OrbitPoint
+from .orbit_search import solve_orbit
+
+MAX_CHANGES = 10  # impacts that come or go in one step: more are no small change of an orbit
+
+
+def add_or_remove_impacts(point: OrbitPoint) -> OrbitPoint:
+    """Return the orbit with the impacts that (17) says, added or removed one after the other.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where there is no such orbit.
+    """
+    for _ in range(MAX_CHANGES):
+        if not point.wrong_contact:
+            return point
+        point = change_one_impact(point)
+    raise NoConvergenceError("impacts of a chattering come and go")
+
+
+def change_one_impact(point: OrbitPoint) -> OrbitPoint:
+    """Return the orbit with one impact more before its contact, or without those that (17) ends.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where there is no such orbit.
+    """
+    orbit, margins = point.orbit, point.sticking_margins
+    kinds, nodes = list(orbit.sequence.kinds), orbit.nodes
+    if point.contact_margin(CONTACT_BEGUN) < point.contact_margin(CONTACT_LOST):
+        impacts = ~(orbit.contact | orbit.sequence.releases)
+        sticking = int(np.where(impacts, margins, np.inf).argmin())
+        kinds, nodes = without_impacts_after(kinds, nodes, sticking)
+    else:
+        last = int(np.where(orbit.contact, margins, -np.inf).argmax())
+        kinds = [*kinds[:last], IMPACT, STICK, *kinds[last + 1 :]]
+        nodes = np.insert(nodes, last + 1, next_impact(orbit, last), axis=0)
+    sequence = ImpactSequence(orbit.sequence.periods, tuple(kinds))
+    guess, setting = (sequence, nodes), point.family.setting
+    changed = OrbitPoint(
+        *solve_orbit(setting, guess, point.values, max_iterations=12, max_distance=1.0)
+    )
+    if (changed.orbit.durations <= 0.0).any():
+        raise NoConvergenceError("no time is left for contact")
+    same_direction = point.root.tangent[-1] * changed.root.tangent[-1] >= 0.0
+    return changed if same_direction else changed.reversed()
+
+
+def without_impacts_after(
+    kinds: list[int], nodes: Floats, sticking: int
+) -> tuple[list[int], Floats]:
+    """Return kinds and nodes without those between an impact that sticks and its release.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where no release follows.
+    """
+    releases = [i for i in range(sticking + 1, len(kinds)) if kinds[i] == RELEASE]
+    if not releases:
+        raise NoConvergenceError("an impact sticks that is not of a chattering")
+    kept = [*range(sticking + 1), *range(releases[0], len(kinds))]
+    return [STICK if i == sticking else kinds[i] for i in kept], nodes[kept]
+
+
+def next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
+    """Return the impact that follows one after a short flight, a parabola as (17) takes it."""
+    phase, position, velocity, closing = orbit.nodes[node]
+    parting = orbit.form.e * closing
+    time = 2.0 * parting / -float(orbit.form.force(position, velocity))
+    if not 0.0 < time < orbit.durations[node]:
+        raise NoConvergenceError("no time is left for another impact")
+    return np.array([phase + orbit.form.eta * time, position + velocity * time, velocity, parting])

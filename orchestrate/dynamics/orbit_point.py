@@ -1,0 +1,141 @@
+"""A periodic orbit as a point of a branch, with the test functions of its bifurcations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .bifurcations import (
+    CONTACT_BEGUN,
+    CONTACT_LOST,
+    FLIP,
+    FOLD,
+    GRAZING,
+    RELEASE,
+    TORUS,
+    TOUCHING,
+    BifurcationKind,
+)
+from .closed_form import Floats
+from .continuation import Root
+from .families import Family
+from .impact_sequence import CLOSING, POSITION, VELOCITY, PeriodicOrbit
+from .turning_points import nearest_miss, turning_points, weakest_force
+
+CONTACT_KINDS = (CONTACT_LOST, CONTACT_BEGUN)
+ON_CIRCLE = 1e-6  # of a located pair of multipliers: how far its size may be from 1
+EITHER = 1e-10  # of (17), over a eta^2: an impact that is so near to sticking may do either
+
+
+@dataclass(frozen=True)
+class OrbitPoint:
+    """An orbit on a branch.
+
+    Attributes
+    ----------
+    family : Family
+        Whose equations it solves.
+    root : Root
+    """
+
+    family: Family
+    root: Root
+
+    @cached_property
+    def orbit(self) -> PeriodicOrbit:
+        """The orbit itself."""
+        return self.family.orbit(self.root.unknowns)
+
+    @property
+    def values(self) -> Floats:
+        """The parameters that vary."""
+        return self.root.unknowns[self.family.size :]
+
+    @cached_property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Floquet multipliers, the largest first."""
+        return self.orbit.multipliers()
+
+    @cached_property
+    def pairs(self) -> NDArray[np.complex128]:
+        """Complex multipliers, one of each pair."""
+        return self.multipliers[self.multipliers.imag > 0.0]
+
+    @cached_property
+    def clearance(self) -> float:
+        """Smallest gap at which the masses turn away from each other without an impact."""
+        return nearest_miss(self.orbit, turning_points(self.orbit))[0]
+
+    @cached_property
+    def sticking_margins(self) -> Floats:
+        """By how much each impact misses (17): negative where it would stick.
+
+        Infinite where the contact force would not press the masses together.
+        """
+        orbit, form = self.orbit, self.orbit.form
+        nodes = orbit.nodes
+        force = form.force(nodes[:, POSITION], nodes[:, VELOCITY])
+        margins = 2.0 * form.e * nodes[:, CLOSING] + form.gamma * force
+        return np.where(force < 0.0, margins, np.inf)
+
+    @property
+    def wrong_contact(self) -> bool:
+        """Whether an impact sticks that should not, or the reverse, or no contact is left.
+
+        Where (17) is all but met either will do: an orbit that has just got or lost an impact
+        meets it to rounding, and rounding must not say how it goes on.
+        """
+        if not self.orbit.count:
+            return False
+        return min(self.contact_margin(kind) for kind in CONTACT_KINDS) <= -EITHER
+
+    def contact_margin(self, kind: BifurcationKind) -> float:
+        """Return how far an orbit is from losing a permanent contact, or from one more.
+
+        Chattering ends in contact by (17). The margin is negative beyond: for ``CONTACT_LOST``
+        where an impact does not stick that should, or no time is left for the contact, for
+        ``CONTACT_BEGUN`` where an impact would stick.
+        """
+        orbit = self.orbit
+        margins = np.minimum(self.sticking_margins, 1.0)
+        if kind == CONTACT_LOST:
+            return float(np.minimum(-margins, orbit.durations)[orbit.contact].min(initial=1.0))
+        return float(margins[~(orbit.contact | orbit.sequence.releases)].min(initial=1.0))
+
+    def test(self, kind: BifurcationKind) -> float:
+        """Return the function whose sign changes at a bifurcation of a kind.
+
+        Products of multipliers are scaled, as multipliers are infinite where an impact grazes.
+        """
+        if kind == FOLD:
+            return float(self.root.tangent[self.family.size])
+        if kind == FLIP:
+            values = self.multipliers
+            return float(np.prod((1.0 + values) / (1.0 + np.abs(values))).real)
+        if kind == TORUS:
+            products = np.multiply.outer(self.multipliers, self.multipliers)[np.triu_indices(4, 1)]
+            return float(np.prod((1.0 - products) / (1.0 + np.abs(products))).real)
+        if kind == GRAZING:
+            closing = self.orbit.nodes[~self.orbit.sequence.releases, CLOSING]
+            return float(closing.min(initial=np.inf))
+        if kind == TOUCHING:
+            return self.clearance
+        if kind == RELEASE:
+            return weakest_force(self.orbit)
+        return self.contact_margin(kind)
+
+    def happens(self, kind: BifurcationKind) -> bool:
+        """Return whether a zero of the test function is the bifurcation.
+
+        The product of two real multipliers may be 1 as well as that of a pair on the unit circle.
+        """
+        if kind != TORUS:
+            return True
+        return bool((np.abs(np.abs(self.pairs) - 1.0) < ON_CIRCLE).any())
+
+    def reversed(self) -> OrbitPoint:
+        """Return the same orbit with the branch's other direction."""
+        return OrbitPoint(self.family, self.root.reversed())

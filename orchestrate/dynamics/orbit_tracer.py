@@ -1,0 +1,121 @@
+"""Branches of periodic orbits: what the tracer needs to know of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from .bifurcations import (
+    CONTACT_BEGUN,
+    CONTACT_LOST,
+    FLIP,
+    FOLD,
+    GRAZING,
+    KINDS,
+    RELEASE,
+    TORUS,
+    TOUCHING,
+    BifurcationKind,
+)
+from .chattering import add_or_remove_impacts, change_one_impact
+from .continuation import ArclengthStepper, NoConvergenceError, Root
+from .families import Family
+from .impact_sequence import POSITION
+from .orbit_point import EITHER, OrbitPoint
+from .tracer import NO_CONVERGENCE, BranchSegment, BranchStep, BranchTracer, ContinuationSettings
+
+FIRST_STEP = 1e-3  # in unknowns over their scale: short, as the branch is not known yet
+AT_BEGIN = 1e-7  # of a step: a bifurcation nearer to its begin is the one that the branch leaves
+NO_CONTACT = 1e-6  # of a permanent contact, in units of tau: so little of it is none
+SAME_SIZE = 0.5, 2.0  # size of the motion over the one that its unknowns are measured in
+
+
+class OrbitTracer(BranchTracer[Family, OrbitPoint]):
+    """Traces a branch of periodic orbits from one of them, along its tangent.
+
+    Parameters
+    ----------
+    start : OrbitPoint
+    settings : ContinuationSettings
+    """
+
+    kinds = (FOLD, FLIP, TORUS, GRAZING, TOUCHING, RELEASE)
+    ending_kinds = (GRAZING, TOUCHING, RELEASE)  # beyond them the impacts are others
+    finds_pairs = True
+
+    def __init__(self, start: OrbitPoint, settings: ContinuationSettings) -> None:
+        first, longest = min(FIRST_STEP, settings.max_step), settings.max_step
+        stepper = ArclengthStepper(start.family, start.root, first, longest)
+        super().__init__(stepper, settings.max_points)
+
+    def point(self, root: Root) -> OrbitPoint:
+        """Return the orbit of a root."""
+        return OrbitPoint(self.stepper.curve, root)
+
+    def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
+        """Return those of the parameter."""
+        family = self.stepper.curve
+        return family.size, family.setting.limits
+
+    def accepts(self, root: Root) -> bool:
+        """Return whether all flights of a root have a length."""
+        orbit = self.stepper.curve.orbit(root.unknowns)
+        return bool((orbit.durations[~orbit.contact] > 0.0).all())
+
+    def test(self, point: OrbitPoint, kind: BifurcationKind) -> float:
+        """Return the orbit's own test function."""
+        return point.test(kind)
+
+    def confirms(self, kind: BifurcationKind, point: OrbitPoint, part: float) -> bool:
+        """Return whether it happens, and is not the bifurcation that the step begins at."""
+        return part > AT_BEGIN and point.happens(kind)
+
+    def go_on_from(self, point: OrbitPoint) -> OrbitPoint:
+        """Put the stepper to an orbit, and measure the unknowns in the size of the motion."""
+        family, root = point.family, point.root
+        nodes = root.unknowns[: family.size].reshape(-1, 4)
+        scaled = Family.from_nodes(family.setting, family.sequence, nodes)
+        low, high = SAME_SIZE
+        if len(nodes) and not low < scaled.scale[POSITION] / family.scale[POSITION] < high:
+            tangent = root.tangent * family.scale / scaled.scale
+            family, root = scaled, replace(root, tangent=tangent / np.linalg.norm(tangent))
+        self.stepper.curve, self.stepper.root = family, root
+        return point
+
+    def finish_step(
+        self, segment: BranchSegment[OrbitPoint], step: BranchStep[OrbitPoint]
+    ) -> OrbitPoint:
+        """Return the step's orbit, with one impact more or less where chattering asks for it.
+
+        Where permanent contact is lost or begins, the branch ends: infinitely many impacts would
+        graze one after the other.
+        """
+        after = step.after
+        if not after.wrong_contact:
+            return after
+        try:
+            return add_or_remove_impacts(after)
+        except NoConvergenceError:  # too far on: go back to where the first impact comes or goes
+            lost = after.contact_margin(CONTACT_LOST) <= -EITHER
+            kind = CONTACT_LOST if lost else CONTACT_BEGUN
+            position, first = step.root_of(kind, 0.0, step.length, -EITHER)
+        try:
+            changed = add_or_remove_impacts(change_one_impact(first))
+        except NoConvergenceError:
+            segment.add_bifurcation(kind, first, 1.0)
+            segment.end = KINDS[kind]
+            return first
+        self.stepper.length = max(position, 2.0 * self.stepper.min_length)
+        segment.end = ""
+        return changed
+
+    def end_without_root(self, segment: BranchSegment[OrbitPoint]) -> None:
+        """End a branch with its permanent contact, if none of that is left."""
+        last = segment.points[-1]
+        if last.orbit.contact.any() and last.contact_margin(CONTACT_LOST) < NO_CONTACT:
+            segment.add_bifurcation(CONTACT_LOST, last, 0.0)
+            segment.end = KINDS[CONTACT_LOST]
+        else:
+            segment.end = NO_CONVERGENCE

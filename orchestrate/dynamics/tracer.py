@@ -1,0 +1,384 @@
+"""Trace branches: predict, correct, test for bifurcations, locate them, and say why a branch ends.
+
+Every branch is traced by the same loop (:meth:`BranchTracer.trace`), whatever its equations are:
+periodic orbits (:mod:`.orbit_tracer`), bifurcations over two parameters (:mod:`.borders`), motions
+of structure and motor together (:mod:`orchestrate.weak_drive.drive_tracer`). Steps are those of
+pseudo-arclength continuation (:mod:`.continuation`). A bifurcation is where a test function changes
+its sign; it is located by Brent's method on the branch itself, not between its points
+(Kuznetsov, Elements of Applied Bifurcation Theory, chapter 10).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Generic, TypeVar
+
+import numpy as np
+
+from .bifurcations import KINDS, BifurcationKind
+from .continuation import AnyCurve, ArclengthStepper, NoConvergenceError, Root
+
+LIMIT, NO_CONVERGENCE, MAX_POINTS = "limit", "no convergence", "most points"  # ends of branches
+SHORTENED = 0.3  # of a step in which a bifurcation could not be located
+BEFORE_END = 1.0 - 1e-6  # of a step to the branch's end: where the other test functions are defined
+ACCURACY = 1e-14  # of a position along the branch, in unknowns over their scale
+SLOPE_PART = 1e-3  # of a step, over which the slope of a test function is taken
+LOWEST_PART = 1e-6  # of a step: how exactly a test function's extremum is located
+SPEED_UP = 2.0  # how much faster than in the step before a test function is thought to change
+
+Point = TypeVar("Point")
+
+
+@dataclass(frozen=True)
+class ContinuationSettings:
+    """How a branch is traced.
+
+    Attributes
+    ----------
+    max_step : float
+        Longest step, in unknowns over their scale: shorter where branches lie close to each other.
+    max_points : int
+        Points in one direction, without the start: more where a branch ends with
+        ``"most points"``.
+    """
+
+    max_step: float
+    max_points: int
+
+
+@dataclass(frozen=True)
+class Bifurcation(Generic[Point]):
+    """A bifurcation on a branch.
+
+    Attributes
+    ----------
+    kind : BifurcationKind
+    point : Point
+        Of the branch, there.
+    position : float
+        Among the branch's points: between two numbers where it lies between two points.
+    """
+
+    kind: BifurcationKind
+    point: Point
+    position: float
+
+
+@dataclass
+class BranchSegment(Generic[Point]):
+    """A branch in one direction.
+
+    Attributes
+    ----------
+    points : list of Point
+        From the start on.
+    bifurcations : list of Bifurcation
+        In their order along the branch.
+    end : str
+        Why it ends.
+    """
+
+    points: list[Point] = field(default_factory=list)
+    bifurcations: list[Bifurcation[Point]] = field(default_factory=list)
+    end: str = ""
+
+    def add_bifurcation(self, kind: BifurcationKind, point: Point, beyond: float) -> None:
+        """Add a bifurcation so far beyond the last point, in steps."""
+        self.bifurcations.append(Bifurcation(kind, point, len(self.points) - 1 + beyond))
+
+
+class BranchTracer(ABC, Generic[AnyCurve, Point]):
+    """Traces a branch; a subclass supplies what is special to its equations.
+
+    Parameters
+    ----------
+    stepper : ArclengthStepper
+        At the start of the branch.
+    max_points : int
+        As :class:`ContinuationSettings` has it.
+
+    Attributes
+    ----------
+    kinds : tuple of BifurcationKind
+        Those with a test function.
+    ending_kinds : tuple of BifurcationKind
+        Those of ``kinds`` beyond which there are no points.
+    finds_pairs : bool
+        Whether two bifurcations of a kind in one step are sought: it takes further roots.
+    """
+
+    kinds: ClassVar[tuple[BifurcationKind, ...]] = ()
+    ending_kinds: ClassVar[tuple[BifurcationKind, ...]] = ()
+    finds_pairs: ClassVar[bool] = False
+
+    def __init__(self, stepper: ArclengthStepper[AnyCurve], max_points: int) -> None:
+        self.stepper, self.max_points = stepper, max_points
+
+    # -- what a subclass supplies ------------------------------------------------------------------
+
+    @abstractmethod
+    def point(self, root: Root) -> Point:
+        """Return the point of a root that has just been solved for."""
+
+    @abstractmethod
+    def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
+        """Return the index of the first unknown that has limits, and the limits."""
+
+    def accepts(self, root: Root) -> bool:
+        """Return whether a root may be the next one of this branch."""
+        return True
+
+    def test(self, point: Point, kind: BifurcationKind) -> float:
+        """Return the test function of a kind: it changes its sign at the bifurcation."""
+        raise NotImplementedError
+
+    def confirms(self, kind: BifurcationKind, point: Point, part: float) -> bool:
+        """Return whether a change of sign, at a part of a step, is the bifurcation of its kind."""
+        return True
+
+    def location_tolerances(self, length: float) -> dict[str, float]:
+        """Return the tolerances of Brent's method in a step, as SciPy has them."""
+        return {"xtol": ACCURACY, "rtol": ACCURACY}
+
+    def end_before(self, step: BranchStep[Point]) -> tuple[str, Iterable[Point]]:
+        """Return why the branch ends before a step's end, and the last points; else ``""``."""
+        return "", ()
+
+    def finish_step(self, segment: BranchSegment[Point], step: BranchStep[Point]) -> Point:
+        """Return the point that a step adds; it may add bifurcations and set the segment's end."""
+        return step.after
+
+    def end_without_root(self, segment: BranchSegment[Point]) -> None:
+        """Say why a segment ends where no step is short enough."""
+        segment.end = NO_CONVERGENCE
+
+    @abstractmethod
+    def go_on_from(self, point: Point) -> Point:
+        """Put the stepper to a point, perhaps in other unknowns; return the point in these."""
+
+    # -- the loop ----------------------------------------------------------------------------------
+
+    def trace(self, start: Point) -> BranchSegment[Point]:
+        """Trace the branch from its start until it ends."""
+        segment = BranchSegment([start])
+        before, rates = self.go_on_from(start), dict.fromkeys(self.kinds, np.inf)
+        while True:
+            if len(segment.points) > self.max_points:
+                segment.end = MAX_POINTS
+                return segment
+            try:
+                step, located = self.next_step(before, rates)
+            except NoConvergenceError:
+                self.end_without_root(segment)
+                return segment
+            rates = {kind: step.rate(kind) for kind in self.kinds}
+            self.add(segment, step, located)
+            if segment.end:
+                return segment
+            before = self.go_on_from(segment.points[-1])
+
+    def next_step(
+        self, before: Point, rates: Mapping[BifurcationKind, float]
+    ) -> tuple[BranchStep[Point], list[Located[Point]]]:
+        """Take a step and locate its bifurcations; shorten it where that does not succeed.
+
+        Raises
+        ------
+        NoConvergenceError
+            Where no step is short enough.
+        """
+        stepper = self.stepper
+        while True:
+            root, length, at_limit = stepper.step_within(*self.limits(), self.accepts)
+            step = BranchStep(self, before, self.point(root), length, at_limit, rates)
+            step.end, step.last_points = self.end_before(step)
+            if step.end:
+                return step, []
+            try:
+                return step, self.locate(step)
+            except NoConvergenceError:
+                stepper.length = SHORTENED * length
+                if stepper.length < stepper.min_length:
+                    raise
+
+    def locate(self, step: BranchStep[Point]) -> list[Located[Point]]:
+        """Locate the bifurcations in a step, in order, up to one that ends the branch.
+
+        Raises
+        ------
+        NoConvergenceError
+            Where no root is found on the way.
+        """
+        ends = self.located(step, self.ending_kinds)[:1]
+        if ends:
+            length = ends[0].position * BEFORE_END
+            step = replace(step, after=step.point(length), length=length)
+        others = [kind for kind in self.kinds if kind not in self.ending_kinds]
+        return [*self.located(step, others), *ends]
+
+    def located(
+        self, step: BranchStep[Point], kinds: Sequence[BifurcationKind]
+    ) -> list[Located[Point]]:
+        """Locate the bifurcations of some kinds in a step, in order."""
+        crossings = [
+            Located(kind, *step.root_of(kind, *bracket))
+            for kind in kinds
+            for bracket in step.brackets(kind)
+        ]
+        confirmed = [
+            each
+            for each in crossings
+            if self.confirms(each.kind, each.point, each.position / step.length)
+        ]
+        return sorted(confirmed, key=lambda each: each.position)
+
+    def add(
+        self,
+        segment: BranchSegment[Point],
+        step: BranchStep[Point],
+        located: Sequence[Located[Point]],
+    ) -> None:
+        """Add a step with its bifurcations to a segment."""
+        if step.end:
+            segment.points += step.last_points
+            segment.end = step.end
+            return
+        for each in located:
+            ends = each.kind in self.ending_kinds
+            part = 1.0 if ends else each.position / step.length
+            segment.add_bifurcation(each.kind, each.point, part)
+            if ends:
+                segment.points.append(each.point)
+                segment.end = KINDS[each.kind]
+                return
+        segment.end = LIMIT if step.at_limit else ""
+        segment.points.append(self.finish_step(segment, step))
+
+
+@dataclass(frozen=True)
+class Located(Generic[Point]):
+    """A bifurcation in a step: its kind, how far into the step it is, and the point there."""
+
+    kind: BifurcationKind
+    position: float
+    point: Point
+
+
+@dataclass
+class BranchStep(Generic[Point]):
+    """A step along a branch, with the points on the way.
+
+    Attributes
+    ----------
+    tracer : BranchTracer
+        Whose stepper is at the step's begin.
+    before, after : Point
+        At the step's ends.
+    length : float
+    at_limit : bool
+        Whether it ends at a limit of a parameter.
+    rates : mapping
+        How fast each test function changed in the step before; infinite where that is not known.
+    end : str
+        Why the branch ends before the step's end; empty where it does not.
+    last_points : iterable of Point
+        To add to the branch then.
+    """
+
+    tracer: BranchTracer[Any, Point]
+    before: Point
+    after: Point
+    length: float
+    at_limit: bool = False
+    rates: Mapping[BifurcationKind, float] = field(default_factory=dict)
+    end: str = ""
+    last_points: Iterable[Point] = ()
+
+    def __post_init__(self) -> None:
+        self.known = {0.0: self.before, self.length: self.after}
+
+    def point(self, position: float) -> Point:
+        """Return the point so far into the step."""
+        if position not in self.known:
+            tracer = self.tracer
+            self.known[position] = tracer.point(tracer.stepper.root_after(position))
+        return self.known[position]
+
+    def test(self, position: float, kind: BifurcationKind) -> float:
+        """Return the test function of a kind so far into the step; 1 where it is not finite."""
+        value = self.tracer.test(self.point(position), kind)
+        return value if np.isfinite(value) else 1.0
+
+    def brackets(self, kind: BifurcationKind) -> list[tuple[float, float]]:
+        """Return pairs of positions that bifurcations of a kind lie between."""
+        before, after = (self.tracer.test(point, kind) for point in (self.before, self.after))
+        if before * after < 0.0:
+            return [(0.0, self.length)]
+        if self.tracer.finds_pairs and self.turns_back(kind):
+            middle = self.lowest(kind)
+            if before * self.test(middle, kind) < 0.0:
+                return [(0.0, middle), (middle, self.length)]
+        return []
+
+    def turns_back(self, kind: BifurcationKind) -> bool:
+        """Return whether two bifurcations of a kind are possible: the test falls, then rises.
+
+        Slopes are computed only where the test could have come to zero if it changed ``SPEED_UP``
+        times as fast as in the step before.
+        """
+        value = self.tracer.test(self.before, kind)
+        reach = SPEED_UP * abs(self.rates.get(kind, np.inf)) * self.length
+        if self.length <= ACCURACY or not abs(value) < reach:
+            return False
+        sign = np.sign(value)
+        falls, rises = (sign * self.slope(end, kind) for end in (0.0, self.length))
+        return bool(falls < 0.0 < rises)
+
+    def rate(self, kind: BifurcationKind) -> float:
+        """Return the mean slope of a test function; infinite where it is not known."""
+        after, before = (self.tracer.test(point, kind) for point in (self.after, self.before))
+        change = after - before
+        return change / self.length if np.isfinite(change) and self.length else np.inf
+
+    def slope(self, position: float, kind: BifurcationKind) -> float:
+        """Return the slope of a test function at an end of the step; 0 where it is not known."""
+        near = position + (SLOPE_PART if position == 0.0 else -SLOPE_PART) * self.length
+        tests = self.tracer.test
+        try:
+            change = tests(self.point(near), kind) - tests(self.point(position), kind)
+        except NoConvergenceError:
+            return 0.0
+        return change / (near - position) if np.isfinite(change) else 0.0
+
+    def lowest(self, kind: BifurcationKind) -> float:
+        """Return where a test function is nearest to changing its sign, or beyond."""
+        from scipy.optimize import minimize_scalar
+
+        sign = np.sign(self.tracer.test(self.before, kind))
+        minimum = minimize_scalar(
+            lambda position: sign * self.test(float(position), kind),
+            bounds=(0.0, self.length),
+            method="bounded",
+            options={"xatol": LOWEST_PART * self.length},
+        )
+        return float(minimum.x)
+
+    def root_of(
+        self, kind: BifurcationKind, low: float, high: float, level: float = 0.0
+    ) -> tuple[float, Point]:
+        """Return where a test function is 0, or at a level, by Brent's method, and the point.
+
+        Raises
+        ------
+        NoConvergenceError
+            Where no root of the branch is found on the way.
+        """
+        from scipy.optimize import brentq
+
+        tolerances = self.tracer.location_tolerances(self.length)
+        position = float(
+            brentq(lambda position: self.test(position, kind) - level, low, high, **tolerances)
+        )
+        return position, self.point(position)
