@@ -9,7 +9,7 @@ import ast
 import sys
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import FunctionType, ModuleType
 from typing import Any, Protocol
 
@@ -20,6 +20,7 @@ from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Value, common_type
 
 WIDTH = 100
 INDENT = "    "
+HINTS = {"rarely": "RARELY", "usually": "USUALLY", "inline": "INLINE"}
 
 
 @dataclass
@@ -43,6 +44,8 @@ class Unit:
     name: str
     result: Type = NOTHING
     text: str = ""
+    is_inline: bool = False
+    calls: dict[str, bool] = field(default_factory=dict)
 
 
 class Kernel(Protocol):
@@ -78,7 +81,11 @@ class Body(Expressions):
             raise self.refuse(self.tree, "a call with other arguments", "all of them")
         self.types = dict(zip(self.parameters, unit.kinds, strict=True))
         self.results: list[Type] = []
-        self.may_keep, self.is_final = True, False
+        self.may_keep, self.is_final, self.is_rare = True, False, False
+        self.hints = {}
+        for line, comment in list(self.comments.items()):
+            if comment in HINTS:
+                self.hints[line] = self.comments.pop(line)
         self.begin()
 
     def begin(self) -> None:
@@ -106,6 +113,7 @@ class Body(Expressions):
         summary = " ".join((ast.get_docstring(self.tree) or "").partition("\n\n")[0].split())
         comment = f"/* {summary.replace('``', '').replace(':func:', '').replace('`', '')} */"
         parameters = [f"{self.c_type(self.types[name])} {in_c(name)}" for name in self.parameters]
+        self.unit.is_inline = self.hints.get(self.tree.lineno) == "inline"
         line = f"static {self.c_type(self.unit.result)} {self.unit.name}({', '.join(parameters)})"
         return [*wrapped(comment, "", "   "), *wrapped(line, "", INDENT)]
 
@@ -133,6 +141,7 @@ class Body(Expressions):
     def function(self, function: FunctionType, kinds: tuple[Type, ...]) -> tuple[str, Type]:
         """The name in C of another function, and its result's type."""
         unit = self.kernel.unit(function, kinds)
+        self.unit.calls[unit.name] = self.unit.calls.get(unit.name, False) or not self.is_rare
         return unit.name, unit.result
 
     def c_type(self, kind: Type) -> str:
@@ -274,12 +283,18 @@ class Body(Expressions):
 
     def decide(self, node: ast.If) -> None:
         """``if``, ``elif`` and ``else``."""
-        self.line(f"if ({self.truth(node.test).text}) {{")
+        hint = self.hints.get(node.lineno)
+        test = self.truth(node.test).text
+        self.line(f"if ({HINTS[hint]}({test})) {{" if hint else f"if ({test}) {{")
+        before = self.is_rare
+        self.is_rare = before or hint == "rarely"
         self.inner(node.body)
+        self.is_rare = before or hint == "usually"
         if node.orelse:
             self.line("} else {")
             self.inner(node.orelse)
         self.line("}")
+        self.is_rare = before
 
     def count(self, node: ast.For) -> None:
         """``for i in range(...)``."""

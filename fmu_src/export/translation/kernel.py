@@ -9,6 +9,7 @@ write instead.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import FunctionType, ModuleType
@@ -45,24 +46,37 @@ HEAD = """\
 #define RESTRICT restrict
 #endif
 
+#if defined(__GNUC__)
+#define USUALLY(test) __builtin_expect(test, 1)
+#define RARELY(test) __builtin_expect(test, 0)
+#define COLD __attribute__((cold, noinline))
+#define HOT inline
+#define INLINE inline __attribute__((always_inline))
+#else
+#define USUALLY(test) (test)
+#define RARELY(test) (test)
+#define COLD
+#define HOT inline
+#endif
+
 #if defined(__GNUC__) && !defined(_WIN32)
 #pragma GCC visibility push(hidden)
 #endif
 """
 HELPERS = """\
 /* The larger and the smaller number, as Python chooses them: the first one of equal ones. */
-static double larger(double one, double other)
+static inline double larger(double one, double other)
 {
     return other > one ? other : one;
 }
 
-static double smaller(double one, double other)
+static inline double smaller(double one, double other)
 {
     return other < one ? other : one;
 }
 
 /* The largest whole number that is not larger. */
-static long long floored(double value)
+static inline long long floored(double value)
 {
     long long whole = (long long)value;
     return (double)whole > value ? whole - 1 : whole;
@@ -175,5 +189,16 @@ def translate(entries: Mapping[str, Callable[[Any, float], int]]) -> str:
         inner = done.unit(function, (MEMORY, REAL)).name
         head = f"int kernel_{name}(double *memory, double time)"
         exits.append(f"{head};\n{head}\n{{\n    return {inner}(memory, time);\n}}\n")
-    bodies = [f"{unit.text}\n" for unit in done.units.values()]
+    by_name = {unit.name: unit for unit in done.units.values()}
+    hot = {function.__name__ for name, function in entries.items() if name in ("advance", "coast")}
+    todo = list(hot)
+    while todo:
+        for name, often in by_name[todo.pop()].calls.items():
+            if often and name not in hot:
+                hot.add(name)
+                todo.append(name)
+    bodies = []
+    for unit in done.units.values():
+        key = "INLINE" if unit.is_inline else "HOT" if unit.name in hot else "COLD"
+        bodies.append(re.sub("^static ", f"static {key} ", unit.text, count=1, flags=re.M) + "\n")
     return "\n".join([HEAD, *done.declarations(), HELPERS, *bodies, *exits])

@@ -82,7 +82,7 @@ def accelerations(m, point):
     """Accelerations of both masses relative to the box at a point, m/s2, by (6)."""
     motion, _, rotation, age = point
     drive = m[at.FORCING] * rotation[1]
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         drive += cubic_at(m, age)[0]
     x1, x2, v1, v2 = motion
     return both_rates(m, drive, x1, v1, x2, v2)
@@ -112,7 +112,7 @@ def force_rates(m, point):
     _, _, v1, v2 = motion
     a1, a2 = accelerations(m, point)
     drive = m[at.FORCING] * m[at.ETA] * rotation[0]
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         drive += cubic_at(m, age)[1]
     j1, j2 = both_rates(m, drive * m[at.OMEGA], v1, a1, v2, a2)
     k1, k2, d1, d2 = m[at.K1], m[at.K2], m[at.D1], m[at.D2]
@@ -139,14 +139,14 @@ def impulse(m, h, left, reached):
     cosine, sine = left[2]
     mass = m[at.M1] + m[at.M2]
     drive, drive_moment = 0.0, 0.0
-    if m[at.NODE_ETA] != 0.0:
+    if m[at.NODE_ETA] != 0.0:  # usually
         amplitude, speed = m[at.SEGMENT_INPUTS], m[at.SEGMENT_INPUTS + 1]
         sine_half, cosine_half = sincos_turns(speed * h * (0.5 / TWO_PI))
         sine_mid = sine * cosine_half + cosine * sine_half
         cosine_mid = cosine * cosine_half - sine * sine_half
         drive = 2.0 * amplitude * speed * sine_mid * sine_half
         drive_moment = amplitude * (2.0 * cosine_mid * sine_half - speed * h * reached[2][0])
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         power = h
         for i in range(4):  # integrals of tau^i/i! and of tau^(i+1)/i!
             derivative = box_derivative(m, i, left[3])
