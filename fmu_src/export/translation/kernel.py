@@ -76,10 +76,15 @@ static inline double smaller(double one, double other)
 }
 
 /* The largest whole number that is not larger. */
-static inline long long floored(double value)
+static inline double floored(double value)
 {
-    long long whole = (long long)value;
-    return (double)whole > value ? whole - 1 : whole;
+    double shift = 6755399441055744.0, whole = 0.0; /* 1.5 * 2^52: what is added to it is rounded */
+    if (RARELY(!(-2251799813685248.0 < value && value < 2251799813685248.0))) {
+        whole = (double)(long long)value;
+    } else {
+        whole = (value + shift) - shift;
+    }
+    return whole > value ? whole - 1.0 : whole;
 }
 """
 

@@ -19,6 +19,7 @@ C_TYPES = {
     NOTHING: "void",
 }
 NUMBERS = (TRUTH, WHOLE, LONG, REAL)  # each is converted to those after it
+FLOORED = "(long long)floored("  # a whole number that is a real one before
 # how closely C's operators bind
 ATOM, UNARY, PRODUCT, SUM, RELATION, EQUALITY, BITS, AND, OR, CHOICE = range(16, 6, -1)
 
@@ -54,6 +55,8 @@ class Value:
 
     def converted(self, kind: Type) -> Value:
         """The value as another type; only what C would convert with a loss is written out."""
+        if self.type == LONG and kind == REAL and self.text.startswith(FLOORED):
+            return Value(self.text.removeprefix("(long long)"), REAL)
         if self.type == LONG and kind == REAL:
             return Value(f"(double){self.within(UNARY)}", REAL, UNARY)
         return self
