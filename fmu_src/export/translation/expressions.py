@@ -20,7 +20,6 @@ from .values import (
     BITS,
     CHOICE,
     EQUALITY,
-    FLOORED,
     LONG,
     MEMORY,
     OR,
@@ -277,7 +276,8 @@ class Expressions(ABC):
             raise self.refuse(node, ast.unparse(node), "real numbers")
         text = values[0].converted(REAL).text
         if name == "math.floor":
-            return Value(f"{FLOORED}{text})", LONG, UNARY)
+            whole = f"{BUILT_IN[name]}({text})"
+            return Value(f"(long long){whole}", LONG, UNARY, real=whole)
         if name not in ("max", "min"):
             return Value(f"{BUILT_IN[name]}({text})", REAL)
         for other in values[1:]:

@@ -19,8 +19,11 @@ from .subset import Block, assigned_in, comments_of, depends, may_declare, names
 from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Value, common_type
 
 WIDTH = 100
+STORAGE = "static INLINE"  # of every function, until it is known how often it is called
 INDENT = "    "
-HINTS = {"rarely": "RARELY", "usually": "USUALLY", "inline": "INLINE"}
+# comments beside an if that tell a compiler which way it goes, and what they are in C
+HINTS = {"rarely": "RARELY", "usually": "USUALLY"}
+INLINE = "inline"  # the comment beside a def: its lines are to stand where it is called
 
 
 @dataclass
@@ -37,6 +40,10 @@ class Unit:
     result : Type
     text : str
         Its definition in C.
+    is_inline : bool
+        Whether it is to be inlined wherever it is called.
+    often : set of str
+        Names of the functions that it calls, but for those behind a test that is rarely true.
     """
 
     function: FunctionType
@@ -45,7 +52,7 @@ class Unit:
     result: Type = NOTHING
     text: str = ""
     is_inline: bool = False
-    calls: dict[str, bool] = field(default_factory=dict)
+    often: set[str] = field(default_factory=set)
 
 
 class Kernel(Protocol):
@@ -82,10 +89,10 @@ class Body(Expressions):
         self.types = dict(zip(self.parameters, unit.kinds, strict=True))
         self.results: list[Type] = []
         self.may_keep, self.is_final, self.is_rare = True, False, False
-        self.hints = {}
-        for line, comment in list(self.comments.items()):
-            if comment in HINTS:
-                self.hints[line] = self.comments.pop(line)
+        known = (*HINTS, INLINE)
+        self.hints = {line: text for line, text in self.comments.items() if text in known}
+        for line in self.hints:
+            del self.comments[line]
         self.begin()
 
     def begin(self) -> None:
@@ -113,8 +120,10 @@ class Body(Expressions):
         summary = " ".join((ast.get_docstring(self.tree) or "").partition("\n\n")[0].split())
         comment = f"/* {summary.replace('``', '').replace(':func:', '').replace('`', '')} */"
         parameters = [f"{self.c_type(self.types[name])} {in_c(name)}" for name in self.parameters]
-        self.unit.is_inline = self.hints.get(self.tree.lineno) == "inline"
-        line = f"static {self.c_type(self.unit.result)} {self.unit.name}({', '.join(parameters)})"
+        self.unit.is_inline = self.hints.get(self.tree.lineno) == INLINE
+        line = (
+            f"{STORAGE} {self.c_type(self.unit.result)} {self.unit.name}({', '.join(parameters)})"
+        )
         return [*wrapped(comment, "", "   "), *wrapped(line, "", INDENT)]
 
     # -- what expressions ask for --
@@ -141,7 +150,8 @@ class Body(Expressions):
     def function(self, function: FunctionType, kinds: tuple[Type, ...]) -> tuple[str, Type]:
         """The name in C of another function, and its result's type."""
         unit = self.kernel.unit(function, kinds)
-        self.unit.calls[unit.name] = self.unit.calls.get(unit.name, False) or not self.is_rare
+        if not self.is_rare:
+            self.unit.often.add(unit.name)
         return unit.name, unit.result
 
     def c_type(self, kind: Type) -> str:
@@ -282,11 +292,13 @@ class Body(Expressions):
         self.line(f"return {value.converted(kind).text};")
 
     def decide(self, node: ast.If) -> None:
-        """``if``, ``elif`` and ``else``."""
-        hint = self.hints.get(node.lineno)
-        test = self.truth(node.test).text
+        """``if``, ``elif`` and ``else``, with what a comment says of the test."""
+        hint, test, before = (
+            self.hints.get(node.lineno, ""),
+            self.truth(node.test).text,
+            self.is_rare,
+        )
         self.line(f"if ({HINTS[hint]}({test})) {{" if hint else f"if ({test}) {{")
-        before = self.is_rare
         self.is_rare = before or hint == "rarely"
         self.inner(node.body)
         self.is_rare = before or hint == "usually"

@@ -90,7 +90,7 @@ def fraction(u):
     return f if f < 1.0 else 0.0
 
 
-def small_rotation(y):
+def small_rotation(y):  # inline
     """``cos x`` and ``sin(x)/x`` for ``y = x**2``, ``|y| <= 0.42``; cosh and sinh where y < 0.
 
     Returns
@@ -112,7 +112,7 @@ def small_rotation(y):
     return c, s
 
 
-def small_decay(x):
+def small_decay(x):  # inline
     """``e**-x`` for ``|x| <= 0.7``."""
     if -0.03125 <= x <= 0.03125:
         x2 = x * x

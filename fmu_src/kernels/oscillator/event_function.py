@@ -195,7 +195,7 @@ def free_part(m, b, x, v):
     return x, v, x2, x3, x4, envelope(m, b, x5, x6)
 
 
-def evaluate(m, tau):
+def evaluate(m, tau):  # inline
     """The event function at ``tau``: value, four derivatives, and a bound of the fifth from there
     on, AHEAD spacings long.
 

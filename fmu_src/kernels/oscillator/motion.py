@@ -75,7 +75,7 @@ def brief_contact(m, tau):
     return x + way, v + tau * (x2 + tau * (0.5 * x3 + tau * x4 * (1.0 / 6.0)))
 
 
-def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):
+def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
     """Displacements and velocities from all phasors."""
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
@@ -87,7 +87,7 @@ def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):
     return x3, v3, x3, v3
 
 
-def state_and_phase_at(m, tau):
+def state_and_phase_at(m, tau):  # inline
     """:func:`state_at`, and cosine and sine of the excitation's phase there."""
     if tau != 0.0 and m[at.SERIES] == 0.0 and m[at.NODE_ETA] != 0.0:
         x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)

@@ -242,7 +242,7 @@ def seek(m, tau):
         turn_interval(m)
 
 
-def phasors_at(m, tau):
+def phasors_at(m, tau):  # inline
     """All phasors at an age, from the nearer node.
 
     Returns
@@ -322,7 +322,7 @@ def parts_by_functions(m, tau, cosine, sine):
     return x_a, x_b, v_a, v_b
 
 
-def free_parts(m, node, t):
+def free_parts(m, node, t):  # inline
     """Both free parts at most half a spacing from a node."""
     decay = small_decay(m[branch_a(m) + at.DAMPING] * t)
     if m[at.MODE] != at.FLIGHT:
@@ -336,7 +336,7 @@ def free_parts(m, node, t):
     return x_a, x_b, v_a, v_b
 
 
-def turned_part(m, b, free, t, decay):
+def turned_part(m, b, free, t, decay):  # inline
     """A free part over a part of a spacing, in which it decays by ``e^{-D t}``."""
     x, v = m[free], m[free + 1]
     cosine, sine = small_rotation(m[b + at.NU_SQUARED] * t * t)

@@ -58,7 +58,7 @@ def cubic_value(m, response, tau):
     return value, q1 + tau * (q2 + 0.5 * tau * q3)
 
 
-def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):
+def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):  # inline
     """Displacement and velocity of one oscillator (10).
 
     Parameters
