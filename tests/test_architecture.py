@@ -61,8 +61,6 @@ ONLY_IN = {  # packages of others, and the one place of ours that may know them
     "argparse": ("orchestrate/cli/", "tools/"),
     "platformdirs": "orchestrate/access/",
     "pythonfmu": ("fmu_src/export/", "fmu_src/runtime/"),
-    "numba": "fmu_src/export/",
-    "llvmlite": "fmu_src/export/",
     "ziglang": "fmu_src/export/",
 }
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from .archive import guid_of
+from .compiler import link
 from .errors import CannotExport
-from .linking import link
 from .platforms import PLATFORMS
 from .sources import closure
 

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from .platforms import chosen
 
-__all__ = ["FORMS", "MODELS", "PLAIN_FORMS", "chosen", "export", "guid"]
+__all__ = ["ALL_FORMS", "FORMS", "MODELS", "PLAIN_FORMS", "chosen", "export", "guid", "sources_of"]
 PYTHON_FORM = "fmi2-python"
 FORMS = (PYTHON_FORM, "fmi2", "fmi3")
-PLAIN_FORMS = {"fmi2-plain": "fmi2", "fmi3-plain": "fmi3"}  # and the form each is made from
+PLAIN_FORMS = ("fmi2-plain", "fmi3-plain")
+
+
+def sources_of(forms: Iterable[str]) -> tuple[str, ...]:
+    """The forms without binaries, for targets that compile the C sources, of some native forms."""
+    return tuple(f"{form}-sources" for form in forms if form != PYTHON_FORM)
+
+
+ALL_FORMS = FORMS + PLAIN_FORMS + sources_of(FORMS + PLAIN_FORMS)
 MODELS = {  # the folder of each model below fmu_src/models
     "TwoMassImpactOscillator": "oscillator",
     "MotorShaker": "motor_shaker",
@@ -24,7 +33,7 @@ def export(name: str, form: str, build: Path, platforms: tuple[str, ...] | None 
     name : str
         Of :data:`MODELS`.
     form : str
-        Of :data:`FORMS` or :data:`PLAIN_FORMS`.
+        Of :data:`ALL_FORMS`.
     build : Path
         The build folder; made where it is missing.
     platforms : tuple of str, optional
@@ -46,8 +55,7 @@ def export(name: str, form: str, build: Path, platforms: tuple[str, ...] | None 
 
     if form == PYTHON_FORM:
         return pythonfmu_form.export(MODELS[name], Path(build) / form)
-    version, is_plain = PLAIN_FORMS.get(form, form), form in PLAIN_FORMS
-    return native_form.export(MODELS[name], version, Path(build) / form, platforms, is_plain)
+    return native_form.export(MODELS[name], form, Path(build) / form, platforms)
 
 
 def guid(name: str, form: str) -> str:
@@ -58,7 +66,7 @@ def guid(name: str, form: str) -> str:
     name : str
         Of :data:`MODELS`.
     form : str
-        Of :data:`FORMS` or :data:`PLAIN_FORMS`.
+        Of :data:`ALL_FORMS`.
 
     Returns
     -------
@@ -69,4 +77,4 @@ def guid(name: str, form: str) -> str:
 
     if form == PYTHON_FORM:
         return pythonfmu_form.guid(MODELS[name])
-    return native_form.guid(MODELS[name], PLAIN_FORMS.get(form, form), form in PLAIN_FORMS)
+    return native_form.guid(MODELS[name], form)

@@ -8,15 +8,14 @@ from pathlib import Path
 
 from ..runtime.table import Model
 from .archive import guid_of, write_archive
-from .compile_kernel import compile_objects
+from .compiler import link_all
 from .description_fmi2 import fmi2_xml
 from .description_fmi3 import fmi3_xml
 from .documentation import documentation_files
 from .errors import require
-from .linking import link_all
 from .model_header import model_header
 from .platforms import binaries, usual
-from .source_code import source_files, units
+from .source_code import kernel_source, source_files, units
 from .sources import (
     Files,
     check_unedited,
@@ -27,7 +26,6 @@ from .sources import (
     read,
     texts,
 )
-from .translation.kernel import translate
 
 HEADERS = {
     "fmi2": ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
@@ -59,9 +57,9 @@ def fmi_headers(version: str) -> Files:
     return {name: (folder / name).read_bytes() for name in HEADERS[version]}
 
 
-def guid(folder: str, version: str, is_plain: bool = False) -> str:
+def guid(folder: str, form: str) -> str:
     """The GUID: of the sources, the texts, and the exporters that make the FMU from them."""
-    kind = f"{version} plain" if is_plain else version
+    kind = form.replace("-", " ")
     model = {"sources": model_digest(folder).encode(), "version": kind.encode()}
     return guid_of({**exporters("export/native_form.py"), **texts(folder), **model})
 
@@ -78,10 +76,9 @@ def plain(model: Model) -> Model:
 
 def export(
     folder: str,
-    version: str,
+    form: str,
     target: Path,
     platforms: tuple[str, ...] | None = None,
-    is_plain: bool = False,
 ) -> Path:
     """Write ``target/NAME.fmu``.
 
@@ -89,13 +86,12 @@ def export(
     ----------
     folder : str
         The model's, below ``fmu_src/models``.
-    version : str
-        ``"fmi2"`` or ``"fmi3"``.
+    form : str
+        ``"fmi2"`` or ``"fmi3"``; with ``"-plain"`` see :func:`plain`, and with ``"-sources"`` at
+        its end it has no binaries, for targets that compile the sources themselves.
     target : Path
     platforms : tuple of str, optional
         :func:`.platforms.usual` by default.
-    is_plain : bool
-        See :func:`plain`.
 
     Returns
     -------
@@ -108,19 +104,20 @@ def export(
         Where no binary can be made, or a source was edited meanwhile.
     """
     model, digest = load(folder), model_digest(folder)
-    token = guid(folder, version, is_plain)
+    version, token = form[:4], guid(folder, form)
     header = {"model.h": model_header(model, token, digest)}
     shim = {**shim_sources(version), **fmi_headers(version), **header}
-    told = plain(model) if is_plain else model
-    sources = {**shim, "kernel.c": translate(model.entries).encode()}
+    told = plain(model) if "-plain" in form else model
+    kernel = kernel_source(folder)
+    sources = {**shim, "kernel.c": kernel}
     files = source_files(model.name, version, sources)
     files["modelDescription.xml"] = description(told, token, version, sources)
-    made = link_all(compile_objects(folder, platforms or usual()), model.name, shim)
-    files.update(binaries(version, model.name, made))
-    form = f"{version}-plain" if is_plain else version
+    if not form.endswith("-sources"):
+        made = link_all(platforms or usual(), model.name, kernel, shim)
+        files.update(binaries(version, model.name, made))
     files.update(documentation_files(folder, digest, form))
-    kernel = {k: v for k, v in model_sources(folder).items() if k.startswith("kernels/")}
-    files.update({f"documentation/{name}": content for name, content in kernel.items()})
+    python = {k: v for k, v in model_sources(folder).items() if k.startswith("kernels/")}
+    files.update({f"documentation/{name}": content for name, content in python.items()})
     check_unedited()
     path = target / f"{model.name}.fmu"
     write_archive(path, files)

@@ -17,65 +17,56 @@ class Platform:
 
     Attributes
     ----------
-    triple : str
-        LLVM's target triple.
-    cpu : str
-        LLVM's name of the oldest processor it is to run on.
     zig_target : str
-        With the oldest C library it is to run on.
+        Zig's name of it, with the oldest C library it is to run on.
+    cpu : str
+        Zig's name of the oldest processor it is to run on.
     suffix : str
         Of a shared library.
     folders : dict of str to str
         Folder below ``binaries/`` by FMI version.
     """
 
-    triple: str
-    cpu: str
     zig_target: str
+    cpu: str
     suffix: str
     folders: dict[str, str]
 
 
 PLATFORMS = {
     "x86_64-linux": Platform(
-        "x86_64-unknown-linux-gnu",
-        "x86-64-v2",
         "x86_64-linux-gnu.2.17",
+        "x86_64_v2",
         ".so",
         {"fmi2": "linux64", "fmi3": "x86_64-linux"},
     ),
     "x86_64-windows": Platform(
-        "x86_64-pc-windows-gnu",
-        "x86-64-v2",
         "x86_64-windows-gnu",
+        "x86_64_v2",
         ".dll",
         {"fmi2": "win64", "fmi3": "x86_64-windows"},
     ),
     "x86_64-darwin": Platform(
-        "x86_64-apple-macosx11.0.0",
-        "x86-64-v2",
         "x86_64-macos.11.0",
+        "x86_64_v2",
         ".dylib",
         {"fmi2": "darwin64", "fmi3": "x86_64-darwin"},
     ),
     "aarch64-linux": Platform(
-        "aarch64-unknown-linux-gnu",
-        "generic",
         "aarch64-linux-gnu.2.17",
+        "generic",
         ".so",
         {"fmi2": "aarch64-linux", "fmi3": "aarch64-linux"},
     ),
     "aarch64-windows": Platform(
-        "aarch64-pc-windows-gnu",
-        "generic",
         "aarch64-windows-gnu",
+        "generic",
         ".dll",
         {"fmi2": "aarch64-windows", "fmi3": "aarch64-windows"},
     ),
     "aarch64-darwin": Platform(
-        "arm64-apple-macosx11.0.0",
-        "apple-m1",
         "aarch64-macos.11.0",
+        "apple_m1",
         ".dylib",
         {"fmi2": "aarch64-darwin", "fmi3": "aarch64-darwin"},
     ),

@@ -18,11 +18,11 @@ from pathlib import Path
 from ..runtime.compiled import LIBRARIES
 from ..runtime.table import Model
 from .archive import fingerprint, guid_of, write_archive
-from .compile_kernel import compile_objects
+from .compiler import link_all, say_once
 from .description_fmi2 import PYTHON, fmi2_xml
 from .documentation import documentation_files
 from .errors import EXTRA, CannotExport, require
-from .linking import link_all, say_once
+from .source_code import kernel_source
 from .sources import ROOT, Files, check_unedited, closure, exporters, load, read, texts
 
 PYTHONFMU = "0.7.0"  # the slave works around what this version does, see there
@@ -110,7 +110,7 @@ def libraries(folder: str, model: Model) -> Files:
     entry = known + (ROOT / "runtime" / "native" / "library.c").read_bytes()
     try:
         platforms = tuple(dict.fromkeys(platform for platform, _ in LIBRARIES.values()))
-        made = link_all(compile_objects(folder, platforms), "kernel", {"library.c": entry})
+        made = link_all(platforms, "kernel", kernel_source(folder), {"library.c": entry})
     except CannotExport as reason:
         say_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")
         return {}

@@ -6,6 +6,7 @@ A compiler may fuse or reorder operations where it was asked to be fast. The sam
 
 from __future__ import annotations
 
+import functools
 import struct
 
 from ..runtime.table import REAL, Model
@@ -24,6 +25,7 @@ def fingerprint(total: int, values: list[float]) -> int:
     return total
 
 
+@functools.cache
 def expected_sum(model: Model) -> int:
     """The fingerprint of all variables over a short run from the start values; for its second half
     all real inputs are moved.
@@ -41,6 +43,8 @@ def expected_sum(model: Model) -> int:
         for variable in model.variables if step == STEPS // 2 else ():
             if variable.type == REAL and not (variable.calculated or variable.fixed):
                 memory[variable.slot] += CHANGE
+            if variable.slot in model.polynomial:
+                memory[model.set_slot] = 1.0
         codes.append(model.advance(memory, step * STEP))
         total = fingerprint(total, memory[: len(model.variables)])
     if any(codes):

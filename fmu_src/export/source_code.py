@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 from xml.etree import ElementTree as ET
 
 from . import description
-from .sources import Files
+from .sources import Files, load
+from .translation.kernel import translate
 
-OPTION = "-ffp-contract=off"  # the one that a compiler needs
+OPTIONS = (
+    "-ffp-contract=off -fno-math-errno"  # for the bits; for the square root in one instruction
+)
 CMAKE = """\
 # The FMU's library, for the machine and compiler at hand: cmake -B build && cmake --build build
 cmake_minimum_required(VERSION 3.10)
@@ -19,9 +23,29 @@ endif()
 add_library({name} SHARED {units})
 set_target_properties({name} PROPERTIES PREFIX "")
 if(NOT MSVC)
-    target_compile_options({name} PRIVATE {option})
+    target_compile_options({name} PRIVATE {options})
+endif()
+if(UNIX)
+    target_link_libraries({name} PRIVATE m)
 endif()
 """
+
+
+@functools.cache
+def kernel_source(folder: str) -> bytes:
+    """The kernel of a model in C, of which all compiled forms are made.
+
+    Parameters
+    ----------
+    folder : str
+        The model's, below ``fmu_src/models``.
+
+    Raises
+    ------
+    CannotExport
+        Where a line of it cannot be translated.
+    """
+    return translate(load(folder).entries).encode()
 
 
 def units(files: Files) -> list[str]:
@@ -41,7 +65,7 @@ def source_files(name: str, version: str, files: Files) -> Files:
     files : dict of str to bytes
         C files and headers.
     """
-    cmake = CMAKE.format(name=name, units=" ".join(units(files)), option=OPTION)
+    cmake = CMAKE.format(name=name, units=" ".join(units(files)), options=OPTIONS)
     inside = {**files, "CMakeLists.txt": cmake.encode()}
     if version == "fmi3":
         inside["buildDescription.xml"] = build_description(name, units(files))
@@ -52,7 +76,7 @@ def build_description(name: str, sources: list[str]) -> bytes:
     """FMI 3.0's list of what to compile, and how."""
     root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=name)
-    attributes = {"language": "C99", "compilerOptions": OPTION}
+    attributes = {"language": "C99", "compilerOptions": OPTIONS}
     several = ET.SubElement(configuration, "SourceFileSet", attributes)
     for source in sources:
         ET.SubElement(several, "SourceFile", name=source)

@@ -1,30 +1,22 @@
-"""The kernel as a WebAssembly module: the same Numba IR as the FMUs', for web pages.
+"""The kernel as a WebAssembly module: the same C as the FMUs', for web pages.
 
 The module exports its memory, ``__heap_base``, from where on instances may lie one after the other,
 and the entry points ``kernel_NAME(address of an instance, time)``. It imports nothing. WebAssembly
 fixes every operation of floats to the last bit, so the numbers are those of every other form.
-
-Runs in a process of its own (``python -m fmu_src.export.webassembly MODEL TARGET``), as
-:mod:`.compile_kernel` does.
 """
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 import tempfile
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 from .archive import guid_of
-from .compile_kernel import SETTINGS, entry_ir, failure, jit_kernel, kernel_modules, link_ir
-from .errors import CannotExport, require
-from .sources import ROOT, check_unedited, closure, load, model_digest
+from .compiler import CLANG_FLAGS, FLAGS, run, ziglang
+from .source_code import kernel_source
+from .sources import check_unedited, closure, load, model_digest
 
-TRIPLE = "wasm32-unknown-unknown"
+TARGET = ("-target", "wasm32-wasi", "-mcpu=mvp+bulk_memory+nontrapping_fptoint")  # WASI has headers
 SECTION = "guid"  # name of the custom section that bears the GUID
 
 
@@ -34,7 +26,7 @@ def guid(folder: str) -> str:
 
 
 def export(folder: str) -> bytes:
-    """Compile a model's kernel, in a process of its own.
+    """Compile a model's kernel.
 
     Parameters
     ----------
@@ -49,31 +41,17 @@ def export(folder: str) -> bytes:
     Raises
     ------
     CannotExport
-        Where Numba or the linker is missing, a new version breaks this way, or a source was
-        edited meanwhile.
+        Where ziglang is missing or fails, or a source was edited meanwhile.
     """
-    require("numba", "compiles the kernel")
-    require("ziglang", "links it")
-    with tempfile.TemporaryDirectory(prefix="vibroimpact-") as target:
-        run([sys.executable, "-m", __name__, folder, target], {**os.environ, **SETTINGS})
-        link(Path(target), [f"kernel_{name}" for name in load(folder).entries])
+    compiler = [*ziglang("cc"), *TARGET, *FLAGS, *CLANG_FLAGS]
+    exported = [f"--export=kernel_{name}" for name in load(folder).entries]
+    linker = [*ziglang("wasm-ld"), "--no-entry", "--strip-all", "--export=__heap_base", *exported]
+    with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:
+        (Path(place) / "kernel.c").write_bytes(kernel_source(folder))
+        run([*compiler, "-c", "kernel.c", "-o", "kernel.o"], place, "WebAssembly")
+        run([*linker, "kernel.o", "-o", "kernel.wasm"], place, "WebAssembly")
         check_unedited()
-        return (Path(target) / "kernel.wasm").read_bytes() + custom_section(SECTION, guid(folder))
-
-
-def run(command: list[str], environment: dict[str, str] | None = None) -> None:
-    """Run a program from the sources' root; the last line it tells is the reason of a failure."""
-    done = subprocess.run(command, cwd=ROOT.parent, env=environment, capture_output=True, text=True)
-    if done.returncode != 0:
-        told = done.stderr.strip().splitlines()
-        raise CannotExport(told[-1] if told else "the compiler gave no reason")
-
-
-def link(folder: Path, entries: Iterable[str]) -> None:
-    """``kernel.wasm`` of ``kernel.o``, with the entry points exported."""
-    linker = [sys.executable, "-m", "ziglang", "wasm-ld", "--no-entry", "--strip-all"]
-    exported = [f"--export={name}" for name in (*entries, "__heap_base")]
-    run([*linker, *exported, str(folder / "kernel.o"), "-o", str(folder / "kernel.wasm")])
+        return (Path(place) / "kernel.wasm").read_bytes() + custom_section(SECTION, guid(folder))
 
 
 def custom_section(name: str, text: str) -> bytes:
@@ -110,40 +88,3 @@ def starts(folder: str) -> dict[str, float]:
     """Start values of a model's variables, where they are not zero."""
     given = {v.name: float(v.start) for v in load(folder).variables if v.start is not None}
     return {name: value for name, value in given.items() if value != 0.0}
-
-
-def emit_object(text: str) -> bytes:
-    """Optimise for WebAssembly without extensions and emit an object file."""
-    import llvmlite.binding as llvm
-
-    llvm.initialize_all_targets()
-    llvm.initialize_all_asmprinters()
-    machine = llvm.Target.from_triple(TRIPLE).create_target_machine(opt=3, reloc="static")
-    module = llvm.parse_assembly(re.sub(r"^target (triple|datalayout).*$", "", text, flags=re.M))
-    module.triple = TRIPLE
-    module.data_layout = str(machine.target_data)
-    options = llvm.create_pipeline_tuning_options(speed_level=3)
-    builder = llvm.create_pass_builder(machine, options)
-    for _ in range(2):  # the second round sees that no error path is left
-        builder.getModulePassManager().run(module, builder)
-    made: Any = machine.emit_object(module)
-    assert isinstance(made, bytes)
-    return made
-
-
-def main(folder: str, target: str) -> None:
-    """Write ``kernel.o``; see :func:`export`."""
-    model = load(folder)
-    dispatchers = jit_kernel(kernel_modules())
-    entries = {
-        f"kernel_{name}": entry_ir(dispatchers[function], model.memory_size)
-        for name, function in model.entries.items()
-    }
-    (Path(target) / "kernel.o").write_bytes(emit_object(str(link_ir(entries))))
-
-
-if __name__ == "__main__":
-    try:
-        main(*sys.argv[1:])
-    except Exception as error:
-        sys.exit(failure(error))

@@ -203,7 +203,7 @@ class Terminal:
     members: Mapping[str, str]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # each is one thing: known by itself, not by its contents
 class Model:
     """A model as the exporters see it.
 

@@ -22,7 +22,7 @@ from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
 from .events import STATE, EventInstance, Impacts
-from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, up_to_date
+from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_of, up_to_date
 from .instance import Instance
 from .models import OSCILLATOR, SHAKER
 from .webassembly import build_web_kernels
@@ -50,5 +50,6 @@ __all__ = [
     "last_samples",
     "room_for_samples",
     "sampled",
+    "sources_of",
     "up_to_date",
 ]

@@ -21,7 +21,8 @@ from .description import Description, describe
 log = logging.getLogger(__name__)
 
 FORMS: tuple[str, ...] = sources.FORMS
-PLAIN_FORMS: tuple[str, ...] = tuple(sources.PLAIN_FORMS)
+PLAIN_FORMS: tuple[str, ...] = sources.PLAIN_FORMS
+sources_of = sources.sources_of
 MODELS: tuple[str, ...] = tuple(sources.MODELS)
 WITHOUT_COMPILER = sources.PYTHON_FORM
 SHIPPED = Path(__file__).parent / "fmus"
@@ -41,8 +42,8 @@ def build(
     folder : path-like, optional
         The build folder; :func:`default_folder` where none is given.
     forms : iterable of str
-        Of ``FORMS`` or ``PLAIN_FORMS``. Native ones are left out, and said to be, where there is no
-        compiler.
+        Of ``FORMS`` or ``PLAIN_FORMS``, or what :func:`sources_of` makes of them. Those with
+        binaries are left out, and said to be, where there is no compiler.
     names : iterable of str
         Of ``MODELS``.
     platforms : iterable of str
@@ -142,7 +143,7 @@ def exported_once(name: str, form: str, folder: Path, level: int) -> Description
 @functools.cache
 def announce(folder: Path, level: int) -> None:
     """Say once that it takes long."""
-    text = "exporting FMUs to %s, this once: compiling takes up to a minute a model"
+    text = "exporting FMUs to %s, this once: compiling takes some seconds a model"
     log.log(level, text, folder)
 
 
@@ -157,8 +158,8 @@ def check(name: str, form: str) -> None:
     """Whether there is such a model and such a form."""
     if name not in MODELS:
         raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
-    if form not in FORMS + PLAIN_FORMS:
-        raise InputError(f"form {form}: expected one of {', '.join(FORMS + PLAIN_FORMS)}")
+    if form not in sources.ALL_FORMS:
+        raise InputError(f"form {form}: expected one of {', '.join(sources.ALL_FORMS)}")
 
 
 def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:

@@ -130,7 +130,7 @@ def kernel_digest(model: str) -> str:
 def compiled(model: str, folder: Path) -> Path:
     """Compile a model's kernel to ``folder/wasm/NAME.wasm``, whole or not at all."""
     path = folder / FORM / f"{model}.wasm"
-    log.info("compiling %s: takes up to a minute", path)
+    log.info("compiling %s", path)
     module = sources.export(MODELS[model])
     open_folder(path.parent)
     write_whole(path, lambda place: place.write_bytes(module))

@@ -5,13 +5,15 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from ..errors import InputError
 from .options import Commands
 from .output import check_output
 
 EXAMPLES = """  {program} build
   {program} build --folder /tmp/fmus
   {program} build --platforms all
-  {program} build --plain"""
+  {program} build --plain
+  {program} build --sources-only"""
 
 
 def add_parser(commands: Commands) -> None:
@@ -39,18 +41,36 @@ def add_parser(commands: Commands) -> None:
         help="instead, into fmi2-plain/ and fmi3-plain/: native FMUs for tools that stumble over "
         "arrays, clocks or long lists of variables; the same numbers",
     )
+    parser.add_argument(
+        "--sources-only",
+        action="store_true",
+        help="instead, into fmi2-sources/ and fmi3-sources/ (with --plain: fmi2-plain-sources/, "
+        "fmi3-plain-sources/): native FMUs without binaries, for targets that compile the C "
+        "sources inside; no compiler is needed here",
+    )
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
-    from ..access import FORMS, PLAIN_FORMS, build, build_libraries, build_web_kernels
+    from ..access import (
+        FORMS,
+        PLAIN_FORMS,
+        build,
+        build_libraries,
+        build_web_kernels,
+        sources_of,
+    )
 
     if arguments.folder is not None:
         check_output(arguments.folder, "--folder")
     forms = PLAIN_FORMS if arguments.plain else FORMS
     platforms = [name for name in arguments.platforms.split(",") if name]
+    if arguments.sources_only:
+        if platforms:
+            raise InputError("--platforms with --sources-only: expected one of them")
+        forms = sources_of(forms)
     made = build(arguments.folder, forms, platforms=platforms)
-    if not arguments.plain:
+    if not (arguments.plain or arguments.sources_only):
         made += build_libraries(arguments.folder, platforms)
         made += build_web_kernels(arguments.folder)
     for path in made:

@@ -58,7 +58,7 @@ def test_a_change_of_any_source_is_another_guid(monkeypatch, version):
     for changed, same in (
         ("kernels/numerics/elementary.py", False),
         ("models/oscillator/variables.py", False),
-        ("export/linking.py", False),
+        ("export/compiler.py", False),
         ("runtime/native/core.c", False),
         ("models/form.html.in", False),
         ("models/license.txt", False),

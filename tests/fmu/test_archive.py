@@ -22,9 +22,6 @@ from .driver import FMUS, run
 
 PYTHON = FMUS["fmi2-python"]
 BUILD = 'extra == "build"'
-CHAOS = ["x1", "x2", "v1", "v2", "impact_count", "impact_energy"]
-DRIVE = {"box_amplitude": 1 / 1.13**2, "box_frequency": 1.13}
-LONG = {"stop_time": 3000.0, "output_interval": 1.0}
 
 
 def contents(fmu):
@@ -121,10 +118,8 @@ def test_two_complete_builds_are_the_same_bytes(complete, tmp_path):
 
 
 @pytest.mark.slow
-def test_another_python_makes_other_binaries_with_the_same_bits(complete, tmp_path):
-    """Numba compiles the interpreter's bytecode, which each version has its own of; all the rest is
-    the same, the GUID included.
-    """
+def test_another_python_makes_the_same_files(complete, tmp_path):
+    """Binaries included: the kernel is translated from its text."""
     others = other_pythons()
     if not others:
         pytest.skip("there is no other Python from 3.10 to 3.14")
@@ -135,13 +130,7 @@ def test_another_python_makes_other_binaries_with_the_same_bits(complete, tmp_pa
     for form, other in built(python, copy_sources(tmp_path / "sources")).items():
         ours, theirs = contents(complete[form]), contents(other)
         assert list(ours) == list(theirs)
-        unlike = [name for name in ours if ours[name] != theirs[name]]
-        assert all(name.endswith((".so", ".dll")) for name in unlike), unlike
-        found = [
-            fmpy.simulate_fmu(str(path), output=CHAOS, start_values=DRIVE, **LONG).tobytes()
-            for path in (complete[form], other)
-        ]
-        assert found[0] == found[1]
+        assert not [name for name in ours if ours[name] != theirs[name]], form
 
 
 def test_fmpy_finds_no_problem(fmu):

@@ -6,10 +6,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from fmu_src.export import compile_kernel, linking, native_form, pythonfmu_form
+from fmu_src.export import compiler
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS
 from fmu_src.export.platforms import usual
+from fmu_src.export.source_code import kernel_source
 
 from ..exports import guid_inside, once, refresh
 from . import importers
@@ -19,11 +20,10 @@ VERSIONS = ("fmi2", "fmi3")
 
 def cannot(reason):
     """Skip where the tools are missing; where they are there and fail, so does the test."""
-    missing = [name for name in ("numba", "ziglang") if importlib.util.find_spec(name) is None]
-    if missing:
-        pytest.skip(f"{', '.join(missing)} missing: {reason}")
+    if importlib.util.find_spec("ziglang") is None:
+        pytest.skip(f"ziglang missing: {reason}")
     pytest.fail(
-        f"a new version of Numba or ziglang breaks the way the native FMUs are made: {reason}",
+        f"a new version of ziglang breaks the way the native FMUs are made: {reason}",
         pytrace=False,
     )
 
@@ -39,41 +39,39 @@ def fmus(exported):
 
 def compiled_once_more():
     """The oscillator's kernel, or why it cannot be compiled."""
-    compile_kernel.compile_objects.cache_clear()
+    source = kernel_source("oscillator")
     try:
-        return compile_kernel.compile_objects("oscillator", usual())
+        return {name: compiler.kernel_object(name, source) for name in usual()}
     except CannotExport as reason:
         return reason
 
 
 @pytest.fixture(scope="session")
 def kernel_objects(tmp_path_factory):
-    """The kernel compiled once more, for builds made by tests: nothing of the FMUs' own build."""
+    """The kernel compiled once more, by platform: nothing of the FMUs' own build."""
     found = once(tmp_path_factory, "kernel", compiled_once_more)
     return cannot(found) if isinstance(found, Exception) else found
 
 
 @pytest.fixture
-def hide(monkeypatch, kernel_objects):
+def hide(monkeypatch):
     """A function that takes a C compiler away from the exporter: ``"ziglang"``, or ``"own"``, the
     machine's.
     """
-    for form in (native_form, pythonfmu_form):
-        monkeypatch.setattr(form, "compile_objects", lambda *_: kernel_objects)
-    linking.say_once.cache_clear()
+    compiler.say_once.cache_clear()
 
     def away(*names):
         if "ziglang" in names:
             monkeypatch.setattr(
-                linking,
+                compiler,
                 "importlib",
                 SimpleNamespace(util=SimpleNamespace(find_spec=lambda _: None)),
             )
         if "own" in names:
-            monkeypatch.setattr(linking, "shutil", SimpleNamespace(which=lambda _: None))
+            monkeypatch.setattr(compiler, "shutil", SimpleNamespace(which=lambda _: None))
 
     yield away
-    linking.say_once.cache_clear()
+    compiler.say_once.cache_clear()
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 from fmpy.validation import validate_fmu
 
-from fmu_src.export import compile_kernel, errors
+from fmu_src.export import errors
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS, export
 
@@ -14,7 +14,7 @@ from . import importers
 from .slave import COMMON, harmonic
 from .test_bit_identity import run
 
-MODEL = "TwoMassImpactOscillator"  # whose kernel the fixture has compiled
+MODEL = "TwoMassImpactOscillator"
 
 
 def build(folder):
@@ -92,21 +92,12 @@ def test_without_a_compiler_of_its_own_the_machine_makes_the_same_bytes(
     assert not caplog.messages
 
 
-@pytest.mark.parametrize(
-    ("package", "left"), [("numba", ["fmi2-python"]), ("pythonfmu", ["fmi2", "fmi3"])]
-)
-def test_a_missing_package_is_named_with_the_extra_that_has_it(
-    fmus, hide, monkeypatch, tmp_path, package, left
-):
-    """Of pythonfmu only its own form knows."""
+def test_without_pythonfmu_the_native_forms_are_made(fmus, hide, monkeypatch, tmp_path):
+    """What is missing is named, with the extra that has it."""
     hide()
-    found = SimpleNamespace(find_spec=lambda name: None if name == package else name)
+    found = SimpleNamespace(find_spec=lambda name: None if name == "pythonfmu" else name)
     monkeypatch.setattr(errors, "importlib", SimpleNamespace(util=found))
-    if package == "numba":  # not the kernel that was compiled before
-        monkeypatch.undo()
-        monkeypatch.setattr(errors, "importlib", SimpleNamespace(util=found))
-        compile_kernel.compile_objects.cache_clear()
     made, reasons = build(tmp_path)
-    assert list(made) == left
+    assert list(made) == ["fmi2", "fmi3"]
     for reason in reasons.values():
-        assert f"{package}, which" in reason and 'pip install "vibroimpact[build]"' in reason
+        assert "pythonfmu, which" in reason and 'pip install "vibroimpact[build]"' in reason

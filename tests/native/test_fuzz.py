@@ -11,8 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from fmu_src.export import compile_kernel, forms
-from fmu_src.export.platforms import usual
+from fmu_src.export import forms
+from fmu_src.export.compiler import kernel_object
+from fmu_src.export.platforms import this_machine
+from fmu_src.export.source_code import kernel_source
 
 from . import importers
 from .conftest import VERSIONS
@@ -91,7 +93,8 @@ def test_no_leak_and_no_error_under_valgrind(importer_of_model):
 
 def kernel(model):
     """A model's object file for this machine."""
-    return compile_kernel.compile_objects(forms.MODELS[model], usual())
+    source = kernel_source(forms.MODELS[model])
+    return {this_machine(): kernel_object(this_machine(), source)}
 
 
 def checked(version, model, exported, folder, sanitizer):

@@ -4,20 +4,19 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
-from fmu_src.export import forms, native_form
+from fmu_src.export import forms
+from fmu_src.export.platforms import this_machine
 
 from .conftest import VERSIONS
 from .slave import COMMON, harmonic, slave
 
 
 @pytest.fixture(scope="module")
-def plain_fmus(tmp_path_factory, kernel_objects):
+def plain_fmus(tmp_path_factory, fmus):
     """The oscillator's plain FMUs by FMI version."""
     build = tmp_path_factory.mktemp("plain")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(native_form, "compile_objects", lambda *_: kernel_objects)
-        name = "TwoMassImpactOscillator"
-        return {v: forms.export(name, f"{v}-plain", build) for v in VERSIONS}
+    name = "TwoMassImpactOscillator"
+    return {v: forms.export(name, f"{v}-plain", build, (this_machine(),)) for v in VERSIONS}
 
 
 @pytest.mark.parametrize("version", VERSIONS)

@@ -10,6 +10,9 @@ from xml.etree import ElementTree as ET
 import fmpy
 import pytest
 from fmpy.build import build_platform_binary
+from fmpy.validation import validate_fmu
+
+from fmu_src.export import compiler, forms
 
 from ..fresh import run_fresh
 from .slave import COMMON, harmonic
@@ -122,6 +125,52 @@ def test_the_description_names_the_sources(fmus):
         inside = [name for name in archive.namelist() if name.startswith("sources/")]
     told = [file.get("name") for file in root.iter("SourceFile")]
     assert told == sorted(name.partition("/")[2] for name in inside if name.endswith(".c"))
+
+
+@pytest.fixture(scope="module")
+def without_binaries(tmp_path_factory):
+    """The FMUs for targets that compile, by form."""
+    build = tmp_path_factory.mktemp("sources")
+    wanted = forms.sources_of(forms.FORMS + forms.PLAIN_FORMS)
+    return {form: forms.export("TwoMassImpactOscillator", form, build) for form in wanted}
+
+
+def test_fmus_of_sources_alone_need_no_compiler(without_binaries, monkeypatch, tmp_path):
+    """And bear a GUID of their own: none is taken for one that can be run as it is."""
+    assert set(without_binaries) == {
+        *("fmi2-sources", "fmi3-sources", "fmi2-plain-sources", "fmi3-plain-sources")
+    }
+    monkeypatch.setattr(compiler, "run", None)
+    forms.export("MotorShaker", "fmi3-sources", tmp_path)
+    guids = [forms.guid("TwoMassImpactOscillator", form) for form in forms.ALL_FORMS]
+    assert len(set(guids)) == len(forms.ALL_FORMS) == 9
+
+
+def test_a_description_of_sources_alone_is_true(without_binaries, fmus):
+    """No binary, nothing else missing, the capabilities of the FMU with binaries."""
+    for form, path in without_binaries.items():
+        with zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+            page = archive.read("documentation/index.html").decode()
+        assert not [name for name in names if name.startswith("binaries/")]
+        assert "sources/kernel.c" in names and "there is no binary inside" in page
+        assert validate_fmu(str(path)) == []
+        found = fmpy.read_model_description(str(path))
+        assert found.guid == forms.guid("TwoMassImpactOscillator", form)
+        if "plain" not in form:
+            whole = fmpy.read_model_description(str(fmus[form[:4]]))
+            assert repr(found.coSimulation) == repr(whole.coSimulation)
+            assert not found.coSimulation.needsExecutionTool
+
+
+@pytest.mark.parametrize("form", ["fmi2-plain-sources", "fmi3-sources"])
+def test_sources_alone_compile_to_the_bits_of_the_binary(
+    without_binaries, form, tmp_path, reference
+):
+    with zipfile.ZipFile(without_binaries[form]) as archive:
+        archive.extractall(tmp_path / "fmu")
+    fmu, _ = compiled(tmp_path / "fmu", form[:4], "TwoMassImpactOscillator", *BARE)
+    assert rows(fmu, tmp_path / "run") == reference
 
 
 @pytest.mark.slow

@@ -20,7 +20,7 @@ FUNCTIONS = (
     *("simulate", "resonance", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
     *("impact_statistics", "orbit", "branch", "border", "couple"),
 )
-HEAVY = ("xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "pandas", "numba", "loky", "tqdm")
+HEAVY = ("xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "pandas", "loky", "tqdm")
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)  # 79 rad/s
 NEAR = 1.05 * OWN.omega
 UNIT = Structure.nondimensional()

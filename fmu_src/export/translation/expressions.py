@@ -60,11 +60,12 @@ BUILT_IN = {  # of <math.h>, or a helper of the C file
     "int": "(int)",
 }
 # C's own words, what <math.h> may declare, and the helpers
-TAKEN = """
+WORDS = """
 auto break case char const continue default do double else enum extern float for goto if inline int
 long register restrict return short signed sizeof static struct switch typedef union unsigned void
 volatile while finite isinf isnan signbit larger smaller floored
 """
+TAKEN = frozenset(WORDS.split())
 
 
 class Expressions(ABC):
@@ -316,7 +317,7 @@ class Expressions(ABC):
 
 def in_c(name: str) -> str:
     """A variable's name in C."""
-    return f"{name}_" if name in TAKEN.split() else name
+    return f"{name}_" if name in TAKEN else name
 
 
 def is_simple(value: Value) -> bool:

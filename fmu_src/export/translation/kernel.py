@@ -127,7 +127,7 @@ class Translation:
         place = module.rpartition(".")[2]
         longer = f"{place.upper() if name.isupper() else place}_{name}"
         for known in (name, longer, *(f"{longer}_{number}" for number in range(2, 100))):
-            if known not in TAKEN.split() and self.names.setdefault(known, thing) == thing:
+            if known not in TAKEN and self.names.setdefault(known, thing) == thing:
                 return known
         raise CannotExport(f"{name}: too many things of this name")
 

@@ -1,7 +1,7 @@
 """Slots of a flat memory, numbered in the order in which they are declared.
 
 A kernel's ``memory.py`` is its one declaration: names, sizes, meanings. The numbers are plain
-module-level integers, which Numba freezes into the compiled code. This runs at import only; it is
+module-level integers, which are constants of the translated code. This runs at import only; it is
 no part of the numeric path.
 """
 

@@ -1,7 +1,7 @@
 """The vibro-impact kernel: two masses in a shaken box, exact between and through impacts.
 
 Standard library only, relative imports only, plain floats in one flat memory: the same source runs
-in any Python 3.9+ and compiles under Numba as it stands. Only ``+ - * /``, ``sqrt`` and ``floor``
+in any Python 3.9+ and translates to C as it stands. Only ``+ - * /``, ``sqrt`` and ``floor``
 touch the numbers, which IEEE 754 fixes to the last bit, so every build of it on every machine gives
 the same bits.
 

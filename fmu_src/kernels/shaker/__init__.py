@@ -2,7 +2,7 @@
 
 Standard library and the elementary functions of :mod:`..numerics` only, plain floats in one flat
 memory, under the same rules as the oscillator's kernel: the same source runs in any Python 3.9+,
-compiles under Numba as it stands, and gives the same bits everywhere. Unlike that one, this has no
+translates to C as it stands, and gives the same bits everywhere. Unlike that one, this has no
 closed form: box and rotor are integrated by a Runge-Kutta formula of order 8, so the result belongs
 to the communication points, within the formula's tolerance.
 

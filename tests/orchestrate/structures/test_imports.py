@@ -11,7 +11,7 @@ import importlib.metadata, dataclasses, typing
 begin = time.process_time()
 import orchestrate.structures
 print(time.process_time() - begin)
-heavy = {"numpy", "scipy", "xarray", "matplotlib", "fmpy", "netCDF4", "numba", "pythonfmu"}
+heavy = {"numpy", "scipy", "xarray", "matplotlib", "fmpy", "netCDF4", "pythonfmu"}
 print(*(heavy & sys.modules.keys()))
 """
 

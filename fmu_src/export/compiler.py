@@ -1,0 +1,246 @@
+"""From C sources to shared libraries, for each platform an FMU has a binary for.
+
+The compiler is the clang of the PyPI package ziglang, which compiles for every platform on every
+machine and gives the same bytes everywhere; where that is missing, the machine's own compiler
+serves its own platform. No option lets a compiler fuse, reorder or leave out an operation on
+floating-point numbers: each has the bits that Python gives.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib.util
+import logging
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from .errors import EXTRA, CannotExport, require
+from .platforms import PLATFORMS, this_machine
+
+log = logging.getLogger(__name__)
+FLAGS = (
+    *("-O2", "-g0", "-std=c99", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden"),
+    *("-Wall", "-Wextra"),
+)
+CLANG_FLAGS = (  # which gcc does not know
+    "-Xclang",  # ziglang takes -O3 for -O2
+    "-O3",
+    # two numbers side by side only where that saves much: LLVM does not count what moving them
+    # there and back costs
+    *("-mllvm", "-slp-threshold=24"),
+    # a loop for each mode of the state, not a question in every turn of one
+    *("-mllvm", "-unswitch-threshold=200"),
+    *("-mllvm", "-inline-threshold=1000"),
+)
+LINK_FLAGS = ("-dynamic", "-O", "ReleaseFast", "-fstrip", "-fno-ubsan-rt", "-fno-soname")
+# Of Windows's C library the shim needs these parts. Linked as a whole it would be compiled first:
+# a minute of a fresh machine.
+WINDOWS_PARTS = ("heap", "stdio", "string", "convert", "private")
+WINDOWS_FOLDER = "lib/libc/mingw/stdio"  # of mingw-w64, in ziglang's folder
+WINDOWS_SOURCES = ("ucrt_snprintf.c", "ucrt___local_stdio_printf_options.c")
+WINDOWS_FLAGS = ("-U__CRT__NO_INLINE",)  # its headers' isnan and isfinite, inline
+
+
+@functools.cache
+def say_once(line: str) -> None:
+    """Warn, however many FMUs the line is about."""
+    log.warning("%s", line)
+
+
+def ziglang(*arguments: str) -> list[str]:
+    """Command of a program of ziglang's, where that is installed.
+
+    Raises
+    ------
+    CannotExport
+    """
+    require("ziglang", "compiles the kernel")
+    return [sys.executable, "-m", "ziglang", *arguments]
+
+
+def own_compiler(name: str) -> list[str]:
+    """Command of the machine's own C compiler; nothing where that does not serve the platform, or
+    is not needed since ziglang is there.
+    """
+    if importlib.util.find_spec("ziglang"):
+        return []
+    own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    if own and name == this_machine():
+        return [own]
+    raise CannotExport(
+        f"no C compiler for {name}: expected {EXTRA} (ziglang), or, for the machine's own "
+        "platform, cc, gcc or clang"
+    )
+
+
+def run(command: Iterable[str], folder: str | Path, what: str) -> None:
+    """Run a compiler in a folder.
+
+    Parameters
+    ----------
+    command : iterable of str
+    folder : path-like
+    what : str
+        What it compiles for, for the message.
+
+    Raises
+    ------
+    CannotExport
+        With the compiler's first error.
+    """
+    done = subprocess.run([*command], cwd=folder, capture_output=True, text=True)
+    if done.returncode != 0:
+        told = done.stderr.splitlines()
+        lines = [line for line in told if "error" in line] or told or ["no reason given"]
+        raise CannotExport(f"the C compiler failed for {what}: {lines[0]}")
+
+
+def zig_target(name: str) -> list[str]:
+    """Options for a platform's target."""
+    of = PLATFORMS[name]
+    return ["-target", of.zig_target, f"-mcpu={of.cpu}"]
+
+
+def compile_command(name: str) -> list[str]:
+    """Command that compiles a C file for a platform to an object file.
+
+    Raises
+    ------
+    CannotExport
+        Where there is no compiler.
+    """
+    is_windows = name.endswith("-windows")
+    compiler = own_compiler(name) or [*ziglang("cc"), *zig_target(name), *CLANG_FLAGS]
+    return [*compiler, *FLAGS, *(WINDOWS_FLAGS if is_windows else ["-fPIC"]), "-c"]
+
+
+def link_command(name: str, title: str, objects: Iterable[str]) -> list[str]:
+    """Command that links object files to a shared library, called as its platform has it."""
+    target = f"{title}{PLATFORMS[name].suffix}"
+    own = own_compiler(name)
+    if own:
+        return [*own, "-shared", "-s", "-o", target, *objects]
+    command = [*ziglang("build-lib"), *zig_target(name), *LINK_FLAGS, "--name", title]
+    if name.endswith("-windows"):
+        command += ["-fno-entry", "-fno-emit-implib"]
+        command += [f"-lapi-ms-win-crt-{part}-l1-1-0" for part in WINDOWS_PARTS]
+    else:
+        command += ["-lc", "-fno-compiler-rt"]
+    if name.endswith("-darwin"):
+        command += ["-install_name", f"@rpath/{target}"]
+    return [*command, f"-femit-bin={target}", *objects]
+
+
+def kernel_object(name: str, source: bytes) -> bytes:
+    """A C file that includes nothing of ours as an object file, compiled once in a process.
+
+    Parameters
+    ----------
+    name : str
+        Platform.
+    source : bytes
+
+    Raises
+    ------
+    CannotExport
+        Where there is no compiler, or it fails.
+    """
+    return object_of((*compile_command(name), "kernel.c", "-o", "kernel.o"), source, name)
+
+
+@functools.cache
+def object_of(command: tuple[str, ...], source: bytes, what: str) -> bytes:
+    """What a command makes of ``kernel.c``."""
+    with tempfile.TemporaryDirectory(prefix="vibroimpact-") as folder:
+        (Path(folder) / "kernel.c").write_bytes(source)
+        run(command, folder, what)
+        return (Path(folder) / "kernel.o").read_bytes()
+
+
+def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
+    """A shared library.
+
+    Parameters
+    ----------
+    name : str
+        Platform.
+    title : str
+        The library's own name, which dylibs and DLLs bear inside.
+    files : mapping of str to bytes
+        Sources, headers and object files by file name.
+
+    Raises
+    ------
+    CannotExport
+        Where there is no compiler, or it fails.
+    """
+    files = {**files, **(windows_sources() if name.endswith("-windows") else {})}
+    objects = [file for file in files if file.endswith(".o")]
+    with tempfile.TemporaryDirectory(prefix="vibroimpact-") as place:
+        folder = Path(place)
+        for file, content in files.items():
+            (folder / file).write_bytes(content)
+        for unit in [file for file in files if file.endswith(".c")]:
+            objects.append(f"{Path(unit).stem}.o")
+            run([*compile_command(name), unit, "-o", objects[-1]], folder, name)
+        run(link_command(name, title, objects), folder, name)
+        return (folder / f"{title}{PLATFORMS[name].suffix}").read_bytes()
+
+
+def windows_sources() -> dict[str, bytes]:
+    """What the Windows libraries have of mingw-w64, which comes with ziglang."""
+    spec = importlib.util.find_spec("ziglang")
+    assert spec is not None and spec.origin is not None
+    folder = Path(spec.origin).parent / WINDOWS_FOLDER
+    return {name: (folder / name).read_bytes() for name in WINDOWS_SOURCES}
+
+
+def link_all(
+    names: Iterable[str], title: str, kernel: bytes, files: Mapping[str, bytes]
+) -> dict[str, bytes]:
+    """The same library for every platform this machine can make it for; what is left out is said.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Platforms.
+    title : str
+        The library's own name.
+    kernel : bytes
+        C that includes nothing of ours, shared with other libraries.
+    files : mapping of str to bytes
+        Further sources and headers.
+
+    Returns
+    -------
+    dict of str to bytes
+        Library by platform.
+
+    Raises
+    ------
+    CannotExport
+        Where there is no library at all.
+    """
+
+    def library(name: str) -> bytes | CannotExport:
+        try:
+            return link(name, title, {**files, "kernel.o": kernel_object(name, kernel)})
+        except CannotExport as reason:
+            return reason
+
+    wanted = tuple(names)
+    with ThreadPoolExecutor(os.cpu_count()) as threads:
+        results = dict(zip(wanted, threads.map(library, wanted), strict=True))
+    made = {name: result for name, result in results.items() if isinstance(result, bytes)}
+    reasons = [result for result in results.values() if isinstance(result, CannotExport)]
+    if not made:
+        raise reasons[0]
+    for left_out in reasons:
+        say_once(f"the FMUs will have binaries for {', '.join(made)} alone: {left_out}")
+    return made
