@@ -31,12 +31,12 @@ FLAGS = (
 CLANG_FLAGS = (  # which gcc does not know
     "-Xclang",  # ziglang takes -O3 for -O2
     "-O3",
-    # two numbers side by side only where that saves much: LLVM does not count what moving them
-    # there and back costs
-    *("-mllvm", "-slp-threshold=24"),
+    # LLVM does not count what moving two numbers side by side and back costs: an impact takes a
+    # tenth longer by it
+    "-fno-slp-vectorize",
     # a loop for each mode of the state, not a question in every turn of one
     *("-mllvm", "-unswitch-threshold=200"),
-    *("-mllvm", "-inline-threshold=1000"),
+    *("-mllvm", "-inline-threshold=1000"),  # each function where it is called
 )
 LINK_FLAGS = ("-dynamic", "-O", "ReleaseFast", "-fstrip", "-fno-ubsan-rt", "-fno-soname")
 # Of Windows's C library the shim needs these parts. Linked as a whole it would be compiled first:

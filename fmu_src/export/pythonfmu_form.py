@@ -12,16 +12,19 @@ import subprocess
 import sys
 import tempfile
 import zipfile
+from collections.abc import Mapping
 from importlib import metadata
 from pathlib import Path
 
 from ..runtime.compiled import LIBRARIES
 from ..runtime.table import Model
 from .archive import fingerprint, guid_of, write_archive
-from .compiler import link_all, say_once
+from .compiler import link_all, own_compiler, say_once
 from .description_fmi2 import PYTHON, fmi2_xml
 from .documentation import documentation_files
 from .errors import EXTRA, CannotExport, require
+from .platforms import PLATFORMS, this_machine
+from .self_test import has_right_bits
 from .source_code import kernel_source
 from .sources import ROOT, Files, check_unedited, closure, exporters, load, read, texts
 
@@ -111,10 +114,30 @@ def libraries(folder: str, model: Model) -> Files:
     try:
         platforms = tuple(dict.fromkeys(platform for platform, _ in LIBRARIES.values()))
         made = link_all(platforms, "kernel", kernel_source(folder), {"library.c": entry})
+        check_bits(model, made)
     except CannotExport as reason:
         say_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")
         return {}
     return {library: made[name] for name, library in LIBRARIES.values() if name in made}
+
+
+def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
+    """See that a kernel by the machine's own compiler has the model's bits.
+
+    The native forms' libraries see to it themselves, when they are instantiated.
+
+    Raises
+    ------
+    CannotExport
+    """
+    name = this_machine()
+    if name not in made or not own_compiler(name):
+        return
+    with tempfile.TemporaryDirectory(prefix="vibroimpact-", ignore_cleanup_errors=True) as place:
+        library = Path(place) / f"kernel{PLATFORMS[name].suffix}"
+        library.write_bytes(made[name])
+        if not has_right_bits(model, library):
+            raise CannotExport("the machine's own C compiler changes the kernel's last digits")
 
 
 def run_pythonfmu(script: Path, package: Path, built: Path) -> Files:

@@ -6,11 +6,16 @@ A compiler may fuse or reorder operations where it was asked to be fast. The sam
 
 from __future__ import annotations
 
+import ctypes
 import functools
 import struct
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 from ..runtime.table import REAL, Model
 
+Entry = Callable[[Any, float], int]
 STEPS = 120
 STEP = 0.3125  # s: a sum of them is exact
 CHANGE = 0.125
@@ -27,25 +32,47 @@ def fingerprint(total: int, values: list[float]) -> int:
 
 @functools.cache
 def expected_sum(model: Model) -> int:
+    """The fingerprint that the model's Python has; see :func:`sum_of_run`."""
+    return sum_of_run(model, [0.0] * model.memory_size, model.initialize, model.advance)
+
+
+def has_right_bits(model: Model, path: Path) -> bool:
+    """Whether a kernel as a library of its own, for this machine, has the bits of its Python."""
+    library = ctypes.CDLL(str(path))
+    for entry in (library.initialize, library.advance):
+        entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
+    memory = (ctypes.c_double * model.memory_size)()
+    return sum_of_run(model, memory, library.initialize, library.advance) == expected_sum(model)
+
+
+def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> int:
     """The fingerprint of all variables over a short run from the start values; for its second half
     all real inputs are moved.
+
+    Parameters
+    ----------
+    model : Model
+    memory : list or ctypes array
+        Of zeros.
+    initialize, advance : callable
+        Of the kernel in one of its forms.
 
     Raises
     ------
     RuntimeError
         Where the model cannot be run so.
     """
-    memory, total = [0.0] * model.memory_size, 0
+    total = 0
     for variable in model.variables:
         memory[variable.slot] = 0.0 if variable.calculated else float(variable.start)
-    codes = [model.initialize(memory, 0.0)]
+    codes = [initialize(memory, 0.0)]
     for step in range(1, STEPS + 1):
         for variable in model.variables if step == STEPS // 2 else ():
             if variable.type == REAL and not (variable.calculated or variable.fixed):
                 memory[variable.slot] += CHANGE
             if variable.slot in model.polynomial:
                 memory[model.set_slot] = 1.0
-        codes.append(model.advance(memory, step * STEP))
+        codes.append(advance(memory, step * STEP))
         total = fingerprint(total, memory[: len(model.variables)])
     if any(codes):
         raise RuntimeError(f"{model.name}: the run of the self-test fails with code {max(codes)}")

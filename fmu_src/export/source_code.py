@@ -10,7 +10,7 @@ from .sources import Files, load
 from .translation.kernel import translate
 
 OPTIONS = (
-    "-ffp-contract=off -fno-math-errno"  # for the bits; for the square root in one instruction
+    "-ffp-contract=off -fno-math-errno"  # for the bits, and the square root as one instruction
 )
 CMAKE = """\
 # The FMU's library, for the machine and compiler at hand: cmake -B build && cmake --build build

@@ -117,6 +117,37 @@ def test_recursion_through_another_function_is_refused(tmp_path):
         translate({"entry": module.entry})
 
 
+def test_comments_say_how_often_lines_run(tmp_path):
+    """Beside a test and beside a def; what rare ways alone lead to stays out of the others."""
+    body = "if m[0] != 0.0:  # rarely\n    m[0] = helper(m, time)\nreturn 0"
+    module = module_of(tmp_path, body)
+    text = translate({"advance": module.entry})
+    assert "if (RARELY(m[0] != 0.0)) {" in text and "rarely" not in text
+    assert "static COLD double helper(" in text and "static inline int entry(" in text
+    assert "static COLD int entry(" in translate({"restore": module.entry})
+    body = "if m[0] != 0.0:  # usually\n    m[0] = helper(m, time)\nreturn 0"
+    assert "static inline double helper(" in translate({"entry": module_of(tmp_path, body).entry})
+    kernel = translate(load("oscillator").entries)
+    assert "static INLINE Reals6 turned(" in kernel and "/* inline */" not in kernel
+
+
+def test_floor_is_exact(tmp_path):
+    """Beside ties, zeros, and numbers from which on all are whole."""
+    if CC is None:
+        pytest.skip("no C compiler on this machine")
+    body = "m[0] = math.floor(time) * 1.0\nm[1] = (math.floor(time) & 3) * 1.0\nreturn 0"
+    outside = "#pragma GCC visibility pop\n" + EXPORT.format(name="entry")
+    module = module_of(tmp_path, body)
+    entry = library(tmp_path, translate({"entry": module.entry}) + outside, "-O2").outside_entry
+    entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
+    ends = [0.0, 0.25, 0.5, 1.0, 1.5, 2.5, 3.75, 7.0, 1e-300, 1e9 + 0.5, 2.0**62]
+    ends += [2.0**k + part for k in (50, 51, 52) for part in (-1.25, -0.5, 0.0, 0.5, 1.0)]
+    for value in [sign * end for end in ends for sign in (1.0, -1.0)]:
+        memory, expected = (ctypes.c_double * 2)(), [0.0, 0.0]
+        assert entry(memory, value) == module.entry(expected, value) == 0
+        assert [x.hex() for x in memory] == [x.hex() for x in expected], value
+
+
 def test_what_would_be_evaluated_too_early_is_refused(tmp_path):
     """Two calls that change the memory, of which a test decides whether they are made."""
     body = "x = helper(m, 1.0) - helper(m, 2.0) if time > 0.0 else 0.0\nm[0] = x\nreturn 0"
@@ -142,7 +173,7 @@ def test_kernels_compile_without_a_warning(tmp_path, folder):
 def test_kernel_reads_like_the_paper():
     """Functions and slots keep their names, equations their numbers, comments their places."""
     text = translate(load("oscillator").entries)
-    assert "static Reals4 state_at(double *RESTRICT m, double tau)" in text
+    assert "static inline Reals4 state_at(double *RESTRICT m, double tau)" in text
     assert "/* Displacements and velocities tau after the state's start, (10). */" in text
     assert "m[BRANCH_3 + OMEGA_SQUARED]" in text
     assert "static const double BRIEF = 0x1.0c6f7a0b5ed8dp-20 /* 1e-06 */;" in text

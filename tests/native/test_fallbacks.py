@@ -6,9 +6,10 @@ from types import SimpleNamespace
 import pytest
 from fmpy.validation import validate_fmu
 
-from fmu_src.export import errors
+from fmu_src.export import compiler, errors, pythonfmu_form
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS, export
+from fmu_src.export.source_code import kernel_source
 
 from . import importers
 from .slave import COMMON, harmonic
@@ -79,6 +80,24 @@ def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(
         expected = importer_of(version).simulate(COMMON, times, **harmonic(1.13))
         assert own.simulate(COMMON, times, **harmonic(1.13)) == expected
         assert "FAILURES 0" in own.run("hostile").stdout
+
+
+def test_a_compiler_that_changes_bits_does_not_make_the_pythonfmu_kernel(
+    hide, monkeypatch, tmp_path, caplog
+):
+    """It fuses; the native forms refuse to be instantiated, this one runs in Python."""
+    hide("ziglang")
+    if importers.own_compiler() is None:
+        pytest.skip("the machine has no C compiler of its own")
+    lines = kernel_source("oscillator").splitlines(keepends=True)
+    changed = b"".join(line for line in lines if not line.startswith(b"#pragma"))
+    monkeypatch.setattr(pythonfmu_form, "kernel_source", lambda _: changed)
+    monkeypatch.setattr(compiler, "FLAGS", ("-O2", "-mfma", "-ffp-contract=fast"))
+    fmu = export(MODEL, "fmi2-python", tmp_path)
+    (line,) = [line for line in caplog.messages if "pure Python" in line]
+    assert "changes the kernel's last digits" in line
+    with zipfile.ZipFile(fmu) as archive:
+        assert not [name for name in archive.namelist() if "kernel-" in name]
 
 
 def test_without_a_compiler_of_its_own_the_machine_makes_the_same_bytes(

@@ -278,8 +278,11 @@ class Expressions(ABC):
         if name in ("max", "min", "abs") and kind != REAL:
             raise self.refuse(node, ast.unparse(node), "real numbers")
         text = values[0].converted(REAL).text
+        if name == "math.floor":
+            whole = f"{BUILT_IN[name]}({text})"
+            return Value(f"(long long){whole}", LONG, UNARY, real=whole)
         if name not in ("max", "min"):
-            return Value(f"{BUILT_IN[name]}({text})", LONG if name == "math.floor" else REAL)
+            return Value(f"{BUILT_IN[name]}({text})", REAL)
         for other in values[1:]:
             text = f"{BUILT_IN[name]}({text}, {other.converted(REAL).text})"
         return Value(text, REAL)

@@ -9,7 +9,7 @@ import ast
 import sys
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import FunctionType, ModuleType
 from typing import Any, Protocol
 
@@ -19,7 +19,11 @@ from .subset import Block, assigned_in, comments_of, depends, may_declare, names
 from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Value, common_type
 
 WIDTH = 100
+STORAGE = "static INLINE"  # of every function, until it is known how often it is called
 INDENT = "    "
+# comments beside an if that tell a compiler which way it goes, and what they are in C
+HINTS = {"rarely": "RARELY", "usually": "USUALLY"}
+INLINE = "inline"  # the comment beside a def: its lines are to stand where it is called
 
 
 @dataclass
@@ -36,6 +40,10 @@ class Unit:
     result : Type
     text : str
         Its definition in C.
+    is_inline : bool
+        Whether it is to be inlined wherever it is called.
+    often : set of str
+        Names of the functions that it calls, but for those behind a test that is rarely true.
     """
 
     function: FunctionType
@@ -43,6 +51,8 @@ class Unit:
     name: str
     result: Type = NOTHING
     text: str = ""
+    is_inline: bool = False
+    often: set[str] = field(default_factory=set)
 
 
 class Kernel(Protocol):
@@ -80,7 +90,11 @@ class Body(Expressions):
             raise self.refuse(self.tree, "a call with other arguments", "all of them")
         self.types = dict(zip(self.parameters, unit.kinds, strict=True))
         self.results: list[Type] = []
-        self.may_keep, self.is_final = True, False
+        self.may_keep, self.is_final, self.is_rare = True, False, False
+        known = (*HINTS, INLINE)
+        self.hints = {line: text for line, text in self.comments.items() if text in known}
+        for line in self.hints:
+            del self.comments[line]
         self.begin()
 
     def begin(self) -> None:
@@ -108,7 +122,10 @@ class Body(Expressions):
         summary = " ".join((ast.get_docstring(self.tree) or "").partition("\n\n")[0].split())
         comment = f"/* {summary.replace('``', '').replace(':func:', '').replace('`', '')} */"
         parameters = [f"{self.c_type(self.types[name])} {in_c(name)}" for name in self.parameters]
-        line = f"static {self.c_type(self.unit.result)} {self.unit.name}({', '.join(parameters)})"
+        self.unit.is_inline = self.hints.get(self.tree.lineno) == INLINE
+        line = (
+            f"{STORAGE} {self.c_type(self.unit.result)} {self.unit.name}({', '.join(parameters)})"
+        )
         return [*wrapped(comment, "", "   "), *wrapped(line, "", INDENT)]
 
     # -- what expressions ask for --
@@ -139,6 +156,8 @@ class Body(Expressions):
         if function in self.kernel.begun:  # nobody could say how much stack it takes
             raise self.refuse(node, f"{function.__name__} calls itself", "a loop, no recursion")
         unit = self.kernel.unit(function, kinds)
+        if not self.is_rare:
+            self.unit.often.add(unit.name)
         return unit.name, unit.result
 
     def c_type(self, kind: Type) -> str:
@@ -279,13 +298,21 @@ class Body(Expressions):
         self.line(f"return {value.converted(kind).text};")
 
     def decide(self, node: ast.If) -> None:
-        """``if``, ``elif`` and ``else``."""
-        self.line(f"if ({self.truth(node.test).text}) {{")
+        """``if``, ``elif`` and ``else``, with what a comment says of the test."""
+        hint, test, before = (
+            self.hints.get(node.lineno, ""),
+            self.truth(node.test).text,
+            self.is_rare,
+        )
+        self.line(f"if ({HINTS[hint]}({test})) {{" if hint else f"if ({test}) {{")
+        self.is_rare = before or hint == "rarely"
         self.inner(node.body)
+        self.is_rare = before or hint == "usually"
         if node.orelse:
             self.line("} else {")
             self.inner(node.orelse)
         self.line("}")
+        self.is_rare = before
 
     def count(self, node: ast.For) -> None:
         """``for i in range(...)``."""

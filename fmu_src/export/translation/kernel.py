@@ -9,14 +9,14 @@ write instead.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from types import FunctionType, ModuleType
 from typing import Any
 
 from ..errors import CannotExport
 from .expressions import TAKEN
-from .functions import Body, Unit, wrapped
+from .functions import STORAGE, Body, Unit, wrapped
 from .values import C_TYPES, MEMORY, REAL, Type
 
 HEAD = """\
@@ -50,27 +50,49 @@ HEAD = """\
 #define RESTRICT restrict
 #endif
 
+/* How often lines run, for speed alone; -DINLINE=inline makes smaller code. */
+#if defined(__GNUC__)
+#define USUALLY(test) __builtin_expect(test, 1)
+#define RARELY(test) __builtin_expect(test, 0)
+#define COLD __attribute__((cold, noinline))
+#else
+#define USUALLY(test) (test)
+#define RARELY(test) (test)
+#define COLD
+#endif
+#if !defined(INLINE) && defined(__GNUC__)
+#define INLINE inline __attribute__((always_inline))
+#elif !defined(INLINE)
+#define INLINE inline
+#endif
+
 #if defined(__GNUC__) && !defined(_WIN32)
 #pragma GCC visibility push(hidden)
 #endif
 """
+SELDOM = ("initialize", "restore")  # entry points
 HELPERS = """\
 /* The larger and the smaller number, as Python chooses them: the first one of equal ones. */
-static double larger(double one, double other)
+static inline double larger(double one, double other)
 {
     return other > one ? other : one;
 }
 
-static double smaller(double one, double other)
+static inline double smaller(double one, double other)
 {
     return other < one ? other : one;
 }
 
 /* The largest whole number that is not larger. */
-static long long floored(double value)
+static inline double floored(double value)
 {
-    long long whole = (long long)value;
-    return (double)whole > value ? whole - 1 : whole;
+    double shift = 6755399441055744.0, whole = 0.0; /* 1.5 * 2^52: what is added to it is rounded */
+    if (RARELY(!(-2251799813685248.0 < value && value < 2251799813685248.0))) {
+        whole = (double)(long long)value;
+    } else {
+        whole = (value + shift) - shift;
+    }
+    return whole > value ? whole - 1.0 : whole;
 }
 """
 
@@ -145,8 +167,9 @@ class Translation:
         for kind, name in self.structures.items():
             parts = " ".join(f"{self.c_type(part)} i{i};" for i, part in enumerate(kind))
             structures += wrapped(f"typedef struct {{ {parts} }} {name};", "", "    ")
+        numbers = ["enum {", *(f"    {name} = {number}," for number, name in whole), "};\n"]
         return [
-            "\n".join(["enum {", *(f"    {name} = {number}," for number, name in whole), "};\n"]),
+            "\n".join(numbers if whole else []),  # C has no empty enum
             "".join(f"static const double {name} = {literal(n)};\n" for name, n in real),
             "\n".join(structures) + "\n",
         ]
@@ -157,6 +180,26 @@ def literal(number: float) -> str:
     known = {"inf": "INFINITY", "-inf": "-INFINITY", "nan": "NAN"}
     text = repr(number)
     return known.get(text) or f"{number.hex()} /* {text} */"
+
+
+def stored(units: Iterable[Unit], often: set[str]) -> Iterator[str]:
+    """The functions' texts; those that are reached by rare ways alone are kept out of the others.
+
+    Parameters
+    ----------
+    units : iterable of Unit
+    often : set of str
+        Names of functions that are called often.
+    """
+    known = {unit.name: unit for unit in units}
+    reached, ahead = set(often), list(often)
+    while ahead:
+        new = known[ahead.pop()].often - reached
+        reached |= new
+        ahead += new
+    for name, unit in known.items():
+        storage = "static inline" if name in reached else "static COLD"
+        yield unit.text if unit.is_inline else unit.text.replace(STORAGE, storage, 1)
 
 
 def translate(entries: Mapping[str, Callable[[Any, float], int]]) -> str:
@@ -179,11 +222,13 @@ def translate(entries: Mapping[str, Callable[[Any, float], int]]) -> str:
         Where a line is outside the subset.
     """
     done = Translation()
-    exits = []
+    exits, often = [], set()
     for name, function in entries.items():
         assert isinstance(function, FunctionType)
         inner = done.unit(function, (MEMORY, REAL)).name
         head = f"int kernel_{name}(double *memory, double time)"
+        if name not in SELDOM:
+            often.add(inner)
         exits.append(f"{head};\n{head}\n{{\n    return {inner}(memory, time);\n}}\n")
-    bodies = [f"{unit.text}\n" for unit in done.units.values()]
+    bodies = [f"{text}\n" for text in stored(done.units.values(), often)]
     return "\n".join([HEAD, *done.declarations(), HELPERS, *bodies, *exits])

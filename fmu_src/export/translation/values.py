@@ -33,11 +33,14 @@ class Value:
     type : Type
     rank : int
         How closely its outermost operator binds.
+    real : str
+        The same number as a real one, where it is one before it is made whole.
     """
 
     text: str
     type: Type
     rank: int = ATOM
+    real: str = ""
 
     def within(self, rank: int) -> str:
         """Its text as an operand of an operator that binds so closely."""
@@ -54,6 +57,8 @@ class Value:
 
     def converted(self, kind: Type) -> Value:
         """The value as another type; only what C would convert with a loss is written out."""
+        if self.real and kind == REAL:
+            return Value(self.real, REAL)
         if self.type == LONG and kind == REAL:
             return Value(f"(double){self.within(UNARY)}", REAL, UNARY)
         return self

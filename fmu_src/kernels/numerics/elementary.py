@@ -29,8 +29,8 @@ def sincos_turns(u):
     -------
     sine, cosine : float
     """
-    quarters = math.floor(4.0 * u + 0.5)
-    x = (u - 0.25 * quarters) * TWO_PI
+    nearest = 4.0 * u + 0.5
+    x = (u - 0.25 * math.floor(nearest)) * TWO_PI
     y = x * x
     y2 = y * y  # the polynomials in pairs of pairs: shorter chains of dependent operations
     y4 = y2 * y2
@@ -43,7 +43,7 @@ def sincos_turns(u):
     c = (1.0 / 24.0 - y * (1.0 / 720.0)) + y2 * (1.0 / 40320.0 - y * (1.0 / 3628800.0))
     c += y4 * ((1.0 / 479001600.0 - y * (1.0 / 87178291200.0)) + y2 * (1.0 / 20922789888000.0))
     c = c * y2 - 0.5 * y + 1.0
-    quarter = quarters & 3
+    quarter = math.floor(nearest) & 3
     if quarter == 0:
         return s, c
     if quarter == 1:
@@ -90,7 +90,7 @@ def fraction(u):
     return f if f < 1.0 else 0.0
 
 
-def small_rotation(y):
+def small_rotation(y):  # inline
     """``cos x`` and ``sin(x)/x`` for ``y = x**2``, ``|y| <= 0.42``; cosh and sinh where y < 0.
 
     Returns
@@ -112,7 +112,7 @@ def small_rotation(y):
     return c, s
 
 
-def small_decay(x):
+def small_decay(x):  # inline
     """``e**-x`` for ``|x| <= 0.7``."""
     if -0.03125 <= x <= 0.03125:
         x2 = x * x

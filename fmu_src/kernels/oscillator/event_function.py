@@ -21,10 +21,10 @@ def set_gap(m):
         m[at.EVENT_HARMONIC + i] = m[at.HARMONIC_2 + i] - m[at.HARMONIC_1 + i]
         m[at.EVENT_FREE_A + i] = -m[at.FREE_A + i]
         m[at.EVENT_FREE_B + i] = m[at.FREE_B + i]
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         for i in range(4):
             m[at.EVENT_CUBIC + i] = m[at.CUBIC_B + i] - m[at.CUBIC_A + i]
-    if m[at.SECULAR] != 0.0:
+    if m[at.SECULAR] != 0.0:  # rarely
         set_event_drive(m)
 
 
@@ -36,7 +36,7 @@ def set_contact_force(m):
     h_cos, h_sin, eta = m[at.HARMONIC_3], m[at.HARMONIC_3 + 1], m[at.ETA]
     m[at.EVENT_HARMONIC] = p * eta * h_sin + q * h_cos
     m[at.EVENT_HARMONIC + 1] = q * h_sin - p * eta * h_cos
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         for i in range(3):
             m[at.EVENT_CUBIC + i] = p * m[at.CUBIC_A + i + 1] + q * m[at.CUBIC_A + i]
         m[at.EVENT_CUBIC + 3] = q * m[at.CUBIC_A + 3]
@@ -45,7 +45,7 @@ def set_contact_force(m):
     m[at.EVENT_FREE_A + 1] = v
     m[at.EVENT_FREE_B] = 0.0
     m[at.EVENT_FREE_B + 1] = 0.0
-    if m[at.SECULAR] != 0.0:
+    if m[at.SECULAR] != 0.0:  # rarely
         set_event_drive(m)
 
 
@@ -67,7 +67,7 @@ def bounds(m, order):
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     for _ in range(order):
         steady *= m[at.ETA]
-    if m[at.SECULAR] != 0.0:
+    if m[at.SECULAR] != 0.0:  # rarely
         steady += event_bound(m, order, longest(m) * m[at.SPACING])
     a = free_bound(m, branch_a(m), at.EVENT_FREE_A, order)
     b = free_bound(m, at.BRANCH_2, at.EVENT_FREE_B, order) if m[at.MODE] == at.FLIGHT else 0.0
@@ -97,7 +97,7 @@ def begin_nodes(m):
 def set_values(m, slot, node, tau):
     """Put the event function and two derivatives at a node to ``slot``."""
     h0, h1, h2 = values(
-        m, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5], tau
+        m, False, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5], tau
     )
     m[slot] = h0
     m[slot + 1] = h1
@@ -112,13 +112,15 @@ def set_remainder(m):
     square = m[at.NODE_ETA] * m[at.NODE_ETA]
     bound = steady * (square * square * square)
     time = longest(m) * m[at.SPACING]
-    driven = event_bound(m, 6, time) if m[at.SECULAR] != 0.0 else 0.0
+    driven = 0.0
+    if m[at.SECULAR] != 0.0:  # rarely
+        driven = event_bound(m, 6, time)
     x, v = m[at.LEFT], m[at.LEFT + 1]
     if m[at.MODE] == at.FLIGHT:
         x_b, v_b = m[at.LEFT + 2], m[at.LEFT + 3]
         apart = bound + sixth_bound(m, at.BRANCH_2, x_b, v_b) + sixth_bound(m, at.BRANCH_1, x, v)
         apart += driven
-        if alike(m):
+        if alike(m):  # rarely
             apart = min(apart, bound + difference_bound(m, 6, x, v, x_b, v_b, time))
         bound = apart
     else:
@@ -146,7 +148,7 @@ def difference_bound(m, order, x, v, x_b, v_b, time):
     size = envelope(m, at.BRANCH_1, x, v)
     change = envelope(m, at.BRANCH_1, v, acceleration(m, at.BRANCH_1, x, v))
     own = envelope(m, at.BRANCH_2, x_b - x, v_b - v)
-    if m[at.SECULAR] != 0.0:
+    if m[at.SECULAR] != 0.0:  # rarely
         size += driven_bound(m, at.BRANCH_1, order, time)
         change += driven_bound(m, at.BRANCH_1, order + 1, time)
         damped = m[at.BRANCH_2 + at.DAMPING] * event_drive_size(m, order)
@@ -156,15 +158,17 @@ def difference_bound(m, order, x, v, x_b, v_b, time):
     return own + m[at.BRANCH_2 + at.ENVELOPE_SINE] * time * drive + 4e-15 * size
 
 
-def values(m, x, v, x_b, v_b, cosine, sine, tau):
-    """The event function and two derivatives from all phasors."""
-    if m[at.MODE] == at.FLIGHT:
+def values(m, plain, x, v, x_b, v_b, cosine, sine, tau):  # inline
+    """The event function and two derivatives from all phasors; ``plain`` as in
+    :func:`.nodes.turned`.
+    """
+    if plain or m[at.MODE] == at.FLIGHT:
         h0, h1 = x_b - x, v_b - v
         h2 = acceleration(m, at.BRANCH_2, x_b, v_b) - acceleration(m, at.BRANCH_1, x, v)
     else:
         h0, h1 = force_phasor(m, x, v)
         h2 = acceleration(m, at.BRANCH_3, h0, h1)
-    if m[at.SECULAR] != 0.0:
+    if not plain and m[at.SECULAR] != 0.0:  # rarely
         h1 += event_drive(m, 1, cosine, sine)
         h2 += event_drive(m, 2, cosine, sine)
     eta = m[at.NODE_ETA]
@@ -172,7 +176,7 @@ def values(m, x, v, x_b, v_b, cosine, sine, tau):
     h0 += u
     h1 += eta * (m[at.EVENT_HARMONIC + 1] * cosine - m[at.EVENT_HARMONIC] * sine)
     h2 -= eta * eta * u
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if not plain and m[at.CUBIC_PRESENT] != 0.0:  # rarely
         q0, q1, q2 = cubic_values(m, tau)
         h0, h1, h2 = h0 + q0, h1 + q1, h2 + q2
     return h0, h1, h2
@@ -191,7 +195,7 @@ def free_part(m, b, x, v):
     return x, v, x2, x3, x4, envelope(m, b, x5, x6)
 
 
-def evaluate(m, tau):
+def evaluate(m, tau):  # inline
     """The event function at ``tau``: value, four derivatives, and a bound of the fifth from there
     on, AHEAD spacings long.
 
@@ -200,30 +204,32 @@ def evaluate(m, tau):
     h0, h1, h2, h3, h4, bound : float
     """
     m[at.WORK] += 1.0
-    if m[at.SERIES] != 0.0:
+    if m[at.SERIES] != 0.0:  # rarely
         h0, h1, h2, h3, h4 = gap_at(m, tau)
         return h0, h1, h2, h3, h4, m[at.SERIES_BOUND]
     x, x_b, v, v_b, cosine, sine = phasors_at(m, tau)
     put(m, at.POINT, x, x_b, v, v_b, cosine, sine)
     time = AHEAD * m[at.SPACING]
-    driven = event_bound(m, 5, time) if m[at.SECULAR] != 0.0 else 0.0
+    driven = 0.0
+    if m[at.SECULAR] != 0.0:  # rarely
+        driven = event_bound(m, 5, time)
     if m[at.MODE] == at.FLIGHT:
         a0, a1, a2, a3, a4, bound_a = free_part(m, at.BRANCH_1, x, v)
         h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_2, x_b, v_b)
         h0, h1, h2, h3, h4, bound = h0 - a0, h1 - a1, h2 - a2, h3 - a3, h4 - a4, bound + bound_a
         bound += driven
-        if alike(m):
+        if alike(m):  # rarely
             bound = min(bound, difference_bound(m, 5, x, v, x_b, v_b, time))
     else:
         x, v = force_phasor(m, x, v)
         h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_3, x, v)
         bound += driven
-    if m[at.SECULAR] != 0.0:
+    if m[at.SECULAR] != 0.0:  # rarely
         h1 += event_drive(m, 1, cosine, sine)
         h2 += event_drive(m, 2, cosine, sine)
         h3 += event_drive(m, 3, cosine, sine)
         h4 += event_drive(m, 4, cosine, sine)
-    if m[at.NODE_ETA] != 0.0:
+    if m[at.NODE_ETA] != 0.0:  # usually
         eta = m[at.NODE_ETA]
         square = eta * eta
         h_cos, h_sin = m[at.EVENT_HARMONIC], m[at.EVENT_HARMONIC + 1]
@@ -232,7 +238,7 @@ def evaluate(m, tau):
         u2 = square * u0
         h0, h1, h2, h3, h4 = h0 + u0, h1 + u1, h2 - u2, h3 - square * u1, h4 + square * u2
         bound += (abs(h_cos) + abs(h_sin)) * (square * square * eta)
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         q0, q1, q2 = cubic_values(m, tau)
         h0, h1, h2, h3 = h0 + q0, h1 + q1, h2 + q2, h3 + m[at.EVENT_CUBIC + 3]
     return h0, h1, h2, h3, h4, bound
@@ -244,9 +250,9 @@ def rounding(m, tau):
     size += free_bound(m, branch_a(m), at.EVENT_FREE_A, 0) + free_bound(
         m, at.BRANCH_2, at.EVENT_FREE_B, 0
     )
-    if m[at.SECULAR] != 0.0:
+    if m[at.SECULAR] != 0.0:  # rarely
         size += event_bound(m, 0, tau)
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         power = 1.0
         for i in range(4):
             size += abs(m[at.EVENT_CUBIC + i]) * power

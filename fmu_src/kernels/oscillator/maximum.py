@@ -84,7 +84,7 @@ def noise(m, tau):
     p = at.POINT
     size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     size += envelope(m, at.BRANCH_1, m[p], m[p + 1]) + envelope(m, at.BRANCH_2, m[p + 2], m[p + 3])
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         power = 1.0
         for i in range(4):
             size += abs(m[at.EVENT_CUBIC + i]) * power

@@ -36,7 +36,8 @@ def state_at(m, tau):
     x1, v1, x2, v2 : float
         m, and m per unit of tau; ``x2 >= x1``.
     """
-    if tau == 0.0:  # exactly what the state began with: a start from rest is at rest
+    if tau == 0.0:  # rarely
+        # exactly what the state began with: a start from rest is at rest
         return m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
     if m[at.SERIES] != 0.0:
         x1, v1 = taylor(m, at.SERIES_X, tau), taylor(m, at.SERIES_X + 2, tau)
@@ -48,7 +49,7 @@ def state_at(m, tau):
 
 def state_at_end(m):
     """:func:`state_at` at the state's end."""
-    if m[at.MODE] == at.CONTACT and m[at.END] * m[at.RATE] < BRIEF:
+    if m[at.MODE] == at.CONTACT and m[at.END] * m[at.RATE] < BRIEF:  # rarely
         x, v = brief_contact(m, m[at.END])
         return x, v, x, v
     if m[at.AT_END_NODE] == 0.0:
@@ -74,7 +75,7 @@ def brief_contact(m, tau):
     return x + way, v + tau * (x2 + tau * (0.5 * x3 + tau * x4 * (1.0 / 6.0)))
 
 
-def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):
+def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
     """Displacements and velocities from all phasors."""
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
@@ -86,7 +87,7 @@ def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):
     return x3, v3, x3, v3
 
 
-def state_and_phase_at(m, tau):
+def state_and_phase_at(m, tau):  # inline
     """:func:`state_at`, and cosine and sine of the excitation's phase there."""
     if tau != 0.0 and m[at.SERIES] == 0.0 and m[at.NODE_ETA] != 0.0:
         x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
@@ -160,7 +161,7 @@ def begin(m, x1, v1, x2, v2, lowest):
         First derivative of f that may decide on the boundary: 1 where f is known to vanish, at a
         release, else 0.
     """
-    if m[at.MODE] == at.GLUED:
+    if m[at.MODE] == at.GLUED:  # rarely
         begin_common(m, at.GLUED, x1, v1)
         m[at.CLEAR] = INFINITE
         return
@@ -170,7 +171,7 @@ def begin(m, x1, v1, x2, v2, lowest):
     x = common_position(m, x1, x2) if x2 < x1 else x1
     if v1 > v2:
         v1, v2 = collide(m, x, v1, v2)
-    if v2 > v1:
+    if v2 > v1:  # usually
         leave_impact(m, x, v1, v2)
         return
     order, value = first_derivative(m, x, v1, lowest)
@@ -200,7 +201,7 @@ def begin_flight(m, x1, v1, x2, v2):
     """A flight from initial conditions; its event function is the gap."""
     m[at.MODE] = at.FLIGHT
     sine, cosine = m[at.SINE], m[at.COSINE]
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         cubic = cubic_at(m, m[at.CUBIC_AGE])
         set_cubic_response(m, at.BRANCH_1, at.CUBIC_A, cubic)
         set_cubic_response(m, at.BRANCH_2, at.CUBIC_B, cubic)
@@ -223,7 +224,7 @@ def begin_common(m, mode, x, v):
     """Both masses as one, in contact or glued; its event function is the contact force."""
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.CUBIC_AGE]))
     set_free(m, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
     set_contact_force(m)
@@ -264,7 +265,7 @@ def leave_impact(m, x, v1, v2):
             m[at.END_KIND] = at.END_EVENT
             return
     begin_flight(m, x, v1, x, v2)
-    if not leave_clear(m, slope, curvature):
+    if not leave_clear(m, slope, curvature):  # rarely
         set_series(m, x, v1, slope, 8)
         creep_away(m, slope, curvature, m[at.SERIES_GAP + 6], m[at.SERIES_GAP + 8])
 
@@ -331,7 +332,7 @@ def end_state(m):
     """Carry out the end of the present state and begin the next one."""
     m[at.WORK] += 1.0
     x1, v1, x2, v2 = state_at_end(m)
-    if has_died_away(m, x1, v1, x2, v2):
+    if has_died_away(m, x1, v1, x2, v2):  # rarely
         x1 = v1 = x2 = v2 = 0.0
     move_to_end(m)
     event = m[at.END_KIND] == at.END_EVENT

@@ -108,7 +108,7 @@ def start_nodes(m):
 def set_right(m, node):
     """Phasors one spacing after those in ``node``, put to the right."""
     x, v, x_b, v_b, cosine, sine = turned(
-        m, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5]
+        m, False, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5]
     )
     put(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
 
@@ -123,11 +123,17 @@ def put(m, slot, p0, p1, p2, p3, cosine, sine):
     m[slot + 5] = sine
 
 
-def turned(m, x, v, x_b, v_b, cosine, sine):
-    """All phasors one spacing later."""
-    if m[at.SECULAR] != 0.0:
+def is_plain_flight(m):
+    """Whether the present state is a flight that a harmonic alone drives, at no resonance."""
+    return m[at.MODE] == at.FLIGHT and m[at.SECULAR] == 0.0 and m[at.CUBIC_PRESENT] == 0.0
+
+
+def turned(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
+    """All phasors one spacing later; ``plain`` where the state is known to be a plain flight."""
+    if not plain and m[at.SECULAR] != 0.0:  # rarely
         return driven_on(m, x, v, x_b, v_b, cosine, sine)
-    a, b = branch_a(m) + at.STEP_ON, at.BRANCH_2 + at.STEP_ON
+    a = (at.BRANCH_1 if plain else branch_a(m)) + at.STEP_ON
+    b = at.BRANCH_2 + at.STEP_ON
     return (
         x * m[a] + v * m[a + 2],
         x * m[a + 1] + v * m[a + 3],
@@ -150,7 +156,7 @@ def turn_interval(m):
     m[at.RIGHT_AGE] = (m[at.NODE] + 1.0) * m[at.SPACING]
     for i in range(6):
         m[at.LEFT + i] = m[at.RIGHT + i]
-    if starts_block(m[at.NODE] + 1.0):
+    if starts_block(m[at.NODE] + 1.0):  # rarely
         renew_right(m, m[at.NODE] + 1.0)
     else:
         set_right(m, at.RIGHT)
@@ -165,7 +171,7 @@ def renew_right(m, node):
 def renewed(m, age):
     """All phasors at an age from the closed form."""
     cosine, sine, x_b, v_b = m[at.COSINE], m[at.SINE], 0.0, 0.0
-    if m[at.NODE_ETA] != 0.0:
+    if m[at.NODE_ETA] != 0.0:  # usually
         sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
     phases = m[at.COSINE], m[at.SINE], cosine, sine
     x, v = driven_by(m, branch_a(m), m[at.FREE_A], m[at.FREE_A + 1], age, phases)
@@ -184,7 +190,7 @@ def driven_by(m, b, x, v, t, phases):
     """:func:`turned_by`, driven on the way where the amplitude grows: ``phases`` are cosine and
     sine of the excitation before and after.
     """
-    if m[b + at.DRIVEN] == 0.0:
+    if m[b + at.DRIVEN] == 0.0:  # usually
         return turned_by(m, b, x, v, t)
     old_cosine, old_sine, cosine, sine = phases
     x, v = turned_by(m, b, x, v - pushed(m, b, old_cosine, old_sine), t)
@@ -206,7 +212,7 @@ def driven_on(m, x, v, x_b, v_b, old_cosine, old_sine):
 def driven_part(m, b, x, v, phases):
     """A free part one spacing later, driven on the way where its amplitude grows."""
     step = b + at.STEP_ON
-    if m[b + at.DRIVEN] == 0.0:
+    if m[b + at.DRIVEN] == 0.0:  # usually
         return x * m[step] + v * m[step + 2], x * m[step + 1] + v * m[step + 3]
     old_cosine, old_sine, cosine, sine = phases
     v -= pushed(m, b, old_cosine, old_sine)
@@ -225,7 +231,7 @@ def seek(m, tau):
         node -= 1.0
     block = math.floor(node * (1.0 / BLOCK)) * BLOCK
     if node < m[at.NODE] or block > m[at.NODE]:
-        if block == 0.0:
+        if block == 0.0:  # usually
             start_nodes(m)
         else:
             m[at.NODE] = block - 1.0
@@ -236,7 +242,7 @@ def seek(m, tau):
         turn_interval(m)
 
 
-def phasors_at(m, tau):
+def phasors_at(m, tau):  # inline
     """All phasors at an age, from the nearer node.
 
     Returns
@@ -244,18 +250,18 @@ def phasors_at(m, tau):
     x_a, x_b, v_a, v_b, cosine, sine : float
         Displacements before velocities: so a compiler takes both free parts side by side.
     """
-    if tau < m[at.LEFT_AGE] or tau > m[at.RIGHT_AGE]:
+    if tau < m[at.LEFT_AGE] or tau > m[at.RIGHT_AGE]:  # rarely
         seek(m, tau)
     node, t = at.LEFT, tau - m[at.LEFT_AGE]
     if t > m[at.HALF_SPACING]:
         node, t = at.RIGHT, tau - m[at.RIGHT_AGE]
     cosine, sine = m[node + 4], m[node + 5]
-    if m[at.NODE_ETA] != 0.0:
+    if m[at.NODE_ETA] != 0.0:  # usually
         angle = m[at.NODE_ETA] * t
         c, s = small_rotation(angle * angle)
         s *= angle
         cosine, sine = cosine * c - sine * s, sine * c + cosine * s
-    if m[at.STEEP] == 0.0 and m[at.SECULAR] == 0.0:
+    if m[at.STEEP] == 0.0 and m[at.SECULAR] == 0.0:  # usually
         x_a, x_b, v_a, v_b = free_parts(m, node, t)
     else:
         x_a, x_b, v_a, v_b = parts_by_functions(m, tau, cosine, sine)
@@ -266,7 +272,7 @@ def set_at_end(m, t):
     """Phasors at the state's end, where that is a short time ``t`` after the point evaluated last:
     by their Taylor series, of which six terms leave less than 1e-17.
     """
-    if t * m[at.RATE] > NEAR or m[at.SECULAR] != 0.0:
+    if t * m[at.RATE] > NEAR or m[at.SECULAR] != 0.0:  # rarely
         return
     p = at.POINT
     x, v = advanced(m, branch_a(m), m[p], m[p + 2], t)
@@ -316,21 +322,21 @@ def parts_by_functions(m, tau, cosine, sine):
     return x_a, x_b, v_a, v_b
 
 
-def free_parts(m, node, t):
+def free_parts(m, node, t):  # inline
     """Both free parts at most half a spacing from a node."""
     decay = small_decay(m[branch_a(m) + at.DAMPING] * t)
     if m[at.MODE] != at.FLIGHT:
         x_a, v_a = turned_part(m, at.BRANCH_3, node, t, decay)
         return x_a, 0.0, v_a, 0.0
     decay_b = decay
-    if m[at.BRANCH_1 + at.DAMPING] != m[at.BRANCH_2 + at.DAMPING]:
+    if m[at.BRANCH_1 + at.DAMPING] != m[at.BRANCH_2 + at.DAMPING]:  # rarely
         decay_b = small_decay(m[at.BRANCH_2 + at.DAMPING] * t)
     x_a, v_a = turned_part(m, at.BRANCH_1, node, t, decay)
     x_b, v_b = turned_part(m, at.BRANCH_2, node + 2, t, decay_b)
     return x_a, x_b, v_a, v_b
 
 
-def turned_part(m, b, free, t, decay):
+def turned_part(m, b, free, t, decay):  # inline
     """A free part over a part of a spacing, in which it decays by ``e^{-D t}``."""
     x, v = m[free], m[free + 1]
     cosine, sine = small_rotation(m[b + at.NU_SQUARED] * t * t)

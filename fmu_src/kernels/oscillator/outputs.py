@@ -12,7 +12,7 @@ LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the r
 SHORT = 0.01
 
 
-def look(m, tau):
+def look(m, tau):  # inline
     """The outputs that belong to a point of time, ``tau`` after the present state's start.
 
     Returns
@@ -42,13 +42,13 @@ def look(m, tau):
     return motion, (contact, touch, phase), (cosine, sine)
 
 
-def unit_of_length(m):
+def unit_of_length(m):  # inline
     """The ``a eta^2`` of (3), m; 0 where there is none to speak of."""
     unit = m[at.FORCING]
     return unit if abs(unit) >= LEAST_UNIT else 0.0
 
 
-def write(m, seen):
+def write(m, seen):  # inline
     """Write what :func:`look` has found."""
     motion, boundary, rotation = seen
     m[at.X1], m[at.X2], m[at.V1], m[at.V2], m[at.X_REL], m[at.V_REL] = motion[:6]
@@ -57,7 +57,7 @@ def write(m, seen):
     m[at.PHASE_COSINE], m[at.PHASE_SINE] = rotation
 
 
-def total(seen):
+def total(seen):  # inline
     """The sum of these outputs: finite only where all are."""
     x1, x2, v1, v2, gap, gap_speed, xi1, xi2, xi_rel, box_force = seen[0]
     contact, _, phase = seen[1]
@@ -65,7 +65,7 @@ def total(seen):
     return sum_1 + sum_2 + ((gap_speed + xi_rel) + (contact + phase))
 
 
-def written(m, age):
+def written(m, age):  # inline
     """The point that was written last, ``age`` after the cubic began, in tau: x1, x2, v1, v2, force
     on the box, cosine and sine of the phase, and the age.
     """
@@ -73,22 +73,22 @@ def written(m, age):
     return motion, m[at.BOX_FORCE], (m[at.PHASE_COSINE], m[at.PHASE_SINE]), age
 
 
-def found(m, seen, tau):
+def found(m, seen, tau):  # inline
     """The same of what :func:`look` has found, ``tau`` after the present state's start."""
     return seen[0][:4], seen[0][9], seen[2], m[at.CUBIC_AGE] + tau
 
 
-def accelerations(m, point):
+def accelerations(m, point):  # inline
     """Accelerations of both masses relative to the box at a point, m/s2, by (6)."""
     motion, _, rotation, age = point
     drive = m[at.FORCING] * rotation[1]
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         drive += cubic_at(m, age)[0]
     x1, x2, v1, v2 = motion
     return both_rates(m, drive, x1, v1, x2, v2)
 
 
-def both_rates(m, drive, x1, v1, x2, v2):
+def both_rates(m, drive, x1, v1, x2, v2):  # inline
     """Accelerations of both masses, m/s2; or of one order more, from velocities, accelerations and
     the drive's rate.
     """
@@ -99,20 +99,20 @@ def both_rates(m, drive, x1, v1, x2, v2):
     return both, both
 
 
-def acceleration(m, b, drive, x, v):
+def acceleration(m, b, drive, x, v):  # inline
     """Acceleration of one oscillator at displacement ``x`` (m) and velocity ``v`` (m/s)."""
     omega = m[at.OMEGA]
     pull = m[b + at.OMEGA_SQUARED] * x
     return omega * (omega * (drive - pull) - 2.0 * m[b + at.DAMPING] * v)
 
 
-def force_rates(m, point):
+def force_rates(m, point):  # inline
     """First and second time derivative of the force on the box at a point."""
     motion, _, rotation, age = point
     _, _, v1, v2 = motion
     a1, a2 = accelerations(m, point)
     drive = m[at.FORCING] * m[at.ETA] * rotation[0]
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         drive += cubic_at(m, age)[1]
     j1, j2 = both_rates(m, drive * m[at.OMEGA], v1, a1, v2, a2)
     k1, k2, d1, d2 = m[at.K1], m[at.K2], m[at.D1], m[at.D2]
@@ -120,13 +120,13 @@ def force_rates(m, point):
     return first, k1 * a1 + d1 * j1 + k2 * a2 + d2 * j2
 
 
-def momentum(m, motion):
+def momentum(m, motion):  # inline
     """Momentum relative to the box, and its integral, the moment of mass."""
     x1, x2, v1, v2 = motion
     return m[at.M1] * v1 + m[at.M2] * v2, m[at.M1] * x1 + m[at.M2] * x2
 
 
-def impulse(m, h, left, reached):
+def impulse(m, h, left, reached):  # inline
     """Integrals of the force on the box over a step of ``h`` seconds between two points, by
     momentum: impacts are internal and drop out.
 
@@ -139,14 +139,14 @@ def impulse(m, h, left, reached):
     cosine, sine = left[2]
     mass = m[at.M1] + m[at.M2]
     drive, drive_moment = 0.0, 0.0
-    if m[at.NODE_ETA] != 0.0:
+    if m[at.NODE_ETA] != 0.0:  # usually
         amplitude, speed = m[at.SEGMENT_INPUTS], m[at.SEGMENT_INPUTS + 1]
         sine_half, cosine_half = sincos_turns(speed * h * (0.5 / TWO_PI))
         sine_mid = sine * cosine_half + cosine * sine_half
         cosine_mid = cosine * cosine_half - sine * sine_half
         drive = 2.0 * amplitude * speed * sine_mid * sine_half
         drive_moment = amplitude * (2.0 * cosine_mid * sine_half - speed * h * reached[2][0])
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         power = h
         for i in range(4):  # integrals of tau^i/i! and of tau^(i+1)/i!
             derivative = box_derivative(m, i, left[3])
@@ -157,7 +157,7 @@ def impulse(m, h, left, reached):
     return before - after + mass * drive, moment
 
 
-def short_impulse(m, h, left, reached):
+def short_impulse(m, h, left, reached):  # inline
     """The same over a short step without an impact or a change of state, by the quintic through the
     force and two derivatives at both points.
     """

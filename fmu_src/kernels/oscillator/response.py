@@ -58,7 +58,7 @@ def cubic_value(m, response, tau):
     return value, q1 + tau * (q2 + 0.5 * tau * q3)
 
 
-def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):
+def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):  # inline
     """Displacement and velocity of one oscillator (10).
 
     Parameters
@@ -80,7 +80,7 @@ def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):
     """
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         q, q_dot = cubic_value(m, cubic, tau)
     forced = m[at.ETA] * (h_sin * cosine - h_cos * sine)
     return h_cos * cosine + h_sin * sine + q + x, forced + q_dot + v
@@ -92,7 +92,7 @@ def set_free(m, harmonic, free, cubic, x, v, sine, cosine):
     """
     h_cos, h_sin = m[harmonic], m[harmonic + 1]
     q, q_dot = 0.0, 0.0
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         q, q_dot = m[cubic], m[cubic + 1]
     m[free] = x - (h_cos * cosine + h_sin * sine) - q
     m[free + 1] = v - m[at.ETA] * (h_sin * cosine - h_cos * sine) - q_dot

@@ -19,7 +19,7 @@ from .hermite import (
     lowest_before,
     present_coefficients,
 )
-from .nodes import BLOCK, longest, put, renewed, set_at_end, turned
+from .nodes import BLOCK, is_plain_flight, longest, put, renewed, set_at_end, turned
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
@@ -114,6 +114,18 @@ def glide(m, target, ceiling):
     """On from node to node, not beyond ``target``, while the intervals between are clear and the
     event function stays below ``ceiling`` in them; after many nodes the state is written anew.
     """
+    if not is_plain_flight(m):  # rarely
+        glide_over(m, target, ceiling, False, True)
+    elif ceiling < INFINITE:
+        glide_over(m, target, ceiling, True, True)
+    else:
+        glide_over(m, target, ceiling, True, False)
+
+
+def glide_over(m, target, ceiling, plain, watched):  # inline
+    """:func:`glide`: ``plain`` in a plain flight, ``watched`` if there may be a ceiling. Both are
+    constants where this is called: a compiler makes a loop of its own for each.
+    """
     x, v, x_b, v_b = m[at.RIGHT], m[at.RIGHT + 1], m[at.RIGHT + 2], m[at.RIGHT + 3]
     cosine, sine = m[at.RIGHT + 4], m[at.RIGHT + 5]
     r0, r1, r2 = m[at.RIGHT_VALUES], m[at.RIGHT_VALUES + 1], m[at.RIGHT_VALUES + 2]
@@ -121,7 +133,9 @@ def glide(m, target, ceiling):
     begun = node
     last = min(node + (m[at.WORK_LIMIT] - m[at.WORK]), longest(m) - 1.0)
     renewal = (math.floor((node + 1.0) * (1.0 / BLOCK)) + 1.0) * BLOCK
-    floor, top = lowest_after(m, r0, r1, r2, low), lowest_after(m, -r0, -r1, -r2, low)
+    floor, top = lowest_after(m, r0, r1, r2, low), 0.0
+    if watched:
+        top = lowest_after(m, -r0, -r1, -r2, low)
     clear, below = True, True
     while clear and below and age <= target and node < last:
         node += 1.0
@@ -129,19 +143,19 @@ def glide(m, target, ceiling):
         l0, l1, l2 = r0, r1, r2
         left = age
         age = (node + 1.0) * h
-        if node + 1.0 == renewal:
+        if node + 1.0 == renewal:  # rarely
             x, v, x_b, v_b, cosine, sine = renewed(m, age)
             renewal += BLOCK
         else:
-            x, v, x_b, v_b, cosine, sine = turned(m, x, v, x_b, v_b, cosine, sine)
-        r0, r1, r2 = values(m, x, v, x_b, v_b, cosine, sine, age)
+            x, v, x_b, v_b, cosine, sine = turned(m, plain, x, v, x_b, v_b, cosine, sine)
+        r0, r1, r2 = values(m, plain, x, v, x_b, v_b, cosine, sine, age)
         clear = min(floor, lowest_before(m, r0, r1, r2, low)) >= 0.0 and r0 > 0.0
         floor = lowest_after(m, r0, r1, r2, low)
-        if ceiling < INFINITE:
+        if watched and ceiling < INFINITE:
             below = min(top, lowest_before(m, -r0, -r1, -r2, low)) >= -ceiling and r0 <= ceiling
             top = lowest_after(m, -r0, -r1, -r2, low)
     m[at.WORK] += node - begun
-    if node == begun:
+    if node == begun:  # rarely
         m[at.END] = age
         m[at.END_KIND] = at.END_RENEWAL
         return
@@ -163,7 +177,7 @@ def clear_from_node(m):
     """Whether a part of the present interval is seen to be clear; CLEAR moves to its end."""
     b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
     clear = is_positive(b0, b1, b2, b3, b4, b5)
-    if not clear and b5 > 0.0:
+    if not clear and b5 > 0.0:  # rarely
         set_remainder(m)
         b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
         clear = is_positive(b0, b1, b2, b3, b4, b5)
@@ -180,7 +194,7 @@ def creep(m):
     tau = m[at.CLEAR]
     reach = m[at.RIGHT_AGE] - tau
     h0, h1, h2, h3, h4, bound = evaluate(m, tau)
-    if h0 <= 0.0:
+    if h0 <= 0.0:  # rarely
         h0 = lifted(m, tau, h0, h1)
     step, found = next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy(m, tau))
     if found:
@@ -233,7 +247,7 @@ def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
         return 0.0, True
     if h1 < 0.0:
         root = close_root(h0, h1, h2, h3, h4, bound, accuracy)
-        if 0.0 < root < reach:
+        if 0.0 < root < reach:  # usually
             return root, True
     return step_from(h0, h1, h2, h3, h4, bound, tau, reach, accuracy)
 

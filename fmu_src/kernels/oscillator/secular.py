@@ -33,7 +33,7 @@ def set_secular(m):
 
     Of two oscillators that are nearly equal both do or none: so their gap keeps its digits.
     """
-    if m[at.SECULAR] != 0.0:
+    if m[at.SECULAR] != 0.0:  # rarely
         clear_secular(m)
     near_1, near_2 = is_near(m, at.BRANCH_1), is_near(m, at.BRANCH_2)
     both = (near_1 or near_2) and alike(m)

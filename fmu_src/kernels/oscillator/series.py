@@ -38,7 +38,7 @@ def fifth_bound(m):
     """
     rate, part = m[at.RATE], m[at.RATE_INVERSE]
     forcing = abs(m[at.FORCING])
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         cubic_0, cubic_1, cubic_2, cubic_3 = cubic_at(m, m[at.CUBIC_AGE])
         growth = abs(cubic_1) + part * (abs(cubic_2) + part * abs(cubic_3))
         forcing += 1.35 * (abs(cubic_0) + part * growth)
@@ -59,7 +59,7 @@ def set_series(m, x, v, slope, order):
     square = -m[at.ETA] * m[at.ETA]
     drive, drive_next = m[at.FORCING] * m[at.SINE], m[at.FORCING] * m[at.ETA] * m[at.COSINE]
     cubic_0, cubic_1, cubic_2, cubic_3 = 0.0, 0.0, 0.0, 0.0
-    if m[at.CUBIC_PRESENT] != 0.0:
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         cubic_0, cubic_1, cubic_2, cubic_3 = cubic_at(m, m[at.CUBIC_AGE])
     for k in range(7):
         set_derivatives(m, k + 2, drive + cubic_0)

@@ -101,10 +101,10 @@ def advance(m, time):
     left, mode, impacts = written(m, m[at.CUBIC_AGE] + now), m[at.MODE], m[at.IMPACT_COUNT]
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     tau = run_samples(m, before, time, now)
-    if m[at.WORK] >= m[at.WORK_LIMIT]:
+    if m[at.WORK] >= m[at.WORK_LIMIT]:  # rarely
         m[at.REPORT] = m[at.START_TIME] + m[at.ORIGIN] / m[at.OMEGA]
         return at.LIMITED if m[at.WORK_LIMIT] < allowed else at.UNFINISHED
-    if m[at.STOPPED] != 0.0:
+    if m[at.STOPPED] != 0.0:  # rarely
         time = min(time, m[at.IMPACT_TIME])
     same = m[at.MODE] == mode and m[at.IMPACT_COUNT] == impacts
     return arrive(m, time, tau, left, m[at.X_REL_MAX], same)

@@ -1,0 +1,38 @@
+"""The run by which a library's bits are known: what it exercises."""
+
+import pytest
+
+from fmu_src.export import self_test
+from fmu_src.export.sources import load
+
+
+@pytest.mark.parametrize("folder", ["oscillator", "motor_shaker"])
+def test_a_cubic_input_begins_in_it(folder):
+    """Its values are moved as an importer sets them, with the flag that it begins anew."""
+    model = load(folder)
+    flags = []
+
+    def advance(memory, time):
+        flags.append(memory[model.set_slot])
+        return model.advance(memory, time)
+
+    memory = [0.0] * model.memory_size
+    total = self_test.sum_of_run(model, memory, model.initialize, advance)
+    assert flags.index(1.0) == self_test.STEPS // 2 - 1 and sum(flags) == 1.0
+    assert all(memory[slot] == self_test.CHANGE for slot in model.polynomial)
+    assert total == self_test.expected_sum(model)
+
+
+def test_each_last_bit_counts():
+    """Of any variable, in any step."""
+    model = load("oscillator")
+
+    def advance(memory, time):
+        code = model.advance(memory, time)
+        if time == 3 * self_test.STEP:
+            memory[0] *= 1.0 + 2.0**-52
+        return code
+
+    memory = [0.0] * model.memory_size
+    total = self_test.sum_of_run(model, memory, model.initialize, advance)
+    assert total != self_test.expected_sum(model)
