@@ -161,6 +161,12 @@ def test_a_fold_counts_where_held_voltages_meet_it_and_the_speed_jumps(monkeypat
     assert verdicts.fold_that_is_met(SYSTEM, data, "down").low == pytest.approx(LAST_FOLD)
     beside = branch_with_folds([(1.25, 1.125), (1.26, 1.0), (1.33, 0.9)])
     assert verdicts.fold_that_is_met(SYSTEM, beside, "up").kind == UNKNOWN
+    for others in (
+        [(FIRST_FOLD, 0.9)],
+        [(1.1, 1.0), (FIRST_FOLD, 1.173)],
+    ):  # speed; end of a way down
+        data = branch_with_folds(others)
+        assert verdicts.fold_that_is_met(SYSTEM, data, "up").kind == UNKNOWN
     bonded = branch_with_folds(FOLDS, "bonded")
     assert verdicts.fold_that_is_met(SYSTEM, bonded, "up").kind == UNKNOWN
 
@@ -170,9 +176,11 @@ def test_a_fold_counts_where_held_voltages_meet_it_and_the_speed_jumps(monkeypat
 def test_a_bracket_is_refuted_where_nothing_is_lost(monkeypatch, way, place, off):
     motions = Motions(monkeypatch)
     bracket = Answer("lost", place + off - 3e-5, place + off + 3e-5, True)
-    assert bool(verdicts.refuted(SYSTEM, bracket, way)) is (off != 0.0)
+    assert ("past it, held" in verdicts.refuted(SYSTEM, bracket, way)) is (off != 0.0)
     far, stays, past, back = motions.courses[0]
     assert stays == back and min(far, past) < stays < max(far, past)
+    Motions(monkeypatch, up=place, down=place)
+    assert "comes back" in verdicts.refuted(SYSTEM, bracket, way) or off != 0.0
 
 
 @pytest.mark.parametrize("way", verdicts.WAYS)
