@@ -143,7 +143,7 @@ class Runner:
     def others(self) -> Workers:
         """Those who compute much."""
         if self.options.cluster:
-            from .cluster import Cluster  # brings asyncio, which nobody else needs
+            from .cluster import Cluster  # brings asyncio, which worker processes do without
 
             return Cluster(self.options.cluster)
         return Processes(self.options.processes)
