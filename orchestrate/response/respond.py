@@ -28,6 +28,8 @@ class Response:
         Largest gap in them, exact between the samples too.
     impacts_per_period : float
         Mean over the samples' periods.
+    impact_count : int
+        Impacts from the beginning of the transient to the last sample.
     permanent_contact : bool
         Whether any occurred in them.
     frequency : float
@@ -39,6 +41,7 @@ class Response:
     samples: NDArray[np.float64]
     x_rel_max: float
     impacts_per_period: float
+    impact_count: int
     permanent_contact: bool
     frequency: float
     tolerance: float
@@ -147,6 +150,7 @@ def respond(
         samples=states,
         x_rel_max=peak,
         impacts_per_period=(impacts_after - impacts) / samples,
+        impact_count=impacts_after,
         permanent_contact=bool(touching) or contacts_after > contacts,
         frequency=excitation.frequency,
         tolerance=tolerance,

@@ -127,12 +127,11 @@ class SweepJob(SeriesQuestion):
         n, decided = response.decision(self.tolerance)
         span = periods_of(n, self.peak_periods)
         first = self.transient + self.samples
-        (before,) = instance.get("impact_count")
         states = orbit(instance, point, response, first, span)
         impacts = response.impacts_per_period
         if decided == REPEATED:
             done, end = ((first + count) * point.excitation.period for count in (span, n))
-            impacts = impacts_since(instance, before, done, end) / n
+            impacts = impacts_since(instance, response.impact_count, done, end) / n
         return {
             "gap": response.gap,
             "end": response.end,

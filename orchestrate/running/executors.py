@@ -13,11 +13,10 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from importlib import import_module
 from multiprocessing import resource_tracker
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
@@ -156,12 +155,6 @@ class Processes:
                 count, timeout=IDLE, initializer=attend, initargs=(os.getpid(),)
             )
         )
-
-    def start(self, modules: Iterable[str]) -> None:
-        """Start the processes ahead of their chunks; they import some modules meanwhile."""
-        for name in modules:
-            for _ in range(self.count):
-                self.executor.submit(import_module, name)
 
     def room(self) -> int:
         """One chunk more than are computed."""

@@ -11,9 +11,9 @@ import logging
 import threading
 import time
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -131,7 +131,7 @@ class Runner:
         """In this process as long as little is left, then by others."""
         with self.bar() as bar:
             if not self.options.cluster:
-                with at_work(Here()) as workers, self.processes_ahead():
+                with at_work(Here()) as workers:
                     self.work(workers, self.deliveries(workers), bar, self.little_left)
             if not self.finished():
                 with at_work(self.others()) as workers:
@@ -143,7 +143,7 @@ class Runner:
     def others(self) -> Workers:
         """Those who compute much."""
         if self.options.cluster:
-            from .cluster import Cluster  # brings asyncio, which nobody else needs
+            from .cluster import Cluster  # brings asyncio, which worker processes do without
 
             return Cluster(self.options.cluster)
         return Processes(self.options.processes)
@@ -159,30 +159,6 @@ class Runner:
         left = sum(state.job.count() for state in self.states.values()) - self.done()
         seconds = (time.perf_counter() - self.clock) / self.fresh * left
         return seconds < WORTH or self.share() < 2
-
-    @contextmanager
-    def processes_ahead(self) -> Iterator[None]:
-        """Start processes beside the first chunk, once it has taken so long that they will be worth
-        it.
-        """
-        first = max(job.chunk for job in self.jobs)
-        left = sum(state.job.count() for state in self.states.values()) - self.done() - first
-        if self.options.processes == 1 or left <= 0 or self.share() <= 2:
-            yield
-            return
-        passed = time.perf_counter() - self.clock
-        timer = threading.Timer(max(0.0, WORTH * first / left - passed), self.start_processes)
-        timer.daemon = True
-        timer.start()
-        try:
-            yield
-        finally:
-            timer.cancel()
-
-    def start_processes(self) -> None:
-        """Start processes, which then import what they need."""
-        with suppress(Exception):  # it comes again where they are needed
-            Processes(self.options.processes).start({type(job).__module__ for job in self.jobs})
 
     def share(self) -> int:
         """How many workers could be busy now, about."""

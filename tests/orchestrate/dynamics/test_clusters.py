@@ -56,7 +56,7 @@ def test_features_of_periodic_responses_are_over_whole_periods():
     samples = np.zeros((48, 4))
     samples[:, 1] = [3.0, 6.0, 9.0, 12.0, 15.0] * 9 + [3.0, 6.0, 9.0]
     given = {"x_rel_max": 16.0, "permanent_contact": False, "frequency": 1.0, "tolerance": 1e-2}
-    given["impacts_per_period"] = 19.0 / 48.0
+    given |= {"impacts_per_period": 19.0 / 48.0, "impact_count": 19}
     periodic = Response(samples=samples, **given)
     assert features(periodic, 3.0) == pytest.approx([5, 0.4, 16.0 / 3.0, 3.0, np.sqrt(2.0)])
     irregular = Response(samples=np.arange(192.0).reshape(48, 4), **given)

@@ -6,7 +6,6 @@ import asyncio
 import functools
 import logging
 import os
-import threading
 from concurrent.futures import Future
 from pathlib import Path
 
@@ -17,7 +16,7 @@ import xarray as xr
 from orchestrate.errors import InputError, StaleError, StoreError, WorkerError
 from orchestrate.running import runner
 from orchestrate.running.cluster import Cluster, is_no_lost_connection
-from orchestrate.running.executors import Processes, at_work, compute
+from orchestrate.running.executors import at_work, compute
 from orchestrate.running.journal import Journal, Lock, journal_path
 from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
@@ -65,44 +64,6 @@ def test_processes_give_what_this_process_gives(find, monkeypatch, job):
     alone = answer(job, {"jobs": 1}, find)
     monkeypatch.setattr(runner, "WORTH", 0.0)
     assert answer(job, {"jobs": 2}, find).identical(alone)
-
-
-@pytest.mark.parametrize(
-    ("job", "pause", "expected"),
-    [
-        (Squares("many", size=60), 10.0, True),  # after 0.2 s for 3 of 60 3.8 s will be left
-        (Squares("few", size=12), 0.1, False),  # 0.3 s
-        (Sums("in two lanes", size=60), 0.2, False),  # beside one there is work for one other
-    ],
-)
-def test_processes_start_beside_a_first_chunk_that_shows_that_much_is_left(
-    find, monkeypatch, job, pause, expected
-):
-    class EnoughError(Exception):
-        pass
-
-    started = threading.Event()
-
-    def work(self, fmus, items, carry):
-        raise EnoughError(started.wait(pause))
-
-    monkeypatch.setattr(type(job), "work", work)
-    monkeypatch.setattr(Processes, "start", lambda self, modules: started.set())
-    with pytest.raises(EnoughError) as ended:
-        answer(job, {"jobs": 2}, find)
-    assert ended.value.args == (expected,)
-    with pytest.raises(EnoughError) as ended:
-        answer(job, {"jobs": 1}, find)
-    assert started.is_set() == expected
-
-
-def test_processes_that_cannot_start_ahead_are_told_of_where_they_are_needed(find, monkeypatch):
-    def start(self, modules):
-        raise OSError("no room for another process")
-
-    monkeypatch.setattr(Processes, "start", start)
-    monkeypatch.setattr(runner, "WORTH", 0.0)
-    assert answer(Squares("squares", size=30), {"jobs": 2}, find).square[-1] == 29.0**2
 
 
 def test_needed_results_come_first(find, tmp_path):
