@@ -25,7 +25,7 @@ from .orbit_point import OrbitPoint
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import run_in_fmu, solve_orbit
 from .orbit_tracer import OrbitTracer
-from .orbits import FirstGuess, excitation_arguments, finite_number, from_result, orbit
+from .orbits import NODE, FirstGuess, excitation_arguments, finite_number, from_result, orbit
 from .tracer import Bifurcation, BranchSegment, ContinuationSettings
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 REPORTED = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual")
-NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_closing")
+NODES = ("node_kind", *NODE)
 KEPT = (*REPORTED, *NODES)  # variables of orbits that those at bifurcations have, too
 BIFURCATION = "bifurcation"
 OrbitSegment = BranchSegment[OrbitPoint]

@@ -16,7 +16,8 @@ from .closed_form import ClosedForm, Floats
 from .impact_sequence import POSITION, ImpactSequence, PeriodicOrbit
 
 ACCELERATION = "box_acceleration"
-SMALLEST = 1e-3  # scale of displacements and velocities over a eta^2
+SMALLEST = 1e-3  # scale of displacements and velocities over a eta^2: of a motion all but at rest
+SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
 RELATIVE_STEP = 1e-6  # of a parameter, for differences
 RESIDUAL = 1e-10  # of the motion's size: what a root may leave of the equations
 
@@ -43,6 +44,18 @@ class Setting:
     over: tuple[str, ...]
     limits: tuple[tuple[float, float], ...]
     box_acceleration: float = 0.0
+
+    @classmethod
+    def fixed(
+        cls,
+        structure: Structure,
+        excitation: tuple[tuple[str, float], ...],
+        box_acceleration: float = 0.0,
+    ) -> Setting:
+        """Return a setting in which nothing varies but, formally, the excitation's first number."""
+        name, value = excitation[0]
+        limits = ((value * SPREAD[0], value * SPREAD[1]),)
+        return cls(structure, excitation, (name,), limits, box_acceleration)
 
     def point(self, values: Floats) -> Point:
         """Return the structure under its excitation at values of the parameters."""

@@ -14,7 +14,13 @@ from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
 from .impact_sequence import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .orbit_search import FmuCheck
-from .turning_points import Amplitudes, from_phase_zero, nearest_miss, phase_zero, turning_points
+from .turning_points import (
+    Amplitudes,
+    from_phase_zero,
+    nearest_miss,
+    stroboscopic_states,
+    turning_points,
+)
 
 KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
 PARTS = np.array(["real", "imaginary"])
@@ -67,7 +73,7 @@ class OrbitRecord:
             values=unknowns[family.size :],
             kinds=np.roll(np.array(orbit.sequence.kinds, dtype=int), -first),
             nodes=nodes,
-            zero=phase_zero(orbit),
+            zero=stroboscopic_states(orbit),
             multipliers=np.stack([multipliers.real, multipliers.imag], axis=1),
             product=orbit.multiplier_product(),
             amplitudes=Amplitudes.from_orbit(orbit, turns),

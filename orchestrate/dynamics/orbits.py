@@ -32,10 +32,9 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
 
-MAX_PERIODS = 1000
+MAX_PERIODS = 1000  # of an orbit that can be asked for
 SHIFTS = 12  # of all impact times in common, that are tried
 NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
-SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
 
 
 @dataclass(frozen=True)
@@ -112,10 +111,8 @@ class OrbitJob(Question):
 
     @property
     def setting(self) -> Setting:
-        """The question, with its first excitation number as the one that could vary."""
-        name, value = self.excitation[0]
-        limits = ((value * SPREAD[0], value * SPREAD[1]),)
-        return Setting(self.structure, self.excitation, (name,), limits, self.box_acceleration)
+        """The structure under its excitation."""
+        return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
 
     def count(self) -> int:
         """Return one: an orbit."""
