@@ -30,7 +30,7 @@ from .attractors import (
 )
 from .clusters import AttractorSettings
 from .decision import MotionDecider
-from .global_continuation import Instances, Starts, continue_attractors
+from .global_continuation import Instances, SettledStarts, continue_attractors
 from .settled_motion import ABSENT
 
 if TYPE_CHECKING:
@@ -195,7 +195,7 @@ class BasinJob(Question):
         """Match the attractors, and return arrays with one entry."""
         there = table["decided"] != ABSENT
         names = "features", "end", "decided"
-        starts = Starts(*(table[name][there] for name in names))
+        starts = SettledStarts(*(table[name][there] for name in names))
         columns = attractor_columns(
             continue_attractors(instances, [point], [starts], self.settings, self.known)
         )

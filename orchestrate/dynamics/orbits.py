@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -69,7 +70,20 @@ class FirstGuess:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OrbitJob(Question):
+class OneItemQuestion(Question, ABC):
+    """A question whose answer is computed in one go."""
+
+    def count(self) -> int:
+        """Return one."""
+        return 1
+
+    def items(self, inputs: Inputs) -> Sequence[int]:
+        """Return the number of the only item."""
+        return [0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrbitJob(OneItemQuestion):
     """An orbit.
 
     Attributes
@@ -113,14 +127,6 @@ class OrbitJob(Question):
     def setting(self) -> Setting:
         """The structure under its excitation."""
         return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
-
-    def count(self) -> int:
-        """Return one: an orbit."""
-        return 1
-
-    def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the number of the orbit."""
-        return [0]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
         """Find it."""
