@@ -121,7 +121,7 @@ def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
 
 
 def trace(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment[Root]:
-    """Trace the curve in one direction."""
+    """Trace the bifurcation from a root in the direction of its tangent."""
     settings = ContinuationSettings(job.longest, job.most)
     return BifurcationTracer(curve, start, settings).trace(start)
 

@@ -74,7 +74,7 @@ class Setting:
         return f"orbit({', '.join([repr(point.structure), *parts, f'guess={guess}'])})"
 
     def acceleration(self, values: Floats) -> float:
-        """Return the box's constant acceleration there."""
+        """Return the box's constant acceleration at values of the parameters, m/s2."""
         given = dict(zip(self.over, map(float, values), strict=True))
         return given.get(ACCELERATION, self.box_acceleration)
 
@@ -102,7 +102,7 @@ class Setting:
 
 
 def require_delaminated(structure: Structure) -> Structure:
-    """Return a structure, if its masses knock.
+    """Return a structure, if its masses can part and knock; raise where they are glued.
 
     Raises
     ------
@@ -172,7 +172,7 @@ class Family:
         return self.orbit(unknowns).residual()
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return its derivative: exact by the nodes, by differences by the parameters."""
+        """Return the residual's derivative: exact by the nodes, by differences by the parameters."""
         columns = [
             central_difference(self.residual, unknowns, self.size + i, *limits)[:, None]
             for i, limits in enumerate(self.setting.limits)
