@@ -172,7 +172,7 @@ class Family:
         return self.orbit(unknowns).residual()
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return the residual's derivative: exact by the nodes, by differences by the parameters."""
+        """Return the residual's derivative: exact by nodes, by differences by parameters."""
         columns = [
             central_difference(self.residual, unknowns, self.size + i, *limits)[:, None]
             for i, limits in enumerate(self.setting.limits)
