@@ -28,7 +28,7 @@ from ..running.runner import answer
 from ..structures import Structure
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
-from .global_continuation import Instances, MatchedAttractors, Starts, continue_attractors
+from .global_continuation import Instances, MatchedAttractors, SettledStarts, continue_attractors
 from .settled_motion import ABSENT, DECIDED, SettledMotion
 
 if TYPE_CHECKING:
@@ -192,7 +192,7 @@ class AttractorsJob(SeriesQuestion):
         matched = continue_attractors(
             instances,
             [series.points[i] for i in order],
-            [Starts(features[i], ends[i], decided[i]) for i in order],
+            [SettledStarts(features[i], ends[i], decided[i]) for i in order],
             self.settings,
         )
         back = np.argsort(order)

@@ -30,7 +30,7 @@ from .attractors import (
 )
 from .clusters import AttractorSettings
 from .decision import MotionDecider
-from .global_continuation import Instances, Starts, continue_attractors
+from .global_continuation import Instances, SettledStarts, continue_attractors
 from .settled_motion import ABSENT
 
 if TYPE_CHECKING:
@@ -195,7 +195,7 @@ class BasinJob(Question):
         """Match the attractors, and return arrays with one entry."""
         there = table["decided"] != ABSENT
         names = "features", "end", "decided"
-        starts = Starts(*(table[name][there] for name in names))
+        starts = SettledStarts(*(table[name][there] for name in names))
         columns = attractor_columns(
             continue_attractors(instances, [point], [starts], self.settings, self.known)
         )
@@ -237,7 +237,7 @@ def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
     return tuple(instance.get(*STATE))
 
 
-def side(name: str, given: Any) -> Side:
+def check_side(name: str, given: Any) -> Side:
     """Return a side of the plane from what the user gave.
 
     Raises
@@ -348,8 +348,8 @@ def basin(
         if x is None and y is None and at is None:
             at = known.middle()
     sides = (
-        known.side("x_rel") if x is None and known else side("x", x),
-        known.side("v_rel") if y is None and known else side("y", y),
+        known.side("x_rel") if x is None and known else check_side("x", x),
+        known.side("v_rel") if y is None and known else check_side("y", y),
     )
     if sides[0].name == sides[1].name:
         raise InputError(f"x and y: {sides[0].name} twice; expected two coordinates")
@@ -390,13 +390,15 @@ class Known(NamedTuple):
         """Return a side for the gap or for its velocity, twice as wide as the attractors."""
         gap = self.gap or self.point.length
         if name == "x_rel":
-            return Side(name, 0.0, two_digits(BEYOND * gap), COUNT)
+            return Side(name, 0.0, round_to_two_digits(BEYOND * gap), COUNT)
         rates = np.abs(self.samples[:, 3] - self.samples[:, 2])
-        high = two_digits(BEYOND * max(float(rates.max()), self.point.excitation.frequency * gap))
+        high = round_to_two_digits(
+            BEYOND * max(float(rates.max()), self.point.excitation.frequency * gap)
+        )
         return Side(name, -high, high, COUNT)
 
     def middle(self) -> tuple[float, ...]:
-        """Return the mean of all states."""
+        """Return the mean of the attractors' states at phase 0."""
         return tuple(self.samples.mean(axis=0).tolist())
 
 
@@ -420,7 +422,7 @@ def find_known_attractors(
     return Known(point, states, np.concatenate(samples), gap)
 
 
-def two_digits(value: float) -> float:
+def round_to_two_digits(value: float) -> float:
     """Round a number above zero to two digits, for the end of an axis."""
     return float(f"{value:.1e}")
 

@@ -105,7 +105,7 @@ class BifurcationCurve:
         return self.family.orbit(unknowns[: self.family.size + 2])
 
     def update_border(self, unknowns: Floats) -> None:
-        """Border the matrix with the vectors that it all but maps to zero here."""
+        """Set the border to the vectors that the matrix all but maps to zero here."""
         if self.kind in SMOOTH_KINDS:
             left, _, right = np.linalg.svd(self.matrix(unknowns))
             self.columns, self.rows = in_phase(left[:, -1]), in_phase(right[-1].conj())
@@ -136,7 +136,7 @@ class BifurcationCurve:
         return np.append(orbit, self.condition(unknowns))
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return its derivative; that of the bifurcation's own equations is by differences."""
+        """Return the residual's derivative; of the bifurcation's own equations by differences."""
         orbit = self.family.jacobian(unknowns[: self.family.size + 2])
         blank = np.zeros((len(orbit), len(self.extra)))
         spans = [(-np.inf, np.inf)] * self.family.size

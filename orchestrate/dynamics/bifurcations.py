@@ -15,7 +15,7 @@ class BifurcationKind(IntEnum):
     TOUCHING = 4
     CONTACT_LOST = 5
     CONTACT_BEGUN = 6
-    RELEASE = 7
+    EARLIER_RELEASE = 7
 
     @property
     def label(self) -> str:
@@ -23,7 +23,7 @@ class BifurcationKind(IntEnum):
         return KINDS[self]
 
 
-FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST, CONTACT_BEGUN, RELEASE = BifurcationKind
+FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST, CONTACT_BEGUN, EARLIER_RELEASE = BifurcationKind
 KINDS: dict[int, str] = {
     FOLD: "fold",
     FLIP: "period doubling",
@@ -32,5 +32,5 @@ KINDS: dict[int, str] = {
     TOUCHING: "grazing of a flight",  # the gap falls to zero between two impacts
     CONTACT_LOST: "loss of permanent contact",
     CONTACT_BEGUN: "begin of permanent contact",
-    RELEASE: "earlier release",  # the contact force (18) falls to zero in permanent contact
+    EARLIER_RELEASE: "earlier release",  # the contact force (18) falls to zero in permanent contact
 }

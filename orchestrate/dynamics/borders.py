@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, EventInstance, finder
 from ..errors import InputError
 from ..response.labels import variable
-from ..response.questions import Question, checked_structure, numbers, whole
+from ..response.questions import checked_structure, numbers, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -25,7 +25,7 @@ from .families import ACCELERATION, Family, Setting, check_parameters, require_d
 from .orbit_point import OrbitPoint
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import run_in_fmu, solve_orbit
-from .orbits import FirstGuess, excitation_arguments, finite_number
+from .orbits import FirstGuess, OneItemQuestion, excitation_arguments, finite_number
 from .tracer import BranchSegment, ContinuationSettings
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BorderJob(Question):
+class BorderJob(OneItemQuestion):
     """A bifurcation over two parameters.
 
     Attributes
@@ -69,14 +69,6 @@ class BorderJob(Question):
         given = [f"bifurcation={KINDS[self.kind]!r}", f"over={setting.over!r}"]
         given += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
         return f"border({', '.join([repr(self.structure), start, *given])})"
-
-    def count(self) -> int:
-        """Return one: a curve."""
-        return 1
-
-    def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the number of the curve."""
-        return [0]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
         """Follow it."""
@@ -129,7 +121,7 @@ def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
 
 
 def trace(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment[Root]:
-    """Trace the curve in one direction."""
+    """Trace the bifurcation from a root in the direction of its tangent."""
     settings = ContinuationSettings(job.longest, job.most)
     return BifurcationTracer(curve, start, settings).trace(start)
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, EventInstance, finder
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import Question, checked_structure, numbers, whole
+from ..response.questions import checked_structure, numbers, whole
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -25,7 +25,15 @@ from .orbit_point import OrbitPoint
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import run_in_fmu, solve_orbit
 from .orbit_tracer import OrbitTracer
-from .orbits import FirstGuess, excitation_arguments, finite_number, from_result, orbit
+from .orbits import (
+    NODE,
+    FirstGuess,
+    OneItemQuestion,
+    excitation_arguments,
+    finite_number,
+    from_result,
+    orbit,
+)
 from .tracer import Bifurcation, BranchSegment, ContinuationSettings
 
 if TYPE_CHECKING:
@@ -35,14 +43,14 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 REPORTED = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual")
-NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_closing")
+NODES = ("node_kind", *NODE)
 KEPT = (*REPORTED, *NODES)  # variables of orbits that those at bifurcations have, too
 BIFURCATION = "bifurcation"
 OrbitSegment = BranchSegment[OrbitPoint]
 
 
 @dataclass(frozen=True, kw_only=True)
-class BranchJob(Question):
+class BranchJob(OneItemQuestion):
     """A branch.
 
     Attributes
@@ -88,14 +96,6 @@ class BranchJob(Question):
             *steps,
         ]
         return f"branch({', '.join(parts)})"
-
-    def count(self) -> int:
-        """Return one: a branch."""
-        return 1
-
-    def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the number of the branch."""
-        return [0]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
         """Follow it."""

@@ -49,7 +49,9 @@ class Curve(Protocol):
         """Return the residual of the equations, shape (n,)."""
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return its derivative, shape (n, n + 1): exact at a root, perhaps an estimate elsewhere.
+        """Return the residual's derivative, shape (n, n + 1): exact at a root.
+
+        Elsewhere it may be an estimate.
 
         Raises
         ------

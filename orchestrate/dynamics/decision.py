@@ -35,7 +35,6 @@ from .settled_motion import (
 )
 from .turning_points import from_phase_zero
 
-SPREAD = (0.999, 1.001)  # of the frequency, which does not vary: its scale alone matters
 RESIDUAL = 1e-9  # of an orbit's equations in units of a eta^2, at most
 MARGIN = 1e-9  # by which the multipliers of a stable orbit are smaller than 1 at least
 NEAR = 0.1  # distance over the motion's size from which a response may be coming to an orbit
@@ -75,8 +74,7 @@ class MotionDecider:
         self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
         excitation = point.excitation
         given = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
-        limits = ((excitation.frequency * SPREAD[0], excitation.frequency * SPREAD[1]),)
-        self.system = Setting(point.structure, given, ("frequency",), limits)
+        self.system = Setting.fixed(point.structure, given)
         self.values = np.array([excitation.frequency])
         self.known: list[SettledMotion] = []
 

@@ -16,7 +16,8 @@ from .closed_form import ClosedForm, Floats
 from .impact_sequence import POSITION, ImpactSequence, PeriodicOrbit
 
 ACCELERATION = "box_acceleration"
-SMALLEST = 1e-3  # scale of displacements and velocities over a eta^2
+SMALLEST = 1e-3  # scale of displacements and velocities over a eta^2: of a motion all but at rest
+SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
 RELATIVE_STEP = 1e-6  # of a parameter, for differences
 RESIDUAL = 1e-10  # of the motion's size: what a root may leave of the equations
 
@@ -44,6 +45,18 @@ class Setting:
     limits: tuple[tuple[float, float], ...]
     box_acceleration: float = 0.0
 
+    @classmethod
+    def fixed(
+        cls,
+        structure: Structure,
+        excitation: tuple[tuple[str, float], ...],
+        box_acceleration: float = 0.0,
+    ) -> Setting:
+        """Return a setting in which nothing varies but, formally, the excitation's first number."""
+        name, value = excitation[0]
+        limits = ((value * SPREAD[0], value * SPREAD[1]),)
+        return cls(structure, excitation, (name,), limits, box_acceleration)
+
     def point(self, values: Floats) -> Point:
         """Return the structure under its excitation at values of the parameters."""
         given = {**dict(self.excitation), **dict(zip(self.over, map(float, values), strict=True))}
@@ -61,7 +74,7 @@ class Setting:
         return f"orbit({', '.join([repr(point.structure), *parts, f'guess={guess}'])})"
 
     def acceleration(self, values: Floats) -> float:
-        """Return the box's constant acceleration there."""
+        """Return the box's constant acceleration at values of the parameters, m/s2."""
         given = dict(zip(self.over, map(float, values), strict=True))
         return given.get(ACCELERATION, self.box_acceleration)
 
@@ -89,7 +102,7 @@ class Setting:
 
 
 def require_delaminated(structure: Structure) -> Structure:
-    """Return a structure, if its masses knock.
+    """Return a structure, if its masses can part and knock; raise where they are glued.
 
     Raises
     ------
@@ -159,7 +172,7 @@ class Family:
         return self.orbit(unknowns).residual()
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return its derivative: exact by the nodes, by differences by the parameters."""
+        """Return the residual's derivative: exact by nodes, by differences by parameters."""
         columns = [
             central_difference(self.residual, unknowns, self.size + i, *limits)[:, None]
             for i, limits in enumerate(self.setting.limits)

@@ -52,7 +52,7 @@ class Instances:
 
 
 @dataclass
-class Starts:
+class SettledStarts:
     """What random starts at one value have settled to, one row a start.
 
     Attributes
@@ -71,8 +71,8 @@ class Starts:
 
 
 @dataclass
-class Value:
-    """One value of the parameter: its attractors, as far as they are known.
+class AttractorsAtValue:
+    """The attractors at one value of the parameter, as far as they are known.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Value:
     motions: list[SettledMotion] = field(default_factory=list)
     labels: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
-    def gather(self, starts: Starts, settings: AttractorSettings) -> None:
+    def gather(self, starts: SettledStarts, settings: AttractorSettings) -> None:
         """Collect the attractors of random starts."""
         self.labels = np.full(len(starts.ends), -1, dtype=np.intp)
         seen: dict[bytes, int] = {}
@@ -192,7 +192,7 @@ class MatchedAttractors:
 def continue_attractors(
     instances: tuple[Instance, EventInstance | None],
     points: Sequence[Point],
-    starts: Sequence[Starts],
+    starts: Sequence[SettledStarts],
     settings: AttractorSettings,
     seeds: Sequence[Sequence[float]] = (),
 ) -> MatchedAttractors:
@@ -203,12 +203,12 @@ def continue_attractors(
     instances : (Instance, EventInstance or None)
     points : sequence of Point
         In the order of the parameter: neighbours are next to each other.
-    starts : sequence of Starts
+    starts : sequence of SettledStarts
     settings : AttractorSettings
     seeds : sequence of 4 floats
         States on attractors that are known at the first value, at phase 0.
     """
-    values = [Value(MotionDecider(*instances, point, settings)) for point in points]
+    values = [AttractorsAtValue(MotionDecider(*instances, point, settings)) for point in points]
     for value, some in zip(values, starts, strict=True):
         value.gather(some, settings)
     for seed in seeds:
@@ -225,7 +225,7 @@ def continue_attractors(
 Links = dict[tuple[int, int, int], tuple[int, int]]  # value, attractor, neighbour: where, how
 
 
-def carry_to_neighbours(values: Sequence[Value]) -> Links:
+def carry_to_neighbours(values: Sequence[AttractorsAtValue]) -> Links:
     """Carry every attractor to both neighbours, those that are added on the way too."""
     links: Links = {}
     waiting = deque((i, k) for i, value in enumerate(values) for k in range(len(value.motions)))
@@ -240,7 +240,7 @@ def carry_to_neighbours(values: Sequence[Value]) -> Links:
     return links
 
 
-def number_attractors(values: Sequence[Value], links: Links) -> list[list[int]]:
+def number_attractors(values: Sequence[AttractorsAtValue], links: Links) -> list[list[int]]:
     """Return numbers of attractors along the parameter, the most frequent one first."""
     chains: list[list[int]] = []
     count = 0
@@ -262,7 +262,9 @@ def number_attractors(values: Sequence[Value], links: Links) -> list[list[int]]:
     return [[int(rank[number]) for number in own] for own in chains]
 
 
-def match_neighbours(before: Value, value: Value, i: int, links: Links) -> list[tuple[int, int]]:
+def match_neighbours(
+    before: AttractorsAtValue, value: AttractorsAtValue, i: int, links: Links
+) -> list[tuple[int, int]]:
     """Return pairs of attractors of two neighbouring values that are one.
 
     Each leads to the other; else the orbit of one is followed to the other; else one leads to the

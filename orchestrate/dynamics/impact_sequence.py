@@ -1,11 +1,12 @@
 """Periodic orbits with a given sequence of impacts, in unknowns in which everything is smooth.
 
-An orbit is a ring of nodes: impacts, impacts that end in permanent contact, and releases. Each node
-has four unknowns: the excitation's phase, and displacement, velocity and closing speed of both
-masses there, the velocity being that of their centre of mass. From node to node the motion is the
-closed form (10), so the orbit is a root of 4k equations in 4k unknowns which are analytic, also
-where a closing speed goes through zero: a map whose unknowns are states has a square root there
-(compare Ghosh and Simpson, arXiv 2510.16218). Negative closing speeds are roots, but no motions.
+An orbit is a closed sequence of nodes: impacts, impacts that end in permanent contact, and
+releases. Each node has four unknowns: the excitation's phase, and displacement, velocity and
+closing speed of both masses there, the velocity being that of their centre of mass. From node to
+node the motion is the closed form (10), so the orbit is a root of 4k equations in 4k unknowns which
+are analytic, also where a closing speed goes through zero: a map whose unknowns are states has a
+square root there (compare Ghosh and Simpson, arXiv 2510.16218). Negative closing speeds are roots,
+but no motions.
 """
 
 from __future__ import annotations
@@ -69,7 +70,7 @@ class ImpactSequence:
 
 @dataclass(frozen=True)
 class PeriodicOrbit:
-    """Nodes of a sequence at given unknowns, and the equations between them.
+    """A periodic orbit by its nodes, and the equations that these must solve.
 
     Attributes
     ----------
@@ -217,21 +218,21 @@ class PeriodicOrbit:
         after[released, 3] = [0.0, 0.0, 0.0, 1.0]
         return before, after
 
-    def jacobian(self, turn: complex = 1.0) -> NDArray[np.inexact]:
+    def jacobian(self, multiplier: complex = 1.0) -> NDArray[np.inexact]:
         """Return the derivative of the residual by the unknowns, shape (4 k, 4 k).
 
         Parameters
         ----------
-        turn : complex
-            Of absolute value 1: what a deviation is multiplied by in one run through the orbit.
-            Where the matrix is singular, ``turn`` is a Floquet multiplier.
+        multiplier : complex
+            What a deviation is multiplied by in one run through the orbit. Where the matrix is
+            singular, it is a Floquet multiplier.
         """
         before, after = self.blocks()
         k = self.count
-        matrix = np.zeros((k, 4, k, 4), dtype=complex if isinstance(turn, complex) else float)
+        matrix = np.zeros((k, 4, k, 4), dtype=complex if isinstance(multiplier, complex) else float)
         for i in range(k):
             matrix[i, :, i] += before[i]
-            matrix[i, :, (i + 1) % k] += after[i] * (turn if i == k - 1 else 1.0)
+            matrix[i, :, (i + 1) % k] += after[i] * (multiplier if i == k - 1 else 1.0)
         return matrix.reshape(4 * k, 4 * k)
 
     def monodromy(self) -> Floats:

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from .bifurcations import (
     CONTACT_BEGUN,
     CONTACT_LOST,
+    EARLIER_RELEASE,
     FLIP,
     FOLD,
     GRAZING,
-    RELEASE,
     TORUS,
     TOUCHING,
     BifurcationKind,
@@ -123,7 +123,7 @@ class OrbitPoint:
             return float(closing.min(initial=np.inf))
         if kind == TOUCHING:
             return self.clearance
-        if kind == RELEASE:
+        if kind == EARLIER_RELEASE:
             return weakest_force(self.orbit)
         return self.contact_margin(kind)
 

@@ -14,7 +14,13 @@ from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
 from .impact_sequence import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .orbit_search import FmuCheck
-from .turning_points import Amplitudes, from_phase_zero, nearest_miss, phase_zero, turning_points
+from .turning_points import (
+    Amplitudes,
+    from_phase_zero,
+    nearest_miss,
+    stroboscopic_states,
+    turning_points,
+)
 
 KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
 PARTS = np.array(["real", "imaginary"])
@@ -67,7 +73,7 @@ class OrbitRecord:
             values=unknowns[family.size :],
             kinds=np.roll(np.array(orbit.sequence.kinds, dtype=int), -first),
             nodes=nodes,
-            zero=phase_zero(orbit),
+            zero=stroboscopic_states(orbit),
             multipliers=np.stack([multipliers.real, multipliers.imag], axis=1),
             product=orbit.multiplier_product(),
             amplitudes=Amplitudes.from_orbit(orbit, turns),
@@ -144,14 +150,14 @@ def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
         **states(table, scale, row),
         **impacts(table, scale, frequency, row),
         **stability(table, frequency / omega, row),
-        **sizes(table, row),
+        **amplitude_variables(table, row),
         **checks(table, row),
         **node_variables(table, row),
     }
 
 
 def states(table: Table, scale: Floats, row: str) -> dict[str, Variable]:
-    """Return where the orbits are at each phase 0."""
+    """Return the states of the orbits at each phase 0."""
     zero, along = table["zero"], (row, "sample", "coordinate")
     text = "states at phase 0: x1, x2 in m, v1, v2 in m/s"
     gap = zero[:, :, 1] - zero[:, :, 0]
@@ -163,7 +169,7 @@ def states(table: Table, scale: Floats, row: str) -> dict[str, Variable]:
 
 
 def impacts(table: Table, scale: Floats, frequency: Floats, row: str) -> dict[str, Variable]:
-    """Return their impacts; of nodes that are none, not a number."""
+    """Return the impacts of the orbits; NaN of nodes that are none."""
     nodes, along, periods = table["nodes"], (row, "node"), table["zero"].shape[1]
     there = (table["kinds"] >= 0) & (table["kinds"] != RELEASE)
     times = np.where(there, nodes[:, :, PHASE] / frequency[:, None], np.nan)
@@ -179,7 +185,7 @@ def impacts(table: Table, scale: Floats, frequency: Floats, row: str) -> dict[st
 
 
 def stability(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
-    """Return their multipliers, and what follows."""
+    """Return the multipliers, stability and Lyapunov exponents of the orbits."""
     multipliers, time = table["multipliers"], table["zero"].shape[1] * 2.0 * np.pi / eta
     size = np.hypot(*np.moveaxis(multipliers, -1, 0))
     with np.errstate(divide="ignore"):
@@ -200,8 +206,8 @@ def stability(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
     }
 
 
-def sizes(table: Table, row: str) -> dict[str, Variable]:
-    """Return how large the orbits are."""
+def amplitude_variables(table: Table, row: str) -> dict[str, Variable]:
+    """Return the largest displacements and gaps, and the smallest gap of a near miss."""
     texts = {
         "xi1_max": "largest distance of mass 1 from the box's middle over a eta^2",
         "xi2_max": "largest distance of mass 2 from the box's middle over a eta^2",
@@ -217,7 +223,7 @@ def sizes(table: Table, row: str) -> dict[str, Variable]:
 
 
 def checks(table: Table, row: str) -> dict[str, Variable]:
-    """Return how well the orbits are known."""
+    """Return how exactly the orbits are known, and what the FMU makes of them."""
     return {
         "residual": variable(
             row, table["residual"], "1", "what Newton's method leaves of the equations"

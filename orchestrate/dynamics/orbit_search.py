@@ -12,12 +12,27 @@ from .closed_form import ClosedForm, Floats
 from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, Setting
 from .guesses import Guess, from_phases, start
-from .impact_sequence import CLOSING, IMPACT, PHASE, TURN, ImpactSequence, PeriodicOrbit
-from .turning_points import from_phase_zero, nearest_miss, phase_zero, turning_points, weakest_force
+from .impact_sequence import (
+    CLOSING,
+    IMPACT,
+    PHASE,
+    RELEASE,
+    STICK,
+    TURN,
+    ImpactSequence,
+    PeriodicOrbit,
+)
+from .turning_points import (
+    from_phase_zero,
+    nearest_miss,
+    stroboscopic_states,
+    turning_points,
+    weakest_force,
+)
 
 SAME_PHASE = 1e-6  # rad: impacts of the FMU at these are the orbit's own
 SAME_ORBIT = 1e-6  # of the nodes over their size: an orbit is as at its beginning again
-PHASES = 24  # at which a single impact is tried
+PHASES = 24  # at which a single impact is tried: every 15 degrees
 
 
 @dataclass(frozen=True)
@@ -101,7 +116,7 @@ def run_in_fmu(
 ) -> FmuCheck:
     """Run the orbit through in the FMU."""
     point = setting.point(values)
-    state = phase_zero(orbit)[0]
+    state = stroboscopic_states(orbit)[0]
     start(instance, point, orbit.form, state * point.scale)
     end = orbit.sequence.periods * point.excitation.period
     observed = instance.impacts(0.0, end)
@@ -109,12 +124,12 @@ def run_in_fmu(
     away = float(np.abs(after - state).max())
     wanted, first = from_phase_zero(orbit.nodes, orbit.sequence.periods)
     kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
-    impacts = kinds != 2
+    impacts = kinds != RELEASE
     if len(observed.time) != impacts.sum():
         return FmuCheck(False, away)
     phases = point.excitation.frequency * observed.time
     near = np.abs(phases - wanted[impacts, PHASE]).max(initial=0.0) < SAME_PHASE
-    sticking = (observed.sticks == (kinds[impacts] == 1)).all()
+    sticking = (observed.sticks == (kinds[impacts] == STICK)).all()
     return FmuCheck(bool(near and sticking), away)
 
 

@@ -10,11 +10,11 @@ import numpy as np
 from .bifurcations import (
     CONTACT_BEGUN,
     CONTACT_LOST,
+    EARLIER_RELEASE,
     FLIP,
     FOLD,
     GRAZING,
     KINDS,
-    RELEASE,
     TORUS,
     TOUCHING,
     BifurcationKind,
@@ -41,8 +41,8 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     settings : ContinuationSettings
     """
 
-    kinds = (FOLD, FLIP, TORUS, GRAZING, TOUCHING, RELEASE)
-    ending_kinds = (GRAZING, TOUCHING, RELEASE)  # beyond them the impacts are others
+    kinds = (FOLD, FLIP, TORUS, GRAZING, TOUCHING, EARLIER_RELEASE)
+    ending_kinds = (GRAZING, TOUCHING, EARLIER_RELEASE)  # beyond them the impacts are others
     finds_pairs = True
 
     def __init__(self, start: OrbitPoint, settings: ContinuationSettings) -> None:

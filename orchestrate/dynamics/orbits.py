@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -32,10 +33,9 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
 
-MAX_PERIODS = 1000
+MAX_PERIODS = 1000  # of an orbit that can be asked for
 SHIFTS = 12  # of all impact times in common, that are tried
 NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
-SPREAD = (0.999, 1.001)  # of a parameter that does not vary: its scale alone matters
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,20 @@ class FirstGuess:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OrbitJob(Question):
+class OneItemQuestion(Question, ABC):
+    """A question whose answer is computed in one go."""
+
+    def count(self) -> int:
+        """Return one."""
+        return 1
+
+    def items(self, inputs: Inputs) -> Sequence[int]:
+        """Return the number of the only item."""
+        return [0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrbitJob(OneItemQuestion):
     """An orbit.
 
     Attributes
@@ -112,18 +125,8 @@ class OrbitJob(Question):
 
     @property
     def setting(self) -> Setting:
-        """The question, with its first excitation number as the one that could vary."""
-        name, value = self.excitation[0]
-        limits = ((value * SPREAD[0], value * SPREAD[1]),)
-        return Setting(self.structure, self.excitation, (name,), limits, self.box_acceleration)
-
-    def count(self) -> int:
-        """Return one: an orbit."""
-        return 1
-
-    def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the number of the orbit."""
-        return [0]
+        """The structure under its excitation."""
+        return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
         """Find it."""

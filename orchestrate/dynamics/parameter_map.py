@@ -196,7 +196,7 @@ class MapJob(Question):
         return known or largest_exponent(impacts, self.periods * period(eta), item)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the fields over both parameters."""
+        """Return the variables of ``FIELDS`` over both parameters."""
         import xarray as xr
 
         names = tuple(axis.name for axis in self.axes)

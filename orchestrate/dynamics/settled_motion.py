@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..response.multiplicity import LEAST_GAP
 from ..response.questions import Point
 from .impact_sequence import PHASE, TURN, PeriodicOrbit
-from .turning_points import Amplitudes, phase_zero, turning_points
+from .turning_points import Amplitudes, stroboscopic_states, turning_points
 
 Floats = NDArray[np.float64]
 ABSENT, ORBIT, REPEATED, IRREGULAR, UNDECIDED = range(5)
@@ -69,7 +69,7 @@ class SettledMotion:
     def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
         """Return the motion of a stable orbit."""
         periods, scale = orbit.sequence.periods, point.scale
-        states = phase_zero(orbit) * scale
+        states = stroboscopic_states(orbit) * scale
         states[:, 1] = np.maximum(states[:, 0], states[:, 1])  # in contact, within rounding
         return cls(
             point=point,
@@ -103,11 +103,7 @@ class SettledMotion:
     def free_states(self) -> KnownStates:
         """States of an orbit at its free phase in successive periods."""
         assert self.orbit is not None, "no orbit"
-        wanted = self.free_phase + TURN * np.arange(self.multiplicity)
-        begin = self.orbit.begins[0]
-        shifted = begin + np.mod(wanted - begin, TURN * self.multiplicity)
-        segment = np.searchsorted(self.orbit.begins, shifted, side="right") - 1
-        states = self.orbit.states(segment, shifted) * self.point.scale
+        states = stroboscopic_states(self.orbit, self.free_phase) * self.point.scale
         return KnownStates.from_states(states, self.point.excitation.frequency, self.gap)
 
     def is_orbit_of(self, other: SettledMotion) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .closed_form import Floats
-from .impact_sequence import PHASE, PeriodicOrbit
+from .impact_sequence import PHASE, TURN, PeriodicOrbit
 
 XI_1, XI_2, GAP = range(3)  # quantities that turn, as weights of the two masses
 WEIGHTS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]])
@@ -38,7 +38,7 @@ class TurningPoints:
 def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
     """Return segments and phases at which a motion is sampled, in order, inside segments."""
     counts = MIN_SAMPLES + np.ceil(
-        SAMPLES_PER_PERIOD * np.abs(orbit.durations) * orbit.form.fastest / (2.0 * np.pi)
+        SAMPLES_PER_PERIOD * np.abs(orbit.durations) * orbit.form.fastest / TURN
     ).astype(int)
     segment = np.repeat(np.arange(len(counts)), counts)
     place = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -158,19 +158,18 @@ def pressing_force(
     )
 
 
-def phase_zero(orbit: PeriodicOrbit) -> Floats:
-    """Return states at multiples of 2 pi of the phase, in their order, shape (periods, 4)."""
-    turn, periods = 2.0 * np.pi, orbit.sequence.periods
-    wanted = turn * np.arange(periods)
-    begin = orbit.begins[0]
-    shifted = begin + np.mod(wanted - begin, turn * periods)
+def stroboscopic_states(orbit: PeriodicOrbit, phase: float = 0.0) -> Floats:
+    """Return states at a phase of successive periods, shape (periods, 4)."""
+    periods, begin = orbit.sequence.periods, orbit.begins[0]
+    wanted = phase + TURN * np.arange(periods)
+    shifted = begin + np.mod(wanted - begin, TURN * periods)
     segment = np.searchsorted(orbit.begins, shifted, side="right") - 1
     return orbit.states(segment, shifted)
 
 
 def from_phase_zero(nodes: Floats, periods: int) -> tuple[Floats, int]:
     """Return nodes from phase 0 on, with the index of the one that is first now."""
-    turn = 2.0 * np.pi * periods
+    turn = TURN * periods
     phase = np.mod(nodes[:, PHASE], turn)
     first = int(phase.argmin()) if len(nodes) else 0
     ordered = np.roll(nodes, -first, axis=0)

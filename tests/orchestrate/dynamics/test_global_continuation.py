@@ -90,7 +90,7 @@ def test_a_run_that_was_interrupted_goes_on_to_the_same_bytes(monkeypatch, tmp_p
     asked = {"eta": [1.3, 1.32], "starts": 30, "transient": 200, "jobs": 1}
     attractors(PAPER, **asked, store=tmp_path / "whole.nc")
     with monkeypatch.context() as broken:
-        broken.setattr(module, "continued", interrupted)
+        broken.setattr(module, "continue_attractors", interrupted)
         with pytest.raises(KeyboardInterrupt):
             attractors(PAPER, **asked, store=tmp_path / "again.nc")
     calls = []

@@ -10,7 +10,7 @@ from orchestrate.dynamics.continuation import NoConvergenceError
 from orchestrate.dynamics.families import Setting
 from orchestrate.dynamics.guesses import from_state
 from orchestrate.dynamics.orbit_search import least_periods, solve_orbit, why_no_motion
-from orchestrate.dynamics.turning_points import phase_zero
+from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.response.multiplicity import (
     IRREGULAR,
     LEAST_GAP,
@@ -295,7 +295,7 @@ def newton(instance, point, state, periods):
     except NoConvergenceError:
         return None
     orbit = family.orbit(root.unknowns)
-    away = np.abs(phase_zero(orbit)[0] - np.array(state) / point.scale).max()
+    away = np.abs(stroboscopic_states(orbit)[0] - np.array(state) / point.scale).max()
     if why_no_motion(orbit) or away > 1e-3 * np.abs(orbit.nodes).max():
         return None
     return least_periods(orbit), bool(np.abs(orbit.multipliers()).max() < 1.0)

@@ -117,7 +117,7 @@ def test_an_orbit_and_its_multipliers_are_the_whole_systems():
     [
         ({"speed": (1.4, 1.2)}, "speed = \\(1.4, 1.2\\) rad/s: expected"),
         ({"most": 1}, "most = 1: expected a whole number from 2"),
-        ({"most": True}, "most = True: expected a whole number"),
+        ({"period": True}, "period = True: expected a whole number"),
         ({"longest": 2.0}, "longest = 2.0"),
         ({"period": 0}, "period = 0"),
         ({"settle": -1.0}, "settle = -1.0"),
