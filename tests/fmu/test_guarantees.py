@@ -87,6 +87,7 @@ def test_amplitudes_scale_to_the_last_bit(fmu, tmp_path):
         "impact_count",
         "impact_time",
         "contact_count",
+        "evaluations",
     }
     for n, outputs in found.items():
         scale = 2.0 ** int(n)

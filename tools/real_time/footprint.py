@@ -14,7 +14,7 @@ EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
 SIZE = re.compile(r"(\d+) bytes \((\w+)")
 INDIRECT = "__indirect_call"
 # what makes a message of a call that is refused; no step that succeeds goes through it
-MESSAGES = ("complain", "refuse", "refuse_step", "explain")
+MESSAGES = ("complain", "refuse", "refuse_step", "explain", "append")
 CALLS = {  # FMI 3.0's, by what they are for
     "a step": "fmi3DoStep",
     "outputs": "fmi3GetFloat64",

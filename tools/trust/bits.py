@@ -24,7 +24,12 @@ STATE = (
     *("contact_force", "in_contact", "phase", "impact_count", "impact_time", "impact_velocity"),
     *("impact_energy", "contact_count"),
 )
-STEP = ("box_impulse", "box_impulse_moment", "x_rel_max")  # of the last step, not of the state
+STEP = (
+    "box_impulse",
+    "box_impulse_moment",
+    "x_rel_max",
+    "evaluations",
+)  # of the last step, not of the state
 FORMS = ("fmi3", "fmi2", "fmi2-python")
 ARM = ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu")
 ARM_EVERY = 25  # sets: a process under an emulator each

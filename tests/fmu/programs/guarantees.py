@@ -6,7 +6,7 @@ import random
 
 from driver import harmonic, open_fmu
 
-OF_THE_STEP = ("box_impulse", "box_impulse_moment", "x_rel_max")
+OF_THE_STEP = ("box_impulse", "box_impulse_moment", "x_rel_max", "evaluations")
 
 
 def grids(path, eta, end):
