@@ -53,6 +53,8 @@ def initial_dependencies_are_true(path):
     for start in (base, inductive):
         plain = at_start(start)
         for v in settable:
+            if v.type not in ("Real", "Float64"):  # the limit of evaluations decides no number
+                continue
             other = at_start({**start, v.name: 1.25 * start.get(v.name, float(v.start)) + 0.001})
             found.setdefault(v.name, set()).update(key for key in plain if plain[key] != other[key])
     return {name: sorted(keys) for name, keys in found.items()}
