@@ -277,6 +277,12 @@ def described(docstring: str | None) -> list[str] | None:
     return names
 
 
+def is_made(value: ast.AST | None) -> bool:
+    """Whether a dataclass's field is no argument: ``field(init=False)``."""
+    words = value.keywords if isinstance(value, ast.Call) else []
+    return any(word.arg == "init" and ast.unparse(word.value) == "False" for word in words)
+
+
 def taken(node: ast.AST) -> list[str]:
     """Names of the arguments of a function or a constructor, or of a dataclass's fields."""
     if isinstance(node, ast.ClassDef):
@@ -284,6 +290,7 @@ def taken(node: ast.AST) -> list[str]:
         made = next((part for part in own if part.name == "__init__"), None)
         if made is None:
             fields = (part for part in node.body if isinstance(part, ast.AnnAssign))
+            fields = (part for part in fields if not is_made(part.value))
             return [part.target.id for part in fields if isinstance(part.target, ast.Name)]
         node = made
     given = node.args  # type: ignore[attr-defined]

@@ -26,7 +26,7 @@ from .question import carry_out
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..laboratory.signals import ExcitationSignal
+    from .. import Random, Shock, SweptSine
 
 EXAMPLES = """  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
@@ -100,16 +100,14 @@ def run(arguments: argparse.Namespace) -> None:
     carry_out(arguments, structure.as_delaminated(), question, report, draw, "with_bonded")
 
 
-def signal_of(arguments: argparse.Namespace) -> ExcitationSignal:
+def signal_of(arguments: argparse.Namespace) -> Random | Shock | SweptSine:
     """The excitation that the options describe.
 
     Raises
     ------
     InputError
     """
-    from ..laboratory.random_vibration import Random
-    from ..laboratory.shock import Shock
-    from ..laboratory.swept_sine import SweptSine
+    from .. import Random, Shock, SweptSine
 
     kind = kind_of(arguments)
     numbers = {

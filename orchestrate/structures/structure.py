@@ -299,18 +299,18 @@ class Structure:
         mass, f = STRUCTURE["m1"].check(mass), NUMBERS["f1"].check(f)
         zeta = NUMBERS["zeta1"].check(zeta)
         h1, h2 = check_thicknesses(thicknesses)
-        share = h1 / (h1 + h2)
-        stiff = h1**3 / (h1**3 + h2**3)
+        heavy, light = h1 / (h1 + h2), h2 / (h1 + h2)
+        stiff, soft = heavy**3 / (heavy**3 + light**3), light**3 / (heavy**3 + light**3)
         k, d = stiffness(f, mass), damping(zeta, 2.0 * math.pi * f, mass)
         return made_of(
             {"mass": mass, "f": f, "zeta": zeta},
             lambda: cls(
-                m1=share * mass,
-                m2=(1.0 - share) * mass,
+                m1=heavy * mass,
+                m2=light * mass,
                 k1=stiff * k,
-                k2=(1.0 - stiff) * k,
+                k2=soft * k,
                 d1=stiff * d,
-                d2=(1.0 - stiff) * d,
+                d2=soft * d,
                 e=e,
                 gamma=gamma,
                 bonded=bonded,

@@ -419,9 +419,9 @@ CASES = {
         (["--speed", "1"], ["--speed 1", "FIRST:LAST"]),
         (["--speed", "2:1"], ["speed = (2.0, 1.0)", "first < last"]),
         (["--longest", "0"], ["longest = 0.0", "<= longest <="]),
-        (["--most", "1"], ["most = 1", ">= 2"]),
-        (["--steps", "3"], ["steps = 3", ">= 16"]),
-        (["--period", "0"], ["period = 0", ">= 1"]),
+        (["--most", "1"], ["most = 1", "from 2 to"]),
+        (["--steps", "3"], ["steps = 3", "from 16 to"]),
+        (["--period", "0"], ["period = 0", "from 1 to"]),
     ],
 }
 MISTAKES = [(name, *case) for name, cases in CASES.items() for case in cases]
