@@ -23,6 +23,7 @@ What is asked
     for other tools.
 What is answered
     An :class:`xarray.Dataset` with units, long names, all parameters, and where it comes from.
+    :func:`plot` draws it.
 
 All is computed by FMPy through exported FMUs. Every function that computes takes the keywords of
 :class:`orchestrate.running.options.Running`: ``jobs``, ``cluster``, ``store`` and more.
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from .dynamics.orbits import orbit
     from .dynamics.parameter_map import map
     from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
+    from .figures.plot import plot
     from .laboratory.random_vibration import Random
     from .laboratory.sampled import Sampled
     from .laboratory.shake import shake
@@ -99,6 +101,7 @@ __all__ = [
     "map",
     "orbit",
     "passage",
+    "plot",
     "resonance",
     "shake",
     "simulate",
@@ -113,6 +116,7 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
         *("FmuError", "InputError", "StaleError", "StoreError"),
         *("VibroimpactError", "WorkerError"),
     ),
+    "figures.plot": ("plot",),
     "laboratory.random_vibration": ("Random",),
     "laboratory.sampled": ("Sampled",),
     "laboratory.shock": ("Shock",),

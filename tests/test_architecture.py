@@ -36,7 +36,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "weak_drive": BELOW_ANSWERS | {"response", "dynamics"},
     "figures": GROUND,
     "paper": BELOW_ANSWERS | {"response", "dynamics", "weak_drive", "figures"},
-    "__init__": BELOW_ANSWERS | {"response", "dynamics", "laboratory", "weak_drive"},
+    "__init__": BELOW_ANSWERS | {"response", "dynamics", "laboratory", "weak_drive", "figures"},
     "explorer": BELOW_ANSWERS,
     "cli": BELOW_ANSWERS
     | {"__init__", "weak_drive", "figures", "paper", "explorer"}

@@ -77,7 +77,7 @@ def carry_out(
 
 def picture_of(data: xr.Dataset) -> Any:
     """The picture of an answer that needs no more than the answer."""
-    from ..figures.answers import DRAW
+    from ..figures.plot import DRAW
 
     return DRAW[data.attrs["call"].partition("(")[0]](data)
 

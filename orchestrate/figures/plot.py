@@ -1,0 +1,144 @@
+"""The picture of an answer, whatever was asked: chosen by the question that the dataset names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ..errors import InputError
+from . import (
+    attractors,
+    basin,
+    borders,
+    branches,
+    capture,
+    drive_spectra,
+    jump_voltages,
+    lyapunov,
+    maps,
+    motion,
+    orbit_diagram,
+    resonance,
+    shaken,
+    spectra,
+    weak_drive,
+)
+
+DRAW: dict[str, Callable[[xr.Dataset], Figure]] = {  # questions whose answer needs no other
+    "attractors": attractors.draw,
+    "basin": basin.draw,
+    "border": borders.draw,
+    "branch": branches.draw,
+    "drive_branch": weak_drive.draw_stationary,
+    "drive_spectra": drive_spectra.draw,
+    "jump_voltages": jump_voltages.draw,
+    "lyapunov": lyapunov.draw,
+    "map": maps.draw,
+    "resonance": resonance.draw,
+    "shake": shaken.draw,
+    "simulate": motion.draw,
+    "spectra": spectra.draw,
+    "sweep": orbit_diagram.draw,
+}
+SEVERAL: dict[str, Callable[..., Figure]] = {  # of which one picture shows any number
+    "border": borders.draw,
+    "branch": branches.draw,
+    "lyapunov": lyapunov.draw,
+    "map": maps.draw,
+}
+BESIDE: dict[str, Callable[..., Figure]] = {"simulate": motion.draw, "shake": shaken.draw}
+OF_BOTH: dict[str, Callable[..., Figure]] = {"couple": weak_drive.draw, "capture": capture.draw}
+EXPECTED = (
+    f"expected answers of one of {', '.join(sorted({*DRAW, *OF_BOTH}))}; several of one of "
+    f"{', '.join(SEVERAL)}; a sweep with branches over it; simulate or shake with the bonded "
+    "structure's; couple with drive_branch"
+)
+
+
+def plot(*answers: xr.Dataset, title: str = "") -> Figure:
+    """Draw answers.
+
+    Parameters
+    ----------
+    *answers : xarray.Dataset
+        One answer, or several that belong into one picture: branches, borders, maps or exponents; a
+        sweep and branches over it; a motion of the delaminated and of the bonded structure; runs of
+        :func:`orchestrate.couple` or :func:`orchestrate.capture` of both structures, with the
+        branches of :func:`orchestrate.drive_branch`.
+    title : str
+        Above the picture; by default structure and excitation.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        It is shown in a notebook; ``figure.savefig("picture.png")`` writes a file.
+
+    Raises
+    ------
+    InputError
+        Where there is no picture of these.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.nondimensional()
+    >>> figure = orchestrate.plot(orchestrate.simulate(beam, eta=1.2, periods=4))
+    >>> [axes.get_ylabel() for axes in figure.axes][0]
+    'displacement in m'
+    """
+    kinds = [question_of(answer) for answer in answers]
+    several = set(kinds)
+    told = {"title": title} if title else {}
+    if len(answers) == 1 and kinds[0] in DRAW:
+        return DRAW[kinds[0]](answers[0], **told)
+    if len(several) == 1 and kinds[0] in SEVERAL:
+        return SEVERAL[kinds[0]](*answers, **told)
+    if sorted(several) == ["branch", "sweep"] and kinds.count("sweep") == 1:
+        parts = [answer for answer, kind in zip(answers, kinds, strict=True) if kind == "branch"]
+        return branches.draw(*parts, responses=answers[kinds.index("sweep")], **told)
+    if len(several) == 1 and kinds[0] in BESIDE and len(answers) == 2:
+        delaminated, bonded = sorted(answers, key=is_bonded)
+        if is_bonded(bonded) and not is_bonded(delaminated):
+            return BESIDE[kinds[0]](delaminated, bonded=bonded, **told)
+    return plot_drive(answers, kinds, title)
+
+
+def plot_drive(answers: Sequence[xr.Dataset], kinds: Sequence[str], title: str) -> Figure:
+    """Draw answers on the weak drive, of one structure or of both."""
+    of_drive = [kind for kind in kinds if kind in OF_BOTH]
+    runs = {
+        "bonded" if is_bonded(answer) else "delaminated": answer
+        for answer, kind in zip(answers, kinds, strict=True)
+        if kind in OF_BOTH
+    }
+    rest = [answer for answer, kind in zip(answers, kinds, strict=True) if kind not in OF_BOTH]
+    alike = len(set(of_drive)) == 1 and len(runs) == len(of_drive)
+    if alike and not rest:
+        return OF_BOTH[of_drive[0]](runs, title=title)
+    if alike and of_drive[0] == "couple" and len(rest) == 1 and "drive_branch" in kinds:
+        return weak_drive.draw(runs, branches=rest[0], title=title)
+    raise InputError(f"plot: no picture of {' and '.join(kinds) or 'nothing'}; {EXPECTED}")
+
+
+def question_of(answer: object) -> str:
+    """The name of the public function that gave an answer.
+
+    Raises
+    ------
+    InputError
+        Where it is no answer.
+    """
+    call = answer.attrs.get("call") if isinstance(answer, xr.Dataset) else None
+    if not isinstance(call, str):
+        kind = type(answer).__name__
+        raise InputError(f"plot: {kind} is no answer of a question; {EXPECTED}")
+    name = call.partition("(")[0].removesuffix("Job")  # a job by its class: CoupleJob
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
+
+
+def is_bonded(answer: xr.Dataset) -> bool:
+    """Whether an answer is of the undamaged structure."""
+    return bool(answer.attrs.get("bonded", False))

@@ -1,0 +1,120 @@
+"""``orchestrate.plot``: the right picture for each answer, and for answers that belong together."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+
+import orchestrate
+from orchestrate import Drive, InputError, Structure, plot
+from orchestrate.figures import branches, motion, weak_drive
+
+PAPER = Structure.nondimensional()
+QUIET = {"progress": False}
+
+
+@pytest.fixture(scope="module")
+def simulated():
+    return [orchestrate.simulate(s, eta=1.2, periods=5) for s in (PAPER.as_bonded(), PAPER)]
+
+
+@pytest.fixture(scope="module")
+def continued():
+    sweep = orchestrate.sweep(PAPER, eta=np.arange(2.6, 2.7, 0.02), transient=50, samples=8)
+    return sweep, orchestrate.branch(PAPER, eta=2.62, over="eta", limits=(2.6, 2.7), **QUIET)
+
+
+@pytest.fixture(scope="module")
+def driven():
+    quick, drive = Structure.from_file("quick"), Drive.from_file("quick")
+    question = {"voltage": (1.2, 1.25), "rate": 1e-3, **QUIET}
+    return [orchestrate.couple(s, drive, **question) for s in (quick.as_bonded(), quick)]
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """What was drawn with what."""
+    calls = {}
+    for module in (branches, motion, weak_drive):
+        name = module.__name__.rpartition(".")[2]
+
+        def draw(*parts, _name=name, **more):
+            calls[_name] = parts, more
+            return Figure()
+
+        for table in ("DRAW", "SEVERAL", "BESIDE", "OF_BOTH"):
+            entries = getattr(orchestrate.figures.plot, table)
+            for kind, function in list(entries.items()):
+                if function is module.draw:
+                    monkeypatch.setitem(entries, kind, draw)
+        monkeypatch.setattr(module, "draw", draw)
+    return calls
+
+
+def test_one_answer(simulated):
+    figure = plot(simulated[1], title="mine")
+    assert figure.get_suptitle() == "mine"
+    assert figure.axes[0].get_ylabel() == "displacement in m"
+
+
+def test_the_bonded_structure_beside_it_in_any_order(simulated, drawn):
+    bonded, delaminated = simulated
+    for answers in (simulated, simulated[::-1]):
+        plot(*answers)
+        (main,), more = drawn["motion"]
+        assert main is delaminated and more["bonded"] is bonded
+
+
+def test_branches_over_a_sweep(continued, drawn):
+    sweep, branch = continued
+    plot(branch, sweep, branch)
+    parts, more = drawn["branches"]
+    assert parts == (branch, branch) and more["responses"] is sweep
+
+
+def test_runs_of_both_structures(driven, drawn):
+    bonded, delaminated = driven
+    plot(delaminated, bonded)
+    (runs,), _ = drawn["weak_drive"]
+    assert runs == {"delaminated": delaminated, "bonded": bonded}
+
+
+def test_pictures_of_several_show_something(continued, driven):
+    for answers in (continued, driven):
+        figure = plot(*answers)
+        assert any(axes.lines or axes.collections for axes in figure.axes)
+
+
+def test_all_answers_that_the_command_line_draws_are_known():
+    from orchestrate.figures.plot import DRAW, OF_BOTH
+
+    public = {name for name in orchestrate.__all__ if name.islower()}
+    unknown = public - {*DRAW, *OF_BOTH}
+    # an orbit is drawn as a motion begun on it, a passage with its waterfall, the rest is no answer
+    assert unknown == {
+        *("couple_all", "impact_statistics", "orbit", "passage", "plot", "waterfall", "write_ssp"),
+        "__version__",
+    }
+
+
+@pytest.mark.parametrize(
+    ("kinds", "words"),
+    [
+        ((), "plot: no picture of nothing; expected answers of one of"),
+        (("simulate", "sweep"), "plot: no picture of simulate and sweep"),
+        (("couple", "branch"), "plot: no picture of couple and branch"),
+        (("orbit",), "plot: no picture of orbit"),
+    ],
+)
+def test_what_has_no_picture(kinds, words):
+    with pytest.raises(InputError) as error:
+        plot(*(xr.Dataset(attrs={"call": f"{kind}(eta=1)"}) for kind in kinds))
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("given", [3, xr.Dataset(), None])
+def test_what_is_no_answer(given):
+    with pytest.raises(InputError, match="is no answer of a question"):
+        plot(given)
