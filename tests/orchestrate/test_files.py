@@ -1,6 +1,7 @@
 """Files appear whole, also where two processes write the same one at once."""
 
 import os
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from orchestrate import files
@@ -34,3 +35,10 @@ def test_what_a_killed_process_left_of_its_look_at_a_folder_goes(tmp_path, monke
     assert len(list(tmp_path.iterdir())) == 1
     open_folder(tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_threads_of_one_process_open_a_folder_at_the_same_time(tmp_path):
+    with ThreadPoolExecutor(8) as threads:
+        found = list(threads.map(open_folder, [tmp_path / "new"] * 2000))
+    assert found == [tmp_path / "new"] * 2000
+    assert list((tmp_path / "new").iterdir()) == []
