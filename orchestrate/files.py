@@ -161,7 +161,7 @@ def open_folder(folder: str | os.PathLike[str]) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         sweep_up(folder / PROBE)
         probe.write_bytes(b"")
-        probe.unlink()
+        probe.unlink(missing_ok=True)  # another thread may have been quicker
     except OSError as error:
         raise StoreError(
             f"{folder}: {error.strerror or error}; expected a folder that can be written"
