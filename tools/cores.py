@@ -42,12 +42,16 @@ class Clockwork:
 
     def run(self, job: SweepJob, task: Task) -> tuple[Done, float]:
         """A chunk's result, and its seconds."""
-        begun = job.seam(task.carry) if task.carry is not None else repr(task.lead).encode()
+        begun = (
+            job.boundary_state(task.previous)
+            if task.previous is not None
+            else repr(task.warmup_items).encode()
+        )
         key = task.chunk.first, begun
         if key not in self.known:
             fmus = {OSCILLATOR: find(OSCILLATOR).path}
             clock = time.process_time()
-            done = compute(job, fmus, task.items, task.carry, task.lead)
+            done = compute(job, fmus, task.items, task.previous, task.warmup_items)
             self.known[key] = done, time.process_time() - clock
         return self.known[key]
 

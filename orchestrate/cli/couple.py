@@ -114,7 +114,7 @@ def run(arguments: argparse.Namespace) -> None:
     running = running_of(arguments)
     places = [arguments.output / f"{job.name}.nc" for job in jobs]
     fresh = arguments.force or not all(place.exists() for place in places)
-    answer_all(jobs, arguments.output, RunOptions.of(running), finder(running))
+    answer_all(jobs, arguments.output, RunOptions.from_keywords(running), finder(running))
     states = states_of(arguments, structure)
     results = {state: load(place) for state, place in zip(states, places, strict=True)}
     branches = branches_of(arguments, structure, drive)

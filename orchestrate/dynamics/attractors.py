@@ -144,19 +144,19 @@ class AttractorsJob(SeriesQuestion):
             return self.scale
         return [self.scale] * len(series.points)
 
-    def aside(self, first: int) -> str:
+    def progress_note(self, first: int) -> str:
         """Say that the last item is no start."""
         return "attractors carried to neighbours" if first == self.count() - 1 else ""
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Start | None], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Start | None], previous: Table | None
     ) -> Table:
         """Run some starts on until they are settled; or gather the attractors of all of them."""
         starts = [item for item in items if item is not None]
         with Instances(fmus[OSCILLATOR]) as instances:
             if not starts:
-                assert carry is not None
-                return self.gather_attractors(instances, carry)
+                assert previous is not None
+                return self.gather_attractors(instances, previous)
             rows = SettledRows()
             for place, some in itertools.groupby(starts, lambda item: item.place):
                 group = list(some)

@@ -172,13 +172,13 @@ class BasinJob(Question):
         return [*(Start(plane.point, *row) for row in rows), plane.point]
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Start | Point], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Start | Point], previous: Table | None
     ) -> Table:
         """Run some starts on, but those whose masses overlap; or gather the attractors of all."""
         with Instances(fmus[OSCILLATOR]) as instances:
             if isinstance(items[0], Point):
-                assert carry is not None
-                return self.gather_attractors(instances, items[0], carry)
+                assert previous is not None
+                return self.gather_attractors(instances, items[0], previous)
             rows, decider = SettledRows(), None
             for item in items:
                 assert isinstance(item, Start)

@@ -70,7 +70,7 @@ class BorderJob(OneItemQuestion):
         given += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
         return f"border({', '.join([repr(self.structure), start, *given])})"
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Follow it."""
         curve, root = first_root(self)
         back, forth = (trace(self, curve, start) for start in (root.reversed(), root))

@@ -97,7 +97,7 @@ class BranchJob(OneItemQuestion):
         ]
         return f"branch({', '.join(parts)})"
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Follow it."""
         segments = trace(self)
         with EventInstance(fmus[OSCILLATOR]) as instance:

@@ -128,7 +128,7 @@ class OrbitJob(OneItemQuestion):
         """The structure under its excitation."""
         return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Find it."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return table_of([find_orbit(instance, self)])

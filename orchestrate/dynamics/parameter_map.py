@@ -152,7 +152,9 @@ class MapJob(Question):
         """Return the points."""
         return self.points
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
+    ) -> Table:
         """Compute some points."""
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             rows = [self.row(plain, eventful, item) for item in items]

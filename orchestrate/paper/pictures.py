@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..running.executors import Processes, at_work
+from ..running.executors import Processes, running_workers
 from ..running.store import load
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def draw_all(parts: Sequence[Part], output: Path, processes: int) -> dict[str, P
     waiting = [part for part in parts if not is_current(part, output)]
     if min(len(waiting), processes) < 2:
         return {part.name: draw_part(part, output) for part in parts}
-    with at_work(Processes(processes)) as workers, warnings.catch_warnings():
+    with running_workers(Processes(processes)) as workers, warnings.catch_warnings():
         restarted = "A worker was restarted"  # loky: a picture took memory, which is no leak
         warnings.filterwarnings("ignore", message=restarted)
         submit = workers.executor.submit

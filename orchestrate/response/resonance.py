@@ -52,9 +52,9 @@ class ResonanceJob(SweepJob):
         if self.direction == "given":
             raise InputError("direction = 'given': expected one of up, down, both")
 
-    def lanes(self) -> int:
+    def independent_series(self) -> int:
         """Each structure in each direction knows nothing of the others."""
-        return len(KINDS) * super().lanes()
+        return len(KINDS) * super().independent_series()
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
         """Bonded first."""

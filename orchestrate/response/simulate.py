@@ -77,7 +77,9 @@ class SimulateJob(Question):
         numbers = np.arange(self.periods * self.points + 1)
         return (self.transient + numbers / self.points) * self.excitation.period
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
+    ) -> Table:
         """The motion."""
         grid = self.grid()
         with EventInstance(fmus[OSCILLATOR]) as instance:

@@ -109,7 +109,9 @@ class SpectraJob(SeriesQuestion):
         orders = np.arange(self.periods * self.points // 2 + 1) / self.periods
         return orders[orders <= self.highest]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
+    ) -> Table:
         """Bonded, delaminated, and delaminated without its impulses."""
         found = []
         with Instance(fmus[OSCILLATOR]) as instance:

@@ -74,7 +74,7 @@ class SweepJob(SeriesQuestion):
     asked: ClassVar[str] = "sweep"
     chunk: ClassVar[int] = 100
     sequential: ClassVar[bool] = True
-    lead: ClassVar[int] = 16  # most responses forget where they came from within as many
+    warmup_items: ClassVar[int] = 16  # most responses forget where they came from within as many
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -94,22 +94,24 @@ class SweepJob(SeriesQuestion):
         known = {"up": [up], "down": [up[::-1]], "both": [up, up[::-1]]}
         return known.get(self.direction) or [np.arange(len(up))]
 
-    def lanes(self) -> int:
+    def independent_series(self) -> int:
         """Up and down know nothing of each other."""
         return len(self.orders())
 
     def count(self) -> int:
         """Number of responses."""
-        return self.lanes() * super().count()
+        return self.independent_series() * super().count()
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
         """Structure and excitation of each response."""
         points = self.series.points
         return [points[index] for order in self.orders() for index in order]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
+    ) -> Table:
         """Some responses, from the state that the last one passes on."""
-        start = self.start if carry is None else carry["end"][-1]
+        start = self.start if previous is None else previous["end"][-1]
         settings = self.transient, self.samples, self.tolerance
         with Instance(fmus[OSCILLATOR]) as instance:
             rows = [
@@ -144,7 +146,7 @@ class SweepJob(SeriesQuestion):
             "orbit": states,
         }
 
-    def seam(self, table: Table) -> bytes:
+    def boundary_state(self, table: Table) -> bytes:
         """The state that the next response starts from."""
         return bytes(table["end"][-1].tobytes())
 

@@ -105,7 +105,7 @@ class CaptureJob(Job):
         system = System(self.structure, self.drive)
         return [with_value(system, self.over, value) for value in self.values] or [system]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[System], carry: Any) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[System], previous: Any) -> Table:
         """Outcomes at all voltages, and the border, of some values."""
         rows, borders = [], []
         for system in items:

@@ -79,7 +79,7 @@ class CoupleJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
-    closing: ClassVar[bool] = True
+    has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
     def steps(self) -> int:
@@ -108,25 +108,25 @@ class CoupleJob(Job):
             parts.append(self.work(fmus, range(chunk.first, chunk.last), carry))
         return together(parts)
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Some steps: their complete revolutions, and all to go on from; at last the verdicts."""
         if items[0] == self.steps():
-            assert carry is not None
-            nothing = {name: values[:0] for name, values in carry.items()}
-            return {**nothing, "verdicts": self.verdicts(fmus, carry, self.chunk)[np.newaxis]}
+            assert previous is not None
+            nothing = {name: values[:0] for name, values in previous.items()}
+            return {**nothing, "verdicts": self.verdicts(fmus, previous, self.chunk)[np.newaxis]}
         with (
             Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
             Instance(fmus[SHAKER], "shaker") as shaker,
         ):
             run = Run(self, oscillator, shaker)
             try:
-                if carry is not None:
-                    run.remember(carry)
+                if previous is not None:
+                    run.remember(previous)
                 return {**run.revolve(items), **run.memory(), **no_verdicts()}
             finally:
                 run.master.close()
 
-    def aside(self, first: int) -> str:
+    def progress_note(self, first: int) -> str:
         """The look at the jumps is no step, and may take as long as many."""
         return "voltages held where a jump is in doubt" if first == self.steps() else ""
 

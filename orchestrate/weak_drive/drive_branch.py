@@ -110,7 +110,7 @@ class DriveBranchJob(Job):
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Structure], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
         """Trace the branches of some structures: each a row of legs, NaN beyond a leg's end."""
         rows = []

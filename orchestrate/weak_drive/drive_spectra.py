@@ -84,7 +84,7 @@ class DriveSpectraJob(Job):
         return np.asarray(orders[orders <= self.highest])
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Structure], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
         """Spectra of both masses and the motor's speed."""
         found = [self.record(fmus, structure) for structure in items]

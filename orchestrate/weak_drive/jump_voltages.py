@@ -122,7 +122,7 @@ class JumpVoltagesJob(Job):
         return [(structure, schedule) for schedule in self.schedules for structure in both]
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[tuple[Structure, Ramp]], carry: Any
+        self, fmus: Mapping[str, Path], items: Sequence[tuple[Structure, Ramp]], previous: Any
     ) -> Table:
         """Jumps of some ramps."""
         rows = []

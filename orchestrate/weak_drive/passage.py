@@ -75,7 +75,7 @@ class PassageJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
-    closing: ClassVar[bool] = True
+    has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
@@ -90,17 +90,20 @@ class PassageJob(Job):
         """Steps; the look at them is a chunk of its own."""
         return with_a_last_one(super().chunks())
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Some steps: revolutions, ends, and all to go on from; at last the verdicts."""
         if items[0] == self.run.steps():
-            assert carry is not None
-            nothing = {name: values[:0] for name, values in carry.items()}
-            return {**nothing, "verdicts": self.run.verdicts(fmus, carry, self.chunk)[np.newaxis]}
+            assert previous is not None
+            nothing = {name: values[:0] for name, values in previous.items()}
+            return {
+                **nothing,
+                "verdicts": self.run.verdicts(fmus, previous, self.chunk)[np.newaxis],
+            }
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
             run = Run(self.run, oscillator, shaker)
             try:
-                if carry is not None:
-                    run.remember(carry)
+                if previous is not None:
+                    run.remember(previous)
                 kept = np.empty((len(items), len(run.master.memory())))
                 revolutions = run.revolve(items, kept)
                 columns = samples(run.master, kept)
