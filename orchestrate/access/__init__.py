@@ -18,7 +18,7 @@ module                idea
 ====================  =============================================================================
 """
 
-from .begin import REST, begin, last_samples, room_for_samples, sampled
+from .begin import REST, begin, last_samples, sampled, samples_per_step
 from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
@@ -53,7 +53,7 @@ __all__ = [
     "finder",
     "last_samples",
     "play",
-    "room_for_samples",
+    "samples_per_step",
     "sampled",
     "sources_of",
     "up_to_date",

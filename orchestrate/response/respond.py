@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import STATE, Instance, begin, last_samples, room_for_samples
+from ..access import STATE, Instance, begin, last_samples, samples_per_step
 from ..structures import Excitation, Structure
 from .multiplicity import Decision, Repetition, decide, over_size, repetition
 from .questions import Point
@@ -168,7 +168,7 @@ def sample(
     peak : float
         Largest gap on the way.
     """
-    room = room_for_samples(instance)
+    room = samples_per_step(instance)
     states, peak = np.empty((len(STATE), samples)).T, 0.0
     for done in range(0, samples, room):
         count = min(room, samples - done)

@@ -178,5 +178,5 @@ def side_of(channel: Channel) -> Side:
     return Side(
         *(found.instance, *found.functions),
         *(found.inputs, found.outputs),
-        *(*counts, pointer(found.kept)),
+        *(*counts, pointer(found.saved_state)),
     )

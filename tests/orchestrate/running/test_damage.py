@@ -90,7 +90,7 @@ def test_sealed_rows_that_are_not_this_jobs_are_computed_anew(
     journal = Journal(path, {}, "")
     for index, data in rows(path):
         journal._query(
-            "UPDATE chunks SET sha256 = ? WHERE i = ?", journal._seal(index, data), index
+            "UPDATE chunks SET sha256 = ? WHERE i = ?", journal._row_checksum(index, data), index
         )
     journal.close()
     assert answer(JOB, {"store": interrupted}, find).square.values.tolist() == SQUARES
@@ -146,7 +146,7 @@ def test_rows_of_an_earlier_version_are_not_taken(interrupted, find):
     journal = Journal(journal_path(interrupted), {}, "")
     journal._query("DELETE FROM about WHERE name = 'sha256'")
     journal.close()
-    with pytest.raises(StoreError, match=r"earlier version.*remove it to begin anew"):
+    with pytest.raises(StoreError, match=r"earlier version.*remove it to start again"):
         answer(JOB, {"store": interrupted}, find)
 
 

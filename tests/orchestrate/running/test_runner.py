@@ -86,7 +86,9 @@ def test_jobs_side_by_side_come_in_their_order(find):
 def test_the_bar_says_what_is_done_aside(find, monkeypatch, capfd):
     """While its last chunk is at work the bar stands still: what it does is said before."""
     monkeypatch.setattr(runner, "BAR_DELAY", 0.0)
-    monkeypatch.setattr(Sums, "aside", lambda self, first: "counting again" if first == 8 else "")
+    monkeypatch.setattr(
+        Sums, "progress_note", lambda self, first: "counting again" if first == 8 else ""
+    )
     answer(Sums("sums"), {"jobs": 1}, find)
     shown = capfd.readouterr().err
     assert "sums, counting again:" in shown and "sums:" in shown
@@ -203,7 +205,7 @@ def test_a_file_of_others_is_never_replaced(find, tmp_path, kind):
         path.write_text("notes" * (kind == "text"))
     before = path.read_bytes()
     for force in (False, True):
-        with pytest.raises(StoreError, match=r"squares\.nc: .*remove it to begin anew"):
+        with pytest.raises(StoreError, match=r"squares\.nc: .*remove it to start again"):
             answer(Squares("squares"), {"store": path, "force": force}, find)
         assert path.read_bytes() == before
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
@@ -248,7 +250,7 @@ def test_a_flipped_bit_of_the_journal(find, tmp_path, monkeypatch, place):
 def test_a_journal_that_is_none(find, tmp_path):
     path = tmp_path / "squares.nc"
     journal_path(path).write_bytes(b"not a database" * 1000)
-    with pytest.raises(StoreError, match="remove it to begin anew"):
+    with pytest.raises(StoreError, match="remove it to start again"):
         answer(Squares("squares"), {"store": path}, find)
 
 
@@ -383,9 +385,9 @@ def test_a_bar_that_is_shown_early_ends_its_line(find, monkeypatch, capsys):
 def shown_early(describe):
     """Describe a job that began long before its bar."""
 
-    def described(self, bar, aside):
-        self.clock -= 10.0
-        describe(self, bar, aside)
+    def described(self, bar, note):
+        self.start_time -= 10.0
+        describe(self, bar, note)
 
     return described
 
