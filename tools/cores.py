@@ -16,7 +16,7 @@ from unittest.mock import patch
 import numpy as np
 
 from orchestrate.access import OSCILLATOR, find
-from orchestrate.response.questions import asked_along
+from orchestrate.response.questions import series_arguments
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.executors import compute
 from orchestrate.running.job import Table
@@ -31,7 +31,9 @@ Done = tuple[bytes, Table]
 def figure_6(step: float) -> SweepJob:
     """The paper's sweep, at every so manyth frequency."""
     etas = np.round(np.arange(0.1, 8.0 + 0.5 * step, step), 3)
-    return SweepJob(**asked_along(Structure.nondimensional(), etas, None, None), name="figure 6")
+    return SweepJob(
+        **series_arguments(Structure.nondimensional(), etas, None, None), name="figure 6"
+    )
 
 
 @dataclass

@@ -18,10 +18,10 @@ from ..response.questions import (
     Numbers,
     Point,
     SeriesQuestion,
-    asked_along,
+    checked_integer,
     numbers,
     positive,
-    whole,
+    series_arguments,
 )
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -402,7 +402,7 @@ def attractor_settings(**given: Any) -> AttractorSettings:
     """Check keywords of :class:`.clusters.AttractorSettings`, and return these settings."""
     least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
     checked: dict[str, Any] = {
-        name: whole(name, value, least[name]) if name in least else positive(name, value)
+        name: checked_integer(name, value, least[name]) if name in least else positive(name, value)
         for name, value in given.items()
     }
     return AttractorSettings(**checked)
@@ -515,10 +515,10 @@ def attractors(
     (array([1., 2.]), array([0.825, 0.175]))
     """
     job = AttractorsJob(
-        **asked_along(structure, eta, frequency, amplitude, over, values),
+        **series_arguments(structure, eta, frequency, amplitude, over, values),
         name=f"attractors_{structure.label()}",
-        starts=whole("starts", starts, 1),
-        seed=whole("seed", seed, 0, 2**32 - 1),
+        starts=checked_integer("starts", starts, 1),
+        seed=checked_integer("seed", seed, 0, 2**32 - 1),
         scale=check_scale(scale),
         width=positive("width", width),
         settings=attractor_settings(

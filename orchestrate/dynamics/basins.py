@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, finder
 from ..errors import InputError
 from ..response.labels import si_state, variable
-from ..response.questions import Point, Question, one_point, state, whole
+from ..response.questions import Point, Question, checked_integer, one_point, state
 from ..response.respond import sample
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -255,7 +255,7 @@ def check_side(name: str, given: Any) -> Side:
         raise InputError(f"{name} = {given!r}: no coordinate {axis!r}; {expected}")
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise InputError(f"{name} = {given!r}: expected finite low < high")
-    return Side(axis, low, high, whole(f"{name}: count", count, 2, 100_000))
+    return Side(axis, low, high, checked_integer(f"{name}: count", count, 2, 100_000))
 
 
 def basin(

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, EventInstance, finder
 from ..errors import InputError
 from ..response.labels import variable
-from ..response.questions import checked_structure, numbers, whole
+from ..response.questions import checked_integer, checked_structure, numbers
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -227,7 +227,7 @@ def border(
         kind=kind,
         values=(value, second),
         longest=finite_number("longest", longest),
-        most=whole("most", most, 1),
+        most=checked_integer("most", most, 1),
     )
     return answer(job, running, finder(running))
 

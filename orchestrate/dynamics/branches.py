@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, EventInstance, finder
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import checked_structure, numbers, whole
+from ..response.questions import checked_integer, checked_structure, numbers
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -307,7 +307,7 @@ def branch(
         value=value,
         switch=kind,
         longest=finite_number("longest", longest),
-        most=whole("most", most, 1),
+        most=checked_integer("most", most, 1),
     )
     return answer(job, running, finder(running))
 
@@ -417,7 +417,7 @@ def check_number(start: xr.Dataset, name: str, number: int) -> int:
     count = start.sizes.get(BIFURCATION, 0)
     if not count:
         raise InputError(f"{name} = {number!r}: start has no bifurcations; expected a branch")
-    return whole(name, number, 0, count - 1)
+    return checked_integer(name, number, 0, count - 1)
 
 
 def first_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:

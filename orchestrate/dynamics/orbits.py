@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, EventInstance, finder
 from ..errors import InputError
-from ..response.questions import Question, numbers, one_point, whole
+from ..response.questions import Question, checked_integer, numbers, one_point
 from ..response.questions import state as checked_state
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -315,7 +315,7 @@ def orbit(
     given = one_point(structure, eta, frequency, amplitude)
     require_delaminated(structure)
     given.excitation.check(structure)
-    count = whole("period", period, 1, MAX_PERIODS)
+    count = checked_integer("period", period, 1, MAX_PERIODS)
     job = OrbitJob(
         name=f"orbit_{structure.label()}_{count}T",
         structure=structure,
@@ -323,9 +323,9 @@ def orbit(
         box_acceleration=finite_number("box_acceleration", box_acceleration),
         period=count,
         guess=first_guess(guess, structure, given.excitation.frequency, count),
-        transient=whole("transient", transient, 0),
-        search=whole("search", search, count + 1),
-        tries=whole("tries", tries, 1),
+        transient=checked_integer("transient", transient, 0),
+        search=checked_integer("search", search, count + 1),
+        tries=checked_integer("tries", tries, 1),
     )
     return answer(job, running, finder(running))
 

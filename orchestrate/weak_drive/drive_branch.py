@@ -23,7 +23,7 @@ from ..dynamics.bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
 from ..dynamics.continuation import NoConvergenceError
 from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError
-from ..response.questions import whole
+from ..response.questions import checked_integer
 from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
@@ -356,9 +356,9 @@ def drive_branch(
         drive,
         (first, last),
         float(longest),
-        whole("most", most, 2),
-        whole("period", period, 1),
-        whole("steps", steps, 16),
+        checked_integer("most", most, 2),
+        checked_integer("period", period, 1),
+        checked_integer("steps", steps, 16),
         settle,
     )
     return answer(job, running, finder(running))
