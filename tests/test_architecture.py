@@ -19,10 +19,13 @@ OURS = ("fmu_src", "orchestrate", "tools")
 FILES = sorted(
     path.relative_to(ROOT).as_posix() for name in OURS for path in (ROOT / name).rglob("*.py")
 )
-GROUND = {"errors", "files", "temporary", "version"}
+GROUND = {"checks", "constants", "errors", "files", "flags", "temporary", "version"}
 BELOW_ANSWERS = GROUND | {"structures", "access", "running"}
 FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know beside itself
+    "checks": {"errors"},
+    "constants": set(),
     "errors": set(),
+    "flags": set(),
     "version": set(),
     "files": {"errors"},
     "supervisor": set(),

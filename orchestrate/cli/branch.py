@@ -6,7 +6,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..constants import TURN
 from ..errors import InputError
+from ..flags import flag_words
 from .options import (
     UNITS,
     Commands,
@@ -22,7 +24,7 @@ from .options import (
     structure_of,
 )
 from .output import add_results
-from .question import TURN, carry_out, place, stored
+from .question import carry_out, place, stored
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -124,8 +126,6 @@ def picture_of(data: xr.Dataset) -> Any:
 
 def report(data: xr.Dataset) -> None:
     """Bifurcations as a table, and why the branch ends."""
-    from ..figures.labels import meanings
-
     name = str(data.attrs["over"])
     stable = int(data.stable.sum())
     print(f"{data.sizes['point']} orbits, {stable} of them stable")
@@ -135,7 +135,7 @@ def report(data: xr.Dataset) -> None:
     if not count:
         print("no bifurcation in this range")
     else:
-        words = meanings(data.bifurcation_kind)
+        words = flag_words(data.bifurcation_kind.attrs)
         turns = name == "frequency"
         unit, factor = ("Hz", TURN) if turns else (data.bifurcation_value.attrs["units"], 1.0)
         print(f"number  {'bifurcation':28}{name} ({unit})")

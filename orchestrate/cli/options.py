@@ -275,7 +275,8 @@ def excitation_of(
     ------
     InputError
     """
-    from ..structures.sections import GRAVITY, TO_RAD_S
+    from ..constants import GRAVITY
+    from ..structures.sections import TO_RAD_S
 
     name = frequency_option(arguments)
     amplitude = amplitude_of(arguments)

@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..constants import TURN
 from ..errors import InputError, StoreError
 from .output import Files, name_of, preparing_a_picture, running_of
 
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
     from ..structures import Structure
 
-TURN = 2.0 * math.pi
 HOW_DECIDED = {  # of attractors; nothing is said where Newton's method confirms a stable orbit
     2: ", by repeated states alone",
     4: ", undecided: near an unstable orbit",

@@ -12,17 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, finder, sampled
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, si_state, variable
-from ..response.questions import (
-    Numbers,
-    Point,
-    SeriesQuestion,
-    checked_integer,
-    numbers,
-    positive,
-    series_arguments,
-)
+from ..response.questions import Numbers, Point, SeriesQuestion, numbers, positive, series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure

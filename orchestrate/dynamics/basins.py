@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import si_state, variable
-from ..response.questions import Point, Question, checked_integer, one_point, state
+from ..response.questions import Point, Question, one_point, state
 from ..response.respond import sample
 from ..running.job import Inputs, Table
 from ..running.runner import answer

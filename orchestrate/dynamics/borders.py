@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, EventInstance, finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import variable
-from ..response.questions import checked_integer, checked_structure, numbers
+from ..response.questions import checked_structure, numbers
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure

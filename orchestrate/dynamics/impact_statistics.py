@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import Impacts, finder
+from ..checks import checked_integer
 from ..response.labels import variable
-from ..response.questions import checked_integer, series_arguments
+from ..response.questions import series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure

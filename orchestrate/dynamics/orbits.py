@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, EventInstance, finder
+from ..checks import checked_integer
+from ..constants import TURN
 from ..errors import InputError
-from ..response.questions import Question, checked_integer, numbers, one_point
+from ..response.questions import Question, numbers, one_point
 from ..response.questions import state as checked_state
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -23,7 +25,7 @@ from .closed_form import Floats
 from .continuation import NoConvergenceError
 from .families import ACCELERATION, Setting, require_delaminated
 from .guesses import Guess, close_returns, from_phases, from_state
-from .impact_sequence import IMPACT, PHASE, RELEASE, TURN, ImpactSequence
+from .impact_sequence import IMPACT, PHASE, RELEASE, ImpactSequence
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import first_motion, run_in_fmu, single_impacts
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, REST, EventInstance, Impacts, Instance, finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, parameter, variable
 from ..response.multiplicity import DECIDED, REPEATED, UNDECIDED, Decision
@@ -26,7 +27,6 @@ from ..response.questions import (
     Point,
     Question,
     check_form,
-    checked_integer,
     checked_structure,
     numbers,
     point,

@@ -8,9 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..constants import TURN
 from ..response.multiplicity import MIN_RELATIVE_GAP
 from ..response.questions import Point
-from .impact_sequence import PHASE, TURN, PeriodicOrbit
+from .impact_sequence import PHASE, PeriodicOrbit
 from .turning_points import Amplitudes, stroboscopic_states, turning_points
 
 Floats = NDArray[np.float64]

@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..errors import InputError
-from .labels import EXCITATION, about, meanings, symbol
+from ..flags import flag_words
+from .labels import EXCITATION, about, symbol
 from .marks import Marks, draw_samples
 from .orbit_diagram import scale
 from .scales import HERTZ, in_si
@@ -88,7 +89,7 @@ def draw_bifurcations(plane: Axes, found: xr.Dataset, shown: set[str], unit: flo
     """A marker for each kind; each kind once in the legend."""
     if not found.sizes.get("bifurcation"):
         return
-    names = meanings(found.bifurcation_kind)
+    names = flag_words(found.bifurcation_kind.attrs)
     for i, kind in enumerate(found.bifurcation_kind.values):
         word = names[int(kind)].replace("Neimark Sacker", "Neimark-Sacker")
         gaps = found.bifurcation_xi_rel.values[i]

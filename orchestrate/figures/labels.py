@@ -8,7 +8,8 @@ from typing import Any
 
 import xarray as xr
 
-GRAVITY = 9.80665  # m/s^2, by definition
+from ..constants import GRAVITY
+
 SYMBOLS = {
     "eta": r"$\eta$",
     "e": "$e$",
@@ -171,15 +172,6 @@ def kind_of(multiplicity: int) -> str:
     if multiplicity == 0:
         return "not periodic"
     return "$T$" if multiplicity == 1 else f"${multiplicity}T$"
-
-
-def meanings(variable: xr.DataArray) -> dict[int, str]:
-    """What the values of a variable stand for, from CF's ``flag_values`` and ``flag_meanings``."""
-    words = variable.attrs["flag_meanings"].split()
-    return {
-        int(value): word.replace("_", " ")
-        for value, word in zip(variable.attrs["flag_values"], words, strict=True)
-    }
 
 
 def orbit_label(multiplicity: float, impacts_per_period: float) -> str:

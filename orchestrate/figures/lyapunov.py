@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import about, meanings
+from ..flags import flag_words
+from .labels import about
 from .scales import along, parameter_of
 from .style import BLACK, BLUE, RED, in_our_look, legend_below, panels
 
@@ -51,7 +52,7 @@ def draw(
 
 def draw_case(axes: Axes, data: xr.Dataset, lowest: float) -> None:
     """Exponents of one case by verdict, each verdict in the legend."""
-    names, parameter = meanings(data.verdict), parameter_of(data.exponent)
+    names, parameter = flag_words(data.verdict.attrs), parameter_of(data.exponent)
     x = along(data, parameter).values
     size = float(np.clip(1000.0 / len(x), 2.0, 4.0))
     for verdict, (colour, shape) in VERDICTS.items():

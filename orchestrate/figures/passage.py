@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from ..constants import TURN
 from .style import GREY, in_our_look, panels
 from .weak_drive import COLOURS, SINKS
 
-TURN = 2.0 * np.pi
 MOST = 4  # revolutions after which a motion is seen to repeat
 CALM = 0.9  # of the revolutions: the others belong to the jump
 FLOOR = 1e-4  # of the largest line: the lower end of the colours

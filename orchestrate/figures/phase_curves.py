@@ -9,8 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..flags import flag_words
 from .curve_data import panel_of, relative
-from .labels import meanings
 from .style import (
     BLACK,
     BLUE,
@@ -39,7 +39,7 @@ def draw_states(data: xr.Dataset) -> Figure:
     figure, (left, right) = panels(1, 2, (8.5, 4.2))
     state, kind = data.state.values, data.kind.values
     _, gap, rate = relative(data, 0)
-    names = meanings(data.kind)
+    names = flag_words(data.kind.attrs)
     draw_kinds(left, (state[:, 0], state[:, 2]), kind, "-", names)
     draw_kinds(left, (state[:, 1], state[:, 3]), kind, "--", names)
     draw_kinds(right, (gap, rate), kind, "-", names, dotted=True)

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import REST
+from ..checks import MAX_COUNT
 from ..errors import InputError
 from ..running.job import Job, brief
 from ..structures import PARAMETERS, Excitation, Structure
@@ -29,7 +30,6 @@ EXCITATION_PARAMETERS = {
     **{name: EXCITATION[name] for name in ("frequency", "amplitude")},
 }
 FORMS = "expected eta=, or frequency= with amplitude="
-MAX_COUNT = 1_000_000  # periods, samples, values: more is a typing error
 
 
 class Point(NamedTuple):
@@ -275,20 +275,6 @@ def numbers(name: str, given: ArrayLike | None) -> Numbers | None:
             + " > 0" * (name in EXCITATION_PARAMETERS)
         )
     return result if array.ndim else result[0]
-
-
-def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUNT) -> int:
-    """Return an integer in a range.
-
-    Raises
-    ------
-    InputError
-        Where it is none.
-    """
-    good = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
-    if not good or not minimum <= value <= maximum:
-        raise InputError(f"{name} = {value!r}: expected a whole number from {minimum} to {maximum}")
-    return int(value)
 
 
 def positive(name: str, value: Any) -> float:

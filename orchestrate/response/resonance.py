@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -17,7 +18,7 @@ from ..structures import Structure
 from .labels import Variable, variable, yes_or_no
 from .multiplicity import IRREGULAR
 from .peaks import PEAKS
-from .questions import Point, checked_integer, positive, series_arguments
+from .questions import Point, positive, series_arguments
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, multiplicities
 from .turns_and_jumps import inside_irregular, jumps, maxima
 

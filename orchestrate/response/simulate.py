@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, EventInstance, Impacts, begin, finder
+from ..checks import checked_integer
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Excitation, Structure
 from .equations import absolute_accelerations
 from .labels import Variable, variable, yes_or_no
-from .questions import Point, Question, checked_integer, one_point, state
+from .questions import Point, Question, one_point, state
 
 if TYPE_CHECKING:
     import xarray as xr

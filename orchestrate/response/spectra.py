@@ -16,13 +16,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, Instance, begin, finder, sampled
+from ..checks import checked_integer
 from ..errors import InputError
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .equations import absolute_accelerations
 from .labels import variable
-from .questions import Point, SeriesQuestion, checked_integer, positive, series_arguments
+from .questions import Point, SeriesQuestion, positive, series_arguments
 
 if TYPE_CHECKING:
     import xarray as xr

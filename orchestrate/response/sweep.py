@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, Instance, finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -18,7 +19,7 @@ from ..structures import Structure
 from .labels import Dims, Variable, flags, nondimensional_state, variable, yes_or_no
 from .multiplicity import DECIDED, REPEATED
 from .peaks import PEAKS, peaks, periods_to_sample, sample_periods
-from .questions import Point, SeriesQuestion, checked_integer, positive, series_arguments, state
+from .questions import Point, SeriesQuestion, positive, series_arguments, state
 from .respond import Response, follow, impacts_since
 
 if TYPE_CHECKING:

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..files import write_whole
+from ..flags import flag_words
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -97,8 +98,7 @@ def decode_flags(array: xr.Variable) -> NDArray[Any]:
     meanings = str(array.attrs.get("flag_meanings", "no yes"))
     if meanings == "no yes":
         return np.asarray(array.values)
-    pairs = zip(array.attrs["flag_values"], meanings.split(), strict=True)
-    words = {int(value): word.replace("_", " ") for value, word in pairs}
+    words = flag_words(array.attrs)
     decoded = [words.get(int(value), "") for value in np.ravel(array.values)]
     return np.array(decoded, dtype=object).reshape(array.shape)
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TypedDict
 
+from ..checks import checked_integer
 from ..errors import InputError
 
 MAX_JOBS = 1024  # processes of one machine
@@ -63,9 +64,8 @@ class RunOptions:
     build_folder: str | os.PathLike[str] | None = None
 
     def __post_init__(self) -> None:
-        is_integer = isinstance(self.jobs, int) and not isinstance(self.jobs, bool)
-        if self.jobs is not None and not (is_integer and 1 <= self.jobs <= MAX_JOBS):
-            raise InputError(f"jobs = {self.jobs!r}: expected a whole number from 1 to {MAX_JOBS}")
+        if self.jobs is not None:
+            object.__setattr__(self, "jobs", checked_integer("jobs", self.jobs, 1, MAX_JOBS))
         if self.cluster is not None and not isinstance(self.cluster, str):
             raise InputError(f"cluster = {self.cluster!r}: expected the address of a scheduler")
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from .drive import Drive
 from .excitation import Excitation
@@ -25,11 +25,10 @@ from .ranges import (
 )
 from .structure import Structure
 
-GRAVITY = 9.80665  # m/s^2, by definition
 TO_RAD_S: dict[str, Callable[[float], float]] = {
-    "hz": lambda value: 2.0 * math.pi * value,
+    "hz": lambda value: TURN * value,
     "rad_s": lambda value: value,
-    "rpm": lambda value: 2.0 * math.pi * value / 60.0,
+    "rpm": lambda value: TURN * value / 60.0,
 }
 COMMON_KEYS = ("e", "gamma", "bonded")
 SI_STRUCTURE = ("m1", "m2", "k1", "k2", "d1", "d2")

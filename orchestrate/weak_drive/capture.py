@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from ..access.exported import finder
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, parameter, variable, yes_or_no
 from ..running.job import Inputs, Job, Table
@@ -285,9 +286,7 @@ def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
     check("voltage", high, "V", low=0.0)
     if not low < high:
         raise InputError(f"voltage = ({low:g}, {high:g}) V: expected (lowest, highest)")
-    if not isinstance(count, int) or isinstance(count, bool) or count < 2:
-        raise InputError(f"count = {count!r}: expected a whole number >= 2")
-    return tuple(np.linspace(low, high, count).tolist())
+    return tuple(np.linspace(low, high, checked_integer("count", count, 2)).tolist())
 
 
 def values_of(over: str | None, values: ArrayLike | None, system: System) -> tuple[float, ...]:
@@ -403,8 +402,7 @@ def capture(
     check("tolerance", tolerance, "V", low=0.0, exclusive=True)
     if time is not None:
         check("time", time, "s", low=0.0, exclusive=True)
-    if not isinstance(stay, int) or isinstance(stay, bool) or stay < 1:
-        raise InputError(f"stay = {stay!r}: expected a whole number >= 1")
+    stay = checked_integer("stay", stay, 1)
     scheme = scheme_of(structure, step, sampled=control is not None)
     job = CaptureJob(
         "capture",

@@ -18,6 +18,8 @@ import numpy as np
 from ..access.exported import finder
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
+from ..checks import checked_integer
+from ..constants import TURN
 from ..errors import InputError
 from ..response.spectra import amplitude_spectrum
 from ..running.job import Inputs, Job, Table
@@ -26,7 +28,7 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
 from .couple import Run, couple_job, scheme_of
-from .master import TURN, parts_of
+from .master import parts_of
 from .schedule import Ramp, check
 
 if TYPE_CHECKING:
@@ -250,9 +252,8 @@ def drive_spectra(
     speed = 1e-4 * volts * omega if rate is None else float(rate)
     hold = 800.0 / omega if hold is None else float(hold)
     check("hold", hold, "s", low=0.0)
-    for name, number, least in (("revolutions", revolutions, 1), ("points", points, 4)):
-        if not isinstance(number, int) or number < least:
-            raise InputError(f"{name} = {number}: expected a whole number >= {least}")
+    revolutions = checked_integer("revolutions", revolutions, 1)
+    points = checked_integer("points", points, 4)
     if not 0.0 < highest <= points / 2:
         raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
     step = scheme_of(structure, step, "rollback", 0.0).h

@@ -21,6 +21,7 @@ import numpy as np
 
 from ..access.channel import Channel
 from ..access.instance import Instance
+from ..constants import TURN
 from ..errors import InputError
 from ..structures.structure import Structure
 from .energy_balance import EnergyBalance
@@ -35,7 +36,6 @@ from .exchange import (
 from .extremes import Revolution
 from .polynomials import end_slope, matched_cubic, parabola, work
 
-TURN = 2.0 * math.pi
 OWN = (
     *("time", "voltage", "slope", "force_before", "h_before"),
     *("acceleration_before", "jerk_before", "level"),

@@ -18,6 +18,8 @@ import numpy as np
 from ..access.exported import finder
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
+from ..checks import checked_integer
+from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import variable
 from ..running.job import Chunk, Inputs, Job, Table
@@ -27,7 +29,7 @@ from ..structures.structure import Structure
 from .controllers import Controller
 from .couple import CoupleJob, Run, checked_motor, couple_job, no_verdicts, schedule_of, scheme_of
 from .held import with_a_last_one
-from .master import PLACES, TURN, Master, parts_of
+from .master import PLACES, Master, parts_of
 from .revolutions import COLUMNS
 from .schedule import Schedule, check
 
@@ -334,8 +336,7 @@ def check_spectra(found: Any, mass: int, revolutions: int, highest: float) -> No
     """
     if mass not in (1, 2):
         raise InputError(f"mass = {mass!r}: expected 1 or 2")
-    if not isinstance(revolutions, int) or isinstance(revolutions, bool) or revolutions < 1:
-        raise InputError(f"revolutions = {revolutions!r}: expected a whole number >= 1")
+    checked_integer("revolutions", revolutions, 1)
     check("highest", highest, "times the speed", low=0.0, exclusive=True)
     missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(map(str, found))
     if missing:

@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import astuple
 
+from ..constants import TURN
 from .extremes import Revolution
-from .master import TURN, Master
+from .master import Master
 
 COLUMNS = {
     "time": ("s", "time at the revolution's end"),

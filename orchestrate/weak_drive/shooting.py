@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..access.instance import Instance
+from ..constants import TURN
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import NoConvergenceError, fix_sign
 from ..errors import FmuError
@@ -22,7 +23,7 @@ from ..structures.structure import Structure
 from .compiled import master_of
 from .couple import oscillator_start
 from .extremes import Revolution
-from .master import PLACES, TURN, Master, Scheme
+from .master import PLACES, Master, Scheme
 
 STARTS = {  # start values of the shaker and of the structure by the outputs that they are
     **{"box_position": "position_start", "box_velocity": "velocity_start", "speed": "speed_start"},

@@ -10,15 +10,9 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
+from orchestrate.checks import checked_integer
 from orchestrate.errors import InputError
-from orchestrate.response.questions import (
-    checked_integer,
-    numbers,
-    one_point,
-    series,
-    series_arguments,
-    states,
-)
+from orchestrate.response.questions import numbers, one_point, series, series_arguments, states
 from orchestrate.structures import Structure
 
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
