@@ -67,9 +67,9 @@ def run(arguments: argparse.Namespace) -> None:
 def picture_of(data: xr.Dataset) -> Any:
     """The curve."""
     from ..figures.borders import draw
-    from ..figures.labels import about
+    from ..figures.labels import title_from_attributes
 
-    return draw(data, title=about(data))
+    return draw(data, title=title_from_attributes(data))
 
 
 def report(data: xr.Dataset) -> None:

@@ -119,9 +119,9 @@ def shaken(
 def picture_of(data: xr.Dataset) -> Any:
     """The branch over its parameter."""
     from ..figures.branches import draw
-    from ..figures.labels import about
+    from ..figures.labels import title_from_attributes
 
-    return draw(data, title=about(data))
+    return draw(data, title=title_from_attributes(data))
 
 
 def report(data: xr.Dataset) -> None:

@@ -107,8 +107,8 @@ def picture_of(
 
 def report(state: str, data: xr.Dataset) -> None:
     """What was found, in a line."""
-    from ..figures.passage import told
+    from ..figures.passage import format_jumps
 
     count, first, last = data.sizes["time"], float(data.time[0]), float(data.time[-1])
     kept = data.attrs["kept"]
-    print(f"{state}: {told(data)}; {count} samples, {first:.4g} s to {last:.4g} s ({kept})")
+    print(f"{state}: {format_jumps(data)}; {count} samples, {first:.4g} s to {last:.4g} s ({kept})")

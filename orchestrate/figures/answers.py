@@ -1,4 +1,6 @@
-"""The picture of an answer, by the name of the question, where it needs no more than the answer."""
+"""Table of the drawing functions by the name of the question, for answers that need nothing
+else.
+"""
 
 from __future__ import annotations
 

@@ -56,11 +56,11 @@ def attractors(name: str, data: xr.Dataset) -> Figure:
 def basin(name: str, data: xr.Dataset) -> Figure:
     """The plane of starts."""
     from ..figures import basin as figure
-    from ..figures.labels import about
+    from ..figures.labels import title_from_attributes
     from ..figures.style import XI_REL, XI_REL_RATE
 
     replaced = "frequency", "amplitude"  # by what the job has found
-    title = rf"{about(data, replaced)}, $\eta$ = {float(data.eta):.3f}"
+    title = rf"{title_from_attributes(data, replaced)}, $\eta$ = {float(data.eta):.3f}"
     return figure.draw(data, title, (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
 
 
