@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import functools
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -328,3 +329,26 @@ def test_every_function_is_annotated(file):
             if node.returns is None or any(a.annotation is None for a in named):
                 bare.append(node.name)
     assert [name for name in bare if not (name.startswith("__") and name != "__init__")] == []
+
+
+PACKAGES = sorted(
+    file for file in FILES if file.startswith("orchestrate/") and file.endswith("__init__.py")
+)
+
+
+def listed_modules(file: str) -> list[str] | None:
+    """Modules in the table of a package's docstring; None where there is no table."""
+    text = ast.get_docstring(tree_of(file)) or ""
+    if not re.search(r"^=+  =+\nmodule +idea$", text, re.MULTILINE):
+        return None
+    return re.findall(r"^:mod:`\.(\w+)` ", text, re.MULTILINE)
+
+
+def test_some_packages_have_a_table_of_modules():
+    assert sum(listed_modules(file) is not None for file in PACKAGES) >= 4
+
+
+@pytest.mark.parametrize("file", [file for file in PACKAGES if listed_modules(file) is not None])
+def test_a_table_of_modules_is_complete(file):
+    there = {path.stem for path in (ROOT / file).parent.glob("*.py")} - {"__init__"}
+    assert sorted(listed_modules(file) or []) == sorted(there)
