@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 from ..constants import TURN
 from ..errors import InputError
-from ..flags import flag_words
 from .options import (
     UNITS,
     Commands,
@@ -126,6 +125,8 @@ def picture_of(data: xr.Dataset) -> Any:
 
 def report(data: xr.Dataset) -> None:
     """Print bifurcations as a table, and why the branch ends."""
+    from ..flags import flag_words
+
     name = str(data.attrs["over"])
     stable = int(data.stable.sum())
     print(f"{data.sizes['point']} orbits, {stable} of them stable")

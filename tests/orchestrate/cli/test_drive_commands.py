@@ -401,7 +401,7 @@ CASES = {
         (["--over", "D"], ["--over and --values", "both"]),
         (["--over", "colour", "--values", "1,2"], ["colour", "no parameter"]),
         (["--over", "D", "--values", "a"], ["--values a", "not numbers"]),
-        (["--count", "1"], ["count = 1", ">= 2"]),
+        (["--count", "1"], ["count = 1", "from 2"]),
         (["--tolerance", "0"], ["tolerance = 0.0 V", "0 < tolerance"]),
         (["--time", "-1"], ["time = -1.0 s", "0 < time"]),
         (["--eta0", "1.5"], ["--eta0 1.5", "FIRST:LAST"]),
@@ -419,9 +419,9 @@ CASES = {
         (["--speed", "1"], ["--speed 1", "FIRST:LAST"]),
         (["--speed", "2:1"], ["speed = (2.0, 1.0)", "first < last"]),
         (["--longest", "0"], ["longest = 0.0", "<= longest <="]),
-        (["--most", "1"], ["most = 1", ">= 2"]),
-        (["--steps", "3"], ["steps = 3", ">= 16"]),
-        (["--period", "0"], ["period = 0", ">= 1"]),
+        (["--most", "1"], ["most = 1", "from 2"]),
+        (["--steps", "3"], ["steps = 3", "from 16"]),
+        (["--period", "0"], ["period = 0", "from 1"]),
     ],
 }
 MISTAKES = [(name, *case) for name, cases in CASES.items() for case in cases]

@@ -91,12 +91,12 @@ def test_an_output_that_nobody_reads_ends_nothing(monkeypatch):
 def test_what_is_lost_is_known():
     stream = SafeStream(Broken())
     stream.write("told")
-    assert stream.complaint() == ""
+    assert stream.failure() == ""
     closed = io.StringIO()
     closed.close()
     stream = SafeStream(closed)
     assert stream.write("told") == 4
-    assert "closed file" in stream.complaint()
+    assert "closed file" in stream.failure()
 
 
 @pytest.mark.parametrize("error", [MemoryError, ImportError("libx.so: cannot map\nmore")])
