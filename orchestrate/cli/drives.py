@@ -174,9 +174,9 @@ def folds_of(
 ) -> tuple[float, float]:
     """Return the voltages of the averaged theory's jumps down and up, V."""
     from ..weak_drive import averaged
-    from ..weak_drive.couple import checked_motor
+    from ..weak_drive.couple import require_motor
 
-    checked_motor(drive)
+    require_motor(drive)
     folds = averaged.folds(structure, drive)
     if not folds:
         raise InputError(
@@ -268,7 +268,7 @@ def control_of(
     """Return the controller that the options describe."""
     from ..weak_drive import averaged
     from ..weak_drive.controllers import SpeedControl, SpeedGradient
-    from ..weak_drive.couple import checked_motor
+    from ..weak_drive.couple import require_motor
 
     of_pi = {"gain": arguments.gain, "reset_time": arguments.reset_time}
     of_pi["rise"] = arguments.speed_rise
@@ -282,7 +282,7 @@ def control_of(
             option = {"rise": "speed-rise"}.get(name, name.replace("_", "-"))
             needed = "--speed-control" if name in of_pi else "--speed-gradient"
             raise InputError(f"--{option} {value:g}: expected {needed} with it")
-    checked_motor(drive)
+    require_motor(drive)
     constant = drive.motor_constant
     if arguments.speed_control is not None:
         slow = drive.rotor_inertia * drive.armature_resistance / constant**2

@@ -40,19 +40,19 @@ class Seen(NamedTuple):
 
 @dataclass(frozen=True)
 class Controller(ABC):
-    """A law for the voltage; subclasses say which."""
+    """Law for the voltage; subclasses define it."""
 
     @abstractmethod
     def begin(self, speed: float) -> Memory:
-        """What it remembers at the start, the motor turning with ``speed``, rad/s."""
+        """Return the controller's initial state, the motor turning with ``speed``, rad/s."""
 
     @abstractmethod
     def act(self, seen: Seen, memory: Memory) -> tuple[float, Memory]:
-        """The voltage over a step, V, and what it remembers at its end."""
+        """Return the voltage over a step, V, and the controller's state at its end."""
 
 
 def within(voltage: float, available: float) -> float:
-    """A voltage between 0 and the one that is available, which may be negative."""
+    """Limit a voltage to between 0 and the one that is available, which may be negative."""
     low, high = min(0.0, available), max(0.0, available)
     return min(max(voltage, low), high)
 
@@ -101,11 +101,13 @@ class SpeedControl(Controller):
                 check(name, getattr(self, name), unit, low=0.0, exclusive=True)
 
     def begin(self, speed: float) -> Memory:
-        """The speed wanted at first, and the integral of the deviation over the reset time."""
+        """Return the speed wanted at first, and the integral of the deviation over the reset
+        time.
+        """
         return (self.speed if self.rise == math.inf else speed), 0.0
 
     def act(self, seen: Seen, memory: Memory) -> tuple[float, Memory]:
-        """Proportional and integral part, limited."""
+        """Return proportional and integral part, limited."""
         wanted, integral = memory
         deviation = wanted - seen.speed
         grown = integral + deviation * seen.h / self.reset_time
@@ -163,11 +165,11 @@ class SpeedGradient(Controller):
         check("low", self.low, "of the voltage", low=0.0, high=1.0)
 
     def begin(self, speed: float) -> Memory:
-        """The running mean of the speed."""
+        """Return the running mean of the speed."""
         return (speed,)
 
     def act(self, seen: Seen, memory: Memory) -> tuple[float, Memory]:
-        """All of the voltage, or the lower part of it."""
+        """Return all of the voltage, or the lower part of it."""
         (mean,) = memory
         mean -= (seen.speed - mean) * math.expm1(-seen.h / self.filter_time)
         way = math.copysign(1.0, seen.available)

@@ -26,8 +26,8 @@ from ..structures.structure import Structure
 from . import averaged
 from .compiled import master_of
 from .controllers import Controller, Seen
-from .held import MEANINGS, NOT_ASKED, HeldVoltageTest, Verdict, with_a_last_one
-from .jumps import Passing, Way, find_passing, stays_beyond, why_none
+from .held import MEANINGS, NOT_ASKED, HeldVoltageTest, Verdict, with_final_chunk
+from .jumps import Passing, SweepLeg, find_passing, stays_beyond, why_none
 from .master import Scheme
 from .revolutions import COLUMNS, Revolutions
 from .schedule import Constant, Ramp, Schedule, check
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from typing_extensions import Unpack
 
-MOST_STEPS = 1e9
+MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 UPWARD = (True, False)  # ways: whether the voltage rises
@@ -45,14 +45,16 @@ HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in th
 
 
 def oscillator_start(structure: Structure) -> dict[str, float | bool]:
-    """The structure's start values in the coupled system: its own harmonic box motion is off."""
+    """Return the structure's start values in the coupled system: its own harmonic box motion is
+    off.
+    """
     off = {"box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
     return {**structure.parameters(), **off}
 
 
 @dataclass(frozen=True)
 class CoupleJob(Job):
-    """A run of the coupled system.
+    """Run of the coupled system.
 
     Attributes
     ----------
@@ -83,33 +85,35 @@ class CoupleJob(Job):
     item: ClassVar[str] = "step"
 
     def steps(self) -> int:
-        """Number of communication steps."""
+        """Return the number of communication steps."""
         return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
     def count(self) -> int:
-        """The steps, and a look at the jumps of them all."""
+        """Return the number of steps, and one for the verdicts on the jumps."""
         return self.steps() + 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """The steps, and one more."""
+        """Return the steps, and one more for the verdicts."""
         return range(self.count())
 
     def chunks(self) -> list[Chunk]:
-        """Steps; the look at them is a chunk of its own."""
-        return with_a_last_one(super().chunks())
+        """Return chunks of steps; the verdicts are a chunk of their own."""
+        return with_final_chunk(super().chunks())
 
-    def whole(self, fmus: Mapping[str, Path]) -> Table:
-        """All of it, here and now."""
+    def run_here(self, fmus: Mapping[str, Path]) -> Table:
+        """Compute the whole run in this process."""
         parts: list[Table] = []
         for chunk in self.chunks():
             carry = parts[-1] if parts else None
             if chunk.first == self.steps():
-                carry = together(parts)
+                carry = concatenate_tables(parts)
             parts.append(self.work(fmus, range(chunk.first, chunk.last), carry))
-        return together(parts)
+        return concatenate_tables(parts)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Some steps: their complete revolutions, and all to go on from; at last the verdicts."""
+        """Compute a chunk of steps, with all that the next one needs; or the verdicts at the
+        end.
+        """
         if items[0] == self.steps():
             assert previous is not None
             nothing = {name: values[:0] for name, values in previous.items()}
@@ -127,11 +131,12 @@ class CoupleJob(Job):
                 run.master.close()
 
     def progress_note(self, first: int) -> str:
-        """The look at the jumps is no step, and may take as long as many."""
+        """Return a note for the verdicts: they are no step, and may take as long as many."""
         return "voltages held where a jump is in doubt" if first == self.steps() else ""
 
     def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> np.ndarray:
-        """What held voltages tell of both ways, shape (2, 3); asked where the record does not tell.
+        """Return the results of the held-voltage test in both directions, shape (2, 3), where the
+        record does not decide.
 
         Parameters
         ----------
@@ -161,17 +166,17 @@ class CoupleJob(Job):
                     verdicts[i] = test.classify(*doubt, threshold, UPWARD[i])
         return np.array(verdicts)
 
-    def way(self, table: Table, up: bool) -> tuple[Way, np.ndarray]:
-        """Revolutions on which the voltage goes up or down, and their rows."""
+    def sweep_leg(self, table: Table, up: bool) -> tuple[SweepLeg, np.ndarray]:
+        """Return the revolutions on which the voltage goes up or down, and their rows."""
         eta0 = np.abs(table["voltage"]) / self.drive.volts(self.structure)
         Omega = np.abs(table["speed"]) / self.structure.omega
         trend = self.schedule.trend(table["time"])
         rows = np.flatnonzero(trend > 0 if up else trend < 0)
-        return Way(table["time"][rows] * self.structure.omega, eta0[rows], Omega[rows]), rows
+        return SweepLeg(table["time"][rows] * self.structure.omega, eta0[rows], Omega[rows]), rows
 
     def passing(self, table: Table, up: bool) -> Passing | None:
-        """How the speed passes the resonance, by rows of the table; None where it does not."""
-        way, rows = self.way(table, up)
+        """Return how the speed passes the resonance, by rows of the table; None if it does not."""
+        way, rows = self.sweep_leg(table, up)
         divide = averaged.dividing_speed(self.structure, self.drive)
         found = find_passing(way, self.drive.b(self.structure), up, divide)
         if found is None:
@@ -181,14 +186,14 @@ class CoupleJob(Job):
         return Passing(row, before, after, found.look, half)
 
     def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
-        """A passing that the record alone does not tell from a steep branch, by steps of the run,
+        """Return a passing that the record does not tell from a steep branch, by steps of the run,
         and the steps between which the voltage goes that way.
         """
         passing = None if self.control else self.passing(table, up)
         theory = theories(self.structure, self.drive)[UPWARD.index(up)]
         if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
             return None
-        rows = self.way(table, up)[1]
+        rows = self.sweep_leg(table, up)[1]
         times = table["time"][[*passing[:3], rows[0], rows[-1]]]
         row, before, after, first, last = (
             min(math.ceil(time / self.scheme.h), self.steps() - 1) for time in times
@@ -196,7 +201,7 @@ class CoupleJob(Job):
         return Passing(row, before, after, passing.look, float(row)), (first, last)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """All revolutions, and the jumps.
+        """Return all revolutions, and the jumps.
 
         Raises
         ------
@@ -235,7 +240,9 @@ class CoupleJob(Job):
         return dataset.assign_coords(jump=("jump", ["up", "down"], names))
 
     def jumps(self, table: Table) -> dict[str, Variable]:
-        """The jumps up and down, or why there is none; where bonded, the averaged theory's too."""
+        """Return the jumps up and down, or why there is none; if bonded, the averaged theory's
+        too.
+        """
         held = [Verdict(*row) for row in table["verdicts"][-1]]
         theory, volts = theories(self.structure, self.drive), self.drive.volts(self.structure)
         final = list(held)
@@ -260,7 +267,9 @@ class CoupleJob(Job):
         return columns | held_columns(final)
 
     def theory(self, jumps: np.ndarray) -> dict[str, Variable]:
-        """Where the averaged theory loses the motion of the bonded structure, and by what."""
+        """Return where the averaged theory loses the motion of the bonded structure, and by
+        what.
+        """
         structure, volts = self.structure, self.drive.volts(self.structure)
         text = "how late the jump comes on the ramp, by the averaged theory (bonded only)"
         late = {"units": "V", "long_name": text}
@@ -277,14 +286,14 @@ class CoupleJob(Job):
         }
 
     def why_none(self, table: Table, up: bool) -> str:
-        """Why the speed does not pass the resonance for good in a direction."""
+        """Return why the speed does not pass the resonance for good in a direction."""
         if self.control:
             return "a controller sets the voltage"
         resonance = averaged.resonance(self.structure, self.drive)
-        return why_none(self.way(table, up)[0], up, resonance)
+        return why_none(self.sweep_leg(table, up)[0], up, resonance)
 
     def attributes(self, table: Table) -> dict[str, str | float]:
-        """Title, and what the coupling has lost of the motor's work."""
+        """Return the title, and what the coupling has lost of the motor's work."""
         state = "bonded" if self.structure.bonded else "delaminated"
         motor = float(table["motor"][-1])
         return {
@@ -295,17 +304,17 @@ class CoupleJob(Job):
 
 
 def no_verdicts() -> Table:
-    """Of steps: they come at the end."""
+    """Return an empty array: chunks of steps have no held-voltage results."""
     return {"verdicts": np.empty((0, len(UPWARD), len(Verdict._fields)))}
 
 
-def together(parts: Sequence[Table]) -> Table:
-    """Tables of chunks put together."""
+def concatenate_tables(parts: Sequence[Table]) -> Table:
+    """Concatenate the tables of chunks."""
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
-    """What held voltages say, and between which voltages."""
+    """Return the results of the held-voltage test, and between which voltages."""
     codes = [int(verdict.what) for verdict in verdicts]
     middles = [0.5 * (verdict.low + verdict.high) for verdict in verdicts]
     errors = [0.5 * abs(verdict.high - verdict.low) for verdict in verdicts]
@@ -319,7 +328,7 @@ def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
 
 
 def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
-    """Voltage, speed, amplitude and rate at jumps; NaN where there is none."""
+    """Return voltage, speed, amplitude and rate at jumps; NaN where there is none."""
 
     def at(name: str, place: str) -> list[float]:
         values = table[name]
@@ -355,7 +364,7 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
 
 
 class Run:
-    """A run under way: both instances, their master, and the revolution under way.
+    """Run under way: both instances, their master, and the present revolution.
 
     Parameters
     ----------
@@ -374,11 +383,13 @@ class Run:
         self.control_memory = job.control.begin(job.speed_start) if job.control else ()
 
     def impact_count(self) -> float:
-        """Impacts so far."""
+        """Return the number of impacts so far."""
         return float(self.oscillator.get("impact_count")[0])
 
     def voltage(self, i: int) -> float:
-        """The voltage over a step, constant: the mean of a ramp, or a controller's part of it."""
+        """Return the voltage over a step, constant: the mean of a ramp, or a controller's part of
+        it.
+        """
         h, control = self.job.scheme.h, self.job.control
         available = self.job.schedule.voltage((i + 0.5) * h)
         if control is None:
@@ -388,7 +399,7 @@ class Run:
         return voltage
 
     def revolve(self, steps: Sequence[int], kept: np.ndarray | None = None) -> Table:
-        """Do some steps; columns of their complete revolutions.
+        """Do some steps; return the columns of their complete revolutions.
 
         Parameters
         ----------
@@ -436,8 +447,8 @@ class Run:
         self.control_memory = tuple(table["control_memory"][-1].tolist())
 
 
-def checked_motor(drive: Drive) -> None:
-    """See that a voltage turns the motor.
+def require_motor(drive: Drive) -> None:
+    """Check that a voltage turns the motor.
 
     Raises
     ------
@@ -458,7 +469,7 @@ def schedule_of(
     back: bool = True,
     spin_up: float | None = None,
 ) -> Schedule:
-    """A schedule from the arguments of :func:`couple`.
+    """Return a schedule from the arguments of :func:`couple`.
 
     Raises
     ------
@@ -497,7 +508,8 @@ def scheme_of(
     tolerance: float | None = None,
     sampled: bool = False,
 ) -> Scheme:
-    """A scheme from the arguments of :func:`couple`; ``sampled`` where each step is a sample.
+    """Return a scheme from the arguments of :func:`couple`; ``sampled`` where each step is a
+    sample.
 
     Raises
     ------
@@ -524,7 +536,7 @@ def couple_job(
     control: Controller | None = None,
     hold: float | None = None,
 ) -> CoupleJob:
-    """The run with this schedule.
+    """Return the job of a run with this schedule.
 
     Raises
     ------
@@ -544,15 +556,15 @@ def couple_job(
     hold = float(hold)
     job = CoupleJob(f"couple_{name}", structure, drive, schedule, scheme, start, hold, control)
     steps = schedule.duration / scheme.h
-    if steps <= MOST_STEPS and job.steps() < 1:
+    if steps <= MAX_STEPS and job.steps() < 1:
         raise InputError(
             f"duration = {schedule.duration:g} s: expected one communication step or more, "
             f"duration >= {scheme.h:g}"
         )
-    if not steps <= MOST_STEPS:
+    if not steps <= MAX_STEPS:
         raise InputError(
             f"{steps:.2g} steps of {scheme.h:g} s in {schedule.duration:g} s: "
-            f"expected at most {MOST_STEPS:g}"
+            f"expected at most {MAX_STEPS:g}"
         )
     return job
 
@@ -672,7 +684,7 @@ def couple(
     from ..access.exported import finder
     from ..running.runner import answer
 
-    checked_motor(drive)
+    require_motor(drive)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     given = (duration, rate, settle, increment, back, spin_up)

@@ -20,7 +20,7 @@ from ..running.runner import gather
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import CoupleJob, checked_motor, couple_job, schedule_of, scheme_of
+from .couple import CoupleJob, couple_job, require_motor, schedule_of, scheme_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +34,9 @@ System = tuple[Structure, Drive]
 
 
 def ends_of(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Voltages over K omega below the resonance and past the jump up, by the averaged theory."""
+    """Return voltages over K omega below the resonance and past the jump up, by the averaged
+    theory.
+    """
     resonance = averaged.resonance(structure, drive)
     first, last = (
         float(averaged.no_load_speed(structure, drive, share * resonance))
@@ -53,10 +55,10 @@ def job_of(
     back: bool,
     step: float | None,
 ) -> CoupleJob:
-    """One of the runs, by non-dimensional numbers."""
+    """Return one of the runs, by non-dimensional numbers."""
     structure, drive = system
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
-    checked_motor(drive)
+    require_motor(drive)
     volts, omega = drive.volts(structure), structure.omega
     first, last = ends_of(structure.as_bonded(), drive) if eta0 is None else eta0
     schedule = schedule_of(

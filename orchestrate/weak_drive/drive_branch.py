@@ -29,7 +29,7 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import checked_motor
+from .couple import require_motor
 from .drive_tracer import (
     ENDS,
     HALVED,
@@ -341,7 +341,7 @@ def drive_branch(
     >>> found.bifurcation_voltage[bonded].values.round(4).tolist()
     [1.5831]
     """
-    checked_motor(drive)
+    require_motor(drive)
     omega = structure.omega
     resonance = averaged.resonance(structure, drive) * omega
     first, last = (0.95 * resonance, 1.25 * resonance) if speed is None else map(float, speed)

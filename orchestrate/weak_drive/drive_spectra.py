@@ -73,22 +73,22 @@ class DriveSpectraJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
 
     def count(self) -> int:
-        """Bonded and delaminated."""
+        """Return two: bonded and delaminated."""
         return len(KINDS)
 
     def items(self, inputs: Inputs) -> Sequence[Structure]:
-        """Both structures."""
+        """Return both structures."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def orders(self) -> np.ndarray:
-        """Lines as multiples of the motor's speed."""
+        """Return the lines as multiples of the motor's speed."""
         orders = np.arange(self.revolutions * self.points // 2 + 1) / self.revolutions
         return np.asarray(orders[orders <= self.highest])
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
-        """Spectra of both masses and the motor's speed."""
+        """Compute spectra of both masses and the motor's speed."""
         found = [self.record(fmus, structure) for structure in items]
         lines = len(self.orders())
         spectra, speeds = [], []
@@ -99,7 +99,7 @@ class DriveSpectraJob(Job):
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
     def record(self, fmus: Mapping[str, Path], structure: Structure) -> tuple[np.ndarray, float]:
-        """Displacements of both masses in space, shape (2, samples), and the mean speed."""
+        """Return displacements of both masses in space, shape (2, samples), and the mean speed."""
         scheme = scheme_of(structure, self.step, "rollback", 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
@@ -119,7 +119,7 @@ class DriveSpectraJob(Job):
                 run.master.close()
 
     def sample(self, run: Run, interval: float) -> np.ndarray:
-        """Displacements of both masses in space at equal times."""
+        """Return displacements of both masses in space at equal times."""
         count = self.revolutions * self.points
         kept = np.empty((count, len(run.master.memory())))
         run.master.revolution = None
@@ -128,13 +128,15 @@ class DriveSpectraJob(Job):
         return np.array([motion.x1 + shaking.box_position, motion.x2 + shaking.box_position])
 
     def hangs(self, fmus: Mapping[str, Path]) -> bool:
-        """Whether the delaminated structure, which jumps earlier, is still at the resonance."""
+        """Return whether the delaminated structure, which jumps earlier, is still at the
+        resonance.
+        """
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         divide = averaged.dividing_speed(structure, self.drive) * structure.omega
         return short.record(fmus, structure)[1] < divide
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Amplitudes over the lines."""
+        """Return amplitudes over the lines."""
         import xarray as xr
 
         orders, speeds = self.orders(), table["speed"]
@@ -161,7 +163,7 @@ class DriveSpectraJob(Job):
 
 
 def voltage_at_resonance(structure: Structure, drive: Drive, share: float = 0.6) -> float:
-    """A voltage at which the motor hangs at the resonance, V.
+    """Return a voltage at which the motor hangs at the resonance, V.
 
     Parameters
     ----------
@@ -197,7 +199,8 @@ def drive_spectra(
     highest: float = 12.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Amplitude spectra of the masses' accelerations in space, shaken by a motor of limited power.
+    """Compute amplitude spectra of the masses' accelerations in space, shaken by a motor of limited
+    power.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where the speed jumps, as the voltage comes and goes.
+"""Jumps of the speed as the voltage comes and goes.
 
 A slow ramp takes the motor along a branch of stationary motions. Where the branch ends the speed
 leaves it and passes the resonance: it changes many times as much as the voltage does meanwhile, and
@@ -21,8 +21,8 @@ import numpy as np
 JUMP, DOUBTFUL, SMOOTH, UNFINISHED = "jump", "doubtful", "smooth", "unfinished"
 
 
-class Way(NamedTuple):
-    """Revolutions on which the voltage goes one way, each shape (n,).
+class SweepLeg(NamedTuple):
+    """Revolutions on which the voltage goes in one direction, each shape (n,).
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Passing(NamedTuple):
 
 
 class Criterion(NamedTuple):
-    """What counts as a jump by the record alone.
+    """Settings for what counts as a jump by the record alone.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class Criterion(NamedTuple):
 
 
 def find_passing(
-    way: Way, b: float, up: bool, divide: float, criterion: Criterion | None = None
+    way: SweepLeg, b: float, up: bool, divide: float, criterion: Criterion | None = None
 ) -> Passing | None:
     """Find where the speed passes the resonance for good; None where it does not.
 
@@ -107,7 +107,7 @@ def find_passing(
     if len(way.time) < 4 * width:
         return None
     time, eta0, speed = (running_mean(values, width) for values in way)
-    rise, change = sign * apart(speed, width), np.abs(apart(eta0, width))
+    rise, change = sign * lag_difference(speed, width), np.abs(lag_difference(eta0, width))
     early = np.flatnonzero(sign * (speed - divide) <= 0.0)
     if not early.size or early[-1] == len(speed) - 1:
         return None
@@ -118,12 +118,14 @@ def find_passing(
         cross = max(0, cross - 2 * width) + int(near[np.argmin(np.abs(near - 2 * width))])
     before, after = extent(fast, cross) if fast[cross] else (cross, cross + width)
     last = min(after + 2 * width, len(way.time) - 1)
-    half = half_slip(np.abs(way.eta0 - way.Omega), before, up)
+    half = half_slip_row(np.abs(way.eta0 - way.Omega), before, up)
     half = float(cross + width) if half is None else half
     row = math.ceil(half)
     if not fast[cross]:
         return Passing(row, before, last, SMOOTH, half)
-    top = before + int(np.argmax(rise[before : after + 1] / apart(time, width)[before : after + 1]))
+    top = before + int(
+        np.argmax(rise[before : after + 1] / lag_difference(time, width)[before : after + 1])
+    )
     if after == len(rise) - 1 and rise[-1] > 0.5 * rise[top]:
         return Passing(row, before, last, UNFINISHED, half)
     slip = sign * (way.eta0 - way.Omega)
@@ -142,17 +144,19 @@ def find_passing(
 
 
 def running_mean(values: np.ndarray, width: int) -> np.ndarray:
-    """Means of ``width`` values each: motions that repeat after some revolutions look steady."""
+    """Return means of ``width`` values each: motions that repeat after some revolutions look
+    steady.
+    """
     return np.convolve(values, np.full(width, 1.0 / width), "valid")
 
 
-def apart(values: np.ndarray, width: int) -> np.ndarray:
-    """Differences of values ``width`` places apart."""
+def lag_difference(values: np.ndarray, width: int) -> np.ndarray:
+    """Return differences of values ``width`` rows apart."""
     return np.asarray(values[width:] - values[:-width])
 
 
 def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
-    """First and last place of the stretch of true values around ``top``."""
+    """Return first and last index of the stretch of true values around ``top``."""
     breaks = np.flatnonzero(~runs)
     before, after = breaks[breaks < top], breaks[breaks > top]
     return (
@@ -161,8 +165,10 @@ def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
     )
 
 
-def half_slip(slip: np.ndarray, before: int, up: bool) -> float | None:
-    """Where the slip falls below (down: rises above) half of its largest value, between rows."""
+def half_slip_row(slip: np.ndarray, before: int, up: bool) -> float | None:
+    """Return where the slip falls below (down: rises above) half of its largest value, between
+    rows.
+    """
     level = slip[before:]
     highest, half = int(np.argmax(level)), 0.5 * float(level.max())
     first = highest + 1 if up else 0
@@ -177,15 +183,15 @@ def half_slip(slip: np.ndarray, before: int, up: bool) -> float | None:
 
 
 def stays_beyond(time: np.ndarray, Omega: np.ndarray, divide: float) -> float:
-    """Time from which a speed stays above ``divide``; NaN where it ends below."""
+    """Return the time from which a speed stays above a threshold; NaN where it ends below."""
     below = np.flatnonzero(Omega <= divide)
     if not len(Omega) or Omega[-1] <= divide:
         return math.nan
     return float(time[below[-1] + 1]) if below.size else float(time[0])
 
 
-def why_none(way: Way, up: bool, resonance: float) -> str:
-    """Why the speed does not pass the resonance for good.
+def why_none(way: SweepLeg, up: bool, resonance: float) -> str:
+    """Return why the speed does not pass the resonance for good.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A co-simulation master for two FMUs: the structure in its box, and the motor that shakes the box.
+"""Co-simulation master for two FMUs: the structure in its box, and the motor that shakes the box.
 
 The structure's ``box_force`` depends on its states only, the box's acceleration on the force: there
 is no algebraic loop, but what each side assumes of the other over a step decides everything.
@@ -36,28 +36,35 @@ from .exchange import (
 from .extremes import Revolution
 from .polynomials import end_slope, matched_cubic, parabola, work
 
-OWN = (
+MASTER_STATE = (
     *("time", "voltage", "slope", "force_before", "h_before"),
     *("acceleration_before", "jerk_before", "level"),
 )
-PLACES = {  # of what is remembered
+STATE_INDEX = {  # of what is remembered
     name: place
-    for place, name in enumerate((*OWN, *OscillatorOutputs._fields, *ShakerOutputs._fields))
+    for place, name in enumerate(
+        (*MASTER_STATE, *OscillatorOutputs._fields, *ShakerOutputs._fields)
+    )
 }
 
 
 def parts_of(
     numbers: Any,
 ) -> tuple[Any, OscillatorOutputs, ShakerOutputs, Any]:
-    """The master's own part of its memory, both outputs, the balance's; of columns of many too."""
-    motion, shaking = PLACES[OscillatorOutputs._fields[0]], PLACES[ShakerOutputs._fields[0]]
-    rest = len(PLACES)
+    """Return the master's own part of its state, both outputs, the balance's; of columns of many
+    too.
+    """
+    motion, shaking = (
+        STATE_INDEX[OscillatorOutputs._fields[0]],
+        STATE_INDEX[ShakerOutputs._fields[0]],
+    )
+    rest = len(STATE_INDEX)
     ends = OscillatorOutputs(*numbers[motion:shaking]), ShakerOutputs(*numbers[shaking:rest])
     return numbers[:motion], *ends, numbers[rest:]
 
 
 class Algorithm(NamedTuple):
-    """A way to do a communication step.
+    """Way to do a communication step.
 
     Attributes
     ----------
@@ -90,7 +97,7 @@ ALGORITHMS = {
 
 @dataclass(frozen=True)
 class Scheme:
-    """How a step is done.
+    """Settings of a communication step.
 
     Attributes
     ----------
@@ -207,7 +214,7 @@ class Master:
         self._do = self._one_after_the_other if scheme.passes else self._both_at_once
 
     def step(self, voltage: float, h: float | None = None) -> None:
-        """One communication interval at a constant voltage, V; of length ``h``, s, where given."""
+        """Do one communication interval at a constant voltage, V; of length ``h``, s, if given."""
         h = h or self.scheme.h
         begin = self.time
         if self.scheme.tolerance:
@@ -226,7 +233,7 @@ class Master:
         h: float | None = None,
         kept: np.ndarray | None = None,
     ) -> int:
-        """Intervals one after the other, up to the first that completes the revolution.
+        """Do intervals one after the other, up to the first that completes the revolution.
 
         Parameters
         ----------
@@ -253,7 +260,7 @@ class Master:
         return len(voltages)
 
     def _parts_by_defect(self, voltage: float, h: float) -> None:
-        """An interval in steps of h, h/2, h/4 ... as their defects ask for.
+        """Do an interval in steps of h, h/2, h/4 ... as their defects ask for.
 
         A step is halved where its defect is too large. After one with a defect that twice the
         length would still do with, the next is twice as long, where that ends on its own grid: so
@@ -275,12 +282,14 @@ class Master:
                 self._begin_anew()
 
     def _begin_anew(self) -> None:
-        """Nothing is extrapolated over an impact: the force has a corner there, or jumps."""
+        """Restart the extrapolation after an impact: the force has a corner there, or jumps."""
         self.slope = self.h_before = 0.0
         self.shaking = self._look(self.motion)
 
     def _step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
-        """A step, unless it is refused for its defect; the defect over the work exchanged in it."""
+        """Do a step, unless it is refused for its defect; return the defect over the work exchanged
+        in it.
+        """
         if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
             self.voltage = voltage
             self.shaking = self._look(self.motion)
@@ -299,13 +308,13 @@ class Master:
         return size
 
     def _over_exchanged(self, done: Step, taken: float, defect: float) -> float:
-        """A defect over the work that motor, box and masses exchange in the step."""
+        """Return a defect over the work that motor, box and masses exchange in the step."""
         given = done.shaking.motor_energy - self.shaking.motor_energy
         exchanged = abs(taken) + abs(given)
         return abs(defect) / exchanged if exchanged else 0.0
 
     def _go_on(self, done: Step, h: float) -> None:
-        """To the step's end."""
+        """Go to the step's end."""
         if self.revolution:
             ends = self.motion, self.shaking
             self.revolution.add(self.structure, ends, done, self.time, h)
@@ -323,19 +332,21 @@ class Master:
         return tuple.__new__(ShakerOutputs, self.shaker.get())
 
     def _look(self, motion: OscillatorOutputs) -> ShakerOutputs:
-        """The shaker's outputs with the force at the present point, and its slope, as inputs."""
+        """Return the shaker's outputs with the force at the present point, and its slope, as
+        inputs.
+        """
         self.shaker.put(motion.box_force, self.slope, 0.0, 0.0, self.voltage)
         return self._shaking()
 
     # -- what each side assumes of the other --
 
     def force_of(self, motion: OscillatorOutputs, h: float) -> Cubic:
-        """The force over a step to ``motion``: with its ends, mean and moment."""
+        """Return the force over a step to ``motion``: with its ends, mean and moment."""
         mean, moment = motion.box_impulse / h, motion.box_impulse_moment / (h * h)
         return matched_cubic(self.motion.box_force, motion.box_force, mean, moment, h)
 
     def _told_force(self, motion: OscillatorOutputs, h: float) -> Cubic:
-        """The force over that step as the shaker is told it."""
+        """Return the force over that step as it is passed to the shaker."""
         if self.scheme.matched:
             return self.force_of(motion, h)
         return parabola(
@@ -343,7 +354,9 @@ class Master:
         )
 
     def _told_acceleration(self, after: ShakerOutputs, h: float) -> Cubic:
-        """The acceleration over a step that the shaker has done, as the structure is told it."""
+        """Return the acceleration over a step that the shaker has done, as it is passed to the
+        structure.
+        """
         now = self.shaking
         first, last = now.box_acceleration, after.box_acceleration
         if not self.scheme.matched:
@@ -353,7 +366,7 @@ class Master:
         return matched_cubic(first, last, mean, moment, h)
 
     def _extrapolated_acceleration(self) -> Cubic:
-        """From what is known at this point and the one before."""
+        """Extrapolate the acceleration from this point and the one before."""
         value, jerk, h = self.shaking.box_acceleration, self.shaking.box_jerk, self.h_before
         terms = self._algorithm.terms
         if terms == 1:
@@ -367,7 +380,7 @@ class Master:
         return value, jerk, 2.0 * (bend + twist * h), 6.0 * twist
 
     def _extrapolated_force(self) -> Cubic:
-        """The force where both sides go at once: held constant, or a line."""
+        """Extrapolate the force where both instances go at once: held constant, or a line."""
         force, h = self.motion.box_force, self.h_before
         line = self._algorithm.terms > 1 and h
         return force, (force - self.force_before) / h if line else 0.0, 0.0, 0.0
@@ -375,7 +388,7 @@ class Master:
     # -- the schemes --
 
     def _both_at_once(self, h: float) -> Step:
-        """Each with what is known of the other before the step."""
+        """Step each with what is known of the other before the step (Jacobi)."""
         acceleration = self._extrapolated_acceleration()
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
@@ -384,7 +397,9 @@ class Master:
         return Step(acceleration, self._motion(), self._shaking())
 
     def _one_after_the_other(self, h: float) -> Step:
-        """Structure, then shaker; once, twice, or until the force does not change."""
+        """Step structure, then shaker (Gauss-Seidel); once, twice, or until the force does not
+        change.
+        """
         passes = self._algorithm.passes
         if self.scheme.goes_back:
             self.oscillator.save()
@@ -405,7 +420,7 @@ class Master:
         return Step(acceleration, motion, self._shaking())
 
     def _pass(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
-        """Both sides once over the step; the structure's end, and the force told to the shaker."""
+        """Step both once; return the structure's end, and the force passed to the shaker."""
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
         motion = self._motion()
@@ -415,7 +430,7 @@ class Master:
         return motion, force
 
     def _settled(self, motion: OscillatorOutputs, last: OscillatorOutputs) -> bool:
-        """Whether an iteration has changed nothing but roundings."""
+        """Return whether an iteration has changed nothing but roundings."""
         now, then = (
             (found.box_force, found.box_impulse, found.box_impulse_moment)
             for found in (motion, last)
@@ -427,18 +442,18 @@ class Master:
 
     def memory(self) -> list[float]:
         """What the master itself remembers: with both FMUs' states, all that a run goes on from."""
-        own = [float(getattr(self, name)) for name in OWN]
+        own = [float(getattr(self, name)) for name in MASTER_STATE]
         return [*own, *self.motion, *self.shaking, *self.balance.memory()]
 
     def remember(self, numbers: Sequence[float]) -> None:
         """The inverse of :meth:`memory`."""
         own, self.motion, self.shaking, balance = parts_of(numbers)
-        for name, value in zip(OWN, own, strict=True):
+        for name, value in zip(MASTER_STATE, own, strict=True):
             setattr(self, name, value)
         self.level = int(self.level)
         self.balance.remember(balance)
 
     def close(self) -> None:
-        """Free the states kept in the FMUs."""
+        """Free the states saved in the FMUs."""
         self.oscillator.close()
         self.shaker.close()

@@ -27,9 +27,9 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from .controllers import Controller
-from .couple import CoupleJob, Run, checked_motor, couple_job, no_verdicts, schedule_of, scheme_of
-from .held import with_a_last_one
-from .master import PLACES, Master, parts_of
+from .couple import CoupleJob, Run, couple_job, no_verdicts, require_motor, schedule_of, scheme_of
+from .held import with_final_chunk
+from .master import STATE_INDEX, Master, parts_of
 from .revolutions import COLUMNS
 from .schedule import Schedule, check
 
@@ -62,7 +62,7 @@ KEPT = "sampled "  # before the names of samples in a table that has revolutions
 
 @dataclass(frozen=True)
 class PassageJob(Job):
-    """A run of the coupled system with all its communication points.
+    """Run of the coupled system with all its communication points.
 
     Attributes
     ----------
@@ -81,19 +81,19 @@ class PassageJob(Job):
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
-        """The steps, and a look at the jumps of them all."""
+        """Return the number of steps, and one for the verdicts on the jumps."""
         return self.run.count()
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """The steps, and one more."""
+        """Return the steps, and one more for the verdicts."""
         return range(self.count())
 
     def chunks(self) -> list[Chunk]:
-        """Steps; the look at them is a chunk of its own."""
-        return with_a_last_one(super().chunks())
+        """Return chunks of steps; the verdicts are a chunk of their own."""
+        return with_final_chunk(super().chunks())
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Some steps: revolutions, ends, and all to go on from; at last the verdicts."""
+        """Compute some steps, with all that the next chunk needs; or the verdicts at the end."""
         if items[0] == self.run.steps():
             assert previous is not None
             nothing = {name: values[:0] for name, values in previous.items()}
@@ -116,7 +116,7 @@ class PassageJob(Job):
                 run.master.close()
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Samples over time, and the jumps."""
+        """Return samples over time, and the jumps."""
         import xarray as xr
 
         of_run = {name: table[name] for name in (*COLUMNS, "verdicts")}
@@ -136,7 +136,7 @@ class PassageJob(Job):
         return xr.Dataset(variables, time, {**revolutions.attrs, **title}).merge(of_jumps)
 
     def centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
-        """Times around which samples are kept, and what they are."""
+        """Return times around which samples are stored, and what they are."""
         jumps = revolutions.jump_time.values
         passed = float(revolutions.passage_time)
         if self.around is None:
@@ -149,13 +149,13 @@ class PassageJob(Job):
 
 
 def samples(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
-    """Communication points of a master's memories, in the order of ``SAMPLES``."""
+    """Return the communication points of a master's states, in the order of ``SAMPLES``."""
     own, motion, shaking, balance = parts_of(kept.T)
     accounts = copy(master.balance)
     accounts.remember(balance)
     energies = accounts.energies(motion, shaking)
     return (
-        *(own[PLACES["time"]], own[PLACES["voltage"]], shaking.speed, shaking.angle),
+        *(own[STATE_INDEX["time"]], own[STATE_INDEX["voltage"]], shaking.speed, shaking.angle),
         *(motion.x1, motion.x2, motion.v1, motion.v2),
         *(shaking.box_position, shaking.box_velocity, shaking.box_acceleration),
         *(energies.motor, energies.box_damper, energies.impact_loss),
@@ -180,7 +180,7 @@ def passage(
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """A run through the resonance at full resolution: time histories, speed, energies.
+    """Run through the resonance at full resolution: time histories, speed, energies.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def passage(
     >>> found.x1.dims, found.sizes["time"], found.speed.attrs["units"]
     (('time',), 1000, 'rad/s')
     """
-    checked_motor(drive)
+    require_motor(drive)
     if around is not None:
         check("around", around, "s", low=0.0, exclusive=True)
     if spin_up is None and speed_start is not None:
@@ -234,7 +234,8 @@ def passage(
 def waterfall(
     found: xr.Dataset, *, mass: int = 1, revolutions: int = 16, highest: float = 6.0
 ) -> xr.Dataset:
-    """Spectra of a mass's acceleration in space over the motor's revolutions, one after the other.
+    """Compute spectra of a mass's acceleration in space over the motor's revolutions, one after the
+    other.
 
     Parameters
     ----------
@@ -305,7 +306,7 @@ def waterfall(
 
 
 def over_angle(found: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Times and displacements in space at equal angles, ``points`` a revolution.
+    """Return times and displacements in space at equal angles, ``points`` per revolution.
 
     Where the motor turns back for a moment, samples are left out until it has come as far again.
     """
@@ -321,14 +322,14 @@ def over_angle(found: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, n
 
 
 def hann_lines(pieces: np.ndarray) -> np.ndarray:
-    """Amplitudes of the lines of each piece, with a Hann window."""
+    """Return amplitudes of the lines of each piece, with a Hann window."""
     window = np.hanning(pieces.shape[1] + 1)[:-1]
     centred = (pieces - pieces.mean(axis=1, keepdims=True)) * window
     return np.asarray(np.abs(np.fft.rfft(centred, axis=1)) * 2.0 / window.sum())
 
 
 def check_spectra(found: Any, mass: int, revolutions: int, highest: float) -> None:
-    """See that spectra over revolutions can be made.
+    """Check that spectra over revolutions can be made.
 
     Raises
     ------

@@ -36,7 +36,7 @@ COLUMNS = {
 
 
 class Revolutions:
-    """Turns a run into rows, one a revolution.
+    """Converts a run into rows, one per revolution.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Revolutions:
         self._now = master.revolution = Revolution.begin(master.motion, master.shaking)
 
     def add(self) -> tuple[float, ...] | None:
-        """Look at the state after a step.
+        """Take the state after a step into account.
 
         Returns
         -------
@@ -71,7 +71,7 @@ class Revolutions:
         return row
 
     def _row(self, time: float, speed: float, impacts: float) -> tuple[float, ...]:
-        """What is kept of a revolution that ends at ``time``."""
+        """Return the row of a revolution that ends at ``time``."""
         master, now = self._master, self._now
         ranges = 0.5 * (now.x1_high - now.x1_low), 0.5 * (now.box_high - now.box_low)
         energies = master.balance.energies(master.motion, master.shaking)

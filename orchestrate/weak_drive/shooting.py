@@ -23,7 +23,7 @@ from ..structures.structure import Structure
 from .compiled import master_of
 from .couple import oscillator_start
 from .extremes import Revolution
-from .master import PLACES, Master, Scheme
+from .master import STATE_INDEX, Master, Scheme
 
 STARTS = {  # start values of the shaker and of the structure by the outputs that they are
     **{"box_position": "position_start", "box_velocity": "velocity_start", "speed": "speed_start"},
@@ -236,7 +236,7 @@ class Shooter:
         turned = master.shaking.angle - self.angle - self.turns * TURN
         end = np.append(self.state(master), turned)
         master.close()
-        contact = bool((kept[:, PLACES["x1"]] == kept[:, PLACES["x2"]]).any())
+        contact = bool((kept[:, STATE_INDEX["x1"]] == kept[:, STATE_INDEX["x2"]]).any())
         return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
 
     def observe_period(self, unknowns: Floats) -> Period:
@@ -247,7 +247,7 @@ class Shooter:
         kept = np.empty((self.count + 1, len(master.memory())))
         kept[0] = master.memory()
         master.run([voltage] * self.count, kept=kept[1:])
-        gaps = kept[:, PLACES["x2"]] - kept[:, PLACES["x1"]]
+        gaps = kept[:, STATE_INDEX["x2"]] - kept[:, STATE_INDEX["x1"]]
         master.close()
         impacts = int(self.fmus[0].get("impact_count")[0])
         clear = int(np.argmax(gaps))

@@ -88,11 +88,11 @@ def test_fmus_of_other_forms_step_in_python():
 def test_a_library_that_cannot_be_loaded_is_no_failure(tmp_path, monkeypatch):
     (tmp_path / "compiled.so").write_bytes(b"nothing")
     monkeypatch.setattr(compiled, "library", lambda source: tmp_path / "compiled.so")
-    assert compiled.loaded.__wrapped__() is None
+    assert compiled.step_function.__wrapped__() is None
 
 
 def test_without_a_library_python_does_it(monkeypatch):
-    monkeypatch.setattr(compiled, "loaded", lambda: None)
+    monkeypatch.setattr(compiled, "step_function", lambda: None)
     with master(QUICK, Scheme(), rest(), kind=master_of) as m:
         assert type(m) is Master
 

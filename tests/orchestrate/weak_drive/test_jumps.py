@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, SMOOTH, Criterion, Way, find_passing
+from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, SMOOTH, Criterion, SweepLeg, find_passing
 
 from .coupled import BEAM, QUICK
 from .test_couple import run
@@ -94,7 +94,7 @@ def way(speed, rate):
     """A ramp from 1.2 to 1.6 and the speed over its voltage, a revolution each 5/omega."""
     time = np.arange(0.0, 0.4 / rate, 5.0)
     eta0 = 1.2 + rate * time
-    return Way(time, eta0, speed(eta0, time))
+    return SweepLeg(time, eta0, speed(eta0, time))
 
 
 @pytest.mark.parametrize("rate", [1e-4, 1e-5])
@@ -139,5 +139,5 @@ def test_steps_of_the_voltage_are_no_jumps():
     time = np.arange(0.0, 4000.0, 5.0)
     count, since = np.floor(time / 200.0), time % 200.0
     speed = 1.2 + 0.02 * (count - np.exp(-0.02 * since))
-    steps = Way(time, 1.2 + 0.02 * count, speed)
+    steps = SweepLeg(time, 1.2 + 0.02 * count, speed)
     assert find_passing(steps, 0.02, up=True, divide=1.4).look == SMOOTH

@@ -17,7 +17,7 @@ from orchestrate.weak_drive.jumps import (
     UNFINISHED,
     Criterion,
     Passing,
-    Way,
+    SweepLeg,
     find_passing,
 )
 from orchestrate.weak_drive.master import Scheme
@@ -75,7 +75,7 @@ def test_no_record_makes_a_jump_of_a_vertical_branch():
     assert "without a gap" in str(found.no_jump.item())
     falls = np.flatnonzero(found.eta0.diff("revolution").values < -1e-9)
     time = found.time.values[falls] * edge.structure.omega
-    way = Way(time, found.eta0.values[falls], found.Omega.values[falls])
+    way = SweepLeg(time, found.eta0.values[falls], found.Omega.values[falls])
     b, threshold = edge.drive.b(edge.structure), averaged.dividing_speed(*edge)
     assert find_passing(way, b, up=False, divide=threshold).look == DOUBTFUL
     weaker = Criterion(strength=0.0)
@@ -105,7 +105,7 @@ def test_a_verdict_is_the_same_from_other_checkpoints_and_at_full_resolution():
     scheme = Scheme("rollback", 0.4 / omega)
     job = couple_job(*CLOSE, ramp, scheme)
     fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
-    expected = job.whole(fmus)["verdicts"]
+    expected = job.run_here(fmus)["verdicts"]
     assert expected[0, 1, 0] == LOST
     found = passage(*CLOSE, voltage=ramp, step=0.4 / omega, progress=False)
     middle = expected[0, 1, 1:].mean()
