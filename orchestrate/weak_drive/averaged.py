@@ -190,9 +190,9 @@ def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
     late = Polynomial([1.0, lag])
     still = 0.5 * complex(above(at) / below(at)).real
     free = Polynomial([0.0, 0.0, 1.0]) * late + Polynomial([0.0, drive.b(structure)])
-    whole = (free + drive.epsilon * still * late) * bottom * other_bottom
+    polynomial = (free + drive.epsilon * still * late) * bottom * other_bottom
     driven = 0.25 * drive.epsilon * late * (top * other_bottom + other_top * bottom)
-    roots = Polynomial((whole - driven).coef.real[1:]).roots()
+    roots = Polynomial((polynomial - driven).coef.real[1:]).roots()
     return np.asarray(roots[np.argsort(-roots.real)])
 
 
@@ -220,14 +220,14 @@ def torus_points(
 
     speeds = np.linspace(low, high, count)
     signs = np.sign([test(Omega) for Omega in speeds])
-    found = []
+    points = []
     for i in np.flatnonzero(signs[1:] != signs[:-1]):
         Omega = float(brentq(test, speeds[i], speeds[i + 1], xtol=1e-12))
         roots = growth(structure, drive, Omega)
         pairs = roots[np.abs(roots.imag) > 1e-9]
         if np.abs(pairs.real).min() < 1e-6:  # no two real ones of opposite signs
-            found.append(Place(float(no_load_speed(structure, drive, Omega)), Omega, TORUS))
-    return found
+            points.append(Place(float(no_load_speed(structure, drive, Omega)), Omega, TORUS))
+    return points
 
 
 def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | None]:
@@ -241,17 +241,17 @@ def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | No
     """
     ends, at = folds(structure, drive), resonance(structure, drive)
     torus = torus_points(structure, drive, 0.8 * at, 1.5 * at, count=151)
-    places = sorted([*ends, *torus], key=lambda place: place.Omega)
-    if not places:
+    points = sorted([*ends, *torus], key=lambda point: point.Omega)
+    if not points:
         return None, None
-    speeds = [place.Omega for place in places]
+    speeds = [point.Omega for point in points]
     between = [0.5 * (low + high) for low, high in pairwise(speeds)]
     middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]]
     stable = [growth(structure, drive, Omega)[0].real < 0.0 for Omega in middles]
-    first, last = (ends[0], ends[-1]) if ends else (places[-1], places[0])
-    below = [i for i in range(places.index(first) + 1) if stable[i]]
-    beyond = [i for i in range(places.index(last) + 1, len(stable)) if stable[i]]
-    return (places[below[-1]] if below else None, places[beyond[0] - 1] if beyond else None)
+    first, last = (ends[0], ends[-1]) if ends else (points[-1], points[0])
+    below = [i for i in range(points.index(first) + 1) if stable[i]]
+    beyond = [i for i in range(points.index(last) + 1, len(stable)) if stable[i]]
+    return (points[below[-1]] if below else None, points[beyond[0] - 1] if beyond else None)
 
 
 def on_the_axis(polynomial: Polynomial) -> Polynomial:

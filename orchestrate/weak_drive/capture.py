@@ -195,9 +195,9 @@ def run_until_settled(
         piece = steps[first : first + max(500, first // 5)]
         rows = run.revolve(piece)
         times, speeds = np.append(times, rows["time"]), np.append(speeds, rows["speed"])
-        found = outcome(times, speeds)
-        if found.decision != UNDECIDED:
-            return found
+        decision = outcome(times, speeds)
+        if decision.decision != UNDECIDED:
+            return decision
         first += len(piece)
     return Outcome(UNDECIDED)
 
@@ -301,14 +301,14 @@ def values_of(over: str | None, values: ArrayLike | None, system: System) -> tup
     if over is None:
         return ()
     try:
-        found = tuple(np.asarray(values, dtype=float).ravel().tolist())
+        numbers = tuple(np.asarray(values, dtype=float).ravel().tolist())
     except (TypeError, ValueError):
         raise InputError(f"values = {values!r}: expected numbers, such as [1.0, 2.0]") from None
-    if not found or len(set(found)) != len(found):
+    if not numbers or len(set(numbers)) != len(numbers):
         raise InputError(f"values = {values!r}: expected one number or more, each once")
-    for value in found:
+    for value in numbers:
         with_value(system, over, value)
-    return found
+    return numbers
 
 
 def capture(
@@ -397,7 +397,7 @@ def capture(
     """
     require_motor(drive)
     system = System(structure, drive)
-    found = values_of(over, values, system)
+    parameter_values = values_of(over, values, system)
     voltages = voltages_of(voltage, count)
     check("tolerance", tolerance, "V", low=0.0, exclusive=True)
     if time is not None:
@@ -406,7 +406,7 @@ def capture(
     scheme = scheme_of(structure, step, sampled=control is not None)
     job = CaptureJob(
         "capture",
-        *(structure, drive, over or "", found, voltages),
+        *(structure, drive, over or "", parameter_values, voltages),
         *(float(tolerance), float(time or 0.0), stay, scheme, control),
     )
     for each in job.items({}):  # refused now, not amid the work

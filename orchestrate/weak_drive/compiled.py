@@ -81,7 +81,9 @@ def master_of(
     start_time: float = 0.0,
 ) -> Master:
     """Return the fastest master that there is for two instances; see :class:`.master.Master`."""
-    native = all(one.is_fmi3 and not one.description.needs_tool for one in (oscillator, shaker))
+    native = all(
+        channel.is_fmi3 and not channel.description.needs_tool for channel in (oscillator, shaker)
+    )
     kind = CompiledMaster if native and step_function() else Master
     return kind(oscillator, shaker, structure, scheme, start_time)
 
@@ -100,7 +102,7 @@ class CompiledMaster(Master):
         super().__init__(oscillator, shaker, structure, scheme, start_time)
         self._run = step_function()
         self._pair = pair_of(self.oscillator, self.shaker, structure, scheme)
-        self._memory = array("d", self.memory())
+        self._memory = array("d", self.get_state())
         self._seen = array("d", bytes(8 * len(PLACES)))
 
     def step(self, voltage: float, h: float | None = None) -> None:
@@ -117,9 +119,9 @@ class CompiledMaster(Master):
         """Do intervals, as :meth:`.master.Master.run`; an ``array`` of voltages is used without a
         copy.
         """
-        given = voltages if isinstance(voltages, array) else array("d", voltages)
+        buffer = voltages if isinstance(voltages, array) else array("d", voltages)
         if kept is not None:
-            rows = len(given), len(self._memory)
+            rows = len(buffer), len(self._memory)
             assert kept.shape == rows and kept.flags.c_contiguous and kept.dtype == np.float64
         revolution = self.revolution
         if revolution:
@@ -128,13 +130,13 @@ class CompiledMaster(Master):
         self.shaker.begin()
         done = self._run(
             *(byref(self._pair), address(self._memory)),
-            *(address(self._seen) if revolution else None, address(given)),
-            *(first, len(given), h or self.scheme.h),
+            *(address(self._seen) if revolution else None, address(buffer)),
+            *(first, len(buffer), h or self.scheme.h),
             None if kept is None else kept.ctypes.data,
         )
         if done < 0:
             raise self._failure()
-        super().remember(self._memory.tolist())
+        super().set_state(self._memory.tolist())
         if revolution:
             for name, value in zip(PLACES, self._seen, strict=True):
                 setattr(revolution, name, value)
@@ -148,9 +150,9 @@ class CompiledMaster(Master):
                 return channel.failure(side.failed.decode(), side.status)
         raise AssertionError("a step failed, and none of both sides")
 
-    def remember(self, numbers: Sequence[float]) -> None:
-        """As :meth:`.master.Master.remember`."""
-        super().remember(numbers)
+    def set_state(self, numbers: Sequence[float]) -> None:
+        """Return to a state, as :meth:`.master.Master.set_state`."""
+        super().set_state(numbers)
         self._memory[:] = array("d", numbers)
 
 
@@ -175,10 +177,10 @@ def pair_of(oscillator: Channel, shaker: Channel, structure: Structure, scheme: 
 
 def side_of(channel: Channel) -> Side:
     """Return one instance; its channel has to live as long."""
-    found = channel.pointers()
-    counts = len(found.inputs), len(found.outputs)
+    pointers = channel.pointers()
+    counts = len(pointers.inputs), len(pointers.outputs)
     return Side(
-        *(found.instance, *found.functions),
-        *(found.inputs, found.outputs),
-        *(*counts, pointer(found.saved_state)),
+        *(pointers.instance, *pointers.functions),
+        *(pointers.inputs, pointers.outputs),
+        *(*counts, pointer(pointers.saved_state)),
     )

@@ -25,7 +25,7 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
 from .compiled import master_of
-from .controllers import Controller, Seen
+from .controllers import Controller, Measurement
 from .held import MEANINGS, NOT_ASKED, HeldVoltageTest, Verdict, with_final_chunk
 from .jumps import Passing, SweepLeg, find_passing, stays_beyond, why_none
 from .master import Scheme
@@ -102,13 +102,13 @@ class CoupleJob(Job):
 
     def run_here(self, fmus: Mapping[str, Path]) -> Table:
         """Compute the whole run in this process."""
-        parts: list[Table] = []
+        chunks: list[Table] = []
         for chunk in self.chunks():
-            carry = parts[-1] if parts else None
+            previous = chunks[-1] if chunks else None
             if chunk.first == self.steps():
-                carry = concatenate_tables(parts)
-            parts.append(self.work(fmus, range(chunk.first, chunk.last), carry))
-        return concatenate_tables(parts)
+                previous = concatenate_tables(chunks)
+            chunks.append(self.work(fmus, range(chunk.first, chunk.last), previous))
+        return concatenate_tables(chunks)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Compute a chunk of steps, with all that the next one needs; or the verdicts at the
@@ -125,8 +125,8 @@ class CoupleJob(Job):
             run = Run(self, oscillator, shaker)
             try:
                 if previous is not None:
-                    run.remember(previous)
-                return {**run.revolve(items), **run.memory(), **no_verdicts()}
+                    run.set_state(previous)
+                return {**run.revolve(items), **run.get_state(), **no_verdicts()}
             finally:
                 run.master.close()
 
@@ -176,14 +176,14 @@ class CoupleJob(Job):
 
     def passing(self, table: Table, up: bool) -> Passing | None:
         """Return how the speed passes the resonance, by rows of the table; None if it does not."""
-        way, rows = self.sweep_leg(table, up)
+        leg, rows = self.sweep_leg(table, up)
         divide = averaged.dividing_speed(self.structure, self.drive)
-        found = find_passing(way, self.drive.b(self.structure), up, divide)
-        if found is None:
+        rows_in_leg = find_passing(leg, self.drive.b(self.structure), up, divide)
+        if rows_in_leg is None:
             return None
-        row, before, after = (int(rows[place]) for place in found[:3])
-        half = float(np.interp(found.half, np.arange(len(rows)), rows))
-        return Passing(row, before, after, found.look, half)
+        row, before, after = (int(rows[index]) for index in rows_in_leg[:3])
+        half = float(np.interp(rows_in_leg.half, np.arange(len(rows)), rows))
+        return Passing(row, before, after, rows_in_leg.look, half)
 
     def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
         """Return a passing that the record does not tell from a steep branch, by steps of the run,
@@ -215,7 +215,7 @@ class CoupleJob(Job):
                 f"not one revolution of the motor in {self.schedule.duration:g} s: "
                 "expected a voltage that turns it, and time"
             )
-        found: dict[str, Any] = {
+        variables: dict[str, Any] = {
             name: ("revolution", table[name], {"units": unit, "long_name": text})
             for name, (unit, text) in COLUMNS.items()
         }
@@ -234,8 +234,10 @@ class CoupleJob(Job):
         divide = averaged.dividing_speed(self.structure, self.drive)
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
         passed = stays_beyond(table["time"], np.abs(Omega), divide)
-        found["passage_time"] = ((), passed, {"units": "s", "long_name": text})
-        dataset = xr.Dataset({**found, **self.jumps(table)}, coordinates, self.attributes(table))
+        variables["passage_time"] = ((), passed, {"units": "s", "long_name": text})
+        dataset = xr.Dataset(
+            {**variables, **self.jumps(table)}, coordinates, self.attributes(table)
+        )
         names = {"long_name": "direction in which the speed jumps"}
         return dataset.assign_coords(jump=("jump", ["up", "down"], names))
 
@@ -275,9 +277,9 @@ class CoupleJob(Job):
         late = {"units": "V", "long_name": text}
         if not structure.bonded:
             return {"jump_lag": ("jump", [math.nan, math.nan], late)}
-        places = averaged.losses(structure, self.drive)
-        ends = [volts * place.eta0 if place else math.nan for place in places]
-        kinds = [place.kind if place else "" for place in places]
+        points = averaged.losses(structure, self.drive)
+        ends = [volts * point.eta0 if point else math.nan for point in points]
+        kinds = [point.kind if point else "" for point in points]
         text = "voltage at which the motion is lost, by the averaged theory"
         return {
             "averaged_jumps": ("jump", ends, {"units": "V", "long_name": text}),
@@ -308,9 +310,9 @@ def no_verdicts() -> Table:
     return {"verdicts": np.empty((0, len(UPWARD), len(Verdict._fields)))}
 
 
-def concatenate_tables(parts: Sequence[Table]) -> Table:
+def concatenate_tables(tables: Sequence[Table]) -> Table:
     """Concatenate the tables of chunks."""
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
 
 
 def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
@@ -330,12 +332,12 @@ def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
 def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
     """Return voltage, speed, amplitude and rate at jumps; NaN where there is none."""
 
-    def at(name: str, place: str) -> list[float]:
+    def at(name: str, row_name: str) -> list[float]:
         values = table[name]
         return [
             math.nan
             if jump is None
-            else float(np.interp(getattr(jump, place), np.arange(len(values)), values))
+            else float(np.interp(getattr(jump, row_name), np.arange(len(values)), values))
             for jump in jumps
         ]
 
@@ -355,8 +357,8 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
         "jump_amplitude_after": ("amplitude", "after", "m", "amplitude after the jump"),
     }
     columns: dict[str, Variable] = {
-        key: ("jump", at(name, place), {"units": unit, "long_name": text})
-        for key, (name, place, unit, text) in wanted.items()
+        key: ("jump", at(name, row_name), {"units": unit, "long_name": text})
+        for key, (name, row_name, unit, text) in wanted.items()
     }
     text = "change of the voltage per time during the jump"
     rates = [rate(jump) for jump in jumps]
@@ -394,8 +396,8 @@ class Run:
         available = self.job.schedule.voltage((i + 0.5) * h)
         if control is None:
             return available
-        seen = Seen(self.master.time, self.master.shaking.speed, available, h)
-        voltage, self.control_memory = control.act(seen, self.control_memory)
+        seen = Measurement(self.master.time, self.master.shaking.speed, available, h)
+        voltage, self.control_memory = control.update(seen, self.control_memory)
         return voltage
 
     def revolve(self, steps: Sequence[int], kept: np.ndarray | None = None) -> Table:
@@ -427,23 +429,23 @@ class Run:
         else:
             yield from (array("d", (self.voltage(i),)) for i in steps)
 
-    def memory(self) -> Table:
-        """All that a run goes on from, one row."""
+    def get_state(self) -> Table:
+        """Return everything that a run goes on from, one row."""
         states = {
             "oscillator_state": np.frombuffer(self.oscillator.save_state(), dtype=np.uint8),
             "shaker_state": np.frombuffer(self.shaker.save_state(), dtype=np.uint8),
-            "master_memory": np.array(self.master.memory()),
-            "revolution_memory": np.array(self.revolutions.memory()),
+            "master_memory": np.array(self.master.get_state()),
+            "revolution_memory": np.array(self.revolutions.get_state()),
             "control_memory": np.array(self.control_memory),
         }
         return {name: state[np.newaxis] for name, state in states.items()}
 
-    def remember(self, table: Table) -> None:
-        """Go on from what :meth:`memory` gave."""
+    def set_state(self, table: Table) -> None:
+        """Return to a state that :meth:`get_state` gave."""
         self.oscillator.restore_state(table["oscillator_state"][-1].tobytes())
         self.shaker.restore_state(table["shaker_state"][-1].tobytes())
-        self.master.remember(table["master_memory"][-1].tolist())
-        self.revolutions.remember(table["revolution_memory"][-1].tolist())
+        self.master.set_state(table["master_memory"][-1].tolist())
+        self.revolutions.set_state(table["revolution_memory"][-1].tolist())
         self.control_memory = tuple(table["control_memory"][-1].tolist())
 
 
@@ -687,8 +689,8 @@ def couple(
     require_motor(drive)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
-    given = (duration, rate, settle, increment, back, spin_up)
-    schedule = schedule_of(structure, drive, voltage, *given)
+    settings = (duration, rate, settle, increment, back, spin_up)
+    schedule = schedule_of(structure, drive, voltage, *settings)
     scheme = scheme_of(structure, step, algorithm, tolerance, control is not None)
     job = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     return answer(job, running, finder(running))

@@ -138,15 +138,15 @@ def couple_all(
         run.assign_coords(eta0=run.eta0.reset_coords(drop=True), Omega=run.Omega)
         for run in gather(jobs, running, finder(running))
     ]
-    whole = xr.concat(found, "run", join="outer", combine_attrs="drop_conflicts", data_vars="all")
+    result = xr.concat(found, "run", join="outer", combine_attrs="drop_conflicts", data_vars="all")
     texts = ("name of the set", "structure", "change of the no-load speed over omega per 1/omega")
     units = (None, None, "1")
-    for place, name in enumerate(("system", "structure", "rate")):
-        values = np.array([run[place] for run in runs])
-        attributes = {"long_name": texts[place]}
-        unit = units[place]
+    for position, name in enumerate(("system", "structure", "rate")):
+        values = np.array([run[position] for run in runs])
+        attributes = {"long_name": texts[position]}
+        unit = units[position]
         if unit:
             attributes["units"] = unit
-        whole = whole.assign_coords({name: ("run", values, attributes)})
-    whole.attrs["title"] = "Weak drive: many runs"
-    return whole
+        result = result.assign_coords({name: ("run", values, attributes)})
+    result.attrs["title"] = "Weak drive: many runs"
+    return result

@@ -89,10 +89,10 @@ class DriveSpectraJob(Job):
         self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
         """Compute spectra of both masses and the motor's speed."""
-        found = [self.record(fmus, structure) for structure in items]
+        records = [self.record(fmus, structure) for structure in items]
         lines = len(self.orders())
         spectra, speeds = [], []
-        for displacement, speed in found:
+        for displacement, speed in records:
             frequency, amplitude = amplitude_spectrum(displacement, TURN / speed / self.points)
             spectra.append((frequency**2 * amplitude)[:, :lines])
             speeds.append(speed)
@@ -121,7 +121,7 @@ class DriveSpectraJob(Job):
     def sample(self, run: Run, interval: float) -> np.ndarray:
         """Return displacements of both masses in space at equal times."""
         count = self.revolutions * self.points
-        kept = np.empty((count, len(run.master.memory())))
+        kept = np.empty((count, len(run.master.get_state())))
         run.master.revolution = None
         run.master.run([self.approach.last] * count, h=interval, kept=kept)
         _, motion, shaking, _ = parts_of(kept.T)
@@ -273,8 +273,8 @@ def drive_spectra(
         jobs.append(
             DriveSpectraJob("drive_spectra", structure, drive, approach, hold, step, *record)
         )
-    found = finder(running)
+    find_fmu = finder(running)
     if voltage is None:
-        fmus = {model: found(model).path for model in DriveSpectraJob.models}
+        fmus = {model: find_fmu(model).path for model in DriveSpectraJob.models}
         jobs = [next((job for job in jobs if job.hangs(fmus)), jobs[-1])]
-    return answer(jobs[0], running, found)
+    return answer(jobs[0], running, find_fmu)

@@ -89,7 +89,7 @@ class EnergyBalance:
         self,
         before: OscillatorOutputs,
         after: OscillatorOutputs,
-        told: Cubic,
+        acceleration: Cubic,
         defect: float,
         h: float,
     ) -> None:
@@ -99,27 +99,29 @@ class EnergyBalance:
         ----------
         before, after : OscillatorOutputs
             The structure at its ends.
-        told : tuple of float
+        acceleration : tuple of float
             The box's acceleration, as the structure was told it.
         defect : float
             J.
         h : float
             Length of the step, s.
         """
-        work = h * product(self._momentum(before, after, told, h), coefficients(told, h))
+        work = h * product(
+            self._momentum(before, after, acceleration, h), coefficients(acceleration, h)
+        )
         self.lost += self.relative_energy(before) - self.relative_energy(after) - work
         self.defect += defect
         self.defect_sizes += abs(defect)
 
     def _momentum(
-        self, before: OscillatorOutputs, after: OscillatorOutputs, told: Cubic, h: float
+        self, before: OscillatorOutputs, after: OscillatorOutputs, acceleration: Cubic, h: float
     ) -> tuple[float, ...]:
         """Return the masses' momentum over a step, relative to the box: coefficients in t/h."""
         m1, m2 = self._masses
         mass = m1 + m2
         ends = (m1 * before.v1 + m2 * before.v2, m1 * after.v1 + m2 * after.v2)
-        first = -h * (before.box_force + mass * told[0])
-        last = -h * (after.box_force + mass * end_value(told, h))
+        first = -h * (before.box_force + mass * acceleration[0])
+        last = -h * (after.box_force + mass * end_value(acceleration, h))
         mean = (m1 * (after.x1 - before.x1) + m2 * (after.x2 - before.x2)) / h
         return quartic(ends, (first, last), mean)
 
@@ -137,14 +139,14 @@ class EnergyBalance:
         """Return the balance at a communication point, since it was opened."""
         now = self._accounts(motion, shaking)
         motor, *others = (value - start for value, start in zip(now, self.start, strict=True))
-        found = (motor, *others, motor - sum(others), self.defect, self.defect_sizes)
-        return Energies._make(found)
+        accounts = (motor, *others, motor - sum(others), self.defect, self.defect_sizes)
+        return Energies._make(accounts)
 
-    def memory(self) -> list[float]:
-        """The accounts, as a list of floats."""
+    def get_state(self) -> list[float]:
+        """Return the accounts as a list of floats."""
         return [self.lost, self.defect, self.defect_sizes, *self.start]
 
-    def remember(self, numbers: Sequence[float]) -> None:
-        """The inverse of :meth:`memory`."""
+    def set_state(self, numbers: Sequence[float]) -> None:
+        """Return to a state that :meth:`get_state` gave."""
         self.lost, self.defect, self.defect_sizes = numbers[:3]
         self.start = tuple(numbers[3:])

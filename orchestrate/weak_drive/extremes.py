@@ -38,7 +38,9 @@ def taylor_value(series: Series, time: float, order: int = 0) -> float:
     return total
 
 
-def taylor_coefficients(structure: Structure, motion: OscillatorOutputs, told: Cubic) -> Series:
+def taylor_coefficients(
+    structure: Structure, motion: OscillatorOutputs, acceleration: Cubic
+) -> Series:
     """Return derivatives of x1 from a state, with the box's acceleration and its derivatives
     there.
     """
@@ -46,36 +48,36 @@ def taylor_coefficients(structure: Structure, motion: OscillatorOutputs, told: C
     if motion.x1 == motion.x2 and motion.v1 == motion.v2:  # in contact
         mass, stiffness = mass + structure.m2, stiffness + structure.k2
         damping += structure.d2
-    found = [motion.x1, motion.v1]
+    derivatives = [motion.x1, motion.v1]
     for order in range(TERMS - 1):
-        pull = (damping * found[-1] + stiffness * found[-2]) / mass
-        found.append(-pull - (told[order] if order < len(told) else 0.0))
-    return tuple(found)
+        pull = (damping * derivatives[-1] + stiffness * derivatives[-2]) / mass
+        derivatives.append(-pull - (acceleration[order] if order < len(acceleration) else 0.0))
+    return tuple(derivatives)
 
 
-def end_derivatives(told: Cubic, h: float) -> Cubic:
+def end_derivatives(cubic: Cubic, h: float) -> Cubic:
     """Return a cubic's value and derivatives at the step's end."""
-    return end_value(told, h), end_slope(told, h), told[2] + h * told[3], told[3]
+    return end_value(cubic, h), end_slope(cubic, h), cubic[2] + h * cubic[3], cubic[3]
 
 
 def extrema(series: Series, first: float, last: float) -> list[float]:
     """Return positions at both ends of a stretch, and at the turning points between them."""
     begin, end = taylor_value(series, first, 1), taylor_value(series, last, 1)
-    found = [taylor_value(series, first), taylor_value(series, last)]
+    positions = [taylor_value(series, first), taylor_value(series, last)]
     if begin * end < 0.0:
         time = first + (last - first) * begin / (begin - end)
         for _ in range(3):
             slope = taylor_value(series, time, 2)
             time -= taylor_value(series, time, 1) / slope if slope else 0.0
         if first <= time <= last:
-            found.append(taylor_value(series, time))
-    return found
+            positions.append(taylor_value(series, time))
+    return positions
 
 
 def range_of_mass(
     structure: Structure,
     ends: tuple[OscillatorOutputs, OscillatorOutputs],
-    told: Cubic,
+    acceleration: Cubic,
     begin: float,
     h: float,
 ) -> Range:
@@ -86,7 +88,7 @@ def range_of_mass(
     structure : Structure
     ends : tuple of OscillatorOutputs
         The structure at the step's beginning and end.
-    told : tuple of float
+    acceleration : tuple of float
         The box's acceleration, as the structure was told it.
     begin, h : float
         The step's beginning and length, s.
@@ -97,18 +99,20 @@ def range_of_mass(
     impact = after.impact_time != before.impact_time and 0.0 <= hit <= h
     if impact or before.v1 * after.v1 < 0.0:
         last = hit if impact else h
-        positions += extrema(taylor_coefficients(structure, before, told), 0.0, last)
+        positions += extrema(taylor_coefficients(structure, before, acceleration), 0.0, last)
         if impact:
-            back = taylor_coefficients(structure, after, end_derivatives(told, h))
+            back = taylor_coefficients(structure, after, end_derivatives(acceleration, h))
             positions += extrema(back, hit - h, 0.0)
     return Range(min(positions), max(positions))
 
 
-def range_of_box(before: ShakerOutputs, after: ShakerOutputs, told: Cubic, h: float) -> Range:
+def range_of_box(
+    before: ShakerOutputs, after: ShakerOutputs, acceleration: Cubic, h: float
+) -> Range:
     """Return the range of the box, with its acceleration as it was passed to the structure."""
     positions = [before.box_position, after.box_position]
     if before.box_velocity * after.box_velocity < 0.0:
-        positions += extrema((before.box_position, before.box_velocity, *told), 0.0, h)
+        positions += extrema((before.box_position, before.box_velocity, *acceleration), 0.0, h)
     return Range(min(positions), max(positions))
 
 

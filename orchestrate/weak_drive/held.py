@@ -185,9 +185,9 @@ class HeldVoltageTest:
             run = self.begin(self.schedule)
             try:
                 if last:
-                    run.remember(self.checkpoints[last])
+                    run.set_state(self.checkpoints[last])
                 run.revolve(range(last, step))
-                self.checkpoints[step] = run.memory()
+                self.checkpoints[step] = run.get_state()
             finally:
                 run.master.close()
         return self.checkpoints.get(step)
@@ -212,7 +212,7 @@ class HeldVoltageTest:
         speed, error = math.nan, 0.0
         try:
             if state is not None:
-                run.remember(state)
+                run.set_state(state)
             for first in range(0, count, piece):
                 rows = run.revolve(range(first, min(first + piece, count)))
                 speeds = np.append(speeds, np.abs(rows["speed"]) / self.omega)
@@ -221,7 +221,7 @@ class HeldVoltageTest:
                 if math.isfinite(speed):
                     break
             begin = float(speeds[:FIRST].mean()) if speeds.size else math.nan
-            return Settled(voltage, speed, error, begin, run.memory(), math.nan)
+            return Settled(voltage, speed, error, begin, run.get_state(), math.nan)
         finally:
             run.master.close()
 
@@ -314,7 +314,9 @@ class HeldVoltageTest:
                 what = self.there_and_back(low, high)
                 if what != FOLLOWS or self.is_within(low, high, self.settings.finest):
                     return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
-            middle = next((one for one in self.inside(low, high) if one.speed == one.speed), None)
+            middle = next(
+                (point for point in self.inside(low, high) if point.speed == point.speed), None
+            )
             if middle is None:
                 what = self.there_and_back(low, high)
                 return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)

@@ -130,8 +130,8 @@ class JumpVoltagesJob(Job):
         rows = []
         for structure, schedule in items:
             job = couple_job(structure, self.drive, schedule, self.scheme)
-            found = job.dataset(job.run_here(fmus), {})
-            rows.append([found.jumps.values, found.jump_speed_before.values])
+            data = job.dataset(job.run_here(fmus), {})
+            rows.append([data.jumps.values, data.jump_speed_before.values])
         return {"jumps": np.array(rows).reshape(-1, 2, len(DIRECTIONS))}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
@@ -143,7 +143,10 @@ class JumpVoltagesJob(Job):
         at_rates, speeds = shaped[:, :, 0], shaped[:, :, 1]
         ends = np.array(
             [
-                [extrapolate(rates, at_rates[:, kind, way]) for way in range(len(DIRECTIONS))]
+                [
+                    extrapolate(rates, at_rates[:, kind, direction])
+                    for direction in range(len(DIRECTIONS))
+                ]
                 for kind in range(len(KINDS))
             ]
         )
@@ -244,12 +247,12 @@ def jump_voltages(
     """
     require_motor(drive)
     unit = drive.volts(structure) * structure.omega
-    given = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
-    if len(set(given)) < 2:
+    volt_rates = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
+    if len(set(volt_rates)) < 2:
         raise InputError(f"rates = {rates}: expected two different ones or more, in V/s")
     schedules = tuple(
         ramp(schedule_of(structure, drive, voltage, None, rate, settle, 0.0, back))
-        for rate in sorted(given)
+        for rate in sorted(volt_rates)
     )
     scheme = scheme_of(structure, step)
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme)

@@ -85,30 +85,30 @@ class Criterion(NamedTuple):
 
 
 def find_passing(
-    way: SweepLeg, b: float, up: bool, divide: float, criterion: Criterion | None = None
+    leg: SweepLeg, b: float, up: bool, threshold: float, criterion: Criterion | None = None
 ) -> Passing | None:
     """Find where the speed passes the resonance for good; None where it does not.
 
     Parameters
     ----------
-    way : Way
+    leg : Way
     b : float
         Slope of the torque line, the inverse of the time in which a rotor without load settles.
     up : bool
         Whether the voltage rises; the speed has to pass the same way.
-    divide : float
+    threshold : float
         Speed between the motions below and beyond the resonance.
     criterion : Criterion, optional
     """
     limits, sign = criterion or Criterion(), 1.0 if up else -1.0
-    if len(way.time) < 2:
+    if len(leg.time) < 2:
         return None
-    width = max(4, math.ceil(0.5 / (b * float(np.median(np.diff(way.time))))))
-    if len(way.time) < 4 * width:
+    width = max(4, math.ceil(0.5 / (b * float(np.median(np.diff(leg.time))))))
+    if len(leg.time) < 4 * width:
         return None
-    time, eta0, speed = (running_mean(values, width) for values in way)
+    time, eta0, speed = (running_mean(values, width) for values in leg)
     rise, change = sign * lag_difference(speed, width), np.abs(lag_difference(eta0, width))
-    early = np.flatnonzero(sign * (speed - divide) <= 0.0)
+    early = np.flatnonzero(sign * (speed - threshold) <= 0.0)
     if not early.size or early[-1] == len(speed) - 1:
         return None
     cross = min(max(0, int(early[-1]) - width // 2), len(rise) - 1)
@@ -117,8 +117,8 @@ def find_passing(
     if near.size:
         cross = max(0, cross - 2 * width) + int(near[np.argmin(np.abs(near - 2 * width))])
     before, after = extent(fast, cross) if fast[cross] else (cross, cross + width)
-    last = min(after + 2 * width, len(way.time) - 1)
-    half = half_slip_row(np.abs(way.eta0 - way.Omega), before, up)
+    last = min(after + 2 * width, len(leg.time) - 1)
+    half = half_slip_row(np.abs(leg.eta0 - leg.Omega), before, up)
     half = float(cross + width) if half is None else half
     row = math.ceil(half)
     if not fast[cross]:
@@ -128,9 +128,9 @@ def find_passing(
     )
     if after == len(rise) - 1 and rise[-1] > 0.5 * rise[top]:
         return Passing(row, before, last, UNFINISHED, half)
-    slip = sign * (way.eta0 - way.Omega)
+    slip = sign * (leg.eta0 - leg.Omega)
     inertia = rise[top] / (b * (time[top + width] - time[top]))
-    growth = abs(way.Omega[last] - way.Omega[before]) / np.ptp(way.eta0[before : last + 1])
+    growth = abs(leg.Omega[last] - leg.Omega[before]) / np.ptp(leg.eta0[before : last + 1])
     if growth < limits.growth:
         return Passing(row, before, last, SMOOTH, half)
     free = slip[before] - slip[last]
@@ -138,7 +138,7 @@ def find_passing(
     far = limits.around * width
     around = rise[max(0, before - far) : max(0, before - width)], rise[last + width : last + far]
     noise = max((float(np.std(part)) for part in around if len(part)), default=0.0)
-    clear = strong and abs(way.Omega[last] - way.Omega[before]) >= limits.clearness * noise
+    clear = strong and abs(leg.Omega[last] - leg.Omega[before]) >= limits.clearness * noise
     sure = before > width and inertia >= limits.share * free and clear
     return Passing(row, before, last, JUMP if sure else DOUBTFUL, half)
 
@@ -172,37 +172,37 @@ def half_slip_row(slip: np.ndarray, before: int, up: bool) -> float | None:
     level = slip[before:]
     highest, half = int(np.argmax(level)), 0.5 * float(level.max())
     first = highest + 1 if up else 0
-    found = first + np.flatnonzero((level[first:] < half) == up)
-    if not found.size:
+    rows = first + np.flatnonzero((level[first:] < half) == up)
+    if not rows.size:
         return None
-    row = int(found[0])
+    row = int(rows[0])
     if row == 0:
         return float(before)
     ahead = (half - level[row]) / (level[row - 1] - level[row])
     return before + row - float(min(max(ahead, 0.0), 1.0))
 
 
-def stays_beyond(time: np.ndarray, Omega: np.ndarray, divide: float) -> float:
+def stays_beyond(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float:
     """Return the time from which a speed stays above a threshold; NaN where it ends below."""
-    below = np.flatnonzero(Omega <= divide)
-    if not len(Omega) or Omega[-1] <= divide:
+    below = np.flatnonzero(Omega <= threshold)
+    if not len(Omega) or Omega[-1] <= threshold:
         return math.nan
     return float(time[below[-1] + 1]) if below.size else float(time[0])
 
 
-def why_none(way: SweepLeg, up: bool, resonance: float) -> str:
+def why_none(leg: SweepLeg, up: bool, resonance: float) -> str:
     """Return why the speed does not pass the resonance for good.
 
     Parameters
     ----------
-    way : Way
+    leg : Way
     up : bool
     resonance : float
         Speed of the resonance over omega.
     """
-    if not len(way.time):
+    if not len(leg.time):
         return f"the voltage does not {'rise' if up else 'fall'}"
-    speed = np.abs(way.Omega)
+    speed = np.abs(leg.Omega)
     first, last = float(speed[: 1 + len(speed) // 50].mean()), float(speed[-1])
     beyond = first > resonance
     if beyond == up and (last > resonance) == up:

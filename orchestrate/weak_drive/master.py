@@ -218,12 +218,12 @@ class Master:
         h = h or self.scheme.h
         begin = self.time
         if self.scheme.tolerance:
-            self._parts_by_defect(voltage, h)
+            self._substeps_by_defect(voltage, h)
         else:
             known = self.h_before or self.scheme.goes_back
-            parts = (1,) if known else self.scheme.beginning
-            for part in parts:
-                self._step(voltage, h * part / sum(parts))
+            beginning = (1,) if known else self.scheme.beginning
+            for part in beginning:
+                self._step(voltage, h * part / sum(beginning))
         self.time = begin + h
 
     def run(
@@ -254,22 +254,22 @@ class Master:
         for i in range(first, len(voltages)):
             self.step(voltages[i], h)
             if kept is not None:
-                kept[i] = self.memory()
+                kept[i] = self.get_state()
             if self.revolution and self.revolution.complete(self.shaking.angle / TURN):
                 return i + 1
         return len(voltages)
 
-    def _parts_by_defect(self, voltage: float, h: float) -> None:
+    def _substeps_by_defect(self, voltage: float, h: float) -> None:
         """Do an interval in steps of h, h/2, h/4 ... as their defects ask for.
 
         A step is halved where its defect is too large. After one with a defect that twice the
         length would still do with, the next is twice as long, where that ends on its own grid: so
         the interval's end is met without a rest, and all lengths are exact.
         """
-        most = 1 << self.scheme.halvings
+        max_parts = 1 << self.scheme.halvings
         done = 0
-        while done < most:
-            size, last_impact = most >> self.level, self.motion.impact_time
+        while done < max_parts:
+            size, last_impact = max_parts >> self.level, self.motion.impact_time
             defect = self._step(voltage, h / (1 << self.level), self.level < self.scheme.halvings)
             if defect > self.scheme.tolerance and self.level < self.scheme.halvings:
                 self.level += 1
@@ -284,7 +284,7 @@ class Master:
     def _begin_anew(self) -> None:
         """Restart the extrapolation after an impact: the force has a corner there, or jumps."""
         self.slope = self.h_before = 0.0
-        self.shaking = self._look(self.motion)
+        self.shaking = self._outputs_with_force(self.motion)
 
     def _step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
         """Do a step, unless it is refused for its defect; return the defect over the work exchanged
@@ -292,7 +292,7 @@ class Master:
         """
         if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
             self.voltage = voltage
-            self.shaking = self._look(self.motion)
+            self.shaking = self._outputs_with_force(self.motion)
         done = self._do(h)
         force = self.force_of(done.motion, h)
         taken = done.shaking.box_force_work - self.shaking.box_force_work
@@ -304,16 +304,16 @@ class Master:
             return size
         self.slope = end_slope(force, h)
         self.balance.add(self.motion, done.motion, done.acceleration, defect, h)
-        self._go_on(done, h)
+        self._advance(done, h)
         return size
 
     def _over_exchanged(self, done: Step, taken: float, defect: float) -> float:
         """Return a defect over the work that motor, box and masses exchange in the step."""
-        given = done.shaking.motor_energy - self.shaking.motor_energy
-        exchanged = abs(taken) + abs(given)
+        work = done.shaking.motor_energy - self.shaking.motor_energy
+        exchanged = abs(taken) + abs(work)
         return abs(defect) / exchanged if exchanged else 0.0
 
-    def _go_on(self, done: Step, h: float) -> None:
+    def _advance(self, done: Step, h: float) -> None:
         """Go to the step's end."""
         if self.revolution:
             ends = self.motion, self.shaking
@@ -323,7 +323,7 @@ class Master:
         self.acceleration_before = self.shaking.box_acceleration
         self.force_before, self.h_before = self.motion.box_force, h
         self.time += h
-        self.motion, self.shaking = done.motion, self._look(done.motion)
+        self.motion, self.shaking = done.motion, self._outputs_with_force(done.motion)
 
     def _motion(self) -> OscillatorOutputs:
         return tuple.__new__(OscillatorOutputs, self.oscillator.get())  # as _make, in half its time
@@ -331,7 +331,7 @@ class Master:
     def _shaking(self) -> ShakerOutputs:
         return tuple.__new__(ShakerOutputs, self.shaker.get())
 
-    def _look(self, motion: OscillatorOutputs) -> ShakerOutputs:
+    def _outputs_with_force(self, motion: OscillatorOutputs) -> ShakerOutputs:
         """Return the shaker's outputs with the force at the present point, and its slope, as
         inputs.
         """
@@ -345,7 +345,7 @@ class Master:
         mean, moment = motion.box_impulse / h, motion.box_impulse_moment / (h * h)
         return matched_cubic(self.motion.box_force, motion.box_force, mean, moment, h)
 
-    def _told_force(self, motion: OscillatorOutputs, h: float) -> Cubic:
+    def _force_for_shaker(self, motion: OscillatorOutputs, h: float) -> Cubic:
         """Return the force over that step as it is passed to the shaker."""
         if self.scheme.matched:
             return self.force_of(motion, h)
@@ -353,7 +353,7 @@ class Master:
             self.force_before, self.motion.box_force, motion.box_force, self.h_before, h
         )
 
-    def _told_acceleration(self, after: ShakerOutputs, h: float) -> Cubic:
+    def _acceleration_for_structure(self, after: ShakerOutputs, h: float) -> Cubic:
         """Return the acceleration over a step that the shaker has done, as it is passed to the
         structure.
         """
@@ -416,7 +416,7 @@ class Master:
                 break
             last = motion
             self.shaker.put(motion.box_force, end_slope(force, h), 0.0, 0.0, self.voltage)
-            acceleration = self._told_acceleration(self._shaking(), h)
+            acceleration = self._acceleration_for_structure(self._shaking(), h)
         return Step(acceleration, motion, self._shaking())
 
     def _pass(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
@@ -424,7 +424,7 @@ class Master:
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
         motion = self._motion()
-        force = self._told_force(motion, h)
+        force = self._force_for_shaker(motion, h)
         self.shaker.put(*force, self.voltage)
         self.shaker.step(self.time, h)
         return motion, force
@@ -432,26 +432,26 @@ class Master:
     def _settled(self, motion: OscillatorOutputs, last: OscillatorOutputs) -> bool:
         """Return whether an iteration has changed nothing but roundings."""
         now, then = (
-            (found.box_force, found.box_impulse, found.box_impulse_moment)
-            for found in (motion, last)
+            (state.box_force, state.box_impulse, state.box_impulse_moment)
+            for state in (motion, last)
         )
         limit = self.scheme.converged
         return all(abs(a - b) <= limit * (abs(a) + abs(b)) for a, b in zip(now, then, strict=True))
 
     # -- to go on elsewhere --
 
-    def memory(self) -> list[float]:
-        """What the master itself remembers: with both FMUs' states, all that a run goes on from."""
-        own = [float(getattr(self, name)) for name in MASTER_STATE]
-        return [*own, *self.motion, *self.shaking, *self.balance.memory()]
+    def get_state(self) -> list[float]:
+        """Return the master's own state: with those of both FMUs, all that a run goes on from."""
+        own_state = [float(getattr(self, name)) for name in MASTER_STATE]
+        return [*own_state, *self.motion, *self.shaking, *self.balance.get_state()]
 
-    def remember(self, numbers: Sequence[float]) -> None:
-        """The inverse of :meth:`memory`."""
-        own, self.motion, self.shaking, balance = parts_of(numbers)
-        for name, value in zip(MASTER_STATE, own, strict=True):
+    def set_state(self, numbers: Sequence[float]) -> None:
+        """Return to a state that :meth:`get_state` gave."""
+        own_state, self.motion, self.shaking, balance = parts_of(numbers)
+        for name, value in zip(MASTER_STATE, own_state, strict=True):
             setattr(self, name, value)
         self.level = int(self.level)
-        self.balance.remember(balance)
+        self.balance.set_state(balance)
 
     def close(self) -> None:
         """Free the states saved in the FMUs."""

@@ -105,13 +105,13 @@ class PassageJob(Job):
             run = Run(self.run, oscillator, shaker)
             try:
                 if previous is not None:
-                    run.remember(previous)
-                kept = np.empty((len(items), len(run.master.memory())))
+                    run.set_state(previous)
+                kept = np.empty((len(items), len(run.master.get_state())))
                 revolutions = run.revolve(items, kept)
                 columns = samples(run.master, kept)
                 names = (KEPT + name for name in SAMPLES)
-                found = dict(zip(names, columns, strict=True))
-                return {**revolutions, **found, **run.memory(), **no_verdicts()}
+                samples_table = dict(zip(names, columns, strict=True))
+                return {**revolutions, **samples_table, **run.get_state(), **no_verdicts()}
             finally:
                 run.master.close()
 
@@ -150,12 +150,17 @@ class PassageJob(Job):
 
 def samples(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
     """Return the communication points of a master's states, in the order of ``SAMPLES``."""
-    own, motion, shaking, balance = parts_of(kept.T)
+    own_state, motion, shaking, balance = parts_of(kept.T)
     accounts = copy(master.balance)
-    accounts.remember(balance)
+    accounts.set_state(balance)
     energies = accounts.energies(motion, shaking)
     return (
-        *(own[STATE_INDEX["time"]], own[STATE_INDEX["voltage"]], shaking.speed, shaking.angle),
+        *(
+            own_state[STATE_INDEX["time"]],
+            own_state[STATE_INDEX["voltage"]],
+            shaking.speed,
+            shaking.angle,
+        ),
         *(motion.x1, motion.x2, motion.v1, motion.v2),
         *(shaking.box_position, shaking.box_velocity, shaking.box_acceleration),
         *(energies.motor, energies.box_damper, energies.impact_loss),
@@ -223,8 +228,8 @@ def passage(
         check("around", around, "s", low=0.0, exclusive=True)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
-    given = (duration, rate, settle, 0.0, back, spin_up)
-    schedule = schedule_of(structure, drive, voltage, *given)
+    settings = (duration, rate, settle, 0.0, back, spin_up)
+    schedule = schedule_of(structure, drive, voltage, *settings)
     scheme = scheme_of(structure, step, sampled=True)
     run = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     name = run.name.replace("couple", "passage")
@@ -286,13 +291,13 @@ def waterfall(
         raise InputError(f"revolutions = {revolutions}: expected at most the {turns} there are")
     lines = hann_lines(moved[begins[:, np.newaxis] + np.arange(length)])
     order = np.arange(lines.shape[1]) / revolutions
-    wanted = order <= highest
+    shown = order <= highest
     ends = begins + length - 1
     speed = TURN * (length - 1) / points / (at[ends] - at[begins])
     middle = at[begins + length // 2]
     volts = np.interp(middle, found.time, found.voltage)
     text = f"amplitude of the acceleration of mass {mass} in space"
-    amplitude = lines[:, wanted] * np.outer(speed, order[wanted]) ** 2
+    amplitude = lines[:, shown] * np.outer(speed, order[shown]) ** 2
     variables = {
         "acceleration": variable(("time", "order"), amplitude, "m/s2", text),
         "speed": variable("time", speed, "rad/s", "mean speed of the motor"),
@@ -300,24 +305,24 @@ def waterfall(
     }
     coordinates = {
         "time": variable("time", middle, "s", "middle of the revolutions"),
-        "order": variable("order", order[wanted], "1", "multiple of the motor's speed"),
+        "order": variable("order", order[shown], "1", "multiple of the motor's speed"),
     }
     return xr.Dataset(variables, coordinates, {"title": "Spectra over the motor's revolutions"})
 
 
-def over_angle(found: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
+def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
     """Return times and displacements in space at equal angles, ``points`` per revolution.
 
     Where the motor turns back for a moment, samples are left out until it has come as far again.
     """
     from scipy.interpolate import CubicHermiteSpline
 
-    angle, time = np.abs(found.angle.values - found.angle.values[0]), found.time.values
+    angle, time = np.abs(data.angle.values - data.angle.values[0]), data.time.values
     forward = np.concatenate([[True], np.diff(np.maximum.accumulate(angle)) > 0.0])
     last = math.floor(angle[forward][-1] * points / TURN)
     at = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
-    position = (found[f"x{mass}"] + found.box_position).values
-    velocity = (found[f"v{mass}"] + found.box_velocity).values
+    position = (data[f"x{mass}"] + data.box_position).values
+    velocity = (data[f"v{mass}"] + data.box_velocity).values
     return at, CubicHermiteSpline(time, position, velocity)(at)
 
 
@@ -328,7 +333,7 @@ def hann_lines(pieces: np.ndarray) -> np.ndarray:
     return np.asarray(np.abs(np.fft.rfft(centred, axis=1)) * 2.0 / window.sum())
 
 
-def check_spectra(found: Any, mass: int, revolutions: int, highest: float) -> None:
+def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:
     """Check that spectra over revolutions can be made.
 
     Raises
@@ -339,10 +344,10 @@ def check_spectra(found: Any, mass: int, revolutions: int, highest: float) -> No
         raise InputError(f"mass = {mass!r}: expected 1 or 2")
     checked_integer("revolutions", revolutions, 1)
     check("highest", highest, "times the speed", low=0.0, exclusive=True)
-    missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(map(str, found))
+    missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(map(str, data))
     if missing:
         raise InputError(f"no {sorted(missing)[0]} in the dataset: expected one of passage()")
-    gaps = np.diff(found.time.values)
+    gaps = np.diff(data.time.values)
     if not gaps.size or gaps.max() > 1.5 * gaps.min():
         raise InputError(
             "time: samples of several jumps, or too few; expected some without a gap, such as "

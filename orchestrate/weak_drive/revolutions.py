@@ -77,10 +77,10 @@ class Revolutions:
         energies = master.balance.energies(master.motion, master.shaking)
         return (time, master.voltage, speed, *ranges, impacts, now.acceleration, *energies)
 
-    def memory(self) -> list[float]:
-        """The revolution under way, as a list of floats."""
+    def get_state(self) -> list[float]:
+        """Return the revolution under way as a list of floats."""
         return list(astuple(self._now))
 
-    def remember(self, numbers: Sequence[float]) -> None:
-        """The inverse of :meth:`memory`."""
+    def set_state(self, numbers: Sequence[float]) -> None:
+        """Return to a state that :meth:`get_state` gave."""
         self._now = self._master.revolution = Revolution(*numbers)

@@ -52,8 +52,8 @@ def theories(structure: Structure, drive: Drive) -> tuple[Theory, Theory]:
     narrow = bool(folds) and abs(folds[0].eta0 - folds[-1].eta0) < NARROW
     slope = averaged.least_slope(structure, drive)
     up, down = (
-        Theory(tuple(one.eta0 for one in (place, *fold) if one), narrow, slope)
-        for place, fold in zip(
+        Theory(tuple(candidate.eta0 for candidate in (point, *fold) if candidate), narrow, slope)
+        for point, fold in zip(
             averaged.losses(structure, drive), (folds[:1], folds[-1:]), strict=True
         )
     )

@@ -105,7 +105,7 @@ def test_a_fast_change_is_a_jump_at_every_rate(rate):
         free = np.maximum(time - 0.3 / rate, 0.0)
         return eta0 - 0.6 * (eta0 - 1.2) * np.exp(-0.02 * free)
 
-    jump = find_passing(way(speed, rate), 0.02, up=True, divide=1.4)
+    jump = find_passing(way(speed, rate), 0.02, up=True, threshold=1.4)
     assert jump.look == JUMP
     assert way(speed, rate).eta0[jump.row] == pytest.approx(1.5 + 35.0 * rate, abs=10 * rate)
 
@@ -119,9 +119,9 @@ def test_the_comings_and_goings_of_an_irregular_motion_make_no_jump():
         return regular + 0.05 * np.sin(2.0 * np.pi * time / 55.0) * (np.abs(free - 150.0) > 150.0)
 
     irregular = way(speed, 1e-4)
-    assert find_passing(irregular, 0.02, up=True, divide=1.4).look == DOUBTFUL
+    assert find_passing(irregular, 0.02, up=True, threshold=1.4).look == DOUBTFUL
     unclear = Criterion(clearness=0.0)
-    assert find_passing(irregular, 0.02, up=True, divide=1.4, criterion=unclear).look == JUMP
+    assert find_passing(irregular, 0.02, up=True, threshold=1.4, criterion=unclear).look == JUMP
 
 
 @pytest.mark.parametrize("rate", [3e-5, 1e-5])
@@ -131,7 +131,7 @@ def test_a_steep_branch_is_no_jump(rate):
     def speed(eta0, time):
         return eta0 - 0.6 * np.clip(eta0 - 1.2, 0.0, 0.3) + np.clip(4.0 * (eta0 - 1.5), 0.0, 0.18)
 
-    assert find_passing(way(speed, rate), 0.02, up=True, divide=1.4).look == DOUBTFUL
+    assert find_passing(way(speed, rate), 0.02, up=True, threshold=1.4).look == DOUBTFUL
 
 
 def test_steps_of_the_voltage_are_no_jumps():
@@ -140,4 +140,4 @@ def test_steps_of_the_voltage_are_no_jumps():
     count, since = np.floor(time / 200.0), time % 200.0
     speed = 1.2 + 0.02 * (count - np.exp(-0.02 * since))
     steps = SweepLeg(time, 1.2 + 0.02 * count, speed)
-    assert find_passing(steps, 0.02, up=True, divide=1.4).look == SMOOTH
+    assert find_passing(steps, 0.02, up=True, threshold=1.4).look == SMOOTH

@@ -77,9 +77,9 @@ def test_no_record_makes_a_jump_of_a_vertical_branch():
     time = found.time.values[falls] * edge.structure.omega
     way = SweepLeg(time, found.eta0.values[falls], found.Omega.values[falls])
     b, threshold = edge.drive.b(edge.structure), averaged.dividing_speed(*edge)
-    assert find_passing(way, b, up=False, divide=threshold).look == DOUBTFUL
+    assert find_passing(way, b, up=False, threshold=threshold).look == DOUBTFUL
     weaker = Criterion(strength=0.0)
-    assert find_passing(way, b, up=False, divide=threshold, criterion=weaker).look == JUMP
+    assert find_passing(way, b, up=False, threshold=threshold, criterion=weaker).look == JUMP
 
 
 def test_what_has_not_settled_is_undecided():
