@@ -133,7 +133,7 @@ def format_map(data: xr.Dataset) -> str:
 
 
 def format_border(data: xr.Dataset) -> str:
-    """Format the border, or the interval it lies in."""
+    """Format the threshold voltage, or the interval it lies in."""
     low, high = float(data.border_low), float(data.border_high)
     slowest = f"in at most {float(data.passage_time.max()):.4g} s as tried"
     below, beyond = float(data.speed_low), float(data.speed_high)

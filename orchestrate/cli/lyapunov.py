@@ -91,7 +91,7 @@ def report(data: xr.Dataset) -> None:
 
 
 def print_undecided(data: xr.Dataset) -> None:
-    """Print how many periods would decide what is neutral, if it is not quasi-periodic."""
+    """Print how many periods would decide whether neutral responses are chaotic or periodic."""
     neutral = data.isel({parameter_of(data): data.verdict.values == 0})
     sizes = abs(neutral.exponent.values)
     if not (sizes > 0.0).any():

@@ -83,7 +83,7 @@ def picture_of(data: xr.Dataset) -> Any:
 
 
 def is_curve(question: Question) -> bool:
-    """Return whether there is a curve to draw, and not one point."""
+    """Return whether an argument has several values, so that there is a curve to draw."""
     return any(len(value) > 1 for value in question.values() if isinstance(value, tuple))
 
 

@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def report(data: xr.Dataset) -> None:
-    """Print the result."""
+    """Print largest gap, amplitudes, which responses repeat, and where up and down differ."""
     name = parameter_of(data)
     if data.sizes[name] == 1:
         print_table(data, name)

@@ -65,7 +65,7 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
 def draw_panel(
     axes: Axes, data: xr.Dataset, amplitudes: xr.DataArray, kinds: dict[str, dict[str, Any]]
 ) -> None:
-    """Draw some kinds of lines at one frequency."""
+    """Draw the spectra of some structures (bonded, delaminated) at one frequency."""
     si = in_si(data)
     speed = float(amplitudes.frequency)
     lines = data.order.values * (speed / (2.0 * np.pi) if si else 1.0)

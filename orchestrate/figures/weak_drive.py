@@ -139,7 +139,7 @@ def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
 
 @styled
 def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
-    """Draw stationary motions alone.
+    """Draw branches of stationary motions alone, without runs.
 
     Parameters
     ----------

@@ -66,18 +66,20 @@ class Motion(NamedTuple):
         return Motion(change(self.value), change(self.slope), change(self.bend))
 
 
-class Drive(NamedTuple):
+class BoxMotion(NamedTuple):
     """The box's motion, one row per point: frequency, and amplitude of its acceleration."""
 
     frequency: Floats
     amplitude: Floats
 
-    def at(self, angle: Floats) -> tuple[Floats, Floats]:
-        """Return minus the box's acceleration at a phase, and its time derivative."""
-        return self.forces(np.sin(angle), np.cos(angle))
+    def forcing_at(self, angle: Floats) -> tuple[Floats, Floats]:
+        """Return the inertial forcing (minus the box's acceleration) at a phase, and its time
+        derivative.
+        """
+        return self.forcing(np.sin(angle), np.cos(angle))
 
-    def forces(self, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
-        """Return the same from the phase's sine and cosine."""
+    def forcing(self, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
+        """Return the inertial forcing and its time derivative from the phase's sine and cosine."""
         return self.amplitude * sine, self.amplitude * self.frequency * cosine
 
 
@@ -147,14 +149,14 @@ def peaks(
     count = states.shape[1] - 1
     rates = Rates.from_structures(point.structure for point in points)
     speed = np.array([[point.excitation.frequency] for point in points])
-    drive = Drive(speed, np.array([[p.excitation.amplitude] for p in points]) * speed**2)
+    drive = BoxMotion(speed, np.array([[p.excitation.amplitude] for p in points]) * speed**2)
     kinds, kind = np.unique(periods, return_inverse=True)
     angles = 2.0 * np.pi * np.outer(kinds, np.arange(count + 1)) / count
     angle = angles[kind]
     width = angle[:, 1:2] / speed
     touching = in_touch(states)
     columns = np.ascontiguousarray(np.moveaxis(states, -1, 0))
-    forces = drive.forces(np.sin(angles)[kind], np.cos(angles)[kind])
+    forces = drive.forcing(np.sin(angles)[kind], np.cos(angles)[kind])
     motion = Motion.from_states(columns, rates.effective(touching), forces)
     left, right = (motion.part((slice(None), side)) for side in (np.s_[:-1], np.s_[1:]))
     smooth = without_impact(left, right, width, jump * np.abs(columns[2:]).max(axis=(0, 2)))
@@ -195,7 +197,7 @@ def cubic_extrema(left: Motion, right: Motion, width: Floats) -> Floats:
 def include_cubic_extrema(
     largest: Floats, candidates: Flags, left: Motion, right: Motion, width: Floats
 ) -> None:
-    """Raise the largest values by extrema inside intervals.
+    """Update the largest values by extrema inside intervals.
 
     Parameters
     ----------
@@ -235,7 +237,7 @@ class ImpactIntervals(NamedTuple):
 
 
 def include_impacts(
-    largest: Floats, cut: ImpactIntervals, points: Sequence[Point], rates: Rates, drive: Drive
+    largest: Floats, cut: ImpactIntervals, points: Sequence[Point], rates: Rates, drive: BoxMotion
 ) -> None:
     """Raise the largest values by those at both sides of impacts, and between impacts and
     samples.
@@ -244,8 +246,8 @@ def include_impacts(
     touches = np.isfinite(time)
     cut, time = cut.part(touches), time[touches]
     effective_rates = Rates(*(part[:2, cut.row] for part in rates))
-    drive = Drive(drive.frequency[cut.row, 0], drive.amplitude[cut.row, 0])
-    forcing = drive.at(cut.angle + drive.frequency * time)
+    drive = BoxMotion(drive.frequency[cut.row, 0], drive.amplitude[cut.row, 0])
+    forcing = drive.forcing_at(cut.angle + drive.frequency * time)
     before = taylor_step(cut.left, time)
     after = after_impacts(before, [points[row] for row in cut.row])
     ends = [Motion.from_states(states, effective_rates, forcing) for states in (before, after)]

@@ -136,5 +136,5 @@ class DaskExecutor(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Wait for running calls, or cancel them."""
+        """Shut down Dask's executor; ``wait`` waits for running calls, else they are cancelled."""
         self._pool.shutdown(wait=wait)

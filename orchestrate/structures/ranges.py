@@ -123,13 +123,13 @@ EXCITATION = {
 }
 
 
-def positive(name: str, description: str) -> Quantity:
-    """Return the range of a dimensionless number above zero."""
+def positive_quantity(name: str, description: str) -> Quantity:
+    """Return a dimensionless quantity above zero."""
     return Quantity(name, "1", description, SMALLEST, LARGEST)
 
 
-def not_negative(name: str, description: str) -> Quantity:
-    """Return the range of a dimensionless number that may be zero."""
+def non_negative_quantity(name: str, description: str) -> Quantity:
+    """Return a dimensionless quantity that may be zero."""
     return Quantity(name, "1", description, 0.0, LARGEST / 2.0)
 
 
@@ -137,21 +137,21 @@ RATIO_QUANTITIES = {
     quantity.name: quantity
     for quantity in (
         Quantity("omega", "rad/s", "Frequency unit sqrt(k1/m1), (2)", SMALLEST, LARGEST),
-        positive("mu", "Mass ratio m2/m1, (2)"),
-        positive("kappa", "Stiffness ratio k2/k1, (2)"),
-        not_negative("D", "Damping ratio of both masses, (8)"),
-        not_negative("D1", "Damping ratio of mass 1, (8)"),
-        not_negative("D2", "Damping ratio of mass 2, (8)"),
+        positive_quantity("mu", "Mass ratio m2/m1, (2)"),
+        positive_quantity("kappa", "Stiffness ratio k2/k1, (2)"),
+        non_negative_quantity("D", "Damping ratio of both masses, (8)"),
+        non_negative_quantity("D1", "Damping ratio of mass 1, (8)"),
+        non_negative_quantity("D2", "Damping ratio of mass 2, (8)"),
         Quantity("f1", "Hz", "Natural frequency of mass 1 alone", SMALLEST, LARGEST),
         Quantity("f2", "Hz", "Natural frequency of mass 2 alone", SMALLEST, LARGEST),
-        not_negative("zeta1", "Damping ratio of mass 1 at its own frequency"),
-        not_negative("zeta2", "Damping ratio of mass 2 at its own frequency"),
+        non_negative_quantity("zeta1", "Damping ratio of mass 1 at its own frequency"),
+        non_negative_quantity("zeta2", "Damping ratio of mass 2 at its own frequency"),
         Quantity("eta", "1", "Frequency ratio Omega/omega, (6)", 1e-6, 1e6),
-        positive("beta", "Mass ratio m1/M_t"),
-        positive("epsilon", "The unbalance's share in the inertia, S^2/(J M_t)"),
-        positive("b", "Slope of the torque line, K^2/(R_a J omega)"),
-        not_negative("Omega_b", "The box's own frequency over omega"),
-        not_negative("D_b", "Damping ratio of the box, c_b/(2 omega M_t)"),
+        positive_quantity("beta", "Mass ratio m1/M_t"),
+        positive_quantity("epsilon", "The unbalance's share in the inertia, S^2/(J M_t)"),
+        positive_quantity("b", "Slope of the torque line, K^2/(R_a J omega)"),
+        non_negative_quantity("Omega_b", "The box's own frequency over omega"),
+        non_negative_quantity("D_b", "Damping ratio of the box, c_b/(2 omega M_t)"),
     )
 }
 

@@ -59,8 +59,8 @@ def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomia
 
 
 def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Return H of the box with the bonded masses, and their displacement from the box over the
-    box's.
+    """Return the transfer function from a force on the box to its position, bonded masses included,
+    and the masses' relative displacement over the box's.
 
     Parameters
     ----------

@@ -184,7 +184,9 @@ class SpeedGradient(Controller):
     def update(
         self, measured: Measurement, state: ControllerState
     ) -> tuple[float, ControllerState]:
-        """Return all of the voltage, or the lower part of it."""
+        """Return the full voltage while the rotor is faster than its running mean, else the lower
+        part.
+        """
         (mean,) = state
         mean -= (measured.speed - mean) * math.expm1(-measured.h / self.filter_time)
         direction = math.copysign(1.0, measured.available)

@@ -31,7 +31,7 @@ from .jumps import Passing, SweepLeg, find_passing, stays_beyond, why_none
 from .master import Scheme
 from .revolutions import COLUMNS, Revolutions
 from .schedule import Constant, Ramp, Schedule, check
-from .verdicts import agreed, how_decided, is_doubtful, is_jump, reason, theories
+from .verdicts import check_against_theory, how_decided, is_doubtful, is_jump, reason, theories
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -249,7 +249,7 @@ class CoupleJob(Job):
         theory, volts = theories(self.structure, self.drive), self.drive.volts(self.structure)
         final = list(held)
         if self.structure.bonded:
-            final = [agreed(*pair, volts) for pair in zip(held, theory, strict=True)]
+            final = [check_against_theory(*pair, volts) for pair in zip(held, theory, strict=True)]
         passings = [None if self.control else self.passing(table, up) for up in UPWARD]
         pairs = list(zip(passings, final, strict=True))
         jumps = [passing if is_jump(passing, verdict) else None for passing, verdict in pairs]

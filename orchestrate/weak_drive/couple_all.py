@@ -55,7 +55,7 @@ def job_of(
     back: bool,
     step: float | None,
 ) -> CoupleJob:
-    """Return one of the runs, by non-dimensional numbers."""
+    """Return the coupled run of one system, kind and rate, from non-dimensional numbers."""
     structure, drive = system
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
     require_motor(drive)

@@ -150,7 +150,7 @@ class Revolution:
         time: float = 0.0,
         impacts: float = 0.0,
     ) -> Revolution:
-        """Begin a revolution with these outputs."""
+        """Make the record of a revolution that begins with these outputs."""
         x, y = motion.x1, shaking.box_position
         return cls(turn, time, impacts, x, x, y, y)
 

@@ -211,7 +211,7 @@ class Master:
         self.force_before = self.h_before = 0.0
         self.acceleration_before = self.jerk_before = 0.0
         self.balance = EnergyBalance(structure, self.motion, self.shaking)
-        self._do = self._one_after_the_other if scheme.passes else self._both_at_once
+        self._do = self._gauss_seidel_step if scheme.passes else self._jacobi_step
 
     def step(self, voltage: float, h: float | None = None) -> None:
         """Do one communication interval at a constant voltage, V; of length ``h``, s, if given."""
@@ -260,7 +260,8 @@ class Master:
         return len(voltages)
 
     def _substeps_by_defect(self, voltage: float, h: float) -> None:
-        """Do an interval in steps of h, h/2, h/4 ... as their defects ask for.
+        """Do an interval in halved steps h, h/2, h/4 ... until the energy defect of each is small
+        enough.
 
         A step is halved where its defect is too large. After one with a defect that twice the
         length would still do with, the next is twice as long, where that ends on its own grid: so
@@ -279,9 +280,9 @@ class Master:
             if defect < self.scheme.tolerance * self.scheme.easy and even and self.level:
                 self.level -= 1
             if self.motion.impact_time != last_impact:
-                self._begin_anew()
+                self._restart_extrapolation()
 
-    def _begin_anew(self) -> None:
+    def _restart_extrapolation(self) -> None:
         """Restart the extrapolation after an impact: the force has a corner there, or jumps."""
         self.slope = self.h_before = 0.0
         self.shaking = self._outputs_with_force(self.motion)
@@ -387,7 +388,7 @@ class Master:
 
     # -- the schemes --
 
-    def _both_at_once(self, h: float) -> Step:
+    def _jacobi_step(self, h: float) -> Step:
         """Step each with what is known of the other before the step (Jacobi)."""
         acceleration = self._extrapolated_acceleration()
         self.oscillator.put(*acceleration)
@@ -396,7 +397,7 @@ class Master:
         self.shaker.step(self.time, h)
         return Step(acceleration, self._motion(), self._shaking())
 
-    def _one_after_the_other(self, h: float) -> Step:
+    def _gauss_seidel_step(self, h: float) -> Step:
         """Step structure, then shaker (Gauss-Seidel); once, twice, or until the force does not
         change.
         """
@@ -412,7 +413,7 @@ class Master:
                 self.oscillator.restore()
                 self.shaker.restore()
             motion, force = self._pass(acceleration, h)
-            if i + 1 == passes or (last and self._settled(motion, last)):
+            if i + 1 == passes or (last and self._converged(motion, last)):
                 break
             last = motion
             self.shaker.put(motion.box_force, end_slope(force, h), 0.0, 0.0, self.voltage)
@@ -429,7 +430,7 @@ class Master:
         self.shaker.step(self.time, h)
         return motion, force
 
-    def _settled(self, motion: OscillatorOutputs, last: OscillatorOutputs) -> bool:
+    def _converged(self, motion: OscillatorOutputs, last: OscillatorOutputs) -> bool:
         """Return whether an iteration has changed nothing but roundings."""
         now, then = (
             (state.box_force, state.box_impulse, state.box_impulse_moment)

@@ -157,7 +157,7 @@ class Ramp(Schedule):
 
     @property
     def begin(self) -> float:
-        """Time at which it leaves the first voltage, s."""
+        """Time at which the first voltage is left, s."""
         return self.spin_up + self.settle
 
     @property
@@ -167,7 +167,7 @@ class Ramp(Schedule):
 
     @property
     def turn(self) -> float:
-        """Time at which it is at the last voltage, s."""
+        """Time at which the last voltage is reached, s."""
         return self.begin + self.rise
 
     @property

@@ -374,13 +374,15 @@ Ends = Callable[[float], "Floats | None"]  # of a period, by a change of an unkn
 
 
 def central(end: Ends, change: float) -> Floats | None:
-    """Return a derivative by the ends on both sides; None where one of them is of another kind."""
+    """Return a derivative by central differences; None if an end is of another kind."""
     after, before = end(change), end(-change)
     return None if after is None or before is None else (after - before) / (2.0 * change)
 
 
 def one_sided(end: Ends, change: float) -> Floats | None:
-    """Return the same by one side alone, of the same order."""
+    """Return a derivative by one-sided differences of the same order; None if an end is of another
+    kind.
+    """
     here, near, far = end(0.0), end(change), end(2.0 * change)
     if here is None or near is None or far is None:
         return None

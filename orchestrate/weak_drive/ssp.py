@@ -51,7 +51,7 @@ def tag(prefix: str, name: str) -> str:
 
 
 def document(root: ET.Element) -> bytes:
-    """Return an XML document."""
+    """Serialize an XML document."""
     for prefix, address in NAMESPACES.items():
         ET.register_namespace(prefix, address)
     ET.indent(root)
@@ -135,7 +135,7 @@ def parameter_values(values: Values) -> bytes:
 
 
 def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
-    """Write a zip file, the same bytes at any time."""
+    """Write a zip file that has the same bytes whenever it is written."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)

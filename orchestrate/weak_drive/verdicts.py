@@ -71,7 +71,7 @@ def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
     return passing.look == DOUBTFUL
 
 
-def agreed(verdict: Verdict, theory: Theory, volts: float) -> Verdict:
+def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verdict:
     """Return the verdict on a bonded structure, undecided where the averaged theory contradicts
     it.
     """

@@ -76,7 +76,7 @@ class ImpactPoints(Counting):
         self._advance(done, h)
         if event:
             self.handle()
-            self._begin_anew()
+            self._restart_extrapolation()
         return size, h
 
     def both(self, h):

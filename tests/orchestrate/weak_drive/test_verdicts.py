@@ -22,7 +22,13 @@ from orchestrate.weak_drive.jumps import (
 )
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.schedule import Ramp
-from orchestrate.weak_drive.verdicts import Theory, agreed, is_doubtful, reason, theories
+from orchestrate.weak_drive.verdicts import (
+    Theory,
+    check_against_theory,
+    is_doubtful,
+    reason,
+    theories,
+)
 from tools.trust.verdicts import draw, with_slope
 
 from .coupled import BEAM, QUICK, System
@@ -135,7 +141,7 @@ NONE = Theory((), False, 0.1)
 )
 def test_a_verdict_that_the_averaged_theory_contradicts_is_not_given(verdict, theory, what):
     """Volts are 2: the theory loses the motion at 2.26 V."""
-    final = agreed(verdict, theory, 2.0)
+    final = check_against_theory(verdict, theory, 2.0)
     assert final.what == what
     if what == UNDECIDED:
         text = reason(Passing(1, 0, 2, DOUBTFUL, 1.0), verdict, final, theory, 5.0)
