@@ -189,9 +189,9 @@ def printable(text: str, max_length: int = 1000) -> str:
 
     Examples
     --------
-    >>> readable("one\ntwo\x1b[2J")
+    >>> printable("one\ntwo\x1b[2J")
     'one\\ntwo\\x1b[2J'
-    >>> readable("123456789", most=4)
+    >>> printable("123456789", max_length=4)
     '12 ... 89'
     """
     plain = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)

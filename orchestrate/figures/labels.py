@@ -76,7 +76,8 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
 
     Examples
     --------
-    >>> about(xr.Dataset(attrs=dict(m1=1.0, m2=2.0, k1=1.0, k2=1.2, d1=0.01, d2=0.02, e=0.7)))
+    >>> attributes = dict(m1=1.0, m2=2.0, k1=1.0, k2=1.2, d1=0.01, d2=0.02, e=0.7)
+    >>> title_from_attributes(xr.Dataset(attrs=attributes))
     '$e$ = 0.7, $D$ = 0.005, $\\mu$ = 2'
     """
     known = {name: float(value) for name, value in data.attrs.items() if is_number(value)}
@@ -162,7 +163,7 @@ def format_halves(known: Mapping[str, float]) -> str:
 
     Examples
     --------
-    >>> halves_text(dict(m1=1.5, m2=1.5, k1=8437.5, k2=8437.5, d1=1.125, d2=2.25))
+    >>> format_halves(dict(m1=1.5, m2=1.5, k1=8437.5, k2=8437.5, d1=1.125, d2=2.25))
     '$f_1$ = 11.94 Hz, $f_2$ = 11.94 Hz, $\\zeta_1$ = 0.5 %, $\\zeta_2$ = 1 %'
     """
     frequencies, damping = [], []

@@ -95,7 +95,7 @@ def round_state(state: NDArray[np.float64], bits: int = 44) -> tuple[float, ...]
 
     Examples
     --------
-    >>> without_last_digits(np.array([0.25, 0.3, 1.0, -1.0]))
+    >>> round_state(np.array([0.25, 0.3, 1.0, -1.0]))
     (0.25, 0.30000000000001137, 1.0, -1.0)
     """
     x1, x2, v1, v2 = state.tolist()

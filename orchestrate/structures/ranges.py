@@ -185,7 +185,7 @@ def exact_inverse(guess: float, forward: Callable[[float], float], target: float
     --------
     >>> 0.05 * 0.7 / 0.7
     0.049999999999999996
-    >>> recover(0.05 * 0.7 / 0.7, lambda number: number * 0.7, 0.05 * 0.7)
+    >>> exact_inverse(0.05 * 0.7 / 0.7, lambda number: number * 0.7, 0.05 * 0.7)
     0.05
     """
     near = [guess]
