@@ -79,7 +79,7 @@ def elapsed(job: SweepJob, workers: int, clockwork: Clockwork, each: float) -> t
             done, seconds = clockwork.run(job, task)
             heapq.heappush(busy, (now + seconds + each, task.chunk.index, task, done))
         now, _, task, done = heapq.heappop(busy)
-        progress.enter(task, *done)
+        progress.add_result(task, *done)
     return now, progress.wasted
 
 

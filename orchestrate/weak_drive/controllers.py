@@ -92,7 +92,7 @@ class SpeedControl(Controller):
     Examples
     --------
     >>> control = SpeedControl(speed=100.0, gain=0.3, reset_time=0.5)
-    >>> voltage, memory = control.act(Seen(0.0, 90.0, 12.0, 0.001), control.begin(90.0))
+    >>> voltage, state = control.update(Measurement(0.0, 90.0, 12.0, 0.001), control.begin(90.0))
     >>> round(voltage, 6)  # 0.3 (10 + 10 * 0.001/0.5)
     3.006
     """
@@ -163,8 +163,8 @@ class SpeedGradient(Controller):
     Examples
     --------
     >>> control = SpeedGradient(filter_time=0.2, passed=120.0)
-    >>> fast, slow = (Seen(1.0, speed, 6.0, 0.001) for speed in (91.0, 89.0))
-    >>> control.act(fast, (90.0,))[0], control.act(slow, (90.0,))[0]
+    >>> fast, slow = (Measurement(1.0, speed, 6.0, 0.001) for speed in (91.0, 89.0))
+    >>> control.update(fast, (90.0,))[0], control.update(slow, (90.0,))[0]
     (6.0, 0.0)
     """
 

@@ -91,7 +91,7 @@ def find_passing(
 
     Parameters
     ----------
-    leg : Way
+    leg : SweepLeg
     b : float
         Slope of the torque line, the inverse of the time in which a rotor without load settles.
     up : bool
@@ -195,7 +195,7 @@ def why_none(leg: SweepLeg, up: bool, resonance: float) -> str:
 
     Parameters
     ----------
-    leg : Way
+    leg : SweepLeg
     up : bool
     resonance : float
         Speed of the resonance over omega.

@@ -94,7 +94,7 @@ class ImpactPoints(Counting):
             self.shaker.put(*force, self.voltage)
             self.shaker.step(self.time, length)
             self.passes += 1
-            if i + 1 == passes or (last and self._settled(motion, last)):
+            if i + 1 == passes or (last and self._converged(motion, last)):
                 break
             last = motion
             self.shaker.put(motion.box_force, end_slope(force, length), 0.0, 0.0, self.voltage)
