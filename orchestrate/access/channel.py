@@ -121,7 +121,7 @@ class Channel:
         self.instance._messages.clear()
 
     def failure(self, function: str, status: int) -> FmuError:
-        """The FMU's message after a call that did not answer OK."""
+        """Return the error with the FMU's message after a call whose status is not OK."""
         return self.instance.failure(f"{function} failed with status {status}")
 
     def put(self, *values: float) -> None:

@@ -54,7 +54,7 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
 
 
 def draw_impacts(axes: Axes, data: xr.Dataset) -> None:
-    """Each impact's impulse at its time."""
+    """Draw each impact's impulse at its time."""
     count = data.sizes["impact"]
     axes.set_ylabel("impulse in N s")
     if not count:
@@ -66,7 +66,7 @@ def draw_impacts(axes: Axes, data: xr.Dataset) -> None:
 
 
 def outline(axes: Axes, bonded: xr.Dataset) -> None:
-    """The bonded structure's acceleration, as the two lines that it stays between."""
+    """Draw the bonded structure's acceleration as the two lines that it stays between."""
     time, low, high = extremes(bonded.time.values, bonded.a1_abs.values)
     axes.plot(time, high, color=BLACK, linewidth=0.9, label="both, bonded")
     axes.plot(time, low, color=BLACK, linewidth=0.9)
@@ -79,7 +79,9 @@ def extremes(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def envelope(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
-    """A signal: itself where it is short, between its least and largest values where it is long."""
+    """Draw a signal: itself where it is short, between its least and largest values where it is
+    long.
+    """
     time, values = data.time.values, data[name].values / factor
     if len(time) <= SHORT:
         axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})

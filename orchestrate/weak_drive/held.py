@@ -295,7 +295,9 @@ class HeldVoltageTest:
         return points
 
     def falls_back(self, low: Settled, sign: float) -> bool:
-        """Whether a held speed goes back from the ramp's, which lags: then to another motion."""
+        """Return whether a held speed goes back from the ramp's, which lags: then to another
+        motion.
+        """
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
         return sign * (low.speed - low.begin) < -allowed
 
