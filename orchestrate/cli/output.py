@@ -191,14 +191,14 @@ def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> 
     return "_".join(filter(None, [*parts, digest(structure.parameters(), question)]))
 
 
-def digest(*told: Any) -> str:
+def digest(*arguments: Any) -> str:
     """Return a few letters that differ where the arguments differ."""
 
     def other(value: Any) -> str:  # a stored result is the question that it answers
         identity = getattr(value, "attrs", {}).get("identity")
         return json.dumps(json.loads(identity)["question"]) if identity else repr(value)
 
-    text = json.dumps(told, sort_keys=True, default=other)
+    text = json.dumps(arguments, sort_keys=True, default=other)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 

@@ -235,39 +235,39 @@ def checked_structure(structure: object) -> Structure:
     return structure
 
 
-def numbers(name: str, given: ArrayLike | None) -> Numbers | None:
+def numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
     """Return a number or a list of numbers, each in the parameter's range.
 
     Parameters
     ----------
     name : str
         Of the parameter; ranges of a structure's are checked by the structure.
-    given : array_like, optional
+    argument : array_like, optional
 
     Raises
     ------
     InputError
         Where these are no finite numbers, none at all, a table, or out of range.
     """
-    if given is None:
+    if argument is None:
         return None
     try:
-        array = np.asarray(given)
+        array = np.asarray(argument)
         if array.dtype.kind not in "iuf":
             raise ValueError
         array = array.astype(float)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} = {given!r}: expected a number or a list of numbers") from None
+        raise InputError(f"{name} = {argument!r}: expected a number or a list of numbers") from None
     if array.ndim > 1 or not 1 <= array.size <= MAX_COUNT:
         shape = "x".join(map(str, array.shape))
         raise InputError(f"{name}: {shape} values; expected a number or a list of 1 to {MAX_COUNT}")
     result = tuple(array.ravel().tolist())
     check = EXCITATION_PARAMETERS[name].check if name in EXCITATION_PARAMETERS else float
-    result = tuple(check(one_value) for one_value in result)
+    result = tuple(check(number) for number in result)
     bad = [
-        one_value
-        for one_value in result
-        if not math.isfinite(one_value) or (name in EXCITATION_PARAMETERS and one_value <= 0.0)
+        number
+        for number in result
+        if not math.isfinite(number) or (name in EXCITATION_PARAMETERS and number <= 0.0)
     ]
     if bad:
         raise InputError(

@@ -266,12 +266,12 @@ def torque_line(
     ------
     InputError
     """
-    given = {
+    checked = {
         "rated_voltage": rated_voltage,
         "no_load_speed": no_load_speed,
         "stall_torque": stall_torque,
     }
-    for name, value in given.items():
+    for name, value in checked.items():
         if not (math.isfinite(value) and value > 0.0):
             raise InputError(f"{name} = {value}: expected a number > 0")
     constant = rated_voltage / no_load_speed

@@ -75,9 +75,9 @@ class Excitation:
         """
         from .files import read_section
 
-        found = read_section(path, "excitation", structure)
-        assert isinstance(found, cls)
-        return found
+        excitation = read_section(path, "excitation", structure)
+        assert isinstance(excitation, cls)
+        return excitation
 
     @property
     def period(self) -> float:
@@ -122,11 +122,13 @@ class Excitation:
             ratio = frequency * frequency * mass / stiffness
             loss = sum(dampers.values()) * frequency / stiffness
             if (1.0 - ratio) ** 2 + loss**2 <= 4.0 * least:
-                given = " and ".join(f"{damper} = {dampers[damper]!r} N s/m" for damper in dampers)
+                dampers_text = " and ".join(
+                    f"{damper} = {dampers[damper]!r} N s/m" for damper in dampers
+                )
                 natural = math.sqrt(stiffness / mass)
                 raise InputError(
                     f"frequency = {frequency!r} rad/s (eta = {self.eta(structure)!r}): the natural "
-                    f"frequency of {name}, {natural!r} rad/s, with {given}; expected "
+                    f"frequency of {name}, {natural!r} rad/s, with {dampers_text}; expected "
                     f"{' + '.join(dampers)} > 0, or a frequency further than 1e-6 of it away"
                 )
 

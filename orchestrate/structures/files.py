@@ -107,27 +107,27 @@ def read(source: str | PathLike[str], structure: Structure | None = None) -> dic
         if name not in SECTIONS:
             raise InputError(f"{path}: {name}: no section; {expected_one_of(name, SECTIONS)}")
     sections = {name: Section(path, name, values) for name, values in tables.items()}
-    found: dict[str, Described] = {}
+    contents: dict[str, Described] = {}
     if "structure" in sections:
-        found["structure"] = structure = read_structure(sections["structure"])
+        contents["structure"] = structure = read_structure(sections["structure"])
     if "excitation" in sections:
-        found["excitation"] = read_excitation(sections["excitation"], structure)
+        contents["excitation"] = read_excitation(sections["excitation"], structure)
     if sections.keys() & {"motor", "box"}:
         for name in {"motor", "box"} - sections.keys():
             raise InputError(f"{path}: no section [{name}]; expected [motor] and [box] together")
-        found["drive"] = read_drive(sections["motor"], sections["box"], structure)
-    return found
+        contents["drive"] = read_drive(sections["motor"], sections["box"], structure)
+    return contents
 
 
 def read_section(
     source: str | PathLike[str], name: str, structure: Structure | None = None
 ) -> Described:
     """Read one section of a file: ``"structure"``, ``"excitation"`` or ``"drive"``."""
-    found = read(source, structure)
-    if name not in found:
+    contents = read(source, structure)
+    if name not in contents:
         expected = "[motor] and [box]" if name == "drive" else f"[{name}]"
         raise InputError(f"{source}: describes no {name}; expected {expected}")
-    return found[name]
+    return contents[name]
 
 
 def parse(path: Path) -> dict[str, Any]:
