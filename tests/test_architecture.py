@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import functools
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,10 +20,13 @@ OURS = ("fmu_src", "orchestrate", "tools")
 FILES = sorted(
     path.relative_to(ROOT).as_posix() for name in OURS for path in (ROOT / name).rglob("*.py")
 )
-GROUND = {"errors", "files", "temporary", "version"}
+GROUND = {"checks", "constants", "errors", "files", "flags", "temporary", "version"}
 BELOW_ANSWERS = GROUND | {"structures", "access", "running"}
 FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know beside itself
+    "checks": {"errors"},
+    "constants": set(),
     "errors": set(),
+    "flags": set(),
     "version": set(),
     "files": {"errors"},
     "supervisor": set(),
@@ -332,3 +336,26 @@ def test_every_function_is_annotated(file):
             if node.returns is None or any(a.annotation is None for a in named):
                 bare.append(node.name)
     assert [name for name in bare if not (name.startswith("__") and name != "__init__")] == []
+
+
+PACKAGES = sorted(
+    file for file in FILES if file.startswith("orchestrate/") and file.endswith("__init__.py")
+)
+
+
+def listed_modules(file: str) -> list[str] | None:
+    """Modules in the table of a package's docstring; None where there is no table."""
+    text = ast.get_docstring(tree_of(file)) or ""
+    if not re.search(r"^=+  =+\nmodule +idea$", text, re.MULTILINE):
+        return None
+    return re.findall(r"^:mod:`\.(\w+)` ", text, re.MULTILINE)
+
+
+def test_some_packages_have_a_table_of_modules():
+    assert sum(listed_modules(file) is not None for file in PACKAGES) >= 4
+
+
+@pytest.mark.parametrize("file", [file for file in PACKAGES if listed_modules(file) is not None])
+def test_a_table_of_modules_is_complete(file):
+    there = {path.stem for path in (ROOT / file).parent.glob("*.py")} - {"__init__"}
+    assert sorted(listed_modules(file) or []) == sorted(there)

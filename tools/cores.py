@@ -16,7 +16,7 @@ from unittest.mock import patch
 import numpy as np
 
 from orchestrate.access import OSCILLATOR, find
-from orchestrate.response.questions import asked_along
+from orchestrate.response.questions import series_arguments
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.executors import compute
 from orchestrate.running.job import Table
@@ -31,7 +31,9 @@ Done = tuple[bytes, Table]
 def figure_6(step: float) -> SweepJob:
     """The paper's sweep, at every so manyth frequency."""
     etas = np.round(np.arange(0.1, 8.0 + 0.5 * step, step), 3)
-    return SweepJob(**asked_along(Structure.nondimensional(), etas, None, None), name="figure 6")
+    return SweepJob(
+        **series_arguments(Structure.nondimensional(), etas, None, None), name="figure 6"
+    )
 
 
 @dataclass
@@ -42,12 +44,16 @@ class Clockwork:
 
     def run(self, job: SweepJob, task: Task) -> tuple[Done, float]:
         """A chunk's result, and its seconds."""
-        begun = job.seam(task.carry) if task.carry is not None else repr(task.lead).encode()
+        begun = (
+            job.boundary_state(task.previous)
+            if task.previous is not None
+            else repr(task.warmup_items).encode()
+        )
         key = task.chunk.first, begun
         if key not in self.known:
             fmus = {OSCILLATOR: find(OSCILLATOR).path}
             clock = time.process_time()
-            done = compute(job, fmus, task.items, task.carry, task.lead)
+            done = compute(job, fmus, task.items, task.previous, task.warmup_items)
             self.known[key] = done, time.process_time() - clock
         return self.known[key]
 
@@ -73,7 +79,7 @@ def elapsed(job: SweepJob, workers: int, clockwork: Clockwork, each: float) -> t
             done, seconds = clockwork.run(job, task)
             heapq.heappush(busy, (now + seconds + each, task.chunk.index, task, done))
         now, _, task, done = heapq.heappop(busy)
-        progress.enter(task, *done)
+        progress.add_result(task, *done)
     return now, progress.wasted
 
 

@@ -1,24 +1,25 @@
 """The one place that talks to FMPy.
 
-====================  =============================================================================
-module                idea
-====================  =============================================================================
-:mod:`.description`   what an FMU says of itself
-:mod:`.exported`      the FMUs of the present sources: exported where missing, and found
-:mod:`.models`        names of the models
-:mod:`.unpacked`      where FMUs are unpacked, once a process
-:mod:`.library`       their binaries, loaded once a process
-:mod:`.instance`      a co-simulation instance: set, step, read, save its state
-:mod:`.events`        a motion impact by impact
-:mod:`.begin`         how a motion begins, and its states at equal times
-:mod:`.play`          a motion under an acceleration of the box that is given as cubics
-:mod:`.channel`       fast calls on one instance, for co-simulation masters
-:mod:`.c_library`     C sources of the package compiled, and found
-:mod:`.webassembly`   the kernels for web pages: the same
-====================  =============================================================================
+===================  =================================================================
+module               idea
+===================  =================================================================
+:mod:`.description`  an FMU's modelDescription.xml, read and validated
+:mod:`.archive`      checks of an FMU archive before it is unpacked
+:mod:`.exported`     the FMUs of the present sources: found, or exported where missing
+:mod:`.models`       names of the models
+:mod:`.unpacked`     unpacking of FMUs, once per process
+:mod:`.library`      binaries of FMUs, loaded once per process
+:mod:`.instance`     a co-simulation instance: set, step, read, save its state
+:mod:`.events`       a motion computed impact by impact
+:mod:`.begin`        start of a motion, and its states at equal times
+:mod:`.play`         a motion under a box acceleration given as cubics
+:mod:`.channel`      fast calls on one instance, for co-simulation masters
+:mod:`.c_library`    C libraries of the package: found, or compiled
+:mod:`.webassembly`  the kernels for web pages: found, or compiled
+===================  =================================================================
 """
 
-from .begin import REST, begin, last_samples, room_for_samples, sampled
+from .begin import REST, begin, last_samples, sampled, samples_per_step
 from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
@@ -53,7 +54,7 @@ __all__ = [
     "finder",
     "last_samples",
     "play",
-    "room_for_samples",
+    "samples_per_step",
     "sampled",
     "sources_of",
     "up_to_date",

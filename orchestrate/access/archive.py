@@ -1,4 +1,4 @@
-"""Whether an FMU is an archive that may be unpacked: before anything of it is."""
+"""Checks of an FMU archive before anything of it is unpacked."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import re
 import stat
 import zipfile
 
-MOST_FILES = 10_000
-MOST_BYTES = 1 << 30  # unpacked
+MAX_FILES = 10_000  # far above any real FMU: an archive with more is an attack or an accident
+MAX_BYTES = 1 << 30  # unpacked; the same
 
 
 def check_archive(data: bytes) -> None:
-    """See that nothing in an archive would lie outside of its folder, or fill the disk.
+    """Check that nothing in an archive would lie outside of its folder, or fill the disk.
 
     Parameters
     ----------
@@ -28,11 +28,11 @@ def check_archive(data: bytes) -> None:
     """
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         entries = archive.infolist()
-    if len(entries) > MOST_FILES:
-        raise ValueError(f"{len(entries)} files in it, at most {MOST_FILES} expected")
+    if len(entries) > MAX_FILES:
+        raise ValueError(f"{len(entries)} files in it, at most {MAX_FILES} expected")
     total = sum(entry.file_size for entry in entries)
-    if total > MOST_BYTES:
-        raise ValueError(f"{total} bytes unpacked, at most {MOST_BYTES} expected")
+    if total > MAX_BYTES:
+        raise ValueError(f"{total} bytes unpacked, at most {MAX_BYTES} expected")
     names = [entry.orig_filename for entry in entries]
     if len(set(names)) < len(names):
         raise ValueError("two files of one name in it")
@@ -47,7 +47,7 @@ def check_archive(data: bytes) -> None:
 
 
 def check_identifier(name: str) -> None:
-    """See that a binary's name is a name, not a path.
+    """Check that a binary's name is a name, not a path.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How a motion of the oscillator begins, and its states at equal times."""
+"""Start of an oscillator's motion, and its states at equal times."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from .events import STATE
 from .instance import Instance
 
 REST = (0.0, 0.0, 0.0, 0.0)
-STARTS = tuple(f"{name}_start" for name in STATE)
-SERIES = tuple(f"{name}_sample" for name in STATE)
+START_PARAMETERS = tuple(f"{name}_start" for name in STATE)
+SAMPLE_SERIES = tuple(f"{name}_sample" for name in STATE)
 
 
 def begin(
@@ -42,28 +42,28 @@ def begin(
     FmuError
         Where the FMU refuses a value; masses that overlap among them.
     """
-    state = dict(zip(STARTS, four_numbers(start), strict=True))
-    given = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}
+    state = dict(zip(START_PARAMETERS, four_numbers(start), strict=True))
+    start_values = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}
     instance.reset()
-    instance.initialize(**{**given, **values})
+    instance.initialize(**{**start_values, **values})
     if instance.EVENTS:
         instance.call("enterStepMode")
 
 
 def four_numbers(start: ArrayLike) -> list[float]:
-    """A start as plain floats."""
+    """Return a start state as plain floats."""
     try:
         state = np.asarray(start, dtype=float)
     except (TypeError, ValueError):
         state = np.empty(0)
-    if state.shape != (len(STARTS),):
+    if state.shape != (len(START_PARAMETERS),):
         raise InputError(f"start = {start!r}: expected 4 numbers, x1, x2, v1, v2")
-    found: list[float] = state.tolist()
-    return found
+    numbers: list[float] = state.tolist()
+    return numbers
 
 
 def sampled(instance: Instance, time: float, target: float, count: int) -> NDArray[np.float64]:
-    """States at ``count`` equal parts of a span, the last at its end, taken inside few steps.
+    """Return states at ``count`` equal parts of a time span, the last at its end.
 
     Parameters
     ----------
@@ -78,21 +78,21 @@ def sampled(instance: Instance, time: float, target: float, count: int) -> NDArr
     ndarray, shape (count, 4)
         x1, x2 in m, v1, v2 in m/s.
     """
-    room = room_for_samples(instance)
-    states, width = np.empty((count, len(SERIES))), (target - time) / count
-    for done in range(0, count, room):
-        size = min(room, count - done)
+    step_capacity = samples_per_step(instance)
+    states, width = np.empty((count, len(SAMPLE_SERIES))), (target - time) / count
+    for done in range(0, count, step_capacity):
+        size = min(step_capacity, count - done)
         instance.set(sample_count=size)
         instance.step(time + done * width, time + (done + size) * width)
         states[done : done + size] = last_samples(instance, size)
     return states
 
 
-def room_for_samples(instance: Instance) -> int:
-    """States that an instance keeps of a step."""
-    return instance.size(*SERIES) // len(SERIES)
+def samples_per_step(instance: Instance) -> int:
+    """Return how many states an instance can store during one step."""
+    return instance.size(*SAMPLE_SERIES) // len(SAMPLE_SERIES)
 
 
 def last_samples(instance: Instance, count: int) -> NDArray[np.float64]:
-    """The states of the last step, shape (count, 4), valid until the next call."""
-    return instance.read(*SERIES).reshape(len(SERIES), -1)[:, :count].T
+    """Return the states of the last step, shape (count, 4), valid until the next call."""
+    return instance.read(*SAMPLE_SERIES).reshape(len(SAMPLE_SERIES), -1)[:, :count].T

@@ -1,4 +1,4 @@
-"""C libraries of the package beside the FMUs: compiled where they are missing, and found."""
+"""C libraries of the package beside the FMUs: compiled where missing or out of date."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | None:
-    """The library of a C source for this machine, compiled first where there is none of it.
+    """Return the compiled library of a C source for this machine; compile it first if missing.
 
     Parameters
     ----------
@@ -39,22 +39,26 @@ def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | N
     platform = this_machine()
     if platform not in PLATFORMS:
         return None
-    places = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
+    folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     token = sources.guid(source).encode()
-    paths = [place / FORM / sources.file_name(source, platform) for place in places]
+    paths = [candidate / FORM / sources.file_name(source, platform) for candidate in folders]
     for path in paths:
-        if is_of(path, token):
+        if has_token(path, token):
             return path
     try:
         with made_once(paths[0]):
-            return paths[0] if is_of(paths[0], token) else compiled(source, platform, places[0])
+            return (
+                paths[0]
+                if has_token(paths[0], token)
+                else compile_library(source, platform, folders[0])
+            )
     except (CannotExport, StoreError) as reason:
         log.info("%s is not compiled, Python does the same: %s", source.name, reason)
         return None
 
 
-def is_of(path: Path, token: bytes) -> bool:
-    """Whether there is a library, of the source with this token."""
+def has_token(path: Path, token: bytes) -> bool:
+    """Return whether a library exists and was made from the source with this token."""
     return path.is_file() and token in path.read_bytes()
 
 
@@ -77,17 +81,17 @@ def build_libraries(
     for source in sorted(PACKAGE.glob("*/*.c")):
         for platform in chosen(platforms) or usual():
             try:
-                made.append(compiled(source, platform, target))
+                made.append(compile_library(source, platform, target))
             except CannotExport as reason:
                 log.warning("%s left out: %s", sources.file_name(source, platform), reason)
     return made
 
 
-def compiled(source: Path, platform: str, folder: Path) -> Path:
+def compile_library(source: Path, platform: str, folder: Path) -> Path:
     """Compile a C source to a build folder, whole or not at all."""
     path = folder / FORM / sources.file_name(source, platform)
     log.info("compiling %s", path)
-    made = sources.export(source, platform)
+    library = sources.export(source, platform)
     open_folder(path.parent)
-    write_whole(path, lambda place: place.write_bytes(made))
+    write_whole(path, lambda target: target.write_bytes(library))
     return path

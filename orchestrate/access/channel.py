@@ -16,7 +16,7 @@ from .instance import Instance
 
 
 class Pointers(NamedTuple):
-    """What compiled code needs to do the same with an FMI 3.0 instance.
+    """Addresses that compiled code needs to call an FMI 3.0 instance directly.
 
     Attributes
     ----------
@@ -26,19 +26,19 @@ class Pointers(NamedTuple):
         and ``fmi3SetFMUState``.
     inputs, outputs : array of c_uint
         Value references.
-    kept : c_void_p
-        The place of the state kept; the channel frees it.
+    saved_state : c_void_p
+        Handle of the saved state; the channel frees it.
     """
 
     instance: int
     functions: tuple[int, ...]
     inputs: Array[c_uint]
     outputs: Array[c_uint]
-    kept: c_void_p
+    saved_state: c_void_p
 
 
 class Channel:
-    """What a co-simulation master does with an instance, thousands of times a second.
+    """Fast access to fixed inputs and outputs of an instance, for a co-simulation master.
 
     Parameters
     ----------
@@ -55,11 +55,11 @@ class Channel:
         self._reused = not instance.description.needs_tool  # pythonfmu makes a new state each time
         functions = self._functions3() if instance.is_fmi3 else self._functions2()
         self._set, self._read, self._step, self._save, self._restore, self._free = functions
-        places, count, self._inputs = self._array(inputs)
-        self._puts = [self._arguments(places, n, self._inputs) for n in range(count + 1)]
-        places, count, self._outputs = self._array(outputs)
+        references, count, self._inputs = self._array(inputs)
+        self._puts = [self._arguments(references, n, self._inputs) for n in range(count + 1)]
+        references, count, self._outputs = self._array(outputs)
         self._names = tuple(outputs)
-        self._gets = self._arguments(places, count, self._outputs)
+        self._gets = self._arguments(references, count, self._outputs)
 
     def _array(self, names: Sequence[str]) -> tuple[Any, int, Any]:
         references = [self.instance.variable(name).valueReference for name in names]
@@ -67,7 +67,9 @@ class Channel:
         return (c_uint * count)(*references), count, (c_double * count)()
 
     def _arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
-        """Of the functions that set and get; FMI 3.0 wants the number of values too."""
+        """Return the arguments of the set and get functions; FMI 3.0 wants the number of values
+        too.
+        """
         sizes = (count,) if self.instance.is_fmi3 else ()
         return (self._fmu.component, references, count, values, *sizes)
 
@@ -94,48 +96,54 @@ class Channel:
         return dll.fmi3SetFloat64, dll.fmi3GetFloat64, step, *states
 
     def _call(self, function: Callable[..., int], *arguments: Any) -> None:
-        """Call the FMU itself, past FMPy's wrapper; its message where the status is not OK."""
+        """Call the FMU directly, without FMPy's wrapper; raise its message unless the status is
+        OK.
+        """
         self.begin()
         status = function(*arguments)
         if status:
             raise self.failure(getattr(function, "__name__", "a call of the FMU"), status)
 
     def pointers(self) -> Pointers:
-        """For compiled code, of an FMI 3.0 instance whose states are reused."""
+        """Return the addresses for compiled code, of an FMI 3.0 instance whose states are
+        reused.
+        """
         names = ("SetFloat64", "GetFloat64", "DoStep", "GetFMUState", "SetFMUState")
         functions = (getattr(self._fmu.dll, f"fmi3{name}") for name in names)
         addresses = tuple(cast(function, c_void_p).value or 0 for function in functions)
-        kept = self._states.setdefault(0, c_void_p())
-        return Pointers(self._fmu.component, addresses, self._puts[-1][1], self._gets[1], kept)
+        saved_state = self._states.setdefault(0, c_void_p())
+        return Pointers(
+            self._fmu.component, addresses, self._puts[-1][1], self._gets[1], saved_state
+        )
 
     def begin(self) -> None:
-        """Forget messages of calls before."""
+        """Clear the messages of earlier calls."""
         self.instance._messages.clear()
 
     def failure(self, function: str, status: int) -> FmuError:
-        """The FMU's message after a call that did not answer OK."""
+        """Return the error with the FMU's message after a call whose status is not OK."""
         return self.instance.failure(f"{function} failed with status {status}")
 
     def put(self, *values: float) -> None:
-        """Set the first of the inputs, as many as values are given."""
+        """Set the first inputs, as many as values are given."""
         count = len(values)
         self._inputs[:count] = values
         self._call(self._set, *self._puts[count])
 
     def get(self) -> list[float]:
-        """Values of the outputs."""
+        """Return the values of the outputs."""
         self._call(self._read, *self._gets)
         values: list[float] = self._outputs[:]
         if not isfinite(sum(values)) and not all(map(isfinite, values)):
-            raise self.instance.no_number(self._names, values)
+            raise self.instance.not_finite_error(self._names, values)
         return values
 
     def step(self, time: float, h: float) -> None:
-        """One communication step of length ``h`` from ``time``, s."""
+        """Do one communication step of length ``h`` from ``time``, s."""
         self._call(self._step, time, h)
 
     def save(self, level: int = 0) -> None:
-        """Keep the present state, in a place of its own for each ``level``."""
+        """Save the present state, separately for each ``level``."""
         handle = self._states.get(level)
         if handle is None:
             handle = self._states[level] = c_void_p()
@@ -144,11 +152,11 @@ class Channel:
         self._call(self._save, self._fmu.component, byref(handle))
 
     def restore(self, level: int = 0) -> None:
-        """Back to the state kept."""
+        """Return to the saved state."""
         self._call(self._restore, self._fmu.component, self._states[level])
 
     def close(self) -> None:
-        """Free the states kept."""
+        """Free the saved states."""
         for handle in self._states.values():
             self._call(self._free, self._fmu.component, byref(handle))
         self._states.clear()

@@ -1,4 +1,4 @@
-"""What an FMU says of itself."""
+"""Description of an FMU: its modelDescription.xml, read and validated."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from .archive import MOST_BYTES, check_archive, check_identifier
+from .archive import MAX_BYTES, check_archive, check_identifier
 
-SI = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+SI_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
 @dataclass(frozen=True)
 class Description:
-    """What ``modelDescription.xml`` says of an FMU.
+    """Content of an FMU's ``modelDescription.xml``, as far as it is used here.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Description:
         return self.fmi_version.startswith("3")
 
     def variable(self, name: str) -> Any:
-        """FMPy's description of a variable.
+        """Return FMPy's description of a variable.
 
         Raises
         ------
@@ -90,21 +90,21 @@ def describe(path: str | PathLike[str], model: str | None = None) -> Description
     if not path.is_file():
         raise InputError(f"FMU {path}: no such file; expected one that `vibroimpact build` writes")
     try:
-        found = read_description(path)
+        description = read_description(path)
     except Exception as error:
         reason = (str(error).splitlines() or [type(error).__name__])[0]
         text = f"FMU {path}: not readable as an FMU ({reason})"
         raise InputError(f"{text}; expected one that `vibroimpact build` writes") from None
-    if not found.identifier or (model and found.name != model):
+    if not description.identifier or (model and description.name != model):
         expected = f"{model or 'a model'} for co-simulation"
-        raise InputError(f"FMU {path}: model {found.name}; expected {expected}")
-    return found
+        raise InputError(f"FMU {path}: model {description.name}; expected {expected}")
+    return description
 
 
 def exponents(base: Any) -> dict[str, int]:
-    """Exponents of SI units in FMPy's base unit, those that are not 0."""
-    found = {name: int(getattr(base, name)) for name in SI} if base else {}
-    return {name: exponent for name, exponent in found.items() if exponent}
+    """Return the exponents of SI units in FMPy's base unit, those that are not 0."""
+    powers = {name: int(getattr(base, name)) for name in SI_UNITS} if base else {}
+    return {name: exponent for name, exponent in powers.items() if exponent}
 
 
 _known: dict[str, Description] = {}  # by digest: validation takes long
@@ -113,27 +113,27 @@ _known: dict[str, Description] = {}  # by digest: validation takes long
 def read_description(path: Path) -> Description:
     """Read and validate ``modelDescription.xml``, once in a process for a file's bytes."""
     size = path.stat().st_size
-    if size > MOST_BYTES:  # packed, it is smaller than unpacked
-        raise ValueError(f"{size} bytes, at most {MOST_BYTES} expected")
+    if size > MAX_BYTES:  # packed, it is smaller than unpacked
+        raise ValueError(f"{size} bytes, at most {MAX_BYTES} expected")
     data = path.read_bytes()
     digest = hashlib.sha256(data).hexdigest()
     if digest not in _known:
         import fmpy
 
         check_archive(data)
-        found = fmpy.read_model_description(io.BytesIO(data))
-        slave = found.coSimulation
-        if slave:
-            check_identifier(slave.modelIdentifier)
+        xml = fmpy.read_model_description(io.BytesIO(data))
+        co_simulation = xml.coSimulation
+        if co_simulation:
+            check_identifier(co_simulation.modelIdentifier)
         _known[digest] = Description(
             path=path,
-            name=found.modelName,
-            guid=str(found.guid),
-            fmi_version=found.fmiVersion,
-            variables={v.name: v for v in found.modelVariables},
-            needs_tool=bool(slave and slave.needsExecutionTool),
-            identifier=slave.modelIdentifier if slave else "",
-            units={unit.name: exponents(unit.baseUnit) for unit in found.unitDefinitions},
+            name=xml.modelName,
+            guid=str(xml.guid),
+            fmi_version=xml.fmiVersion,
+            variables={v.name: v for v in xml.modelVariables},
+            needs_tool=bool(co_simulation and co_simulation.needsExecutionTool),
+            identifier=co_simulation.modelIdentifier if co_simulation else "",
+            units={unit.name: exponents(unit.baseUnit) for unit in xml.unitDefinitions},
             digest=digest,
         )
     return dataclasses.replace(_known[digest], path=path)

@@ -1,4 +1,4 @@
-"""A motion impact by impact.
+"""A motion computed impact by impact, through the events of FMI 3.0.
 
 The FMI 3.0 form returns early from a step at each impact, at its exact time. Between impacts the
 motion does not depend on the steps, so states sampled in a second run belong to the same motion to
@@ -45,7 +45,7 @@ class Impacts:
     sticks: NDArray[np.bool_]
 
     def before(self, structure: Structure) -> NDArray[np.float64]:
-        """States just before the impacts, shape (n, 4), by (15) read backwards."""
+        """Return the states just before the impacts, shape (n, 4), by (15) read backwards."""
         mu = structure.mu
         state, part = self.state.copy(), self.closing / (1.0 + mu)
         common = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
@@ -53,18 +53,19 @@ class Impacts:
         return state
 
     def impulse(self, structure: Structure) -> NDArray[np.float64]:
-        """Impulse of each impact on each mass, N s, shape (n,) (15); plastic where contact begins.
+        """Return the impulse of each impact on each mass, N s, shape (n,) (15); plastic where
+        contact begins.
 
         Of non-dimensional impacts it is over omega a eta^2, so that its unit is that of a mass.
         """
         m1, m2 = structure.m1, structure.m2
         restitution = np.where(self.sticks, 0.0, structure.e)
-        found: NDArray[np.float64] = (1.0 + restitution) * m1 * m2 / (m1 + m2) * self.closing
-        return found
+        impulse: NDArray[np.float64] = (1.0 + restitution) * m1 * m2 / (m1 + m2) * self.closing
+        return impulse
 
 
 class EventInstance(Instance):
-    """An instance of the FMI 3.0 form that stops at impacts.
+    """Instance of the FMI 3.0 form that stops at impacts.
 
     Parameters
     ----------
@@ -88,7 +89,7 @@ class EventInstance(Instance):
             raise InputError(f"FMU {path}: is FMI {version}; expected FMI 3.0, which has events")
 
     def advance(self, time: float, target: float) -> None:
-        """Step to ``target`` past all events."""
+        """Step to ``target``, through all events."""
         while time < target:
             event, _, _, time = self.call("doStep", time, target - time)
             if event:
@@ -101,7 +102,7 @@ class EventInstance(Instance):
         self.call("enterStepMode")
 
     def impacts(self, time: float, target: float) -> Impacts:
-        """All impacts of (time, target], s.
+        """Return all impacts of (time, target], s.
 
         The inner loop of all that follows, so it calls the binary itself.
         """
@@ -118,10 +119,12 @@ class EventInstance(Instance):
         return Impacts(np.array(times), table[:, :4], table[:, 4], np.array(contacts, dtype=bool))
 
     def stepper(self) -> Callable[[float, float], tuple[bool, float]]:
-        """``fmi3DoStep``: time and length of a step to whether there was an event, and when."""
+        """Return a fast ``fmi3DoStep``: from time and step length to whether there was an event,
+        and its time.
+        """
         event, last = c_bool(), c_double()
-        answers = byref(event), byref(c_bool()), byref(c_bool()), byref(last)
-        do_step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *answers)
+        results = byref(event), byref(c_bool()), byref(c_bool()), byref(last)
+        do_step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *results)
 
         def step(time: float, length: float) -> tuple[bool, float]:
             self._time.value, self._length.value = time, length
@@ -131,10 +134,10 @@ class EventInstance(Instance):
         return step
 
     def event_handler(self) -> Callable[[], None]:
-        """:meth:`handle_event` without FMPy's part."""
-        news = [*(byref(c_bool()) for _ in range(5)), byref(c_double())]
+        """Return a fast :meth:`handle_event`, without FMPy's wrapper."""
+        results = [*(byref(c_bool()) for _ in range(5)), byref(c_double())]
         enter, leave = self.prepared("fmi3EnterEventMode"), self.prepared("fmi3EnterStepMode")
-        update = self.prepared("fmi3UpdateDiscreteStates", *news)
+        update = self.prepared("fmi3UpdateDiscreteStates", *results)
 
         def handle() -> None:
             enter()
@@ -144,7 +147,7 @@ class EventInstance(Instance):
         return handle
 
     def flag(self, name: str) -> Callable[[], bool]:
-        """A fast reader of one Boolean."""
+        """Return a fast reader of one Boolean variable."""
         call, values, _ = self._transfer("Get", "Boolean", [(self.variable(name), 1)], [0])
 
         def read() -> bool:

@@ -1,4 +1,4 @@
-"""The FMUs of the present sources: exported where they are missing or out of date, and found."""
+"""The FMUs of the present sources: found, or exported where missing or out of date."""
 
 from __future__ import annotations
 
@@ -63,28 +63,20 @@ def build(
         Where the folder cannot be written.
     """
     forms = tuple(forms)
-    wanted = [(form, name) for name in names for form in forms]
+    pairs = [(form, name) for name in names for form in forms]
     try:
         chosen = sources.chosen(platforms)
     except CannotExport as reason:
         raise InputError(str(reason)) from None
-    return export_all(wanted, default_folder() if folder is None else Path(folder), chosen)
-
-
-def refresh(folder: str | PathLike[str] | None = None, forms: Iterable[str] = FORMS) -> list[Path]:
-    """Export what is missing or out of date; returns what was written."""
-    target = default_folder() if folder is None else Path(folder)
-    forms = tuple(forms)
-    wanted = [(form, name) for name in MODELS for form in forms]
-    return export_all([pair for pair in wanted if not up_to_date(*pair, target)], target)
+    return export_all(pairs, default_folder() if folder is None else Path(folder), chosen)
 
 
 def export_all(
-    wanted: Iterable[tuple[str, str]], folder: Path, platforms: tuple[str, ...] = ()
+    pairs: Iterable[tuple[str, str]], folder: Path, platforms: tuple[str, ...] = ()
 ) -> list[Path]:
     """Export models in forms; those that cannot be made here are left out, unless all are."""
     written, reasons = [], []
-    for form, name in wanted:
+    for form, name in pairs:
         try:
             written.append(export(name, form, folder, platforms))
         except CannotExport as reason:
@@ -131,8 +123,8 @@ def export(
         raise StoreError(f"{folder}: {reason}; expected a folder that can be written") from None
 
 
-def exported_once(name: str, form: str, folder: Path, level: int) -> Description:
-    """Export one model in one form, where no other process has done so meanwhile."""
+def export_once(name: str, form: str, folder: Path, level: int) -> Description:
+    """Export one model in one form, unless another process has done so meanwhile."""
     path = folder / form / f"{name}.fmu"
     with made_once(path):
         if not up_to_date(form, name, folder):
@@ -142,20 +134,20 @@ def exported_once(name: str, form: str, folder: Path, level: int) -> Description
 
 @functools.cache
 def announce(folder: Path, level: int) -> None:
-    """Say once that it takes long."""
+    """Log once that exporting takes long."""
     text = "exporting FMUs to %s, this once: compiling takes some seconds a model"
     log.log(level, text, folder)
 
 
 @functools.cache
 def guid(form: str, name: str) -> str:
-    """The GUID of an FMU of the present sources."""
+    """Return the GUID that an FMU of the present sources has."""
     check(name, form)
     return sources.guid(name, form)
 
 
 def check(name: str, form: str) -> None:
-    """Whether there is such a model and such a form."""
+    """Check that there is such a model and such a form."""
     if name not in MODELS:
         raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
     if form not in sources.ALL_FORMS:
@@ -163,7 +155,7 @@ def check(name: str, form: str) -> None:
 
 
 def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:
-    """Whether a model's FMU of a form is there and made of the present sources."""
+    """Return whether a model's FMU of a form exists and was made from the present sources."""
     path = Path(folder) / form / f"{name}.fmu"
     try:
         return path.is_file() and describe(path, name).guid == guid(form, name)
@@ -172,7 +164,9 @@ def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:
 
 
 def default_folder() -> Path:
-    """Where FMUs are exported to: ``build/`` of a clone, else the user's cache folder."""
+    """Return the folder FMUs are exported to: ``build/`` of a clone, else the user's cache
+    folder.
+    """
     if is_clone(CLONE) and os.access(CLONE, os.W_OK):
         return CLONE / "build"
     from platformdirs import user_cache_path
@@ -181,7 +175,7 @@ def default_folder() -> Path:
 
 
 def is_clone(root: Path) -> bool:
-    """Whether the package lies in a clone of its repository, not in an installation."""
+    """Return whether the package lies in a clone of its repository, not in an installation."""
     project = root / "pyproject.toml"
     return project.is_file() and 'name = "vibroimpact"' in project.read_text(encoding="utf-8")
 
@@ -193,7 +187,7 @@ def find(
     fmu: str | PathLike[str] | None = None,
     level: int = logging.INFO,
 ) -> Description:
-    """A model's FMU, exported first where there is none of the present sources.
+    """Return a model's FMU; export it first if there is none of the present sources.
 
     Parameters
     ----------
@@ -226,16 +220,18 @@ def find(
     check(model, form)
     if fmu is not None:
         return describe(fmu, model)
-    places = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
+    folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
     reasons: list[CannotExport] = []
-    for wanted in dict.fromkeys((form, WITHOUT_COMPILER)):
-        if wanted != form:
-            say_once(f"no {form} FMU here, {wanted} serves instead, without events: {reasons[0]}")
-        for place in places:
-            if up_to_date(wanted, model, place):
-                return describe(place / wanted / f"{model}.fmu", model)
+    for candidate in dict.fromkeys((form, WITHOUT_COMPILER)):
+        if candidate != form:
+            warn_once(
+                f"no {form} FMU here, {candidate} serves instead, without events: {reasons[0]}"
+            )
+        for base in folders:
+            if up_to_date(candidate, model, base):
+                return describe(base / candidate / f"{model}.fmu", model)
         try:
-            return exported_once(model, wanted, places[0], level)
+            return export_once(model, candidate, folders[0], level)
         except CannotExport as reason:
             reasons.append(reason)
     text = f"FMU {model}: there is none of the present sources, and none can be made here"
@@ -243,13 +239,13 @@ def find(
 
 
 @functools.cache
-def say_once(line: str) -> None:
-    """Warn, however many questions it concerns."""
+def warn_once(line: str) -> None:
+    """Log a warning once, however many questions it concerns."""
     log.warning("%s", line)
 
 
 def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
-    """:func:`find` as a question's keywords have it.
+    """Return a function from model name to FMU, by the keywords of a question.
 
     Parameters
     ----------
@@ -263,14 +259,14 @@ def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
     callable
         Model name to :class:`.description.Description`.
     """
-    own, folder = running.get("fmu"), running.get("build_folder")
+    user_fmu, folder = running.get("fmu"), running.get("build_folder")
     level = logging.WARNING if running.get("progress", True) else logging.INFO
-    if isinstance(own, Mapping):
-        for name in own:
+    if isinstance(user_fmu, Mapping):
+        for name in user_fmu:
             check(name, "fmi3")
 
-    def found(model: str) -> Description:
-        path = own.get(model) if isinstance(own, Mapping) else own
+    def find_model(model: str) -> Description:
+        path = user_fmu.get(model) if isinstance(user_fmu, Mapping) else user_fmu
         return find(model, folder=folder, fmu=path, level=level)
 
-    return found
+    return find_model

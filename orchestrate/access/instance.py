@@ -1,4 +1,4 @@
-"""A co-simulation instance: set, step, read, save its state."""
+"""Co-simulation instance: set, step, read, save its state."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ from ..errors import FmuError, InputError, VibroimpactError
 from .description import describe
 from .library import loaded
 
-REAL = ("Real", "Float64")
-WHOLE = ("Integer", "Int32")
+REAL_TYPES = ("Real", "Float64")
+INTEGER_TYPES = ("Integer", "Int32")
 Prepared = Callable[[], None]
 
 
 class Transfer(NamedTuple):
-    """One call that sets or reads some variables of a type.
+    """One call that sets or reads some variables of one type.
 
     Attributes
     ----------
     call : callable
     values : ctypes.Array
         Where they travel.
-    places : list of int
+    positions : list of int
         Of them among all that are set or read together.
     """
 
     call: Prepared
     values: Any
-    places: list[int]
+    positions: list[int]
 
 
 class Instance:
-    """A co-simulation instance of an FMI 2.0 or 3.0 FMU, as a context manager.
+    """Co-simulation instance of an FMI 2.0 or 3.0 FMU, as a context manager.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Instance:
     [22]
     """
 
-    EVENTS: ClassVar[dict[str, bool]] = {}  # how an FMI 3.0 FMU is asked for its events
+    EVENTS: ClassVar[dict[str, bool]] = {}  # arguments that make an FMI 3.0 FMU report events
 
     def __init__(self, path: str | PathLike[str], name: str = "instance") -> None:
         self.description = describe(path)
@@ -118,7 +118,7 @@ class Instance:
         self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
 
     def _calls2(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        """Reset, initialise and step, of FMI 2.0."""
+        """Prepare reset, initialise and step of FMI 2.0."""
         no, zero = c_int(0), c_double()  # no tolerance, no end
         initialize = [
             self.prepared("fmi2SetupExperiment", no, zero, self._start, no, zero),
@@ -129,14 +129,14 @@ class Instance:
         return self.prepared("fmi2Reset"), initialize, step
 
     def _calls3(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        """The same of FMI 3.0."""
+        """Prepare reset, initialise and step of FMI 3.0."""
         no, zero = c_bool(False), c_double()
         initialize = [
             self.prepared("fmi3EnterInitializationMode", no, zero, self._start, no, zero),
             self.prepared("fmi3ExitInitializationMode"),
         ]
-        answers = [*(byref(c_bool()) for _ in range(3)), byref(c_double())]
-        step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *answers)
+        results = [*(byref(c_bool()) for _ in range(3)), byref(c_double())]
+        step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *results)
         return self.prepared("fmi3Reset"), initialize, step
 
     def __enter__(self) -> Any:
@@ -151,24 +151,26 @@ class Instance:
         self.close()
 
     def close(self) -> None:
-        """Free the instance; nothing may be asked of it afterwards."""
+        """Free the instance; it cannot be used afterwards."""
         if self._open:
             self._open = False
             free = self._fmu.fmi3FreeInstance if self.is_fmi3 else self._fmu.fmi2FreeInstance
             free(self._fmu.component)
 
     def _log(self, *arguments: Any) -> None:
-        """Keep a message; it is the last argument in both FMI versions."""
+        """Store a message; it is the last argument in both FMI versions."""
         self._messages.append(arguments[-1].decode(errors="replace"))
 
     def failure(self, error: object) -> FmuError:
-        """The FMU's messages since they were last cleared; where there are none, ``error``."""
+        """Return an error with the FMU's messages since they were last cleared; without any,
+        ``error``.
+        """
         quoted = r"(?s).*FmuError\(([\"'])(.*)\1\)\s*$"  # how pythonfmu hands an exception on
         texts = [re.sub(quoted, r"\2", message) for message in self._messages]
         return FmuError("; ".join(texts) or str(error))
 
     def call(self, function: str, *args: Any, **kwargs: Any) -> Any:
-        """Call a method of FMPy's FMU, with the FMU's message where it fails."""
+        """Call a method of FMPy's FMU; raise the FMU's own message if it fails."""
         self._messages.clear()
         try:
             return getattr(self._fmu, function)(*args, **kwargs)
@@ -176,7 +178,7 @@ class Instance:
             raise self.failure(error) from None
 
     def prepared(self, function: str, *arguments: Any) -> Prepared:
-        """A call of the binary's function, for what is called often.
+        """Return a fast call of one of the binary's functions with fixed arguments.
 
         FMPy and ctypes take longer to convert arguments than the FMU to answer. Here they are made
         once: C numbers, whose values may change from call to call, and arrays.
@@ -199,82 +201,83 @@ class Instance:
         return run
 
     def variable(self, name: str) -> Any:
-        """FMPy's description of a variable."""
+        """Return FMPy's description of a variable."""
         return self.description.variable(name)
 
     def set(self, **values: float) -> None:
         """Set variables by name."""
         names = ("Set", *values)
-        given = list(values.values())
-        for call, array, places in self._transfers.get(names) or self._grouped(names):
-            own = given if len(places) == len(given) else [given[place] for place in places]
+        new_values = list(values.values())
+        for call, array, positions in self._transfers.get(names) or self._grouped(names):
+            everything = len(positions) == len(new_values)
+            selected = new_values if everything else [new_values[i] for i in positions]
             try:
-                array[:] = own
+                array[:] = selected
             except TypeError as error:
                 raise FmuError(str(error)) from None
             call()
 
     def get(self, *names: str) -> list[Any]:
-        """Values by name, as a list."""
+        """Return values by name, as a list."""
         key = ("Get", *names)
-        found: list[Any] = [None] * len(names)
-        for call, array, places in self._transfers.get(key) or self._grouped(key):
+        values: list[Any] = [None] * len(names)
+        for call, array, positions in self._transfers.get(key) or self._grouped(key):
             call()
-            if len(places) == len(names):
+            if len(positions) == len(names):
                 return list(array[:])
-            for place, value in zip(places, array, strict=True):
-                found[place] = value
-        return found
+            for position, value in zip(positions, array, strict=True):
+                values[position] = value
+        return values
 
     def _grouped(self, names: tuple[str, ...]) -> list[Transfer]:
-        """Calls that set or read variables, one a type; the first name says which."""
-        verb, *others = names
-        places: dict[str, list[int]] = {}
-        for place, name in enumerate(others):
-            places.setdefault(self.variable(name).type, []).append(place)
-        found = [
-            self._transfer(verb, kind, [(self.variable(others[i]), 1) for i in some], some)
-            for kind, some in places.items()
+        """Prepare one call per type that sets or reads variables; the first name is the verb."""
+        verb, *variables = names
+        positions: dict[str, list[int]] = {}
+        for position, name in enumerate(variables):
+            positions.setdefault(self.variable(name).type, []).append(position)
+        transfers = [
+            self._transfer(verb, kind, [(self.variable(variables[i]), 1) for i in indices], indices)
+            for kind, indices in positions.items()
         ]
-        self._transfers[names] = found
-        return found
+        self._transfers[names] = transfers
+        return transfers
 
     def _transfer(
-        self, verb: str, kind: str, variables: Sequence[tuple[Any, int]], places: list[int]
+        self, verb: str, kind: str, variables: Sequence[tuple[Any, int]], positions: list[int]
     ) -> Transfer:
-        """A call for variables of a type, each with its number of values."""
-        if kind not in (*REAL, *WHOLE, "Boolean"):
+        """Prepare one call for variables of a type, each with its number of values."""
+        if kind not in (*REAL_TYPES, *INTEGER_TYPES, "Boolean"):
             raise FmuError(f"{variables[0][0].name}: is {kind}; expected numbers and Booleans")
         flag = c_bool if self.is_fmi3 else c_int
-        element: Any = c_double if kind in REAL else c_int if kind in WHOLE else flag
+        element: Any = c_double if kind in REAL_TYPES else c_int if kind in INTEGER_TYPES else flag
         values = (element * sum(length for _, length in variables))()
         count = len(variables)
         references = (c_uint * count)(*(variable.valueReference for variable, _ in variables))
         sizes = (c_size_t(len(values)),) if self.is_fmi3 else ()
         function = f"fmi{3 if self.is_fmi3 else 2}{verb}{kind}"
         call = self.prepared(function, references, c_size_t(count), values, *sizes)
-        if verb == "Get" and kind in REAL:
+        if verb == "Get" and kind in REAL_TYPES:
             call = self._checked(call, variables, np.ctypeslib.as_array(values))
-        return Transfer(call, values, places)
+        return Transfer(call, values, positions)
 
     def _checked(
         self, call: Prepared, variables: Sequence[tuple[Any, int]], values: NDArray[np.float64]
     ) -> Prepared:
-        """A call that reads, and sees that the FMU has answered with numbers."""
+        """Return a reading call that raises if the FMU answers with NaN or infinity."""
 
         def run() -> None:
             call()
             if not math.isfinite(values.sum()) and not np.isfinite(values).all():
                 names = [variable.name for variable, length in variables for _ in range(length)]
-                raise self.no_number(names, values)
+                raise self.not_finite_error(names, values)
 
         return run
 
-    def no_number(self, names: Sequence[str], values: ArrayLike) -> FmuError:
-        """What is said of an FMU that answers NaN or infinity."""
-        wrong = int(np.flatnonzero(~np.isfinite(values))[0])
-        said = f"{names[wrong]} = {np.ravel(values)[wrong]}"
-        return FmuError(f"the FMU {self.description.name} answers {said}; expected a finite number")
+    def not_finite_error(self, names: Sequence[str], values: ArrayLike) -> FmuError:
+        """Return the error for an FMU that answers NaN or infinity."""
+        index = int(np.flatnonzero(~np.isfinite(values))[0])
+        text = f"{names[index]} = {np.ravel(values)[index]}"
+        return FmuError(f"the FMU {self.description.name} answers {text}; expected a finite number")
 
     def initialize(self, start_time: float = 0.0, **values: float) -> None:
         """Set ``values`` and initialise."""
@@ -284,16 +287,16 @@ class Instance:
             call()
 
     def reset(self) -> None:
-        """Back to the state after instantiation."""
+        """Return to the state after instantiation."""
         self._reset()
 
     def step(self, time: float, target: float) -> None:
-        """One communication step from ``time`` to ``target``, s."""
+        """Do one communication step from ``time`` to ``target``, s."""
         self._time.value, self._length.value = time, target - time
         self._step()
 
     def read(self, *names: str) -> NDArray[np.float64]:
-        """Values of Real variables, in one call of the FMU.
+        """Return values of Real variables, in one call of the FMU.
 
         Parameters
         ----------
@@ -311,31 +314,33 @@ class Instance:
         return values
 
     def size(self, *names: str) -> int:
-        """How many values :meth:`read` gives."""
+        """Return how many values :meth:`read` gives."""
         return len(self._reader(names)[1])
 
     def _reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
-        """A call that reads Real variables, and the array it fills."""
+        """Prepare a call that reads Real variables, and the array it fills."""
         if names not in self._readers:
-            found = [element for name in names for element in self.elements(name)]
-            for variable in (variable for variable, _ in found if variable.type not in REAL):
+            elements = [element for name in names for element in self.elements(name)]
+            for variable in (
+                variable for variable, _ in elements if variable.type not in REAL_TYPES
+            ):
                 raise FmuError(f"{variable.name}: is {variable.type}; expected Real variables")
-            transfer = self._transfer("Get", found[0][0].type, found, [])
+            transfer = self._transfer("Get", elements[0][0].type, elements, [])
             self._readers[names] = transfer, np.ctypeslib.as_array(transfer.values)
         return self._readers[names]
 
     def elements(self, name: str) -> list[tuple[Any, int]]:
-        """Variables a name stands for, each with its number of values."""
+        """Return the variables that a name stands for, each with its number of values."""
         variables = self.description.variables
         if f"{name}[1]" not in variables:
             variable = self.variable(name)
             sizes = (int(dimension.start) for dimension in variable.dimensions or ())
             return [(variable, math.prod(sizes))]
-        count = sum(other.startswith(f"{name}[") for other in variables)
+        count = sum(variable_name.startswith(f"{name}[") for variable_name in variables)
         return [(variables[f"{name}[{i + 1}]"], 1) for i in range(count)]
 
     def save_state(self) -> bytes:
-        """The whole state, serialised."""
+        """Return the whole state, serialised."""
         get, serialize, _, _, free = self.state_calls()
         state = self.call(get)
         try:
@@ -344,7 +349,7 @@ class Instance:
             self.call(free, state)
 
     def restore_state(self, data: bytes) -> None:
-        """Back to a state that :meth:`save_state` gave."""
+        """Return to a state that :meth:`save_state` gave."""
         _, _, deserialize, put, free = self.state_calls()
         state = self.call(deserialize, data)
         try:
@@ -353,7 +358,7 @@ class Instance:
             self.call(free, state)
 
     def state_calls(self) -> tuple[str, str, str, str, str]:
-        """FMPy's names of the state functions."""
+        """Return FMPy's names of the state functions."""
         if self.is_fmi3:
             return (
                 "getFMUState",

@@ -1,4 +1,6 @@
-"""FMUs' binaries, loaded once a process: FMPy takes milliseconds to bind the functions of one."""
+"""Binaries of FMUs, loaded once per process: FMPy takes milliseconds to bind the functions of
+one.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,7 @@ _loaded: dict[tuple[str, str], Any] = {}  # by folder and binary
 
 
 def loaded(description: Description, name: str) -> Any:
-    """FMPy's FMU for one more instance, not instantiated yet.
+    """Return FMPy's FMU object for one more instance, not instantiated yet.
 
     Parameters
     ----------
@@ -33,7 +35,7 @@ def loaded(description: Description, name: str) -> Any:
 
 
 def load(description: Description, folder: str) -> Any:
-    """Load a binary by FMPy."""
+    """Load a binary with FMPy."""
     from fmpy import fmi2, fmi3
 
     make = fmi3.FMU3Slave if description.is_fmi3 else fmi2.FMU2Slave

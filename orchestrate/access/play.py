@@ -1,4 +1,4 @@
-"""A motion under an acceleration of the box that is given as cubics, impact by impact.
+"""A motion under a box acceleration that is given as cubics, impact by impact.
 
 Each cubic is set where it begins and runs on, so the motion does not depend on where it is read.
 """
@@ -18,7 +18,7 @@ PLAYED = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force")
 
 
 class Played(NamedTuple):
-    """What a motion was.
+    """Sampled motion and impacts that :func:`play` returns.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ def play(
     derivatives: NDArray[np.float64],
     samples: NDArray[np.float64],
 ) -> Played:
-    """Let the box move by cubics.
+    """Compute the motion under a box acceleration given as consecutive cubics.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where FMUs are unpacked: the temporary folder of the process."""
+"""Unpacking of FMUs into the temporary folder of the process."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _lock = threading.RLock()
 
 
 def unpacked(description: Description) -> Path:
-    """The folder with an FMU's files; unpacked once in a process.
+    """Return the folder with an FMU's files; unpack it once per process.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def unpacked(description: Description) -> Path:
 
 
 def described_bytes(description: Description) -> bytes:
-    """The FMU file, which has to be the one that was described."""
+    """Return the FMU file's bytes; it has to be the file that was described."""
     data = description.path.read_bytes()
     if hashlib.sha256(data).hexdigest() != description.digest:
         text = f"FMU {description.path}: it has changed since it was read"
@@ -47,7 +47,7 @@ def described_bytes(description: Description) -> bytes:
 
 
 def unpack(data: bytes, folder: Path) -> None:
-    """Unpack whole or not at all."""
+    """Unpack an FMU whole or not at all."""
     import fmpy
 
     partial = folder.with_suffix(".partial")

@@ -1,4 +1,4 @@
-"""The kernels as WebAssembly modules of the present sources: compiled where they are missing."""
+"""WebAssembly modules of the kernels: found, or compiled where missing or out of date."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FORM = "wasm"
 
 @dataclass(frozen=True)
 class WebKernel:
-    """A model's kernel for a web page.
+    """Kernel of a model for a web page.
 
     Attributes
     ----------
@@ -46,7 +46,8 @@ class WebKernel:
 
 
 def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKernel:
-    """A model's kernel as WebAssembly, compiled first where none is of the present sources.
+    """Return a model's kernel as WebAssembly; compile it first if there is none of the present
+    sources.
 
     Parameters
     ----------
@@ -70,27 +71,27 @@ def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKern
     (b'asm', 0)
     """
     check(model, "fmi3")
-    places = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
-    wanted = sources.guid(MODELS[model])
+    folders = [Path(folder)] if folder is not None else [default_folder(), SHIPPED]
+    guid = sources.guid(MODELS[model])
     tables = sources.slots(MODELS[model]), sources.starts(MODELS[model])
-    paths = [place / FORM / f"{model}.wasm" for place in places]
+    paths = [base / FORM / f"{model}.wasm" for base in folders]
     for path in paths:
-        module = module_of(path, wanted)
+        module = read_module(path, guid)
         if module:
-            return WebKernel(module, *tables, wanted)
+            return WebKernel(module, *tables, guid)
     try:
         with made_once(paths[0]):
-            module = module_of(paths[0], wanted) or compiled(model, places[0]).read_bytes()
+            module = read_module(paths[0], guid) or compile_module(model, folders[0]).read_bytes()
     except CannotExport as reason:
         text = f"{model}.wasm: there is none of the present sources, and none can be made here"
         raise InputError(f"{text}: {reason}") from None
-    return WebKernel(module, *tables, wanted)
+    return WebKernel(module, *tables, guid)
 
 
-def module_of(path: Path, wanted: str) -> bytes:
-    """A module of the present sources; nothing where there is none."""
+def read_module(path: Path, guid: str) -> bytes:
+    """Return the module in a file if it is of the present sources, else empty bytes."""
     module = path.read_bytes() if path.is_file() else b""
-    return module if sources.guid_inside(module) == wanted else b""
+    return module if sources.guid_inside(module) == guid else b""
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
@@ -109,14 +110,15 @@ def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
     target, made = default_folder() if folder is None else Path(folder), []
     for model in MODELS:
         try:
-            made.append(compiled(model, target))
+            made.append(compile_module(model, target))
         except CannotExport as reason:
             log.warning("%s.wasm left out: %s", model, reason)
     return made
 
 
 def kernel_digest(model: str) -> str:
-    """Fingerprint of what decides a model's numbers, 32 digits: its kernel's sources, no texts.
+    """Return a fingerprint of what decides a model's numbers, 32 digits: its kernel's sources, no
+    texts.
 
     Examples
     --------
@@ -127,11 +129,11 @@ def kernel_digest(model: str) -> str:
     return fingerprint({name: files[name] for name in files if name.startswith("kernels/")})
 
 
-def compiled(model: str, folder: Path) -> Path:
+def compile_module(model: str, folder: Path) -> Path:
     """Compile a model's kernel to ``folder/wasm/NAME.wasm``, whole or not at all."""
     path = folder / FORM / f"{model}.wasm"
     log.info("compiling %s", path)
     module = sources.export(MODELS[model])
     open_folder(path.parent)
-    write_whole(path, lambda place: place.write_bytes(module))
+    write_whole(path, lambda target: target.write_bytes(module))
     return path

@@ -1,4 +1,4 @@
-"""The command line: each command asks one question of the public API and says what came out.
+"""The command line: each command asks one question of the public API and prints the result.
 
 A command's module has ``add_parser``, which declares its options, and ``run``, which carries it
 out; :mod:`.options` has what commands share.
@@ -60,13 +60,13 @@ sets of parameters that come with the package, for --structure and --drive:
 
 
 def program_name() -> str:
-    """How the command line was called."""
+    """Return how the command line was called."""
     called = Path(sys.argv[0]).name if sys.argv and sys.argv[0] else ""
     return "vibroimpact" if called.startswith("vibroimpact") else "python -m orchestrate"
 
 
 def make_parser() -> argparse.ArgumentParser:
-    """The command line's parser, one subparser a command."""
+    """Make the command line's parser, with one subparser per command."""
     program = program_name()
     parser = argparse.ArgumentParser(
         prog=program,
@@ -85,12 +85,14 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def with_negative_values(arguments: Sequence[str]) -> list[str]:
-    """``--eta -1:2:0.5`` as ``--eta=-1:2:0.5``, which argparse would take for an option."""
+def join_negative_values(arguments: Sequence[str]) -> list[str]:
+    """Join ``--eta -1:2:0.5`` to ``--eta=-1:2:0.5``: argparse would take the value for an
+    option.
+    """
     joined: list[str] = []
     for text in arguments:
-        waiting = joined and joined[-1].startswith("--") and "=" not in joined[-1]
-        if waiting and re.match(r"-[\d.]", text):
+        needs_value = joined and joined[-1].startswith("--") and "=" not in joined[-1]
+        if needs_value and re.match(r"-[\d.]", text):
             joined[-1] += f"={text}"
         else:
             joined.append(text)
@@ -98,7 +100,7 @@ def with_negative_values(arguments: Sequence[str]) -> list[str]:
 
 
 def set_up_logging() -> None:
-    """What the library has to say, on the error output: a line a message."""
+    """Show the library's log messages on the error output, one line each."""
     logging.basicConfig(format="%(message)s")
     logging.getLogger(__package__.partition(".")[0]).setLevel(logging.INFO)
 
@@ -117,11 +119,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code: 0 success, 1 a failure, 2 a user's mistake, 130 interrupted, 143 terminated.
     """
     try:
-        with outputs() as told, signals():
+        with outputs() as output, signals():
             code = carry_out(sys.argv[1:] if arguments is None else arguments)
-            told.flush()
-            if told.complaint():
-                tell(f"error: standard output: {told.complaint()}; what was computed is stored")
+            output.flush()
+            if output.failure():
+                print_error(
+                    f"error: standard output: {output.failure()}; what was computed is stored"
+                )
                 return code or FAILURE
             return code
     except KeyboardInterrupt as ended:  # before the command has begun, or as it goes
@@ -129,12 +133,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def carry_out(arguments: Sequence[str]) -> int:
-    """Run a command; returns the exit code."""
+    """Run a command; return the exit code."""
     set_up_logging()
     if store := sys.modules.get(STORE):  # of a command before, in this process
         store.STARTED.clear()
         store.FINISHED.clear()
-    chosen = make_parser().parse_args(with_negative_values(arguments))
+    chosen = make_parser().parse_args(join_negative_values(arguments))
     try:
         chosen.run(chosen)
         return SUCCESS
@@ -144,28 +148,29 @@ def carry_out(arguments: Sequence[str]) -> int:
         if chosen.debug:
             raise
         reason = (str(error).strip().splitlines() or ["out of memory"])[0]
-        tell(f"error: {reason}; expected more memory, or an installation that is whole; {kept()}")
+        expected = "expected more memory, or an installation that is whole"
+        print_error(f"error: {reason}; {expected}; {stored_state()}")
         return FAILURE
     except (VibroimpactError, RuntimeError, OSError) as error:
         if chosen.debug:
             raise
         hint = " (--force or --keep-stale)" if isinstance(error, StaleError) else ""
-        tell(f"error: {error}{hint}")
+        print_error(f"error: {error}{hint}")
         return MISTAKE if isinstance(error, InputError) else FAILURE
 
 
 def interrupted(ended: KeyboardInterrupt) -> int:
-    """Say that a signal has ended the command; returns the exit code."""
+    """Print that a signal has ended the command; return the exit code."""
     from ..temporary import remove_leftovers
 
     remove_leftovers()  # of workers that were ended in the middle of a chunk
     terminated = isinstance(ended, Terminated)
-    tell(f"{'terminated' if terminated else 'interrupted'}: {kept()}")
+    print_error(f"{'terminated' if terminated else 'interrupted'}: {stored_state()}")
     return TERMINATED if terminated else INTERRUPTED
 
 
-def kept() -> str:
-    """What an interruption leaves: whether the same command goes on from there."""
+def stored_state() -> str:
+    """Return what an interruption leaves: whether the same command goes on from there."""
     store = sys.modules.get(STORE)  # not imported only to say that nothing is in it
     if store and store.STARTED:
         return "what was stored is kept, the same command goes on from there"
@@ -174,21 +179,21 @@ def kept() -> str:
     return "nothing was stored, the same command begins anew"
 
 
-def tell(line: str) -> None:
-    """A line on the error output."""
-    print(readable(line), file=sys.stderr)
+def print_error(line: str) -> None:
+    """Print a line on the error output."""
+    print(printable(line), file=sys.stderr)
 
 
-def readable(text: str, most: int = 1000) -> str:
-    r"""A text as one line that a terminal shows as it is, shortened in its middle.
+def printable(text: str, max_length: int = 1000) -> str:
+    r"""Return a text as one line that a terminal shows as it is, shortened in its middle.
 
     Examples
     --------
-    >>> readable("one\ntwo\x1b[2J")
+    >>> printable("one\ntwo\x1b[2J")
     'one\\ntwo\\x1b[2J'
-    >>> readable("123456789", most=4)
+    >>> printable("123456789", max_length=4)
     '12 ... 89'
     """
     plain = "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
-    half = most // 2
-    return plain if len(plain) <= most else f"{plain[:half]} ... {plain[-half:]}"
+    half = max_length // 2
+    return plain if len(plain) <= max_length else f"{plain[:half]} ... {plain[-half:]}"

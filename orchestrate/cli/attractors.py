@@ -12,13 +12,21 @@ from .options import (
     add_over,
     add_settling,
     add_structure,
-    along,
     numbers_of,
     one_value,
     structure_of,
+    varied_arguments,
 )
 from .output import add_results
-from .question import along_of, carry_out, picture_of, place, ranges, several, tell_attractors
+from .question import (
+    carry_out,
+    format_parameter,
+    format_ranges,
+    is_curve,
+    parameter_of,
+    picture_of,
+    print_attractors,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,12 +38,12 @@ EXAMPLES = """\
 Half of the starts lie around zero, half around the response from rest. Every motion found at one
 value is carried to its neighbours, so along a range it is found as far as it exists; random starts
 alone may miss one whose basin is small."""
-FEW = 5  # values whose attractors are all told
-LISTED = 12  # attractors along a parameter that are told
+MAX_VALUES_IN_FULL = 5  # values whose attractors are all told
+MAX_ATTRACTORS = 12  # attractors along a parameter that are told
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "coexisting motions: how many, and how many random starts lead to each"
     parser = commands.add("attractors", run, text, EXAMPLES)
     add_structure(parser)
@@ -58,43 +66,45 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     structure = structure_of(arguments)
-    asked, _ = along(arguments, structure)
+    excitation, _ = varied_arguments(arguments, structure)
     names = ("starts", "seed", "width", "transient", "settle", "samples")
     scale = None if arguments.scale is None else one_value("--scale", arguments.scale)
-    question = {**asked, "scale": scale, **numbers_of(arguments, *names)}
-    carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
+    question = {**excitation, "scale": scale, **numbers_of(arguments, *names)}
+    carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
 
 
 def report(data: xr.Dataset) -> None:
-    """Attractors and their shares, or where there are several."""
-    name = along_of(data)
-    if data.sizes[name] <= FEW:
+    """Print attractors and their shares, or where there are several."""
+    name = parameter_of(data)
+    if data.sizes[name] <= MAX_VALUES_IN_FULL:
         for i in range(data.sizes[name]):
-            here = data.isel({name: i})
-            where = place(name, float(here[name]))
-            print(f"{int(here.number)} found at {where}, of {data.sizes['start']} starts")
-            tell_attractors(here, "starts")
+            at_value = data.isel({name: i})
+            where = format_parameter(name, float(at_value[name]))
+            print(f"{int(at_value.number)} found at {where}, of {data.sizes['start']} starts")
+            print_attractors(at_value, "starts")
         return
     ordered = data.sortby(name)
     for number in range(1, int(data.number.max()) + 1):
         holds = ordered.number.values == number
         if holds.any():
-            where = ranges(name, ordered[name].values, holds)
+            where = format_ranges(name, ordered[name].values, holds)
             print(f"{number} found at {int(holds.sum())} of {holds.size} values: {where}")
     print_lines(ordered, name)
 
 
 def print_lines(data: xr.Dataset, name: str) -> None:
-    """The most frequent attractors along the parameter, from where to where."""
-    for number in range(min(LISTED, data.sizes["attractor"])):
-        one = data.isel(attractor=number)
-        there = one.multiplicity.notnull().values
-        shares = one.share.values[there]
-        first, last = (place(name, float(one[end])) for end in ("first_found", "last_found"))
-        where = first if there.sum() == 1 else f"{first} to {last}"
+    """Print the most frequent attractors along the parameter, from where to where."""
+    for number in range(min(MAX_ATTRACTORS, data.sizes["attractor"])):
+        attractor = data.isel(attractor=number)
+        exists = attractor.multiplicity.notnull().values
+        shares = attractor.share.values[exists]
+        first, last = (
+            format_parameter(name, float(attractor[end])) for end in ("first_found", "last_found")
+        )
+        where = first if exists.sum() == 1 else f"{first} to {last}"
         print(f"  {number}: {where}, {shares.min():.1%} to {shares.max():.1%} of starts")
-    left = data.sizes["attractor"] - LISTED
+    left = data.sizes["attractor"] - MAX_ATTRACTORS
     if left > 0:
         print(f"  and {left} more")

@@ -20,7 +20,7 @@ from .options import (
     structure_of,
 )
 from .output import add_results
-from .question import carry_out, picture_of, tell_attractors
+from .question import carry_out, picture_of, print_attractors
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +36,7 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "basins of attraction: which motion each start of a plane leads to"
     parser = commands.add("basin", run, text, EXAMPLES)
     add_structure(parser)
@@ -60,11 +60,11 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     structure = structure_of(arguments)
-    asked = excitation_of(arguments, structure, si=True, one=True)
+    excitation = excitation_of(arguments, structure, si=True, one=True)
     question = {
-        **asked,
+        **excitation,
         "x": side_of("--x", arguments.x),
         "y": side_of("--y", arguments.y),
         "at": state_of("--at", arguments.at),
@@ -74,7 +74,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def side_of(option: str, text: str | None) -> Side | None:
-    """A side of the plane of ``NAME,FIRST,LAST,COUNT``.
+    """Parse a side of the plane from ``NAME,FIRST,LAST,COUNT``.
 
     Raises
     ------
@@ -91,10 +91,10 @@ def side_of(option: str, text: str | None) -> Side | None:
 
 
 def report(data: xr.Dataset) -> None:
-    """The attractors and their shares of the plane."""
+    """Print the attractors and their shares of the plane."""
     labels = data.attractor_of.values
-    there, apart = int((labels >= 0).sum()), int((labels < 0).sum())
-    print(f"{data.sizes['attractor']} found, of {there} starts")
-    tell_attractors(data, "the plane")
-    if apart:
-        print(f"{apart} starts left out: there the masses would overlap")
+    started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
+    print(f"{data.sizes['attractor']} found, of {started} starts")
+    print_attractors(data, "the plane")
+    if overlapping:
+        print(f"{overlapping} starts left out: there the masses would overlap")

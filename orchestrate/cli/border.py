@@ -17,7 +17,7 @@ from .options import (
     structure_of,
 )
 from .output import add_results
-from .question import carry_out, place, stored
+from .question import carry_out, format_parameter, read_stored
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +28,7 @@ EXAMPLES = """\
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "follow a bifurcation of a branch over two parameters: where a window begins or ends"
     parser = commands.add("border", run, text, EXAMPLES)
     add_structure(parser)
@@ -48,7 +48,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     structure = structure_of(arguments)
     for name in ("start", "limits"):
         if getattr(arguments, name) is None:
@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> None:
             raise InputError(f"--{name}: nothing given; expected {expected}")
     limits = tuple(ends_of("--limits", part) for part in arguments.limits.split(","))
     question = {
-        "start": stored("--start", arguments.start),
+        "start": read_stored("--start", arguments.start),
         "over": tuple(part.strip() for part in arguments.over.split(",")),
         "limits": limits,
         **numbers_of(arguments, "bifurcation", "longest", "most"),
@@ -65,19 +65,21 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def picture_of(data: xr.Dataset) -> Any:
-    """The curve."""
+    """Draw the curve."""
     from ..figures.borders import draw
-    from ..figures.labels import about
+    from ..figures.labels import title_from_attributes
 
-    return draw(data, title=about(data))
+    return draw(data, title=title_from_attributes(data))
 
 
 def report(data: xr.Dataset) -> None:
-    """The curve's extent, and why it ends."""
+    """Print the curve's extent, and why it ends."""
     print(f"{data.attrs['kind']}: {data.sizes['point']} points")
     for name in map(str, data.attrs["over"]):
         first, last = float(data[name][0]), float(data[name][-1])
         low, high = float(data[name].min()), float(data[name].max())
-        ends = f"{place(name, first)} to {place(name, last)}"
-        print(f"from {ends}, within {place(name, low)} to {place(name, high)}")
+        ends = f"{format_parameter(name, first)} to {format_parameter(name, last)}"
+        print(
+            f"from {ends}, within {format_parameter(name, low)} to {format_parameter(name, high)}"
+        )
     print(f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}")

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..constants import TURN
 from ..errors import InputError
 from .options import (
     UNITS,
@@ -22,7 +23,7 @@ from .options import (
     structure_of,
 )
 from .output import add_results
-from .question import TURN, carry_out, place, stored
+from .question import carry_out, format_parameter, read_stored
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,7 +39,7 @@ The excitation says where a first orbit is looked for; without it that is the lo
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "follow periodic motions along a parameter, stable and unstable, to their bifurcations"
     parser = commands.add("branch", run, text, EXAMPLES)
     add_structure(parser)
@@ -62,12 +63,12 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     structure = structure_of(arguments)
     over, limits = over_of(arguments)
-    start = None if arguments.start is None else stored("--start", arguments.start)
+    start = None if arguments.start is None else read_stored("--start", arguments.start)
     question = {
-        **shaken(arguments, structure, over, start is not None),
+        **excitation_arguments(arguments, structure, over, start is not None),
         "over": over,
         "limits": limits,
         "start": start,
@@ -78,7 +79,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def over_of(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
-    """What varies by its name in the public API, and its limits in that one's unit."""
+    """Return what varies by its name in the public API, and its limits in that one's unit."""
     from ..structures.sections import TO_RAD_S
 
     if arguments.limits is None:
@@ -92,10 +93,10 @@ def over_of(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
     return arguments.over, (first, last)
 
 
-def shaken(
+def excitation_arguments(
     arguments: argparse.Namespace, structure: Structure, over: str, begun: bool
 ) -> dict[str, Any]:
-    """The box's motion where the first orbit is looked for; what varies may be left out."""
+    """Return the box's motion where the first orbit is looked for; what varies may be left out."""
     name, amplitude = frequency_option(arguments), amplitude_of(arguments)
     if over == "frequency" and arguments.g is not None:
         raise InputError(
@@ -106,36 +107,36 @@ def shaken(
         raise InputError(f"--over {arguments.over}: expected --amplitude in m with it")
     if name is None and over in ("eta", "frequency") or begun and name is None:
         return {} if amplitude is None else {"amplitude": amplitude}
-    found = excitation_of(arguments, structure, one=True)
-    wanted = "frequency" if over in ("frequency", "amplitude") else over
-    if over in ("eta", "frequency", "amplitude") and wanted not in found:
+    excitation = excitation_of(arguments, structure, one=True)
+    needed = "frequency" if over in ("frequency", "amplitude") else over
+    if over in ("eta", "frequency", "amplitude") and needed not in excitation:
         expected = "--eta without an amplitude" if over == "eta" else "a frequency and --amplitude"
         raise InputError(f"--over {over}: expected {expected} with it")
-    return found
+    return excitation
 
 
 def picture_of(data: xr.Dataset) -> Any:
-    """The branch over its parameter."""
+    """Draw the branch over its parameter."""
     from ..figures.branches import draw
-    from ..figures.labels import about
+    from ..figures.labels import title_from_attributes
 
-    return draw(data, title=about(data))
+    return draw(data, title=title_from_attributes(data))
 
 
 def report(data: xr.Dataset) -> None:
-    """Bifurcations as a table, and why the branch ends."""
-    from ..figures.labels import meanings
+    """Print bifurcations as a table, and why the branch ends."""
+    from ..flags import flag_words
 
     name = str(data.attrs["over"])
     stable = int(data.stable.sum())
     print(f"{data.sizes['point']} orbits, {stable} of them stable")
     low, high = float(data[name].min()), float(data[name].max())
-    print(f"from {place(name, low)} to {place(name, high)}")
+    print(f"from {format_parameter(name, low)} to {format_parameter(name, high)}")
     count = data.sizes.get("bifurcation", 0)
     if not count:
         print("no bifurcation in this range")
     else:
-        words = meanings(data.bifurcation_kind)
+        words = flag_words(data.bifurcation_kind.attrs)
         turns = name == "frequency"
         unit, factor = ("Hz", TURN) if turns else (data.bifurcation_value.attrs["units"], 1.0)
         print(f"number  {'bifurcation':28}{name} ({unit})")

@@ -17,7 +17,7 @@ EXAMPLES = """  {program} build
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = (
         "export the FMUs, each form with the same variables and numbers, and compile the master "
         "and the explorer's kernels"
@@ -51,7 +51,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     from ..access import (
         FORMS,
         PLAIN_FORMS,

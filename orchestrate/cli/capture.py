@@ -21,7 +21,7 @@ from .drives import (
     step_of,
     two_voltages,
 )
-from .options import Commands, add_drive, described, plain_float, plain_int, values_of
+from .options import Commands, add_drive, plain_float, plain_int, structure_and_drive, values_of
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ command goes on where it was."""
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "voltages switched on from rest: which pass the resonance, which are captured"
     parser = commands.add("capture", run, text, EXAMPLES.replace("{eta0}", ETA0))
     add_drive(parser)
@@ -66,7 +66,7 @@ def add_parser(commands: Commands) -> None:
 def range_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, float]:
-    """Lowest and highest voltage, V."""
+    """Return lowest and highest voltage, V."""
     if arguments.eta0 or arguments.voltage:
         return two_voltages(arguments, structure, drive)
     down, up = folds_of(arguments, structure, drive)
@@ -74,8 +74,8 @@ def range_of(
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
-    structure, drive = described(arguments)
+    """Run the command."""
+    structure, drive = structure_and_drive(arguments)
     if (arguments.over is None) != (arguments.values is None):
         raise InputError("--over and --values: expected both, or none of them")
     values = values_of("--values", arguments.values, zero=True)[0] if arguments.over else None
@@ -89,33 +89,33 @@ def run(arguments: argparse.Namespace) -> None:
         "control": control_of(arguments, structure, drive),
         "step": step_of(arguments, structure),
     }
-    draw = partial(picture_of, name=Path(arguments.drive).stem, asked=question)
+    draw = partial(picture_of, name=Path(arguments.drive).stem, question=question)
     ask_each(arguments, structure, drive, question, draw, report)
 
 
-def picture_of(found: dict[str, xr.Dataset], name: str, asked: dict[str, Any]) -> Any:
-    """The maps."""
+def picture_of(results: dict[str, xr.Dataset], name: str, question: dict[str, Any]) -> Any:
+    """Draw the maps."""
     from ..figures.capture import draw
 
-    control = asked["control"]
+    control = question["control"]
     switched = f"controlled by {type(control).__name__}" if control else "switched on from rest"
-    first, last = asked["voltage"]
-    return draw(found, f"{name}: {switched}, {first:.4g} V to {last:.4g} V")
+    first, last = question["voltage"]
+    return draw(results, f"{name}: {switched}, {first:.4g} V to {last:.4g} V")
 
 
 def report(state: str, data: xr.Dataset) -> None:
-    """The borders, in a few lines."""
+    """Print the borders."""
     (over,) = {str(dim) for dim in data.passes.dims} - {"voltage"} or {""}
     if not over:
-        print(f"{state}: {words(data)}")
+        print(f"{state}: {format_map(data)}")
         return
     for value in data[over].values:
-        print(f"{state}, {over} = {value:g}: {words(data.sel({over: value}))}")
+        print(f"{state}, {over} = {value:g}: {format_map(data.sel({over: value}))}")
 
 
-def words(data: xr.Dataset) -> str:
-    """What came out for one system, and what is not to be trusted."""
-    lines = [border_words(data) if math.isfinite(float(data.border)) else no_border_words(data)]
+def format_map(data: xr.Dataset) -> str:
+    """Format the result for one system, with warnings."""
+    lines = [format_border(data) if math.isfinite(float(data.border)) else format_no_border(data)]
     reasons = {
         UNDECIDED: "undecided: the speed had not settled; give a longer --time",
         NEITHER: "neither passed nor captured: the speed settles at the resonance",
@@ -132,8 +132,8 @@ def words(data: xr.Dataset) -> str:
     return "\n  ".join(lines)
 
 
-def border_words(data: xr.Dataset) -> str:
-    """The border, or the interval it lies in."""
+def format_border(data: xr.Dataset) -> str:
+    """Format the threshold voltage, or the interval it lies in."""
     low, high = float(data.border_low), float(data.border_high)
     slowest = f"in at most {float(data.passage_time.max()):.4g} s as tried"
     below, beyond = float(data.speed_low), float(data.speed_high)
@@ -146,8 +146,8 @@ def border_words(data: xr.Dataset) -> str:
     return f"passes from {float(data.border):.5f} V on {error}, {slowest}; {speeds}"
 
 
-def no_border_words(data: xr.Dataset) -> str:
-    """Why there is no border."""
+def format_no_border(data: xr.Dataset) -> str:
+    """Format why there is no border."""
     low, high = (float(end) for end in (data.voltage[0], data.voltage[-1]))
     passes, undecided = data.passes.values > 0, data.decision.isin([UNDECIDED, NEITHER]).values
     if passes.all():

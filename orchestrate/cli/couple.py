@@ -25,8 +25,8 @@ from .drives import (
     step_of,
     title_of_runs,
 )
-from .options import Commands, add_drive, described, plain_float
-from .output import add_results, digest, drawn, exported, own_fmus, running_of
+from .options import Commands, add_drive, plain_float, structure_and_drive
+from .output import add_results, digest, draw_picture, export_formats, running_of, user_fmus
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ..weak_drive.couple import CoupleJob
 
 Folds = dict[tuple[str, str], float]  # by structure and direction, V
-LIMIT = 1e-6  # of the motor's work: where more is missed, a warning
+ERROR_LIMIT = 1e-6  # of the motor's work: larger errors give a warning
 EXAMPLES = """\
   {program} couple                               quick: bonded, delaminated, up and down
   {program} couple --drive beam                  a delaminated beam on a small motor
@@ -52,7 +52,7 @@ Interrupted, the same command goes on where it was. A finished result is left as
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "the weak drive: structure and motor coupled, the voltage up and down (Figure 2)"
     parser = commands.add("couple", run, text, EXAMPLES.replace("{eta0}", ETA0))
     add_drive(parser)
@@ -68,7 +68,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def add_master(parser: argparse.ArgumentParser) -> None:
-    """How both FMUs are stepped."""
+    """Add the options of the co-simulation master."""
     group = parser.add_argument_group("master")
     add_step(group)
     add_hold(group)
@@ -79,69 +79,71 @@ def add_master(parser: argparse.ArgumentParser) -> None:
 
 
 def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> list[CoupleJob]:
-    """The runs, bonded first."""
+    """Return the runs, bonded first."""
     from ..weak_drive.couple import couple_job, scheme_of
 
     control = control_of(arguments, structure, drive)
     schedule = schedule_from(arguments, structure, drive, control)
     step = step_of(arguments, structure)
-    given = (arguments.algorithm, arguments.tolerance, control is not None)
-    scheme = scheme_of(structure, step, *given)
+    settings = (arguments.algorithm, arguments.tolerance, control is not None)
+    scheme = scheme_of(structure, step, *settings)
     hold = hold_of(arguments, structure)
-    stem = file_name(arguments, structure, drive, (schedule, scheme, control, hold))
+    base_name = file_name(arguments, structure, drive, (schedule, scheme, control, hold))
     return [
         replace(
             couple_job(chosen, drive, schedule, scheme, control=control, hold=hold),
-            name=f"{stem}_{state}",
+            name=f"{base_name}_{state}",
         )
         for state, chosen in states_of(arguments, structure).items()
     ]
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     from ..access import finder
     from ..running.options import RunOptions
     from ..running.runner import answer_all
     from ..running.store import load
 
-    structure, drive = described(arguments)
+    structure, drive = structure_and_drive(arguments)
     jobs = jobs_of(arguments, structure, drive)
     if arguments.ssp:
-        print(write_package(arguments, drive, jobs[-1], own_fmus(arguments.fmu)))
+        print(write_package(arguments, drive, jobs[-1], user_fmus(arguments.fmu)))
         return
     formats, plots = check_files(arguments)
     running = running_of(arguments)
-    places = [arguments.output / f"{job.name}.nc" for job in jobs]
-    fresh = arguments.force or not all(place.exists() for place in places)
-    answer_all(jobs, arguments.output, RunOptions.of(running), finder(running))
+    paths = [arguments.output / f"{job.name}.nc" for job in jobs]
+    fresh = arguments.force or not all(path.exists() for path in paths)
+    answer_all(jobs, arguments.output, RunOptions.from_keywords(running), finder(running))
     states = states_of(arguments, structure)
-    results = {state: load(place) for state, place in zip(states, places, strict=True)}
+    results = {state: load(path) for state, path in zip(states, paths, strict=True)}
     branches = branches_of(arguments, structure, drive)
-    tell(results, drive.volts(structure), folds_met(branches, structure, drive))
-    for data, place in zip(results.values(), places, strict=True):
-        for path in (place, *exported(data, place, formats, fresh)):
-            print(path)
+    report(results, drive.volts(structure), folds_crossed(branches, structure, drive))
+    for data, path in zip(results.values(), paths, strict=True):
+        for file in (path, *export_formats(data, path, formats, fresh)):
+            print(file)
     name = jobs[0].name.rpartition("_")[0] + (f"_{arguments.only}" if arguments.only else "")
     picture = arguments.output / f"{name}.nc"
-    for path in drawn(
+    for file in draw_picture(
         picture,
         plots,
         fresh,
         lambda: picture_of(arguments, results, structure, drive, jobs[0], branches),
     ):
-        print(path)
+        print(file)
 
 
 def write_package(
-    arguments: argparse.Namespace, drive: Drive, job: CoupleJob, own: Mapping[str, Path]
+    arguments: argparse.Namespace, drive: Drive, job: CoupleJob, user_fmus: Mapping[str, Path]
 ) -> Path:
-    """The coupled system as an SSP file, by default with the FMI 2.0 FMUs that most tools read."""
+    """Write the coupled system as an SSP file, by default with the FMI 2.0 FMUs that most tools
+    read.
+    """
     from ..access import find
     from ..weak_drive.ssp import write_ssp
 
     folder = arguments.build_folder
-    fmus = [find(model, "fmi2", folder, own.get(model)).path for model in job.models]
+    fmus = [find(model, "fmi2", folder, user_fmus.get(model)).path for model in job.models]
     voltage, speed = job.schedule.voltage(0.0), job.speed_start
     return write_ssp(
         arguments.ssp, job.structure, drive, voltage=voltage, speed_start=speed, fmus=fmus
@@ -151,19 +153,20 @@ def write_package(
 def branches_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> xr.Dataset | None:
-    """The branches, where they are asked for; their bifurcations are told."""
+    """Compute the branches if they are asked for; print their bifurcations."""
     from ..weak_drive.drive_branch import drive_branch
 
     if not arguments.branches:
         return None
-    own = digest(structure.as_delaminated().parameters(), drive.parameters())
-    store = arguments.output / f"branches_{Path(arguments.drive).stem}_{own}.nc"
-    found = drive_branch(structure, drive, **running_of(arguments, store))
+    digits = digest(structure.as_delaminated().parameters(), drive.parameters())
+    store = arguments.output / f"branches_{Path(arguments.drive).stem}_{digits}.nc"
+    branches = drive_branch(structure, drive, **running_of(arguments, store))
     for kind, name, volts in zip(
-        *(found[f"bifurcation_{of}"].values for of in ("kind", "structure", "voltage")), strict=True
+        *(branches[f"bifurcation_{of}"].values for of in ("kind", "structure", "voltage")),
+        strict=True,
     ):
         print(f"{name}: {kind} at {volts:.4f} V")
-    return found
+    return branches
 
 
 def picture_of(
@@ -174,7 +177,7 @@ def picture_of(
     job: CoupleJob,
     branches: xr.Dataset | None,
 ) -> Any:
-    """All runs; of ramps the averaged theory too, and branches where they are wanted."""
+    """Draw all runs; with ramps the averaged theory too, and branches if they are asked for."""
     import numpy as np
     import xarray as xr
 
@@ -196,17 +199,17 @@ def picture_of(
     return draw(results, theory, branches, title)
 
 
-def folds_met(branches: xr.Dataset | None, structure: Structure, drive: Drive) -> Folds:
-    """Voltages of the folds at which slow ramps jump across the resonance, V.
+def folds_crossed(branches: xr.Dataset | None, structure: Structure, drive: Drive) -> Folds:
+    """Return the voltages of the folds at which slow ramps jump across the resonance, V.
 
     A ramp may jump before to another motion on the same side: that fold is not meant.
     """
     from ..weak_drive import averaged
     from ..weak_drive.ramp_path import ramp_paths
 
-    found: Folds = {}
+    folds: Folds = {}
     if branches is None:
-        return found
+        return folds
     volts, speeds = (branches[f"bifurcation_{of}"].values for of in ("voltage", "speed"))
     threshold = averaged.dividing_speed(structure, drive) * structure.omega
     for name in map(str, branches.structure.values):
@@ -214,12 +217,12 @@ def folds_met(branches: xr.Dataset | None, structure: Structure, drive: Drive) -
             for fold, landing in zip(path.jumps, path.landings, strict=False):
                 ends = (speeds[fold], landing) if jump == "up" else (landing, speeds[fold])
                 if ends[0] < threshold < ends[1]:
-                    found.setdefault((name, jump), float(volts[fold]))
-    return found
+                    folds.setdefault((name, jump), float(volts[fold]))
+    return folds
 
 
-def tell(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = None) -> None:
-    """What was found, in a few lines.
+def report(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = None) -> None:
+    """Print the results.
 
     Parameters
     ----------
@@ -228,25 +231,25 @@ def tell(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = Non
     volts : float
         Voltage at eta0 = 1.
     folds : dict of float, optional
-        Voltages at which slow ramps jump, as :func:`folds_met` gives them, V.
+        Voltages at which slow ramps jump, as :func:`folds_crossed` gives them, V.
     """
     bonded = results.get("bonded")
     for name, data in results.items():
-        told = []
+        texts = []
         for jump in map(str, data.jump.values):
-            at, beside = data.sel(jump=jump), None if bonded is None else bonded.sel(jump=jump)
-            told.append(told_jump(at, volts, beside, (folds or {}).get((name, jump))))
+            at, bonded_at = data.sel(jump=jump), None if bonded is None else bonded.sel(jump=jump)
+            texts.append(format_jump(at, volts, bonded_at, (folds or {}).get((name, jump))))
         passed = float(data.passage_time)
-        if not any("V" in text for text in told) and math.isfinite(passed):
-            told.append(f"beyond the resonance from {passed:.4g} s on")
-        print(f"{name}: {data.sizes['revolution']} revolutions; {'; '.join(told)}")
-        balance(data)
+        if not any("V" in text for text in texts) and math.isfinite(passed):
+            texts.append(f"beyond the resonance from {passed:.4g} s on")
+        print(f"{name}: {data.sizes['revolution']} revolutions; {'; '.join(texts)}")
+        print_accuracy(data)
 
 
-def told_jump(
+def format_jump(
     at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None = None
 ) -> str:
-    """A jump with its lag, or why there is none.
+    """Format a jump with its lag, or why there is none.
 
     Parameters
     ----------
@@ -269,12 +272,14 @@ def told_jump(
     held = float(at.held_jumps)
     if math.isfinite(held):
         error = float(at.held_error)
-        return f"{text}, told by held voltages: the motion is lost at {held:.4f} +- {error:.4f} V"
-    return f"{text}, {lag_words(at, volts, bonded, fold)}"
+        return (
+            f"{text}, by the held-voltage test: the motion is lost at {held:.4f} +- {error:.4f} V"
+        )
+    return f"{text}, {format_lag(at, volts, bonded, fold)}"
 
 
-def lag_words(at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None) -> str:
-    """How late a jump comes, and where it is at rate 0."""
+def format_lag(at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None) -> str:
+    """Format how late a jump comes, and where it is at rate 0."""
     voltage, unknown = float(at.jumps), "late by what jump-voltages tells"
     if fold is not None:
         late = f"{abs(voltage - fold):.4f} V late at this rate"
@@ -294,7 +299,7 @@ def lag_words(at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: flo
 
 
 def lag_error(voltage: float, volts: float, bonded: xr.Dataset) -> float:
-    """How far the lag of a delaminated structure's jump may be from the bonded one's, V.
+    """Estimate how far the lag of a delaminated structure's jump may be from the bonded one's, V.
 
     It depends on the branch by the fold, which differs as the vibration's torque there does. The
     slip tells that torque: a jump that is moved by a tenth of it is taken to be late by as much as
@@ -307,14 +312,14 @@ def lag_error(voltage: float, volts: float, bonded: xr.Dataset) -> float:
     return abs(float(bonded.jump_lag)) * max(moved, 0.02)
 
 
-def balance(data: xr.Dataset) -> None:
-    """What the coupling has lost, and a warning where it is much."""
+def print_accuracy(data: xr.Dataset) -> None:
+    """Print the energy error and the coupling error, and a warning if they are large."""
     missing, defects = (
         float(data.attrs[key]) for key in ("missing_over_motor_work", "defects_over_motor_work")
     )
     print(
-        f"  of the motor's work {missing:.1e} is missing, the steps' defects are {defects:.1e} "
-        "(small ones alone do not prove accuracy)"
+        f"  relative energy error {missing:.1e}, coupling error {defects:.1e} of the motor's work "
+        "(small values alone do not prove accuracy)"
     )
-    if max(abs(missing), defects) > LIMIT:
-        print(f"  warning: that is more than {LIMIT:g}; take a shorter --step")
+    if max(abs(missing), defects) > ERROR_LIMIT:
+        print(f"  warning: that is more than {ERROR_LIMIT:g}; take a shorter --step")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .drives import ask_once
-from .options import Commands, add_drive, described, ends_of, plain_float, plain_int
+from .options import Commands, add_drive, ends_of, plain_float, plain_int, structure_and_drive
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -33,17 +33,17 @@ Branches go round their folds. Interrupted, the same command goes on where it wa
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "stationary motions of structure and motor, stable and unstable, and their bifurcations"
     parser = commands.add("drive-branch", run, text, EXAMPLES)
     add_drive(parser)
     option = parser.add_argument_group("question").add_argument
     usual = "0.95 and 1.25 times the resonance"
     option("--speed", metavar="FIRST:LAST", help=f"range of mean speeds, rad/s (default: {usual})")
-    longest = "longest step along the branch, without a unit (default: %(default)s)"
-    option("--longest", type=plain_float, default=0.05, help=longest)
-    most = "most points in one direction (default: %(default)s)"
-    option("--most", type=plain_int, default=200, help=most)
+    longest_text = "longest step along the branch, without a unit (default: %(default)s)"
+    option("--longest", type=plain_float, default=0.05, help=longest_text)
+    most_text = "most points in one direction (default: %(default)s)"
+    option("--most", type=plain_int, default=200, help=most_text)
     period = "most revolutions after which the delaminated motion repeats (default: %(default)s)"
     option("--period", type=plain_int, default=2, help=period)
     steps = "communication steps in a revolution (default: %(default)s)"
@@ -58,8 +58,8 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
-    structure, drive = described(arguments)
+    """Run the command."""
+    structure, drive = structure_and_drive(arguments)
     question = {
         "speed": ends_of("--speed", arguments.speed) if arguments.speed else None,
         "longest": arguments.longest,
@@ -73,7 +73,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def picture_of(data: xr.Dataset, name: str) -> Any:
-    """Speed over voltage and amplitude over speed."""
+    """Draw speed over voltage and amplitude over speed."""
     from ..figures.weak_drive import draw_stationary
 
     volts = f"{float(data.voltage.min()):.4g} V to {float(data.voltage.max()):.4g} V"
@@ -81,7 +81,7 @@ def picture_of(data: xr.Dataset, name: str) -> Any:
 
 
 def report(data: xr.Dataset) -> None:
-    """Bifurcations, what slow ramps meet of them, and how far the branches go."""
+    """Print bifurcations, which of them slow ramps meet, and how far the branches go."""
     from ..weak_drive.ramp_path import ramp_paths
 
     paths = {str(name): ramp_paths(data, str(name)) for name in data.structure.values}
@@ -89,13 +89,13 @@ def report(data: xr.Dataset) -> None:
     for i, (structure, kind, voltage, speed) in enumerate(
         zip(*(data[f"bifurcation_{name}"].values for name in names), strict=True)
     ):
-        way = jump_at(data.sel(structure=structure), voltage, speed) if kind == FOLD else ""
-        what = meaning(paths[structure], i, way)
+        direction = jump_at(data.sel(structure=structure), voltage, speed) if kind == FOLD else ""
+        what = meaning(paths[structure], i, direction)
         print(f"{structure}: {kind} at {voltage:.5f} V, {speed:.5g} rad/s{what}")
     for structure, both in paths.items():
-        for way, path in both.items():
+        for direction, path in both.items():
             if path.end and len(path.landings) in (0, len(path.jumps) - 1):
-                print(f"{structure}, a slow ramp {way}: {path.end}")
+                print(f"{structure}, a slow ramp {direction}: {path.end}")
     if not data.sizes["bifurcation"]:
         print("no bifurcations")
     for structure in data.structure.values:
@@ -106,11 +106,11 @@ def report(data: xr.Dataset) -> None:
                 stable = int(at.stable.sum())
                 end = ENDS.get(at.end.item(), f"ends early: {at.end.item()}")
                 print(f"{structure}, {leg}: {count} motions, {stable} of them stable; {end}")
-                tell_unlocated(at, data.bifurcation_speed.values)
+                print_unlocated(at, data.bifurcation_speed.values)
 
 
-def meaning(paths: dict[str, RampPath], i: int, way: str) -> str:
-    """What a bifurcation means to slow ramps.
+def meaning(paths: dict[str, RampPath], i: int, direction: str) -> str:
+    """Format what a bifurcation means to slow ramps.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def meaning(paths: dict[str, RampPath], i: int, way: str) -> str:
         Of ramps ``"up"`` and ``"down"``.
     i : int
         The bifurcation's place.
-    way : str
+    direction : str
         Which way the speed jumps at this fold; empty where a stable motion does not end there.
     """
     for name, path in paths.items():
@@ -129,15 +129,15 @@ def meaning(paths: dict[str, RampPath], i: int, way: str) -> str:
             next_one = "the next jump" if turn else "the jump"
             landing = f", to {path.landings[turn]:.5g} rad/s" if turn < len(path.landings) else ""
             return f": {next_one} {name} of a slow ramp, at rate 0{landing}"
-    if not way:
+    if not direction:
         return ""
-    if paths[way].jumps:
-        return f": a jump {way} that a slow ramp {STARTS[way]} does not meet"
-    return f": a jump {way}; whether a slow ramp meets it these branches do not tell"
+    if paths[direction].jumps:
+        return f": a jump {direction} that a slow ramp {STARTS[direction]} does not meet"
+    return f": a jump {direction}; whether a slow ramp meets it these branches do not tell"
 
 
 def jump_at(branch: xr.Dataset, voltage: float, speed: float) -> str:
-    """Which way the speed jumps at a fold; empty where no stable motion ends there."""
+    """Return which way the speed jumps at a fold; empty where no stable motion ends there."""
     import numpy as np
 
     spans = {name: float(branch[name].max() - branch[name].min()) for name in ("voltage", "speed")}
@@ -146,20 +146,22 @@ def jump_at(branch: xr.Dataset, voltage: float, speed: float) -> str:
         at = branch.sel(leg=leg).dropna("point", subset=["voltage"])
         if at.sizes["point"] < 3:
             continue
-        apart = np.hypot(
+        distance = np.hypot(
             (at.voltage.values - voltage) / spans["voltage"],
             (at.speed.values - speed) / spans["speed"],
         )
-        near = int(apart.argmin())
-        if apart[near] < nearest:
-            nearest, around = apart[near], at.isel(point=slice(max(near - 1, 0), near + 2))
+        near = int(distance.argmin())
+        if distance[near] < nearest:
+            nearest, around = distance[near], at.isel(point=slice(max(near - 1, 0), near + 2))
     if around is None or set(around.stable.values.astype(int)) != {0, 1}:
         return ""
     return "up" if float(around.voltage.mean()) < voltage else "down"
 
 
-def tell_unlocated(leg: xr.Dataset, speeds: np.ndarray) -> None:
-    """Changes of stability between two motions without a bifurcation that was located there."""
+def print_unlocated(leg: xr.Dataset, speeds: np.ndarray) -> None:
+    """Print changes of stability between two motions without a bifurcation that was located
+    there.
+    """
     at = leg.dropna("point", subset=["voltage"])
     stable = at.stable.values.astype(int)
     for i in (stable[1:] != stable[:-1]).nonzero()[0]:

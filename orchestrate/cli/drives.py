@@ -1,4 +1,4 @@
-"""What the commands of the weak drive share: voltage, controller, both structures, their files."""
+"""Shared parts of the commands of the weak drive: voltage, controller, both structures, files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from .options import ends_of, plain_float
-from .output import FORMATS, PLOTS, Files, check_output, digest, drawn, endings_of, running_of
+from .output import (
+    FORMATS,
+    PLOTS,
+    Files,
+    check_output,
+    digest,
+    draw_picture,
+    endings_of,
+    running_of,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,13 +39,13 @@ ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/
 
 
 def add_only(parser: argparse.ArgumentParser) -> None:
-    """``--only``."""
+    """Add ``--only``."""
     only = "one of both (default: both)"
     parser.add_argument("--only", choices=("bonded", "delaminated"), help=only)
 
 
 def add_ends(group: Any, form: str = "FIRST:LAST", usual: str = "") -> None:
-    """``--eta0`` and ``--voltage``."""
+    """Add ``--eta0`` and ``--voltage``."""
     usual = usual or "about the jumps of the averaged theory"
     text = f"voltage as no-load speed over omega (default: {usual})"
     group.add_argument("--eta0", metavar=form, help=text)
@@ -44,7 +53,7 @@ def add_ends(group: Any, form: str = "FIRST:LAST", usual: str = "") -> None:
 
 
 def add_schedule(parser: argparse.ArgumentParser) -> None:
-    """The voltage over time: ramp, steps, constant, or from a file."""
+    """Add the voltage over time: ramp, steps, constant, or from a file."""
     group = parser.add_argument_group("voltage over time: a ramp, steps, one value, or a file")
     option = group.add_argument
     add_ends(group, "FIRST:LAST or VALUE")
@@ -60,7 +69,7 @@ def add_schedule(parser: argparse.ArgumentParser) -> None:
 
 
 def add_rate(group: Any, form: str, more: str, default: str = "") -> None:
-    """``--rate``."""
+    """Add ``--rate``."""
     usual = ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
     default = default or f"{usual}, else {RATE:g}"
     text = f"change of eta0 in a time 1/omega{more} (default: {default})"
@@ -68,13 +77,13 @@ def add_rate(group: Any, form: str, more: str, default: str = "") -> None:
 
 
 def add_settle(group: Any) -> None:
-    """``--settle``."""
+    """Add ``--settle``."""
     text = "time at the first voltage, in 1/omega (default: %(default)s)"
     group.add_argument("--settle", type=plain_float, default=300.0, help=text)
 
 
 def add_step(group: Any) -> None:
-    """``--step``."""
+    """Add ``--step``."""
     text = (
         "communication step, in 1/omega (default: controlled by its defect, at most 0.4; 0.1 where "
         "a controller or a picture takes samples)"
@@ -83,7 +92,7 @@ def add_step(group: Any) -> None:
 
 
 def add_hold(group: Any) -> None:
-    """``--hold``."""
+    """Add ``--hold``."""
     text = (
         "longest time for which a voltage is held where the ramp's record does not tell a jump, in "
         "1/omega (default: 4000 and 200 times the rotor's own)"
@@ -92,7 +101,7 @@ def add_hold(group: Any) -> None:
 
 
 def add_control(parser: argparse.ArgumentParser) -> None:
-    """A controller that takes a part of the voltage."""
+    """Add a controller that takes a part of the voltage."""
     title = "controller: starts from rest, takes a part of the voltage at every communication step"
     option = parser.add_argument_group(title).add_argument
     option(
@@ -113,13 +122,13 @@ def add_control(parser: argparse.ArgumentParser) -> None:
 
 
 def states_of(arguments: argparse.Namespace, structure: Structure) -> dict[str, Structure]:
-    """Both structures by name, or the one that is wanted."""
+    """Return both structures by name, or the one that is asked for."""
     both = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
     return {arguments.only: both[arguments.only]} if arguments.only else both
 
 
 def number_or_ends(option: str, text: str) -> tuple[float, ...]:
-    """``VALUE`` or ``FIRST:LAST``."""
+    """Parse ``VALUE`` or ``FIRST:LAST``."""
     if ":" in text:
         return ends_of(option, text)
     try:
@@ -132,7 +141,7 @@ def number_or_ends(option: str, text: str) -> tuple[float, ...]:
 def voltages_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, ...]:
-    """One voltage or both ends, V; by default about the jumps."""
+    """Return one voltage or both ends, V; by default around the jumps."""
     if arguments.eta0 and arguments.voltage:
         raise InputError("--eta0 and --voltage: expected one of them")
     if arguments.voltage:
@@ -140,8 +149,8 @@ def voltages_of(
     volts = drive.volts(structure)
     if arguments.eta0:
         return tuple(volts * value for value in number_or_ends("--eta0", arguments.eta0))
-    own = arguments.set or arguments.structure or arguments.rated_voltage is not None
-    if arguments.drive in USUAL and not own:
+    has_own_parameters = arguments.set or arguments.structure or arguments.rated_voltage is not None
+    if arguments.drive in USUAL and not has_own_parameters:
         first, last = ends_of("--eta0", USUAL[arguments.drive][0])
         return first * volts, last * volts
     down, up = folds_of(arguments, structure, drive)
@@ -151,23 +160,23 @@ def voltages_of(
 def two_voltages(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, float]:
-    """Both ends, V."""
-    found = voltages_of(arguments, structure, drive)
-    if len(found) != 2:
+    """Return both ends, V."""
+    voltages = voltages_of(arguments, structure, drive)
+    if len(voltages) != 2:
         name = "voltage" if arguments.voltage else "eta0"
         text = getattr(arguments, name)
         raise InputError(f"--{name} {text}: expected FIRST:LAST, two numbers such as 1.2:1.65")
-    return found
+    return voltages
 
 
 def folds_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, float]:
-    """Voltages of the averaged theory's jumps down and up, V."""
+    """Return the voltages of the averaged theory's jumps down and up, V."""
     from ..weak_drive import averaged
-    from ..weak_drive.couple import checked_motor
+    from ..weak_drive.couple import require_motor
 
-    checked_motor(drive)
+    require_motor(drive)
     folds = averaged.folds(structure, drive)
     if not folds:
         raise InputError(
@@ -179,28 +188,28 @@ def folds_of(
 
 
 def rates_of(option: str, text: str, one: bool = False) -> tuple[float, ...]:
-    """Rates, a list, or one of them.
+    """Parse rates, a list, or one of them.
 
     Raises
     ------
     InputError
     """
     try:
-        found = tuple(plain_float(part) for part in text.split(","))
+        rates = tuple(plain_float(part) for part in text.split(","))
     except ValueError:
-        found = ()
+        rates = ()
     several = "" if one else ", or several as A,B,..., such as 1e-4,5e-5,2.5e-5"
-    if not found or not all(math.isfinite(rate) and rate > 0.0 for rate in found):
+    if not rates or not all(math.isfinite(rate) and rate > 0.0 for rate in rates):
         raise InputError(f"{option} {text}: expected a number > 0{several}")
-    if one and len(found) > 1:
+    if one and len(rates) > 1:
         raise InputError(
-            f"{option} {text}: {len(found)} rates; expected one (jump-voltages takes several)"
+            f"{option} {text}: {len(rates)} rates; expected one (jump-voltages takes several)"
         )
-    return found
+    return rates
 
 
 def volt_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> float:
-    """The one rate of a ramp, V/s."""
+    """Return the one rate of a ramp, V/s."""
     if arguments.rate is not None and arguments.volt_rate is not None:
         raise InputError("--rate and --volt-rate: expected one of them")
     if arguments.volt_rate is not None:
@@ -212,27 +221,27 @@ def volt_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive)
 
 
 def step_of(arguments: argparse.Namespace, structure: Structure) -> float | None:
-    """The communication step, s, where one is given."""
+    """Return the communication step, s, or None."""
     return None if arguments.step is None else float(arguments.step / structure.omega)
 
 
 def hold_of(arguments: argparse.Namespace, structure: Structure) -> float | None:
-    """The longest hold, s, where one is given."""
+    """Return the longest hold, s, or None."""
     return None if arguments.hold is None else float(arguments.hold / structure.omega)
 
 
 def schedule_from(
     arguments: argparse.Namespace, structure: Structure, drive: Drive, control: Controller | None
 ) -> Schedule:
-    """The voltage over time."""
+    """Return the voltage over time."""
     from ..weak_drive.couple import schedule_of
     from ..weak_drive.schedule import Course
 
     rate, omega = volt_rate(arguments, structure, drive), structure.omega
     if arguments.course:
-        given = [name for name in ("eta0", "voltage", "duration") if getattr(arguments, name)]
-        if given:
-            raise InputError(f"--course and --{given[0]}: expected one of them")
+        others = [name for name in ("eta0", "voltage", "duration") if getattr(arguments, name)]
+        if others:
+            raise InputError(f"--course and --{others[0]}: expected one of them")
         return Course.from_csv(arguments.course)
     ends = voltages_of(arguments, structure, drive)
     if len(ends) == 1:
@@ -256,10 +265,10 @@ def schedule_from(
 def control_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> Controller | None:
-    """The controller that the options describe."""
+    """Return the controller that the options describe."""
     from ..weak_drive import averaged
     from ..weak_drive.controllers import SpeedControl, SpeedGradient
-    from ..weak_drive.couple import checked_motor
+    from ..weak_drive.couple import require_motor
 
     of_pi = {"gain": arguments.gain, "reset_time": arguments.reset_time}
     of_pi["rise"] = arguments.speed_rise
@@ -273,21 +282,21 @@ def control_of(
             option = {"rise": "speed-rise"}.get(name, name.replace("_", "-"))
             needed = "--speed-control" if name in of_pi else "--speed-gradient"
             raise InputError(f"--{option} {value:g}: expected {needed} with it")
-    checked_motor(drive)
+    require_motor(drive)
     constant = drive.motor_constant
     if arguments.speed_control is not None:
         slow = drive.rotor_inertia * drive.armature_resistance / constant**2
         usual = {"gain": 5.0 * constant, "reset_time": slow, "rise": math.inf}
-        return SpeedControl(speed=arguments.speed_control, **{**usual, **given(of_pi)})
+        return SpeedControl(speed=arguments.speed_control, **{**usual, **without_none(of_pi)})
     if arguments.speed_gradient:
         passed = averaged.dividing_speed(structure, drive) * structure.omega
-        swing = {"filter_time": 30.0 / structure.omega, "low": 0.6, **given(of_swing)}
+        swing = {"filter_time": 30.0 / structure.omega, "low": 0.6, **without_none(of_swing)}
         return SpeedGradient(passed=passed, **swing)
     return None
 
 
-def given(values: Mapping[str, float | None]) -> dict[str, float]:
-    """What is not None."""
+def without_none(values: Mapping[str, float | None]) -> dict[str, float]:
+    """Return the entries that are not None."""
     return {name: value for name, value in values.items() if value is not None}
 
 
@@ -297,9 +306,9 @@ def given(values: Mapping[str, float | None]) -> dict[str, float]:
 def file_name(
     arguments: argparse.Namespace, structure: Structure, drive: Drive, question: Any
 ) -> str:
-    """A name that no other question has: command, drive, and a few letters."""
-    own = digest(structure.as_delaminated().parameters(), drive.parameters(), question)
-    return f"{arguments.command.replace('-', '_')}_{Path(arguments.drive).stem}_{own}"
+    """Return a name that no other question has: command, drive, and a digest."""
+    digits = digest(structure.as_delaminated().parameters(), drive.parameters(), question)
+    return f"{arguments.command.replace('-', '_')}_{Path(arguments.drive).stem}_{digits}"
 
 
 def ask_each(
@@ -310,7 +319,7 @@ def ask_each(
     draw: Callable[[dict[str, xr.Dataset]], Any],
     report: Callable[[str, xr.Dataset], None],
 ) -> None:
-    """Ask for each structure; say what came out, write files, draw both in one picture.
+    """Ask for each structure; print the results, write files, draw both in one picture.
 
     Parameters
     ----------
@@ -327,21 +336,23 @@ def ask_each(
     import orchestrate
 
     ask = getattr(orchestrate, arguments.command.replace("-", "_"))
-    stem = file_name(arguments, structure, drive, question)
+    base_name = file_name(arguments, structure, drive, question)
     states = states_of(arguments, structure)
-    places = {state: Files.of(arguments, f"{stem}_{state}") for state in states}
-    found = {}
+    files = {state: Files.from_options(arguments, f"{base_name}_{state}") for state in states}
+    results = {}
     for state, chosen in states.items():
-        running = running_of(arguments, places[state].result)
-        found[state] = ask(chosen, drive, **question, **running)
-    for state, data in found.items():
+        running = running_of(arguments, files[state].result)
+        results[state] = ask(chosen, drive, **question, **running)
+    for state, data in results.items():
         report(state, data)
-    for state, data in found.items():
-        places[state].write(data, None)
-    fresh = any(place.fresh for place in places.values())
+    for state, data in results.items():
+        files[state].write(data, None)
+    fresh = any(one_file.fresh for one_file in files.values())
     plots = endings_of("--plot", arguments.plot, PLOTS)
     only = f"_{arguments.only}" if arguments.only else ""
-    for path in drawn(arguments.output / f"{stem}{only}.nc", plots, fresh, lambda: draw(found)):
+    for path in draw_picture(
+        arguments.output / f"{base_name}{only}.nc", plots, fresh, lambda: draw(results)
+    ):
         print(path)
 
 
@@ -357,14 +368,14 @@ def ask_once(
     import orchestrate
 
     ask = getattr(orchestrate, arguments.command.replace("-", "_"))
-    files = Files.of(arguments, file_name(arguments, structure, drive, question))
+    files = Files.from_options(arguments, file_name(arguments, structure, drive, question))
     data = ask(structure, drive, **question, **running_of(arguments, files.result))
     report(data)
     files.write(data, (lambda: draw(data)) if draw else None)
 
 
 def check_files(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Formats and pictures that are wanted, checked before any work; so is the folder."""
+    """Return formats and pictures, checked before any work; check the folder too."""
     formats = endings_of("--format", arguments.format, FORMATS)
     plots = endings_of("--plot", arguments.plot, PLOTS)
     check_output(arguments.output)
@@ -372,7 +383,7 @@ def check_files(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[s
 
 
 def title_of_runs(runs: Mapping[str, xr.Dataset], name: str, control: str = "") -> str:
-    """Set, volts and rate of runs, for a picture."""
+    """Format set, volts and rate of runs, for a picture."""
     import numpy as np
 
     changes = [

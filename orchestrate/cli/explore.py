@@ -8,7 +8,7 @@ from typing import Any
 
 from ..errors import InputError
 from .options import Commands, add_structure, structure_of
-from .question import stored
+from .question import read_stored
 
 EXAMPLES = """  {program} explore                              the paper's Figure 6
   {program} explore results/orbit_e0.7_D0.005_up.nc   an own sweep: a click replays its responses
@@ -16,7 +16,7 @@ EXAMPLES = """  {program} explore                              the paper's Figur
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "open a page that shows orbit diagrams and motions, computed in the browser"
     parser = commands.add("explore", run, text, EXAMPLES)
     sweep = "NetCDF file of a sweep along the frequency (default: the paper's Figure 6)"
@@ -33,15 +33,15 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     from ..explorer.page import explore
 
     data: Any = structure_of(arguments)
     if arguments.result is not None:
         if arguments.set or arguments.structure != "paper":
             raise InputError(f"{arguments.result} with --structure or --set: expected one of them")
-        data = stored("RESULT", arguments.result)
-    branches = arguments.branches and stored("--branches", arguments.branches)
+        data = read_stored("RESULT", arguments.result)
+    branches = arguments.branches and read_stored("--branches", arguments.branches)
     page = explore(
         data,
         output=arguments.output,

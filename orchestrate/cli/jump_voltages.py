@@ -19,7 +19,7 @@ from .drives import (
     step_of,
     two_voltages,
 )
-from .options import Commands, add_drive, described
+from .options import Commands, add_drive, structure_and_drive
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ Three rates or more give a standard error. Interrupted, the same command goes on
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "voltages at which the speed jumps, at rate 0 from ramps of several rates"
     parser = commands.add("jump-voltages", run, text, EXAMPLES.replace("{eta0}", ETA0))
     add_drive(parser)
@@ -49,8 +49,8 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
-    structure, drive = described(arguments)
+    """Run the command."""
+    structure, drive = structure_and_drive(arguments)
     unit = drive.volts(structure) * structure.omega
     ends = two_voltages(arguments, structure, drive)
     question = {
@@ -61,12 +61,12 @@ def run(arguments: argparse.Namespace) -> None:
         "step": step_of(arguments, structure),
     }
     draw = partial(picture_of, name=Path(arguments.drive).stem, ends=ends)
-    tell = partial(report, ways=("up",) if arguments.one_way else ("up", "down"))
+    tell = partial(report, directions=("up",) if arguments.one_way else ("up", "down"))
     ask_once(arguments, structure, drive, question, draw, tell)
 
 
 def picture_of(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
-    """Voltages over the rate."""
+    """Draw voltages over the rate."""
     from ..figures.jump_voltages import draw
 
     slowest, fastest = float(data.rate.min()), float(data.rate.max())
@@ -74,23 +74,23 @@ def picture_of(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
     return draw(data, f"{name}: {ramps}, and at rate 0")
 
 
-def report(data: xr.Dataset, ways: tuple[str, ...]) -> None:
-    """A table of the jumps at rate 0, and what to do where there is none."""
+def report(data: xr.Dataset, directions: tuple[str, ...]) -> None:
+    """Print a table of the jumps at rate 0, and what to do where there is none."""
     print(f"{'jump':6}{'bonded':>24}{'delaminated':>24}{'change':>12}   in V, at rate 0")
-    for jump in ways:
+    for jump in directions:
         at = data.sel(jump=jump)
         pairs = zip(at.jumps.values, at.standard_error.values, strict=True)
-        texts = [told(value, error) for value, error in pairs]
+        texts = [format_voltage(value, error) for value, error in pairs]
         change = float(at.jumps[1] - at.jumps[0])
         last = "" if math.isnan(change) else f"{change:.4f}"
         print(f"{jump:6}{texts[0]:>24}{texts[1]:>24}{last:>12}".rstrip())
-    if bool(data.jumps.sel(jump=list(ways)).isnull().any()):
+    if bool(data.jumps.sel(jump=list(directions)).isnull().any()):
         print("none: fewer than two of these ramps jump. Slower ones may (--rate, smaller), or ask")
         print("      drive-branch: its folds are the jumps at rate 0")
 
 
-def told(value: float, error: float) -> str:
-    """A voltage with its standard error; two rates have a line, but no error."""
+def format_voltage(value: float, error: float) -> str:
+    """Format a voltage with its standard error; two rates have a line, but no error."""
     if math.isnan(value):
         return "none"
     return f"{value:.4f}" if math.isnan(error) else f"{value:.4f} +- {error:.4f}"

@@ -14,12 +14,12 @@ from .options import (
     add_numbers,
     add_over,
     add_structure,
-    along,
     numbers_of,
     structure_of,
+    varied_arguments,
 )
 from .output import add_results, running_of
-from .question import along_of, carry_out, picture_of, place, ranges, several
+from .question import carry_out, format_parameter, format_ranges, is_curve, parameter_of, picture_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +34,7 @@ WORDS = {1: "chaotic", 0: "neutral", -1: "periodic"}
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "largest Lyapunov exponents of responses: periodic, neutral or chaotic"
     parser = commands.add("lyapunov", run, text, EXAMPLES)
     add_structure(parser)
@@ -52,46 +52,47 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     structure = structure_of(arguments)
-    asked, _ = along(arguments, structure)
-    question = {**asked, **numbers_of(arguments, "transient", "periods", "sigmas")}
+    excitation, _ = varied_arguments(arguments, structure)
+    question = {**excitation, **numbers_of(arguments, "transient", "periods", "sigmas")}
     if arguments.follow:
-        swept: dict[str, Any] = {**asked, "direction": arguments.follow, "samples": 1}
+        swept: dict[str, Any] = {**excitation, "direction": arguments.follow, "samples": 1}
         swept["transient"] = arguments.transient
         question["start"] = orchestrate.sweep(structure, **swept, **running_of(arguments))
-    carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
+    carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
 
 
 def report(data: xr.Dataset) -> None:
-    """Verdicts, and where they hold."""
-    name = along_of(data)
+    """Print verdicts, and where they hold."""
+    name = parameter_of(data)
     ordered = data.sortby(name)
     if data.sizes[name] <= 10:
         for value, exponent, error, verdict in zip(
             *(ordered[key].values for key in (name, "exponent", "standard_error", "verdict")),
             strict=True,
         ):
-            where = place(name, float(value))
+            where = format_parameter(name, float(value))
             print(f"{where}: exponent {exponent:.5f} +- {error:.5f} per tau, {WORDS[int(verdict)]}")
-        tell_undecided(ordered)
+        print_undecided(ordered)
         return
     top = data.isel(data.exponent.argmax(...))
+    where = format_parameter(name, float(top[name]))
     print(
         f"largest exponent {float(top.exponent):.5f} +- {float(top.standard_error):.5f} per tau "
-        f"at {place(name, float(top[name]))}; of {data.exponent.size} it is chosen for its error "
+        f"at {where}; of {data.exponent.size} it is chosen for its error "
         "too: ask for it alone, with more --periods and another --transient"
     )
     for verdict, word in WORDS.items():
         holds = ordered.verdict.values == verdict
-        where = f" at {ranges(name, ordered[name].values, holds)}" if holds.any() else ""
+        where = f" at {format_ranges(name, ordered[name].values, holds)}" if holds.any() else ""
         print(f"{word}: {int(holds.sum())} of {holds.size}{where}")
-    tell_undecided(ordered)
+    print_undecided(ordered)
 
 
-def tell_undecided(data: xr.Dataset) -> None:
-    """How many periods would decide what is neutral, if it is not quasi-periodic."""
-    neutral = data.isel({along_of(data): data.verdict.values == 0})
+def print_undecided(data: xr.Dataset) -> None:
+    """Print how many periods would decide whether neutral responses are chaotic or periodic."""
+    neutral = data.isel({parameter_of(data): data.verdict.values == 0})
     sizes = abs(neutral.exponent.values)
     if not (sizes > 0.0).any():
         return

@@ -20,7 +20,7 @@ from .options import (
     values_of,
 )
 from .output import add_results
-from .question import carry_out, is_flag, picture_of, place
+from .question import carry_out, format_parameter, is_flag, picture_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,11 +32,11 @@ EXAMPLES = """\
   {program} map --eta 1.2 --over e --values 0.1:0.9:0.1 --over D --values 0.005,0.02,0.05
   {program} map --structure beam --hz 8:20:0.25 --amplitude 1e-4 --over e --values 0.3,0.5,0.7
 Each point starts from rest. The picture has impacts per period, multiplicity and largest gap."""
-KINDS = 4  # multiplicities that are told
+MAX_KINDS = 4  # multiplicities that are told
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "responses over two parameters: impacts per period, multiplicity, largest gap, exponent"
     parser = commands.add("map", run, text, EXAMPLES)
     add_structure(parser)
@@ -54,15 +54,15 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     structure = structure_of(arguments)
     names = ("exponent", "transient", "settle", "samples", "periods", "tolerance", "longest")
-    question = {**axes(arguments, structure), **numbers_of(arguments, *names)}
+    question = {**map_arguments(arguments, structure), **numbers_of(arguments, *names)}
     carry_out(arguments, structure, question, report, picture_of)
 
 
-def axes(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
-    """The box's motion and the parameters, two of them as lists.
+def map_arguments(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
+    """Return the box's motion and the parameters, two of them as lists.
 
     Raises
     ------
@@ -73,37 +73,39 @@ def axes(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
     for name in arguments.over:
         check_over(name, arguments)
     twice = len(arguments.over) == 2
-    found = excitation_of(arguments, structure, one=twice, level=twice)
-    if isinstance(found.get("amplitude"), tuple):
+    excitation = excitation_of(arguments, structure, one=twice, level=twice)
+    if isinstance(excitation.get("amplitude"), tuple):
         raise InputError(
             "--g: a map over the frequency has one amplitude; expected --amplitude in m (what it "
             "shows does not depend on the level)"
         )
     for name, text in zip(arguments.over, arguments.values, strict=True):
-        if name in found:
+        if name in excitation:
             raise InputError(f"--over {name}: twice; expected two parameters")
-        found[name] = values_of("--values", text, zero=True)[0]
-    if sum(isinstance(value, tuple) for value in found.values()) != 2:
+        excitation[name] = values_of("--values", text, zero=True)[0]
+    if sum(isinstance(value, tuple) for value in excitation.values()) != 2:
         raise InputError(
             "map: expected two parameters that vary: a range of frequencies and --over with "
             "--values, or --over with --values twice at one frequency"
         )
-    return found
+    return excitation
 
 
 def report(data: xr.Dataset) -> None:
-    """What there is on the map."""
+    """Print what the map shows."""
     undecided = is_flag(data.multiplicity_decided, "undecided")
     kinds = data.multiplicity.where(~undecided, -1).values.astype(int)
     shares = [f"not periodic {float((kinds == 0).mean()):.1%}"]
-    for number in range(1, KINDS + 1):
+    for number in range(1, MAX_KINDS + 1):
         shares.append(f"{number if number > 1 else ''}T {float((kinds == number).mean()):.1%}")
-    shares.append(f"longer {float((kinds > KINDS).mean()):.1%}")
+    shares.append(f"longer {float((kinds > MAX_KINDS).mean()):.1%}")
     if (kinds < 0).any():
         shares.append(f"undecided {float((kinds < 0).mean()):.1%}")
     print(f"{kinds.size} responses: {', '.join(shares)}")
     top = data.isel(data.xi_rel_max.argmax(...))
-    where = ", ".join(place(str(name), float(top[name])) for name in data.xi_rel_max.dims)
+    where = ", ".join(
+        format_parameter(str(name), float(top[name])) for name in data.xi_rel_max.dims
+    )
     print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g} at {where}")
     impacts = data.impacts_per_period
     print(f"impacts per period: {float(impacts.min()):.4g} to {float(impacts.max()):.4g}")

@@ -1,4 +1,4 @@
-"""What commands share of what is asked: structures, motors and frequencies, from their options."""
+"""Shared options of commands: structures, motors, frequencies, numbers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..errors import InputError
 if TYPE_CHECKING:
     from ..structures import Drive, Structure
 
-MOST_VALUES = 10_000_000
+MAX_VALUES = 10_000_000
 RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
 SETS = Path(__file__).resolve().parents[1] / "structures" / "sets"
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
@@ -41,7 +41,7 @@ QUANTITIES = """quantities:
 
 @dataclass(frozen=True)
 class Commands:
-    """Where commands declare themselves.
+    """Collects the commands' parsers.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class Commands:
     def add(
         self, name: str, run: Callable[[argparse.Namespace], None], text: str, examples: str
     ) -> argparse.ArgumentParser:
-        """A command.
+        """Add a command.
 
         Parameters
         ----------
@@ -83,7 +83,7 @@ class Commands:
 
 
 def sets_text() -> str:
-    """The shipped sets, a line each: the first sentence of its file."""
+    """Format the shipped sets, a line each: the first sentence of its file."""
     lines = []
     for path in sorted(SETS.glob("*.toml")):
         above = path.read_text(encoding="utf-8").partition("\n\n")[0]
@@ -96,7 +96,7 @@ def sets_text() -> str:
 
 
 def add_structure(parser: argparse.ArgumentParser, default: str = "paper") -> None:
-    """``--structure`` and ``--set``."""
+    """Add ``--structure`` and ``--set``."""
     group = parser.add_argument_group("structure")
     group.add_argument(
         "--structure",
@@ -112,30 +112,30 @@ def add_structure(parser: argparse.ArgumentParser, default: str = "paper") -> No
 
 
 def add_set(group: Any, text: str) -> None:
-    """``--set``."""
+    """Add ``--set``."""
     group.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help=text)
 
 
 def changes_of(texts: list[str]) -> dict[str, float | bool]:
-    """Names and values of ``--set``.
+    """Parse names and values of ``--set``.
 
     Raises
     ------
     InputError
     """
-    found: dict[str, float | bool] = {}
+    changes: dict[str, float | bool] = {}
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))
         if not (name and equals):
             raise InputError(f"--set {text}: expected NAME=VALUE, such as e=0.3")
-        if name in found:
+        if name in changes:
             raise InputError(f"--set {text}: {name} is set twice; expected once")
-        found[name] = value_of(text, value)
-    return found
+        changes[name] = value_of(text, value)
+    return changes
 
 
 def value_of(text: str, value: str) -> float | bool:
-    """A value of ``--set``."""
+    """Parse a value of ``--set``."""
     if value in ("true", "false"):
         return value == "true"
     try:
@@ -147,7 +147,7 @@ def value_of(text: str, value: str) -> float | bool:
 
 
 def structure_of(arguments: argparse.Namespace) -> Structure:
-    """The structure that the options describe."""
+    """Return the structure that the options describe."""
     from ..structures import Structure
 
     return Structure.from_file(arguments.structure).replace(**changes_of(arguments.set))
@@ -157,7 +157,7 @@ def structure_of(arguments: argparse.Namespace) -> Structure:
 
 
 def add_drive(parser: argparse.ArgumentParser) -> None:
-    """``--drive``, ``--structure`` and ``--set``."""
+    """Add ``--drive``, ``--structure`` and ``--set``."""
     group = parser.add_argument_group("structure, motor and box")
     text = (
         "TOML file with [motor], [box] and [structure], or a set: quick, beam, rig (default: "
@@ -179,40 +179,40 @@ def add_drive(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def described(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
-    """Structure and drive, with what is set of either."""
+def structure_and_drive(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
+    """Return structure and drive, with what is set of either."""
     from ..structures import Drive, Structure
 
     drive = Drive.from_file(arguments.drive)
     structure = Structure.from_file(arguments.structure or arguments.drive)
     changes = changes_of(arguments.set)
-    own = {field.name for field in fields(Drive)}
-    of_drive = {name: float(value) for name, value in changes.items() if name in own}
-    of_structure = {name: value for name, value in changes.items() if name not in own}
+    drive_names = {field.name for field in fields(Drive)}
+    of_drive = {name: float(value) for name, value in changes.items() if name in drive_names}
+    of_structure = {name: value for name, value in changes.items() if name not in drive_names}
     of_drive |= datasheet_of(arguments, of_drive)
     return structure.replace(**of_structure), drive.replace(**of_drive)
 
 
-def datasheet_of(arguments: argparse.Namespace, beside: Mapping[str, float]) -> dict[str, float]:
-    """The motor's constants by the datasheet's options, where they are given."""
+def datasheet_of(arguments: argparse.Namespace, changes: Mapping[str, float]) -> dict[str, float]:
+    """Return the motor's constants by the datasheet's options, if they are given."""
     from ..structures.drive import torque_line
 
     names = ("rated_voltage", "no_load_rpm", "stall_torque")
     values = {name: getattr(arguments, name) for name in names}
     options = {name: f"--{name.replace('_', '-')}" for name in names}
-    given = [name for name in names if values[name] is not None]
-    if not given:
+    present = [name for name in names if values[name] is not None]
+    if not present:
         return {}
-    if len(given) < len(names):
-        missing = next(name for name in names if name not in given)
-        text = f"{options[given[0]]} {values[given[0]]:g}: without {options[missing]}"
+    if len(present) < len(names):
+        missing = next(name for name in names if name not in present)
+        text = f"{options[present[0]]} {values[present[0]]:g}: without {options[missing]}"
         raise InputError(f"{text}; expected {', '.join(options.values())} together")
     for name, option in options.items():
         if not (math.isfinite(values[name]) and values[name] > 0.0):
             raise InputError(f"{option} {values[name]:g}: expected a number > 0")
     for name in ("motor_constant", "armature_resistance"):
-        if name in beside:
-            text = f"--set {name}={beside[name]:g}: beside {options['rated_voltage']}"
+        if name in changes:
+            text = f"--set {name}={changes[name]:g}: beside {options['rated_voltage']}"
             raise InputError(f"{text}; expected one of them")
     speed = 2.0 * math.pi * values["no_load_rpm"] / 60.0
     line = torque_line(values["rated_voltage"], speed, values["stall_torque"])
@@ -223,7 +223,7 @@ def datasheet_of(arguments: argparse.Namespace, beside: Mapping[str, float]) -> 
 
 
 def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual: str = "") -> Any:
-    """Frequency and amplitude of the box; gives the group of the question's options.
+    """Add frequency and amplitude of the box; return the group of the question's options.
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ def excitation_of(
     one: bool = False,
     level: bool = True,
 ) -> dict[str, Any]:
-    """The box's motion as keywords of the public API.
+    """Return the box's motion as keywords of the public API.
 
     Parameters
     ----------
@@ -275,7 +275,8 @@ def excitation_of(
     ------
     InputError
     """
-    from ..structures.sections import GRAVITY, TO_RAD_S
+    from ..constants import GRAVITY
+    from ..structures.sections import TO_RAD_S
 
     name = frequency_option(arguments)
     amplitude = amplitude_of(arguments)
@@ -305,27 +306,29 @@ def excitation_of(
 
 
 def described_excitation(arguments: argparse.Namespace) -> dict[str, Any] | None:
-    """The box's motion of the file of ``--structure``, if it has one; its phase is an option's."""
+    """Return the box's motion of the file of ``--structure``, if it has one; its phase sets the
+    option's.
+    """
     from ..structures.files import read
 
-    found: Any = read(arguments.structure).get("excitation")
-    if found is None:
+    excitation: Any = read(arguments.structure).get("excitation")
+    if excitation is None:
         return None
     if getattr(arguments, "phase", None) == 0.0:
-        arguments.phase = found.phase
-    return {"frequency": found.frequency, "amplitude": found.amplitude}
+        arguments.phase = excitation.phase
+    return {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
 
 
 def frequency_option(arguments: argparse.Namespace) -> str | None:
-    """Which option tells the frequency."""
-    given = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
-    if len(given) > 1:
-        raise InputError(f"{options(given, ' and ')}: expected one of them")
-    return given[0] if given else None
+    """Return which option gives the frequency."""
+    present = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
+    if len(present) > 1:
+        raise InputError(f"{options(present, ' and ')}: expected one of them")
+    return present[0] if present else None
 
 
 def amplitude_of(arguments: argparse.Namespace) -> float | None:
-    """The amplitude in m, or in g where that is given; None where neither is."""
+    """Return the amplitude in m, or in g if that is given; None if neither is."""
     if arguments.amplitude is not None and arguments.g is not None:
         raise InputError("--amplitude and --g: expected one of them")
     for name in ("amplitude", "g"):
@@ -336,12 +339,12 @@ def amplitude_of(arguments: argparse.Namespace) -> float | None:
 
 
 def options(names: Any, joint: str = ", ") -> str:
-    """Names as options."""
+    """Format names as options."""
     return joint.join(f"--{name}" for name in names)
 
 
 def each(change: Callable[[float], float], values: float | tuple[float, ...]) -> Any:
-    """The same of one number, or of each of several."""
+    """Apply a function to one number, or to each of several."""
     return tuple(map(change, values)) if isinstance(values, tuple) else change(values)
 
 
@@ -349,7 +352,7 @@ def each(change: Callable[[float], float], values: float | tuple[float, ...]) ->
 
 
 def add_numbers(option: Callable[..., Any], **numbers: tuple[int | float, str]) -> None:
-    """Options for numbers, whole where the default is.
+    """Add options for numbers, integers where the default is one.
 
     Parameters
     ----------
@@ -369,7 +372,7 @@ def add_numbers(option: Callable[..., Any], **numbers: tuple[int | float, str]) 
 
 
 def add_settling(option: Callable[..., Any], samples: tuple[int, str], transient: int) -> None:
-    """How long a response settles, and how many periods of it are looked at.
+    """Add the options for how long a response settles, and how many periods are sampled.
 
     Parameters
     ----------
@@ -389,28 +392,28 @@ def add_settling(option: Callable[..., Any], samples: tuple[int, str], transient
 
 
 def numbers_of(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
-    """Some of the options as keywords of the public API."""
+    """Return some of the options as keywords of the public API."""
     return {name: getattr(arguments, name) for name in names}
 
 
 def state_of(option: str, text: str | None) -> tuple[float, ...] | None:
-    """A state of ``X1,X2,V1,V2``."""
+    """Parse a state from ``X1,X2,V1,V2``."""
     if text is None:
         return None
     try:
-        found = tuple(plain_float(part) for part in text.split(","))
+        state = tuple(plain_float(part) for part in text.split(","))
     except ValueError:
-        found = ()
-    if len(found) != 4:
+        state = ()
+    if len(state) != 4:
         raise InputError(f"{option} {text}: expected X1,X2,V1,V2, four numbers in m and m/s")
-    return found
+    return state
 
 
 # -- a parameter that varies ----------------------------------------------------------------------
 
 
 def add_over(option: Callable[..., Any], twice: bool = False) -> None:
-    """``--over`` and ``--values``, once or twice."""
+    """Add ``--over`` and ``--values``, once or twice."""
     action: dict[str, Any] = {"action": "append", "default": []} if twice else {}
     more = "; twice at one frequency" if twice else ", at one frequency"
     text = f"a parameter of the structure that varies, as for --set{more}"
@@ -419,10 +422,10 @@ def add_over(option: Callable[..., Any], twice: bool = False) -> None:
     option("--values", metavar="VALUES", help=text, **action)
 
 
-def along(
+def varied_arguments(
     arguments: argparse.Namespace, structure: Structure, usual: str | None = None
 ) -> tuple[dict[str, Any], bool]:
-    """What varies as keywords of the public API, and whether its values are a range.
+    """Return what varies as keywords of the public API, and whether its values are a range.
 
     Parameters
     ----------
@@ -436,22 +439,22 @@ def along(
     if (over is None) != (values is None):
         raise InputError("--over and --values: expected both, or none of them")
     if over is not None:
-        found, is_range = values_of("--values", values, zero=True)
+        numbers, is_range = values_of("--values", values, zero=True)
         check_over(over, arguments)
         fixed = excitation_of(arguments, structure, one=True)
-        return {**fixed, "over": over, "values": found}, is_range
+        return {**fixed, "over": over, "values": numbers}, is_range
     if (
         usual is not None
         and frequency_option(arguments) is None
         and amplitude_of(arguments) is None
     ):
         arguments.eta = usual
-    asked = excitation_of(arguments, structure)
-    return asked, ":" in str(getattr(arguments, frequency_option(arguments) or "eta"))
+    excitation = excitation_of(arguments, structure)
+    return excitation, ":" in str(getattr(arguments, frequency_option(arguments) or "eta"))
 
 
 def check_over(over: str, arguments: argparse.Namespace) -> None:
-    """See that what varies is the structure, and that ``--eta`` means one frequency then."""
+    """Check that what varies is the structure, and that ``--eta`` means one frequency then."""
     if over in FREQUENCIES:
         raise InputError(f"--over {over}: expected --{over} VALUES instead")
     if over in ("amplitude", "g"):
@@ -469,7 +472,7 @@ def check_over(over: str, arguments: argparse.Namespace) -> None:
 
 
 def check_digits(text: str) -> None:
-    """See that a text has plain digits alone: Python takes those of any script, and ``1_000``.
+    """Check that a text has plain digits only: Python takes those of any script, and ``1_000``.
 
     Raises
     ------
@@ -480,13 +483,13 @@ def check_digits(text: str) -> None:
 
 
 def plain_float(text: str) -> float:
-    """A number as everyone writes it."""
+    """Parse a number in plain digits."""
     check_digits(text)
     return float(text)
 
 
 def plain_int(text: str) -> int:
-    """A whole number as everyone writes it."""
+    """Parse an integer in plain digits."""
     check_digits(text)
     return int(text)
 
@@ -495,7 +498,8 @@ plain_float.__name__, plain_int.__name__ = "float", "int"  # what argparse calls
 
 
 def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, ...], bool]:
-    """Numbers of ``FIRST:LAST:STEP`` or ``A,B,...``, and whether they are a range.
+    """Parse numbers from ``FIRST:LAST:STEP`` or ``A,B,...``; return them and whether they are a
+    range.
 
     Parameters
     ----------
@@ -522,14 +526,14 @@ def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, 
         raise InputError(f"{option} {text}: {RANGE}")
     if is_range:
         first, last, step = numbers
-        if step == 0 or last < first or (last - first) > MOST_VALUES * step:
-            raise InputError(f"{option} {text}: {RANGE}, and at most {MOST_VALUES} values")
+        if step == 0 or last < first or (last - first) > MAX_VALUES * step:
+            raise InputError(f"{option} {text}: {RANGE}, and at most {MAX_VALUES} values")
         numbers = [first + i * step for i in range(int((last - first) / step) + 1)]
     return tuple(map(float, numbers)), is_range
 
 
 def one_or_more(option: str, text: str, one: bool = False) -> float | tuple[float, ...]:
-    """A number, or those of a range or a list.
+    """Parse a number, or those of a range or a list.
 
     Parameters
     ----------
@@ -543,38 +547,38 @@ def one_or_more(option: str, text: str, one: bool = False) -> float | tuple[floa
 
 
 def one_value(option: str, text: str) -> float:
-    """A single number > 0.
+    """Parse a single number > 0.
 
     Raises
     ------
     InputError
     """
-    found, _ = values_of(option, text)
-    if len(found) != 1:
+    values, _ = values_of(option, text)
+    if len(values) != 1:
         raise InputError(
-            f"{option} {text}: {len(found)} values; expected one, such as {option} 1.2"
+            f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2"
         )
-    return found[0]
+    return values[0]
 
 
 def number_of(option: str, text: str) -> float:
-    """A number > 0 where a range would make no sense.
+    """Parse a number > 0 where a range would make no sense.
 
     Raises
     ------
     InputError
     """
     try:
-        found = plain_float(text)
+        number = plain_float(text)
     except ValueError:
-        found = math.nan
-    if not (math.isfinite(found) and found > 0.0):
+        number = math.nan
+    if not (math.isfinite(number) and number > 0.0):
         raise InputError(f"{option} {text}: expected a number > 0, such as {option} 0.5")
-    return found
+    return number
 
 
 def ends_of(option: str, text: str) -> tuple[float, float]:
-    """Both numbers of ``FIRST:LAST``.
+    """Parse both numbers of ``FIRST:LAST``.
 
     Raises
     ------

@@ -31,7 +31,7 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "a periodic motion by Newton's method, stable or unstable, with its multipliers"
     parser = commands.add("orbit", run, text, EXAMPLES)
     add_structure(parser)
@@ -47,21 +47,21 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     structure = structure_of(arguments)
-    asked = excitation_of(arguments, structure, si=True, one=True)
+    excitation = excitation_of(arguments, structure, si=True, one=True)
     question = {
-        **asked,
+        **excitation,
         "guess": state_of("--guess", arguments.guess),
         **numbers_of(arguments, "period", "box_acceleration"),
     }
 
     def picture_of(data: xr.Dataset) -> Any:
-        """The motion over its periods, started on it."""
+        """Draw the motion over its periods, started on it."""
         from ..figures.motion import draw
 
         start = data.state.isel(sample=0).values
-        shown = orchestrate.simulate(structure, **asked, periods=arguments.period, start=start)
+        shown = orchestrate.simulate(structure, **excitation, periods=arguments.period, start=start)
         return draw(shown)
 
     drawable = not arguments.box_acceleration
@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def report(data: xr.Dataset) -> None:
-    """Stability and impacts."""
+    """Print stability and impacts."""
     parts = data.multipliers.transpose("multiplier", "part").values
     size = max(abs(complex(*pair)) for pair in parts)
     word = "stable" if bool(data.stable) else "unstable"

@@ -1,4 +1,4 @@
-"""What commands share of how it is computed and where it goes: files, pictures, FMUs, processes."""
+"""Shared output of commands: files, pictures, FMUs, processes."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 FORMATS = ("nc", "csv", "mat", "xlsx")
 PLOTS = ("png", "pdf", "svg")
 DIGITS = 6  # of the digest in a file's name
-MOMENT = 1.0  # s: after so much computing, a picture is prepared beside it
+PREPARE_AFTER = 1.0  # s: after so much computing, a picture is prepared beside it
 
 
 # -- options --------------------------------------------------------------------------------------
 
 
 def add_results(parser: argparse.ArgumentParser, store: bool = True, several: bool = False) -> None:
-    """What is written, where results go, and how they are computed.
+    """Add the options for what is written, where results go, and how they are computed.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def add_running(
     shown: str = "results",
     several: bool = False,
 ) -> None:
-    """Where results go, and how they are computed.
+    """Add the options for where results go, and how they are computed.
 
     Parameters
     ----------
@@ -83,7 +83,9 @@ def add_running(
 
 
 def add_files(parser: argparse.ArgumentParser, store: bool = True) -> None:
-    """What is written: ``--format``, ``--plot``, and ``--store`` where there is one result."""
+    """Add the options for what is written: ``--format``, ``--plot``, and ``--store`` where there is
+    one result.
+    """
     option = parser.add_argument_group("files").add_argument
     if store:
         text = "the result's own file (default: a name of its own for each question in --output)"
@@ -95,13 +97,13 @@ def add_files(parser: argparse.ArgumentParser, store: bool = True) -> None:
 
 
 def running_of(arguments: argparse.Namespace, store: Path | None = None) -> Running:
-    """Keywords of the public API from the options."""
+    """Return keywords of the public API from the options."""
     running: Running = {
         "jobs": arguments.jobs,
         "cluster": arguments.cluster,
         "force": arguments.force,
         "keep_stale": arguments.keep_stale,
-        "fmu": own_fmus(arguments.fmu) if isinstance(arguments.fmu, list) else arguments.fmu,
+        "fmu": user_fmus(arguments.fmu) if isinstance(arguments.fmu, list) else arguments.fmu,
         "build_folder": arguments.build_folder,
     }
     if store is not None:
@@ -109,8 +111,8 @@ def running_of(arguments: argparse.Namespace, store: Path | None = None) -> Runn
     return running
 
 
-def own_fmus(paths: list[Path] | None) -> dict[str, Path]:
-    """The user's own FMUs by the models that they say they are.
+def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
+    """Return the user's own FMUs by the model names that they give.
 
     Raises
     ------
@@ -118,19 +120,19 @@ def own_fmus(paths: list[Path] | None) -> dict[str, Path]:
     """
     from ..access import MODELS, describe
 
-    found: dict[str, Path] = {}
+    fmus: dict[str, Path] = {}
     for path in paths or []:
         name = describe(path).name
         if name not in MODELS:
             raise InputError(f"FMU {path}: model {name}; expected {' or '.join(MODELS)}")
-        if name in found:
-            raise InputError(f"FMU {path}: a second {name}, after {found[name]}; expected one")
-        found[name] = path
-    return found
+        if name in fmus:
+            raise InputError(f"FMU {path}: a second {name}, after {fmus[name]}; expected one")
+        fmus[name] = path
+    return fmus
 
 
 def endings_of(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...]:
-    """Endings of files from a list such as ``png,pdf``.
+    """Parse file endings from a list such as ``png,pdf``.
 
     Raises
     ------
@@ -147,15 +149,17 @@ def endings_of(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...
 
 
 def check_output(folder: Path, option: str = "--output") -> None:
-    """See that a folder can be written, or made, without making it yet.
+    """Check that a folder can be written, or made, without making it yet.
 
     Raises
     ------
     InputError
     """
-    place = next((place for place in (folder, *folder.parents) if place.exists()), Path())
-    if not (place.is_dir() and os.access(place, os.W_OK)):
-        reason = "not writable" if place.is_dir() else f"{place} is no folder"
+    existing = next(
+        (existing for existing in (folder, *folder.parents) if existing.exists()), Path()
+    )
+    if not (existing.is_dir() and os.access(existing, os.W_OK)):
+        reason = "not writable" if existing.is_dir() else f"{existing} is no folder"
         raise InputError(f"{option} {folder}: {reason}; expected a folder that can be written")
 
 
@@ -163,7 +167,7 @@ def check_output(folder: Path, option: str = "--output") -> None:
 
 
 def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> str:
-    """A file's name: readable, and another one for every other question.
+    """Return a file's name: readable, and different for every other question.
 
     Parameters
     ----------
@@ -182,24 +186,24 @@ def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> 
     """
     turns = question.get("over") == "frequency"  # then its values and limits are in Hz too
     named = ("frequency" if turns and name in ("values", "limits") else name for name in question)
-    told = zip(named, question.values(), strict=True)
-    parts = [command, structure.label(), *(brief(*item) for item in told)]
+    pairs = zip(named, question.values(), strict=True)
+    parts = [command, structure.label(), *(brief(*item) for item in pairs)]
     return "_".join(filter(None, [*parts, digest(structure.parameters(), question)]))
 
 
-def digest(*told: Any) -> str:
-    """A few letters that differ where what is told differs."""
+def digest(*arguments: Any) -> str:
+    """Return a few letters that differ where the arguments differ."""
 
     def other(value: Any) -> str:  # a stored result is the question that it answers
         identity = getattr(value, "attrs", {}).get("identity")
         return json.dumps(json.loads(identity)["question"]) if identity else repr(value)
 
-    text = json.dumps(told, sort_keys=True, default=other)
+    text = json.dumps(arguments, sort_keys=True, default=other)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
 def brief(name: str, value: Any) -> str:
-    """What a file's name says of a keyword: the frequency, what varies, the direction."""
+    """Return what a file's name says of a keyword: the frequency, what varies, the direction."""
     from ..structures import PARAMETERS
 
     if name in ("direction", "over") and value != "frequency":
@@ -225,7 +229,7 @@ def brief(name: str, value: Any) -> str:
 
 @dataclass(frozen=True)
 class Files:
-    """The files of one result: NetCDF, and beside it other formats and pictures.
+    """Files of one result: NetCDF, and beside it other formats and pictures.
 
     Attributes
     ----------
@@ -242,8 +246,8 @@ class Files:
     fresh: bool
 
     @classmethod
-    def of(cls, arguments: argparse.Namespace, name: str) -> Files:
-        """Those of a question, checked before anything is computed.
+    def from_options(cls, arguments: argparse.Namespace, name: str) -> Files:
+        """Return the files of a question, checked before anything is computed.
 
         Raises
         ------
@@ -258,27 +262,27 @@ class Files:
             raise InputError(f"--store {store}: expected a name that ends in .nc")
         result = store or arguments.output / f"{name}.nc"
         check_output(result.parent)
-        found = cls(result, formats, plots, arguments.force or not result.exists())
-        others = [path for path in found.beside() if there(path)]
+        files = cls(result, formats, plots, arguments.force or not result.exists())
+        others = [path for path in files.beside() if existing_files(path)]
         if store is not None and others and not result.exists():
             raise InputError(
                 f"{others[0]}: is there, without {result.name}, and may be of others; expected "
                 "another --store, or remove it"
             )
-        return found
+        return files
 
     def beside(self) -> list[Path]:
-        """Other files that this result would have, by their main names."""
+        """Return the other files that this result would have, by their main names."""
         endings = (*(ending for ending in self.formats if ending != "nc"), *self.plots)
         return [self.result.with_suffix(f".{ending}") for ending in endings]
 
     def lacks_pictures(self) -> bool:
-        """Whether a picture is to be drawn."""
+        """Return whether a picture has to be drawn."""
         places = (self.result.with_suffix(f".{ending}") for ending in self.plots)
         return any(self.fresh or not path.exists() for path in places)
 
     def write(self, data: xr.Dataset, draw: Callable[[], Any] | None) -> None:
-        """Write what is missing beside the result, and tell all files.
+        """Write what is missing beside the result, and print all files.
 
         Parameters
         ----------
@@ -287,15 +291,15 @@ class Files:
             Gives a :class:`matplotlib.figure.Figure`; none where there is nothing to draw.
         """
         print(f"{self.result}{'' if self.fresh else ': complete already'}")
-        others = exported(data, self.result, self.formats, self.fresh)
-        pictures = drawn(self.result, self.plots, self.fresh, draw) if draw else []
+        others = export_formats(data, self.result, self.formats, self.fresh)
+        pictures = draw_picture(self.result, self.plots, self.fresh, draw) if draw else []
         for path in (*others, *pictures):
             print(path)
 
 
 @contextmanager
-def preparing_a_picture(wanted: bool) -> Iterator[None]:
-    """Import what draws while something is computed that takes longer than a moment."""
+def preparing_a_picture(needed: bool) -> Iterator[None]:
+    """Import the drawing code while a long computation runs."""
 
     def prepare() -> None:
         from ..figures.files import prepare
@@ -303,19 +307,21 @@ def preparing_a_picture(wanted: bool) -> Iterator[None]:
         with suppress(Exception):  # it comes again where the picture is drawn
             prepare()
 
-    timer = threading.Timer(MOMENT, prepare)
-    if wanted:
+    timer = threading.Timer(PREPARE_AFTER, prepare)
+    if needed:
         timer.start()
     try:
         yield
     finally:
         timer.cancel()
-    if wanted:
+    if needed:
         timer.join()
 
 
-def exported(data: xr.Dataset, result: Path, formats: tuple[str, ...], fresh: bool) -> list[Path]:
-    """A result in other formats beside it, where it is new or they are missing.
+def export_formats(
+    data: xr.Dataset, result: Path, formats: tuple[str, ...], fresh: bool
+) -> list[Path]:
+    """Write a result in other formats beside it, if it is new or they are missing.
 
     Parameters
     ----------
@@ -330,26 +336,30 @@ def exported(data: xr.Dataset, result: Path, formats: tuple[str, ...], fresh: bo
     from ..running.formats import write
 
     places = [result.with_suffix(f".{ending}") for ending in formats if ending != "nc"]
-    found: list[Path] = []
+    files: list[Path] = []
     for path in places:
-        found += sorted(write(data, path)) if fresh or not there(path) else there(path)
-    return found
+        files += (
+            sorted(write(data, path)) if fresh or not existing_files(path) else existing_files(path)
+        )
+    return files
 
 
-def there(path: Path) -> list[Path]:
-    """What there is of a file that may be several, as ``name.csv`` or ``name.eta.csv``."""
+def existing_files(path: Path) -> list[Path]:
+    """Return what exists of a file that may be several, as ``name.csv`` or ``name.eta.csv``."""
     from ..files import glob_name
 
     several = path.parent.glob(f"{glob_name(path.stem)}.*{path.suffix}")
     return [*([path] if path.exists() else []), *sorted(several)]
 
 
-def drawn(place: Path, plots: tuple[str, ...], fresh: bool, draw: Callable[[], Any]) -> list[Path]:
-    """The picture of a result in its formats, where the result is new or a picture is missing.
+def draw_picture(
+    path: Path, plots: tuple[str, ...], fresh: bool, draw: Callable[[], Any]
+) -> list[Path]:
+    """Draw the picture of a result in its formats, if the result is new or a picture is missing.
 
     Parameters
     ----------
-    place : Path
+    path : Path
         Its ending is replaced.
     plots : tuple of str
         Of ``PLOTS``.
@@ -358,10 +368,10 @@ def drawn(place: Path, plots: tuple[str, ...], fresh: bool, draw: Callable[[], A
     draw : callable
         Gives a :class:`matplotlib.figure.Figure`.
     """
-    found = [place.with_suffix(f".{ending}") for ending in plots]
-    missing = [path.suffix.lstrip(".") for path in found if fresh or not path.exists()]
+    files = [path.with_suffix(f".{ending}") for ending in plots]
+    missing = [file.suffix.lstrip(".") for file in files if fresh or not file.exists()]
     if missing:
         from ..figures.files import save
 
-        save(draw(), place.with_suffix(""), missing)
-    return found
+        save(draw(), path.with_suffix(""), missing)
+    return files

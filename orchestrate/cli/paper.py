@@ -19,7 +19,7 @@ Interrupted, the same command goes on where it was. Finished data is left as it 
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "the whole paper through the FMU: figures, claims, report"
     parser = commands.add("paper", run, text, EXAMPLES)
     option = parser.add_argument_group("question").add_argument
@@ -38,7 +38,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     from ..paper.reproduce import reproduce
     from ..paper.resolution import FULL, QUICK
 
@@ -48,21 +48,21 @@ def run(arguments: argparse.Namespace) -> None:
     figures = None if arguments.figures is None else arguments.figures.split(",")
     resolution = QUICK if arguments.quick else FULL
     outcome = reproduce(output, resolution, figures, running_of(arguments))
-    tell(outcome.found)
+    print_verdicts(outcome.found)
     for picture in outcome.pictures.values():
         print(picture)
     print(outcome.report)
 
 
-def tell(found: Mapping[str, Any]) -> None:
-    """Claims and answers, a line each."""
-    for row in found["claims"]:
-        said, printed = row["text"], row["printed"]
+def print_verdicts(verdicts: Mapping[str, Any]) -> None:
+    """Print claims and answers, a line each."""
+    for row in verdicts["claims"]:
+        text, printed = row["text"], row["printed"]
         verdict = f"{row['section']:4} {row['verdict']:7}"
-        print(f"{verdict} {said}: paper {printed}, found {row['found']}")
-    for row in found["regions"]:
+        print(f"{verdict} {text}: paper {printed}, found {row['found']}")
+    for row in verdicts["regions"]:
         shares = f"chaotic {row['chaotic']:5} neutral {row['neutral']:5}"
         where = f"{row['case']:18} {row['region']:13} {row['verdict']:16}"
         print(f"{where} {shares} largest {row['largest']}")
-    for sentence in found["answers"]:
+    for sentence in verdicts["answers"]:
         print(sentence)

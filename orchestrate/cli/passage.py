@@ -22,7 +22,7 @@ from .drives import (
     step_of,
     title_of_runs,
 )
-from .options import Commands, add_drive, described
+from .options import Commands, add_drive, structure_and_drive
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ Interrupted, the same command goes on where it was. A finished result is left as
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "a run through the resonance at full resolution: speed, motion, power, waterfall"
     parser = commands.add("passage", run, text, EXAMPLES.replace("{eta0}", ETA0))
     add_drive(parser)
@@ -60,10 +60,10 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     from ..weak_drive.schedule import Constant
 
-    structure, drive = described(arguments)
+    structure, drive = structure_and_drive(arguments)
     if arguments.revolutions < 1:
         raise InputError(f"--revolutions {arguments.revolutions}: expected a whole number >= 1")
     control = control_of(arguments, structure, drive)
@@ -84,7 +84,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def first_of(data: xr.Dataset) -> xr.Dataset:
-    """Samples around the first jump, where they are kept around several."""
+    """Return samples around the first jump, where they are stored around several."""
     import numpy as np
 
     gaps = np.diff(data.time.values)
@@ -93,22 +93,23 @@ def first_of(data: xr.Dataset) -> xr.Dataset:
 
 
 def picture_of(
-    found: dict[str, xr.Dataset], name: str, spectra: dict[str, Any], control: Any
+    results: dict[str, xr.Dataset], name: str, spectra: dict[str, Any], control: Any
 ) -> Any:
-    """Passages and their waterfalls."""
+    """Draw passages and their waterfalls."""
     from .. import waterfall
     from ..figures.passage import draw
 
-    shown = {state: first_of(data) for state, data in found.items()}
+    shown = {state: first_of(data) for state, data in results.items()}
     falls = {state: waterfall(data, **spectra) for state, data in shown.items()}
     title = title_of_runs(shown, name, type(control).__name__ if control else "")
     return draw(shown, falls, title)
 
 
 def report(state: str, data: xr.Dataset) -> None:
-    """What was found, in a line."""
-    from ..figures.passage import told
+    """Print the result in a line."""
+    from ..figures.passage import format_jumps
 
     count, first, last = data.sizes["time"], float(data.time[0]), float(data.time[-1])
-    kept = data.attrs["kept"]
-    print(f"{state}: {told(data)}; {count} samples, {first:.4g} s to {last:.4g} s ({kept})")
+    stored_part = data.attrs["kept"]
+    samples = f"{count} samples, {first:.4g} s to {last:.4g} s ({stored_part})"
+    print(f"{state}: {format_jumps(data)}; {samples}")

@@ -1,4 +1,4 @@
-"""What a command's process is in: an output that nobody reads or takes, signals that end it.
+"""Surroundings of a command's process: outputs that may fail, signals that end it.
 
 What is computed is stored, so nothing that happens to the output may end a run.
 """
@@ -24,11 +24,11 @@ _ending = False  # whether a signal was heard
 
 
 class Terminated(KeyboardInterrupt):
-    """Somebody asked the process to end, not by Ctrl-C."""
+    """Raised when somebody asked the process to end, not by Ctrl-C."""
 
 
-class Unfailing:
-    """A text stream that takes everything, also where the one below does not any more.
+class SafeStream:
+    """Text stream that accepts everything, also when the stream below fails.
 
     Attributes
     ----------
@@ -41,12 +41,12 @@ class Unfailing:
         self.error: Exception | None = None
 
     def write(self, text: str) -> int:
-        """Write, or drop."""
+        """Write the text, or drop it."""
         self._try("write", text)
         return len(text)
 
     def flush(self) -> None:
-        """Write what waits, or drop it."""
+        """Flush the stream, or drop what waits."""
         self._try("flush")
 
     def _try(self, name: str, *arguments: object) -> None:
@@ -59,8 +59,10 @@ class Unfailing:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 
-    def let_go(self) -> None:
-        """Write what waits; where that fails, what is left must not fail once more at the end."""
+    def detach(self) -> None:
+        """Flush; if that fails, redirect the stream so that it does not fail once more at the
+        end.
+        """
         self.flush()
         if self.error is not None:
             with suppress(OSError, ValueError):
@@ -68,32 +70,32 @@ class Unfailing:
                 os.dup2(nowhere, self._stream.fileno())
                 os.close(nowhere)
 
-    def complaint(self) -> str:
-        """Why what was told is lost; an empty string where it is not, or nobody wanted to read."""
+    def failure(self) -> str:
+        """Return why output is lost; an empty string if none is, or nobody wanted to read."""
         if self.error is None or isinstance(self.error, BrokenPipeError):
             return ""
         return str(getattr(self.error, "strerror", None) or self.error)
 
 
 @contextmanager
-def outputs() -> Iterator[Unfailing]:
-    """Standard output and error output that cannot end a run; gives the first."""
+def outputs() -> Iterator[SafeStream]:
+    """Replace standard output and error output by ones that cannot end a run; yield the first."""
     fill_descriptors()
     before = sys.stdout, sys.stderr
     nowhere = io.StringIO()  # in place of one that was closed
-    streams = [Unfailing(stream or nowhere) for stream in before]
+    streams = [SafeStream(stream or nowhere) for stream in before]
     sys.stdout, sys.stderr = streams  # type: ignore[assignment]
     try:
         yield streams[0]
     finally:
         for stream in streams:
-            stream.let_go()
+            stream.detach()
         sys.stdout, sys.stderr = before
 
 
 @contextmanager
 def signals() -> Iterator[None]:
-    """SIGTERM ends the process as Ctrl-C does; one that hangs on its way out is ended anyway."""
+    """Handle SIGTERM like Ctrl-C; end a process that hangs on its way out."""
     usual: dict[int, Any] = {
         signal.SIGINT: signal.default_int_handler,
         signal.SIGTERM: signal.SIG_DFL,
@@ -101,10 +103,12 @@ def signals() -> Iterator[None]:
     global _ending
     _ending = False
     ours = threading.current_thread() is threading.main_thread()
-    taken = [
-        number for number, given in usual.items() if ours and signal.getsignal(number) == given
+    handled = [
+        number
+        for number, usual_handler in usual.items()
+        if ours and signal.getsignal(number) == usual_handler
     ]
-    for number in taken:
+    for number in handled:
         signal.signal(number, end_soon)
     before = sys.unraisablehook
     sys.unraisablehook = functools.partial(send_again, before)
@@ -112,12 +116,12 @@ def signals() -> Iterator[None]:
         yield
     finally:
         sys.unraisablehook = before
-        for number in taken:
+        for number in handled:
             signal.signal(number, usual[number])
 
 
 def send_again(otherwise: Callable[[Any], object], lost: sys.UnraisableHookArgs) -> None:
-    """A signal that came in a callback, where Python drops its exception, comes once more.
+    """Send a signal again that came in a callback, where Python drops its exception.
 
     Parameters
     ----------
@@ -135,7 +139,7 @@ def send_again(otherwise: Callable[[Any], object], lost: sys.UnraisableHookArgs)
 
 
 def end_soon(number: int, _: FrameType | None) -> None:
-    """End by an exception, and see that it does; at once where it comes once more."""
+    """End by an exception, and make sure of it; at once if the signal comes again."""
     global _ending
     if _ending:
         os._exit(128 + number)
@@ -146,6 +150,6 @@ def end_soon(number: int, _: FrameType | None) -> None:
 
 
 def end_anyway(number: int) -> None:
-    """End without a word; workers end with the process they work for."""
+    """End without a message; workers end with the process they work for."""
     time.sleep(GRACE)
     os._exit(128 + number)

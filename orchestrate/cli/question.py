@@ -1,4 +1,4 @@
-"""What all questions at the command line have in common: ask, say what came out, list the files."""
+"""Shared steps of all questions: ask, print the result, write the files."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..constants import TURN
 from ..errors import InputError, StoreError
 from .output import Files, name_of, preparing_a_picture, running_of
 
@@ -19,12 +20,11 @@ if TYPE_CHECKING:
 
     from ..structures import Structure
 
-TURN = 2.0 * math.pi
 HOW_DECIDED = {  # of attractors; nothing is said where Newton's method confirms a stable orbit
     2: ", by repeated states alone",
     4: ", undecided: near an unstable orbit",
 }
-FAR = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
+FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
 log = logging.getLogger(__name__)
 Question = Mapping[str, Any]
 Draw = Callable[["xr.Dataset"], Any]
@@ -38,7 +38,7 @@ def carry_out(
     draw: Draw | None,
     ending: str = "",
 ) -> xr.Dataset:
-    """Ask a question of the public face; tell what a person wants to know, then the files.
+    """Ask a question of the public API; print the result, write the files.
 
     Parameters
     ----------
@@ -63,12 +63,12 @@ def carry_out(
 
     command = arguments.command
     name = "_".join(filter(None, [name_of(command, structure, question), ending]))
-    files = Files.of(arguments, name)
+    files = Files.from_options(arguments, name)
     ask = getattr(orchestrate, command)
-    tell_where(arguments, structure, question)
+    print_frequency_notes(arguments, structure, question)
     with preparing_a_picture(draw is not None and files.lacks_pictures()):
         data: xr.Dataset = ask(structure, **question, **running_of(arguments, files.result))
-    for line in notes(structure):
+    for line in trivial_notes(structure):
         print(line)
     report(data)
     files.write(data, partial(draw, data) if draw else None)
@@ -76,20 +76,20 @@ def carry_out(
 
 
 def picture_of(data: xr.Dataset) -> Any:
-    """The picture of an answer that needs no more than the answer."""
+    """Draw an answer that needs no more than the answer."""
     from ..figures.plot import DRAW
 
     return DRAW[data.attrs["call"].partition("(")[0]](data)
 
 
-def several(asked: Question) -> bool:
-    """Whether there is a curve to draw, and not one point."""
-    return any(len(value) > 1 for value in asked.values() if isinstance(value, tuple))
+def is_curve(question: Question) -> bool:
+    """Return whether an argument has several values, so that there is a curve to draw."""
+    return any(len(value) > 1 for value in question.values() if isinstance(value, tuple))
 
 
-def tell_one(data: xr.Dataset, name: str) -> None:
-    """A result at one value as a table: there is no curve to draw."""
-    print(f"one value, {place(name, float(data[name][0]))}: a table and no picture")
+def print_table(data: xr.Dataset, name: str) -> None:
+    """Print a result at one value as a table: there is no curve to draw."""
+    print(f"one value, {format_parameter(name, float(data[name][0]))}: a table and no picture")
     numbers = data.isel({name: 0})
     for key, array in numbers.data_vars.items():
         if not set(array.dims) - {"direction", "structure"}:
@@ -98,8 +98,8 @@ def tell_one(data: xr.Dataset, name: str) -> None:
             print(f"  {key:20} {values} {unit}".rstrip())
 
 
-def notes(structure: Structure) -> list[str]:
-    """What makes an answer trivial."""
+def trivial_notes(structure: Structure) -> list[str]:
+    """Return remarks on what makes an answer trivial."""
     if structure.bonded:
         return ["bonded: both masses move as one, there are no impacts"]
     if structure.alike:
@@ -107,48 +107,54 @@ def notes(structure: Structure) -> list[str]:
     return []
 
 
-def tell_where(arguments: argparse.Namespace, structure: Structure, question: Question) -> None:
-    """Say whose frequencies they are where nobody chose the structure, and where they are far."""
-    asked = question.get("frequency")
-    values = asked if isinstance(asked, tuple) else () if asked is None else (asked,)
+def print_frequency_notes(
+    arguments: argparse.Namespace, structure: Structure, question: Question
+) -> None:
+    """Print whose frequencies they are if nobody chose the structure; warn if they are far from its
+    own.
+    """
+    frequency = question.get("frequency")
+    values = (
+        frequency if isinstance(frequency, tuple) else () if frequency is None else (frequency,)
+    )
     if not values:
         return
-    own = f"{structure.omega / TURN:.4g} Hz"
+    own_frequency = f"{structure.omega / TURN:.4g} Hz"
     if getattr(arguments, "structure", "") == "paper" and not arguments.set:
-        omega = f"omega = {structure.omega:.6g} rad/s, {own}"
+        omega = f"omega = {structure.omega:.6g} rad/s, {own_frequency}"
         print(f"structure: the paper's, {omega} (--structure names another)")
     low, high = (end(values) / structure.omega for end in (min, max))
-    if high > FAR or low < 1.0 / FAR:
+    if high > FAR_RATIO or low < 1.0 / FAR_RATIO:
         ends = " to ".join(f"{ratio:.3g}" for ratio in dict.fromkeys((low, high)))
         log.warning(
             "frequencies of %s times the structure's %s are far from it: is it the structure that "
             "is meant (--structure)?",
-            *(ends, own),
+            *(ends, own_frequency),
         )
 
 
-def along_of(data: xr.Dataset) -> str:
-    """The parameter along which a result lies."""
+def parameter_of(data: xr.Dataset) -> str:
+    """Return the parameter along which a result lies."""
     others = {"direction", "structure", "attractor"}
     (name,) = {str(dim) for dim in data.impacts_per_period.dims} - others
     return name
 
 
-def place(name: str, value: float) -> str:
-    """A value of a parameter for people: frequencies in Hz."""
+def format_parameter(name: str, value: float) -> str:
+    """Format a value of a parameter: frequencies in Hz."""
     if name == "frequency":
         return f"{value / TURN:.6g} Hz"
     return f"{name} = {value:.6g}"
 
 
 def is_flag(values: xr.DataArray, word: str) -> xr.DataArray:
-    """Where a variable of flags has the one that a word stands for."""
+    """Return where a flag variable has the number that a word stands for."""
     number = values.attrs["flag_meanings"].split().index(word)
     return values == values.attrs["flag_values"][number]
 
 
-def ranges(name: str, values: Any, flags: Any, most: int = 8) -> str:
-    """Runs of values for which something holds, for people.
+def format_ranges(name: str, values: Any, flags: Any, max_ranges: int = 8) -> str:
+    """Format the runs of values for which something holds.
 
     Parameters
     ----------
@@ -157,7 +163,7 @@ def ranges(name: str, values: Any, flags: Any, most: int = 8) -> str:
     values : array_like
         In increasing order.
     flags : array_like of bool
-    most : int
+    max_ranges : int
         Runs that are listed; the longest ones.
     """
     runs: list[tuple[int, int]] = []
@@ -166,7 +172,7 @@ def ranges(name: str, values: Any, flags: Any, most: int = 8) -> str:
             runs[-1] = (runs[-1][0], index)
         elif holds:
             runs.append((index, index))
-    longest = sorted(sorted(runs, key=lambda run: run[0] - run[1])[:most])
+    longest = sorted(sorted(runs, key=lambda run: run[0] - run[1])[:max_ranges])
     scale, unit = (1.0 / TURN, " Hz") if name == "frequency" else (1.0, "")
     ends = [[f"{scale * float(values[i]):.6g}" for i in dict.fromkeys(run)] for run in longest]
     text = ", ".join(" to ".join(pair) for pair in ends)
@@ -174,34 +180,34 @@ def ranges(name: str, values: Any, flags: Any, most: int = 8) -> str:
     return f"{text}{unit}" + (f" and {left} shorter ranges" if left else "")
 
 
-def tell_attractors(data: xr.Dataset, of: str) -> None:
-    """Attractors and their shares, a line each.
+def print_attractors(data: xr.Dataset, whole: str) -> None:
+    """Print attractors and their shares, a line each.
 
     Parameters
     ----------
     data : xarray.Dataset
         With variables over ``attractor`` alone.
-    of : str
+    whole : str
         What the shares are of.
     """
     for number in range(data.sizes["attractor"]):
-        one = data.isel(attractor=number)
-        if math.isnan(float(one.multiplicity)):
+        attractor = data.isel(attractor=number)
+        if math.isnan(float(attractor.multiplicity)):
             continue  # there at other values alone
-        kind = int(one.multiplicity)
+        kind = int(attractor.multiplicity)
         word = f"repeats after {kind} period{'s' * (kind > 1)}" if kind else "not periodic"
-        doubt = HOW_DECIDED.get(int(one.decided_by), "")
+        doubt = HOW_DECIDED.get(int(attractor.decided_by), "")
         print(
-            f"  {number}: {float(one.share):6.1%} of {of}, {word}, "
-            f"{float(one.impacts_per_period):.4g} impacts per period, "
-            f"largest gap xi_Rel = {float(one.xi_rel_max):.5g}{doubt}"
+            f"  {number}: {float(attractor.share):6.1%} of {whole}, {word}, "
+            f"{float(attractor.impacts_per_period):.4g} impacts per period, "
+            f"largest gap xi_Rel = {float(attractor.xi_rel_max):.5g}{doubt}"
         )
-        state = ",".join(f"{value:.6g}" for value in one.state.values)
+        state = ",".join(f"{value:.6g}" for value in attractor.state.values)
         print(f"     a state on it at phase 0, x1, x2 in m, v1, v2 in m/s: {state}")
 
 
-def stored(option: str, path: Path) -> xr.Dataset:
-    """A result of an earlier command.
+def read_stored(option: str, path: Path) -> xr.Dataset:
+    """Read a result of an earlier command.
 
     Raises
     ------
@@ -213,13 +219,13 @@ def stored(option: str, path: Path) -> xr.Dataset:
     if not path.is_file():
         raise InputError(f"{option} {path}: no such file; expected a result of an earlier command")
     try:
-        found = load(path)
+        data = load(path)
     except StoreError as error:
         expected = "" if "expected" in str(error) else "; expected a NetCDF file"
         raise InputError(f"{option} {error}{expected}") from None
     try:
-        json.loads(found.attrs.get("identity", '{"question": ""}'))["question"]
+        json.loads(data.attrs.get("identity", '{"question": ""}'))["question"]
     except (ValueError, TypeError, KeyError, RecursionError):
         expected = "expected a result of an earlier command"
         raise InputError(f"{option} {path}: its identity is damaged; {expected}") from None
-    return found
+    return data

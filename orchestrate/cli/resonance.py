@@ -15,7 +15,7 @@ from .options import (
     structure_of,
 )
 from .output import add_results
-from .question import along_of, carry_out, picture_of, place, several, tell_one
+from .question import carry_out, format_parameter, is_curve, parameter_of, picture_of, print_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,7 +33,7 @@ COLUMNS = {  # of a printed peak: title, format
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "resonance curves: amplitude and peak acceleration, bonded against delaminated"
     parser = commands.add("resonance", run, text, EXAMPLES)
     add_structure(parser)
@@ -51,27 +51,29 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     structure = structure_of(arguments)
-    asked = excitation_of(arguments, structure, si=True)
+    excitation = excitation_of(arguments, structure, si=True)
     names = ("direction", "transient", "samples", "prominence", "jump")
-    question = {**asked, **numbers_of(arguments, *names)}
-    carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
+    question = {**excitation, **numbers_of(arguments, *names)}
+    carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
 
 
 def report(data: xr.Dataset) -> None:
-    """Peaks and jumps, a line each."""
-    name = along_of(data)
+    """Print peaks and jumps, a line each."""
+    name = parameter_of(data)
     if data.sizes[name] == 1:
-        tell_one(data, name)
+        print_table(data, name)
         return
-    tell_peaks(data, name)
-    tell_jumps(data, name)
+    print_peaks(data, name)
+    print_jumps(data, name)
 
 
-def tell_peaks(data: xr.Dataset, name: str) -> None:
-    """Where amplitudes are largest."""
-    ends = " to ".join(place(name, float(end)) for end in (data[name].min(), data[name].max()))
+def print_peaks(data: xr.Dataset, name: str) -> None:
+    """Print where amplitudes are largest."""
+    ends = " to ".join(
+        format_parameter(name, float(end)) for end in (data[name].min(), data[name].max())
+    )
     noise = int(data.peak_irregular.sum())
     peaks = data.isel(peak=data.peak_irregular.values == 0)
     if not data.sizes["peak"]:
@@ -86,13 +88,13 @@ def tell_peaks(data: xr.Dataset, name: str) -> None:
     print(f"peaks{'':31}{titles}")
     for i in range(peaks.sizes["peak"]):
         peak = peaks.isel(peak=i)
-        told = [format(float(peak[f"peak_{key}"]), form) for key, (_, form) in COLUMNS.items()]
-        where = place(name, float(peak[f"peak_{name}"]))
-        print(f"  {way(peak, 'peak')} {where:>16}{''.join(told)}")
+        texts = [format(float(peak[f"peak_{key}"]), form) for key, (_, form) in COLUMNS.items()]
+        where = format_parameter(name, float(peak[f"peak_{name}"]))
+        print(f"  {format_direction(peak, 'peak')} {where:>16}{''.join(texts)}")
 
 
-def tell_jumps(data: xr.Dataset, name: str) -> None:
-    """Where the gap jumps."""
+def print_jumps(data: xr.Dataset, name: str) -> None:
+    """Print where the gap jumps."""
     if not data.sizes["jump"]:
         print("no jump: the response follows the frequency without one in this range")
         return
@@ -100,10 +102,11 @@ def tell_jumps(data: xr.Dataset, name: str) -> None:
     for i in range(data.sizes["jump"]):
         jump = data.isel(jump=i)
         sizes = f"{float(jump.jump_before):.4g} to {float(jump.jump_after):.4g} m"
-        print(f"  {way(jump, 'jump')} {place(name, float(jump[f'jump_{name}'])):>16}  {sizes}")
+        where = format_parameter(name, float(jump[f"jump_{name}"]))
+        print(f"  {format_direction(jump, 'jump')} {where:>16}  {sizes}")
 
 
-def way(row: xr.Dataset, what: str) -> str:
-    """Structure and direction of a peak or a jump; bonded, both directions are one."""
+def format_direction(row: xr.Dataset, what: str) -> str:
+    """Format structure and direction of a peak or a jump; bonded, both directions are one."""
     structure, direction = (str(row[f"{what}_{key}"].values) for key in ("structure", "direction"))
     return f"{structure if structure == 'bonded' else f'{structure}, {direction}':18}"

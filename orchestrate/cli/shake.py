@@ -162,7 +162,7 @@ def seed_of(arguments: argparse.Namespace) -> int:
 
 def level_of(arguments: argparse.Namespace) -> Any:
     """The peak acceleration in m/s2: a number, or a profile."""
-    from ..structures.sections import GRAVITY
+    from ..constants import GRAVITY
 
     given = [name for name in ("g", "acceleration") if getattr(arguments, name) is not None]
     if len(given) != 1:

@@ -30,7 +30,7 @@ EXAMPLES = """  {program} simulate --eta 0.4 --transient 500 --periods 2      th
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "a motion in time: both masses, gap, contact force, impacts, phase plane and spectrum"
     parser = commands.add("simulate", run, text, EXAMPLES)
     add_structure(parser)
@@ -48,7 +48,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     structure = structure_of(arguments)
     start = state_of("--start", arguments.start)
     question = {
@@ -60,8 +60,8 @@ def run(arguments: argparse.Namespace) -> None:
         carry_out(arguments, structure, question, report, picture_of)
         return
     if arguments.store is not None or start is not None:
-        given = "--store" if arguments.store is not None else "--start"
-        raise InputError(f"--beside: of two structures; expected it without {given}")
+        option = "--store" if arguments.store is not None else "--start"
+        raise InputError(f"--beside: of two structures; expected it without {option}")
     bonded = carry_out(arguments, structure.as_bonded(), question, report, None)
     draw = partial(picture_of, bonded=bonded)
     print("delaminated:")
@@ -69,14 +69,14 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def picture_of(data: xr.Dataset, bonded: xr.Dataset | None = None) -> Any:
-    """The histories."""
+    """Draw the histories."""
     from ..figures.motion import draw
 
     return draw(data, bonded=bonded)
 
 
 def report(data: xr.Dataset) -> None:
-    """What was found, in a few lines."""
+    """Print the result."""
     reach = [float(abs(data[name]).max()) for name in ("x1", "x2", "x_rel")]
     print("largest |x1| {:.6g} m, |x2| {:.6g} m, gap {:.6g} m".format(*reach))
     felt = [float(abs(data[name]).max()) for name in ("a1_abs", "a2_abs")]

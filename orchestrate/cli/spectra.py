@@ -1,4 +1,4 @@
-"""``spectra``: what an accelerometer hears of a delamination, on a motor or shaken harmonically."""
+"""``spectra``: acceleration spectra of a delamination, on a motor or shaken harmonically."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from .options import (
     add_numbers,
     amplitude_of,
     changes_of,
-    described,
     excitation_of,
     numbers_of,
     options,
+    structure_and_drive,
 )
 from .output import Files, add_results, digest, running_of
-from .question import carry_out, picture_of, place
+from .question import carry_out, format_parameter, picture_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +35,7 @@ EXAMPLES = """\
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "acceleration spectra, bonded beside delaminated (Figure 3)"
     parser = commands.add("spectra", run, text, EXAMPLES)
     add_drive(parser)
@@ -59,29 +59,29 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
-    given = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
-    if not given and amplitude_of(arguments) is None:
-        shaken_by_the_motor(arguments)
+    """Run the command."""
+    frequencies = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
+    if not frequencies and amplitude_of(arguments) is None:
+        motor_spectra(arguments)
         return
     for name in ("eta0", "voltage"):
         if getattr(arguments, name) is not None:
-            what = options(given or ["amplitude or --g"], " and ")
+            what = options(frequencies or ["amplitude or --g"], " and ")
             raise InputError(f"{what}: expected without --{name}, which is the motor's")
-    shaken_harmonically(arguments)
+    harmonic_spectra(arguments)
 
 
-def shaken_by_the_motor(arguments: argparse.Namespace) -> None:
-    """Figure 3."""
+def motor_spectra(arguments: argparse.Namespace) -> None:
+    """Compute spectra with a motor (Figure 3)."""
     if arguments.eta0 is not None and arguments.voltage is not None:
         raise InputError("--eta0 and --voltage: expected one of them")
-    structure, drive = described(arguments)
+    structure, drive = structure_and_drive(arguments)
     eta0 = USUAL.get(arguments.drive) if arguments.eta0 is None else arguments.eta0
     voltage = arguments.voltage
     if voltage is None and eta0 is not None:
         voltage = eta0 * drive.volts(structure)
-    told = digest(structure.parameters(), drive.parameters(), voltage)
-    files = Files.of(arguments, f"spectra_{Path(arguments.drive).stem}_{told}")
+    digits = digest(structure.parameters(), drive.parameters(), voltage)
+    files = Files.from_options(arguments, f"spectra_{Path(arguments.drive).stem}_{digits}")
 
     from ..figures import drive_spectra as figure
     from ..weak_drive.drive_spectra import drive_spectra
@@ -89,14 +89,14 @@ def shaken_by_the_motor(arguments: argparse.Namespace) -> None:
     data = drive_spectra(structure, drive, voltage=voltage, **running_of(arguments, files.result))
     for kind in map(str, data.kind.values):
         part = data.sel(kind=kind, mass=1)
-        heard(f"{kind} at {float(part.speed):.4f} rad/s", part.acceleration)
+        print_line_ratio(f"{kind} at {float(part.speed):.4f} rad/s", part.acceleration)
     words = str(data.attrs["title"])
     title = f"{Path(arguments.drive).stem}: {words[0].lower()}{words[1:]}, mass 1 in space"
     files.write(data, lambda: figure.draw(data, title=title))
 
 
-def shaken_harmonically(arguments: argparse.Namespace) -> None:
-    """Spectra at frequencies."""
+def harmonic_spectra(arguments: argparse.Namespace) -> None:
+    """Compute spectra under harmonic excitation."""
     from ..structures import Structure
 
     structure = Structure.from_file(arguments.structure or "paper")
@@ -109,16 +109,16 @@ def shaken_harmonically(arguments: argparse.Namespace) -> None:
 
 
 def report(data: xr.Dataset) -> None:
-    """What is heard, a line a kind and a frequency."""
+    """Print the largest lines, a line per kind and frequency."""
     name = str(data.acceleration.dims[0])
     for value in data[name].values:
         for kind in map(str, data.kind.values):
             part = data.acceleration.sel({"kind": kind, "mass": 1, name: value})
-            heard(f"{kind} at {place(name, float(value))}", part)
+            print_line_ratio(f"{kind} at {format_parameter(name, float(value))}", part)
 
 
-def heard(name: str, amplitude: xr.DataArray) -> None:
-    """The largest line, and how much there is above the excitation, in a line."""
+def print_line_ratio(name: str, amplitude: xr.DataArray) -> None:
+    """Print the largest line, and how much there is above the excitation."""
     largest = float(amplitude.max())
     above = float(amplitude.where(amplitude.order > 1.5, 0.0).max())
     share = above / largest if largest else 0.0

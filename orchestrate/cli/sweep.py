@@ -11,12 +11,21 @@ from .options import (
     add_numbers,
     add_over,
     add_structure,
-    along,
     numbers_of,
     structure_of,
+    varied_arguments,
 )
 from .output import add_results
-from .question import along_of, carry_out, is_flag, picture_of, place, ranges, several, tell_one
+from .question import (
+    carry_out,
+    format_parameter,
+    format_ranges,
+    is_curve,
+    is_flag,
+    parameter_of,
+    picture_of,
+    print_table,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,20 +36,20 @@ EXAMPLES = """  {program} sweep                                           the pa
   {program} sweep --over e --values 0.05:0.95:0.003 --eta 1.2
   {program} sweep --structure beam --hz 8:20:0.05 --g 0.02 --format nc,csv
 Interrupted, the same command goes on where it was. A finished result is left as it is."""
-PAPER = "0.1:8.0:0.001"  # frequency ratios of Figure 6
+PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6
 KINDS = {
     "irregular": "not periodic",
     "undecided": "still converging or nearly periodic (--transient 5000 decides most)",
 }
-APART = 0.01  # of the largest gap: where up and down differ by more, they are different motions
+DIFFERENT = 0.01  # of the largest gap: where up and down differ by more, they are different motions
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "follow responses along the frequency or another parameter: an orbit diagram"
     parser = commands.add("sweep", run, text, EXAMPLES)
     add_structure(parser)
-    option = add_excitation(parser, usual=f"{PAPER} where no frequency is given").add_argument
+    option = add_excitation(parser, usual=f"{PAPER_RANGE} where no frequency is given").add_argument
     add_over(option)
     option(
         "--direction",
@@ -58,25 +67,25 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Run the command."""
     structure = structure_of(arguments)
-    asked, is_range = along(arguments, structure, usual=PAPER)
+    excitation, is_range = varied_arguments(arguments, structure, usual=PAPER_RANGE)
     question = {
-        **asked,
+        **excitation,
         "direction": arguments.direction or ("up" if is_range else "given"),
         **numbers_of(arguments, "transient", "samples", "tolerance"),
     }
-    carry_out(arguments, structure, question, report, picture_of if several(asked) else None)
+    carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
 
 
 def report(data: xr.Dataset) -> None:
-    """What was found, in a few lines."""
-    name = along_of(data)
+    """Print largest gap, amplitudes, which responses repeat, and where up and down differ."""
+    name = parameter_of(data)
     if data.sizes[name] == 1:
-        tell_one(data, name)
+        print_table(data, name)
         return
     top = data.isel(data.xi_rel_max.argmax(...))
-    where = place(name, float(top[name]))
+    where = format_parameter(name, float(top[name]))
     metres = float(top.xi_rel_max * top.amplitude * top.eta**2)
     print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g}, {metres:.4g} m, at {where}")
     for mass in (1, 2):
@@ -86,24 +95,24 @@ def report(data: xr.Dataset) -> None:
     periodic = int(is_flag(decided, "repeated").sum())
     print(f"periodic: {periodic} of {decided.size} responses")
     for word, text in KINDS.items():
-        there = is_flag(decided, word)
-        there = there.any("direction") if "direction" in there.dims else there
-        if there.any():
-            ordered = there.sortby(name)
-            print(f"{text} at {ranges(name, ordered[name].values, ordered.values)}")
+        holds = is_flag(decided, word)
+        holds = holds.any("direction") if "direction" in holds.dims else holds
+        if holds.any():
+            ordered = holds.sortby(name)
+            print(f"{text} at {format_ranges(name, ordered[name].values, ordered.values)}")
     contact = int(data.permanent_contact.sum())
     print(f"with permanent contact: {contact} of {decided.size} responses")
     if "direction" in data.dims:
-        tell_differences(data, name)
+        print_differences(data, name)
 
 
-def tell_differences(data: xr.Dataset, name: str) -> None:
-    """Where up and down are different motions."""
+def print_differences(data: xr.Dataset, name: str) -> None:
+    """Print where up and down are different motions."""
     gaps = data.xi_rel_max.sortby(name)
     up, down = (gaps.sel(direction=word) for word in ("up", "down"))
-    differ = abs(up - down) > APART * abs(gaps).max("direction")
+    differ = abs(up - down) > DIFFERENT * abs(gaps).max("direction")
     if not differ.any():
-        print(f"up and down are the same to {APART:.0%} of the largest gap: no hysteresis here")
+        print(f"up and down are the same to {DIFFERENT:.0%} of the largest gap: no hysteresis here")
         return
-    where = ranges(name, gaps[name].values, differ.values)
-    print(f"up and down differ by more than {APART:.0%} of the largest gap at {where}")
+    where = format_ranges(name, gaps[name].values, differ.values)
+    print(f"up and down differ by more than {DIFFERENT:.0%} of the largest gap at {where}")

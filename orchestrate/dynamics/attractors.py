@@ -12,17 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, finder, sampled
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, si_state, variable
-from ..response.questions import (
-    Numbers,
-    Point,
-    SeriesQuestion,
-    asked_along,
-    numbers,
-    positive,
-    whole,
-)
+from ..response.questions import Numbers, Point, SeriesQuestion, numbers, positive, series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -144,19 +137,19 @@ class AttractorsJob(SeriesQuestion):
             return self.scale
         return [self.scale] * len(series.points)
 
-    def aside(self, first: int) -> str:
+    def progress_note(self, first: int) -> str:
         """Say that the last item is no start."""
         return "attractors carried to neighbours" if first == self.count() - 1 else ""
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Start | None], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Start | None], previous: Table | None
     ) -> Table:
         """Run some starts on until they are settled; or gather the attractors of all of them."""
         starts = [item for item in items if item is not None]
         with Instances(fmus[OSCILLATOR]) as instances:
             if not starts:
-                assert carry is not None
-                return self.gather_attractors(instances, carry)
+                assert previous is not None
+                return self.gather_attractors(instances, previous)
             rows = SettledRows()
             for place, some in itertools.groupby(starts, lambda item: item.place):
                 group = list(some)
@@ -402,7 +395,7 @@ def attractor_settings(**given: Any) -> AttractorSettings:
     """Check keywords of :class:`.clusters.AttractorSettings`, and return these settings."""
     least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
     checked: dict[str, Any] = {
-        name: whole(name, value, least[name]) if name in least else positive(name, value)
+        name: checked_integer(name, value, least[name]) if name in least else positive(name, value)
         for name, value in given.items()
     }
     return AttractorSettings(**checked)
@@ -515,10 +508,10 @@ def attractors(
     (array([1., 2.]), array([0.825, 0.175]))
     """
     job = AttractorsJob(
-        **asked_along(structure, eta, frequency, amplitude, over, values),
+        **series_arguments(structure, eta, frequency, amplitude, over, values),
         name=f"attractors_{structure.label()}",
-        starts=whole("starts", starts, 1),
-        seed=whole("seed", seed, 0, 2**32 - 1),
+        starts=checked_integer("starts", starts, 1),
+        seed=checked_integer("seed", seed, 0, 2**32 - 1),
         scale=check_scale(scale),
         width=positive("width", width),
         settings=attractor_settings(

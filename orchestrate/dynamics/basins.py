@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import si_state, variable
-from ..response.questions import Point, Question, one_point, state, whole
+from ..response.questions import Point, Question, one_point, state
 from ..response.respond import sample
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -172,13 +173,13 @@ class BasinJob(Question):
         return [*(Start(plane.point, *row) for row in rows), plane.point]
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Start | Point], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Start | Point], previous: Table | None
     ) -> Table:
         """Run some starts on, but those whose masses overlap; or gather the attractors of all."""
         with Instances(fmus[OSCILLATOR]) as instances:
             if isinstance(items[0], Point):
-                assert carry is not None
-                return self.gather_attractors(instances, items[0], carry)
+                assert previous is not None
+                return self.gather_attractors(instances, items[0], previous)
             rows, decider = SettledRows(), None
             for item in items:
                 assert isinstance(item, Start)
@@ -255,7 +256,7 @@ def check_side(name: str, given: Any) -> Side:
         raise InputError(f"{name} = {given!r}: no coordinate {axis!r}; {expected}")
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise InputError(f"{name} = {given!r}: expected finite low < high")
-    return Side(axis, low, high, whole(f"{name}: count", count, 2, 100_000))
+    return Side(axis, low, high, checked_integer(f"{name}: count", count, 2, 100_000))
 
 
 def basin(

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, EventInstance, finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import variable
-from ..response.questions import checked_structure, numbers, whole
+from ..response.questions import checked_structure, numbers
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -70,7 +71,7 @@ class BorderJob(OneItemQuestion):
         given += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
         return f"border({', '.join([repr(self.structure), start, *given])})"
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Follow it."""
         curve, root = first_root(self)
         back, forth = (trace(self, curve, start) for start in (root.reversed(), root))
@@ -227,7 +228,7 @@ def border(
         kind=kind,
         values=(value, second),
         longest=finite_number("longest", longest),
-        most=whole("most", most, 1),
+        most=checked_integer("most", most, 1),
     )
     return answer(job, running, finder(running))
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..constants import TURN
 from ..errors import InputError
 from .bifurcations import FLIP, GRAZING, KINDS, TOUCHING
 from .closed_form import Floats
 from .continuation import ArclengthStepper, Root, fix_sign, newton_correct, unit_vector
 from .families import Family
-from .impact_sequence import CLOSING, PHASE, TURN, ImpactSequence
+from .impact_sequence import CLOSING, PHASE, ImpactSequence
 from .orbit_point import OrbitPoint
 from .turning_points import nearest_miss, turning_points
 

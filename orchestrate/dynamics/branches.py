@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, EventInstance, finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import checked_structure, numbers, whole
+from ..response.questions import checked_structure, numbers
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -97,7 +98,7 @@ class BranchJob(OneItemQuestion):
         ]
         return f"branch({', '.join(parts)})"
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Follow it."""
         segments = trace(self)
         with EventInstance(fmus[OSCILLATOR]) as instance:
@@ -307,7 +308,7 @@ def branch(
         value=value,
         switch=kind,
         longest=finite_number("longest", longest),
-        most=whole("most", most, 1),
+        most=checked_integer("most", most, 1),
     )
     return answer(job, running, finder(running))
 
@@ -417,7 +418,7 @@ def check_number(start: xr.Dataset, name: str, number: int) -> int:
     count = start.sizes.get(BIFURCATION, 0)
     if not count:
         raise InputError(f"{name} = {number!r}: start has no bifurcations; expected a branch")
-    return whole(name, number, 0, count - 1)
+    return checked_integer(name, number, 0, count - 1)
 
 
 def first_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import STATE, EventInstance, Instance, begin
+from ..constants import TURN
 from ..errors import FmuError, InputError
 from ..response.questions import Point
 from ..response.respond import Response, respond, sample
@@ -22,7 +23,7 @@ from .clusters import AttractorSettings, run_until_settled
 from .continuation import NoConvergenceError
 from .families import Setting
 from .guesses import Guess, from_impacts, start
-from .impact_sequence import TURN, ImpactSequence, PeriodicOrbit
+from .impact_sequence import ImpactSequence, PeriodicOrbit
 from .orbit_search import least_periods, solve_orbit, why_no_motion
 from .settled_motion import (
     IRREGULAR,

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..response.questions import ASKED, Point, point
+from ..response.questions import EXCITATION_PARAMETERS, Point, point
 from ..structures import PARAMETERS, Structure
-from ..structures.ranges import one_of
+from ..structures.ranges import expected_one_of
 from .closed_form import ClosedForm, Floats
 from .impact_sequence import POSITION, ImpactSequence, PeriodicOrbit
 
@@ -67,7 +67,7 @@ class Setting:
         """Return the call that asks for the orbit at values of the parameters."""
         point, arguments = self.point(values), dict(self.excitation)
         arguments.update(zip(self.over, map(float, values), strict=True))
-        shown = {name: arguments[name] for name in ASKED if name in arguments}
+        shown = {name: arguments[name] for name in EXCITATION_PARAMETERS if name in arguments}
         if self.acceleration(values):
             shown[ACCELERATION] = self.acceleration(values)
         parts = [f"{name}={value!r}" for name, value in {**shown, "period": period}.items()]
@@ -94,8 +94,11 @@ class Setting:
         """Return the same, with all parameters but the first one fixed at values."""
         fixed = dict(zip(self.over[1:], map(float, values[1:]), strict=True))
         acceleration = fixed.pop(ACCELERATION, self.box_acceleration)
-        excitation = {**dict(self.excitation), **{k: v for k, v in fixed.items() if k in ASKED}}
-        changes: dict[str, Any] = {k: v for k, v in fixed.items() if k not in ASKED}
+        excitation = {
+            **dict(self.excitation),
+            **{k: v for k, v in fixed.items() if k in EXCITATION_PARAMETERS},
+        }
+        changes: dict[str, Any] = {k: v for k, v in fixed.items() if k not in EXCITATION_PARAMETERS}
         structure = self.structure.replace(**changes)
         rest = tuple(excitation.items())
         return Setting(structure, rest, self.over[:1], self.limits[:1], acceleration)
@@ -121,10 +124,10 @@ def check_parameters(over: tuple[str, ...]) -> None:
     ------
     InputError
     """
-    known = (*ASKED, *PARAMETERS, ACCELERATION)
+    known = (*EXCITATION_PARAMETERS, *PARAMETERS, ACCELERATION)
     for name in over:
         if name not in known:
-            raise InputError(f"over = {name!r}: no parameter; {one_of(name, known)}")
+            raise InputError(f"over = {name!r}: no parameter; {expected_one_of(name, known)}")
 
 
 @dataclass

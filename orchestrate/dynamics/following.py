@@ -86,7 +86,7 @@ class FollowingQuestion(OnwardQuestion, ABC):
     periods: int = 100
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
     ) -> Table:
         """Follow some responses after their transients."""
         rows = []

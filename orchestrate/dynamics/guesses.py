@@ -7,19 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..access import EventInstance, Impacts, begin
+from ..constants import TURN
 from ..response.questions import Point
 from .closed_form import ClosedForm, Floats
 from .families import ACCELERATION
-from .impact_sequence import (
-    CLOSING,
-    IMPACT,
-    PHASE,
-    RELEASE,
-    STICK,
-    TURN,
-    ImpactSequence,
-    PeriodicOrbit,
-)
+from .impact_sequence import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 from .release import contact_durations
 from .turning_points import from_phase_zero
 

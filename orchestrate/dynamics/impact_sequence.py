@@ -17,11 +17,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..constants import TURN
 from .closed_form import ClosedForm, Floats
 
 IMPACT, STICK, RELEASE = 0, 1, 2  # kinds of nodes; after STICK follows permanent contact
 PHASE, POSITION, VELOCITY, CLOSING = range(4)  # unknowns of a node
-TURN = 2.0 * np.pi
 ON_CIRCLE = 1e-7  # of a multiplier's size: nearer to the unit circle no orbit is called stable
 
 

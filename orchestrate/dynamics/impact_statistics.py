@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import Impacts, finder
+from ..checks import checked_integer
 from ..response.labels import variable
-from ..response.questions import asked_along, whole
+from ..response.questions import series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -197,13 +198,13 @@ def impact_statistics(
     >>> found.impacts.values.tolist(), found.contacts.values.tolist()
     ([30.0, 2.0], [1.0, 0.0])
     """
-    question = asked_along(structure, eta, frequency, amplitude, over, values)
+    question = series_arguments(structure, eta, frequency, amplitude, over, values)
     name = f"impacts_{structure.label()}"
     job = ImpactStatisticsJob(
         name=name,
         **question,
-        transient=whole("transient", transient, 0),
-        periods=whole("periods", periods, 1),
+        transient=checked_integer("transient", transient, 0),
+        periods=checked_integer("periods", periods, 1),
         start=start_states(start, ImpactStatisticsJob(name=name, **question)),
     )
     return answer(job, running, finder(running))

@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import Impacts, finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import Point, asked_along, positive, whole
+from ..response.questions import Point, positive, series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -322,16 +323,16 @@ def lyapunov(
     >>> found.verdict.values.tolist(), float(found.exponent[1].round(3))
     ([1, -1], -0.007)
     """
-    question = asked_along(structure, eta, frequency, amplitude, over, values)
+    question = series_arguments(structure, eta, frequency, amplitude, over, values)
     name = f"exponent_{structure.label()}"
     job = LyapunovJob(
         name=name,
         **question,
-        transient=whole("transient", transient, 0),
-        periods=whole("periods", periods, 1),
+        transient=checked_integer("transient", transient, 0),
+        periods=checked_integer("periods", periods, 1),
         start=start_states(start, LyapunovJob(name=name, **question)),
-        blocks=whole("blocks", blocks, 1),
-        batches=whole("batches", batches, 3),
+        blocks=checked_integer("blocks", blocks, 1),
+        batches=checked_integer("batches", batches, 3),
         sigmas=positive("sigmas", sigmas),
         wander=positive("wander", wander),
     )

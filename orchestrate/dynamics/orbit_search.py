@@ -8,20 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..access import EventInstance
+from ..constants import TURN
 from .closed_form import ClosedForm, Floats
 from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, Setting
 from .guesses import Guess, from_phases, start
-from .impact_sequence import (
-    CLOSING,
-    IMPACT,
-    PHASE,
-    RELEASE,
-    STICK,
-    TURN,
-    ImpactSequence,
-    PeriodicOrbit,
-)
+from .impact_sequence import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 from .turning_points import (
     from_phase_zero,
     nearest_miss,

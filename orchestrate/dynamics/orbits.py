@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, EventInstance, finder
+from ..checks import checked_integer
+from ..constants import TURN
 from ..errors import InputError
-from ..response.questions import Question, numbers, one_point, whole
+from ..response.questions import Question, numbers, one_point
 from ..response.questions import state as checked_state
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -23,7 +25,7 @@ from .closed_form import Floats
 from .continuation import NoConvergenceError
 from .families import ACCELERATION, Setting, require_delaminated
 from .guesses import Guess, close_returns, from_phases, from_state
-from .impact_sequence import IMPACT, PHASE, RELEASE, TURN, ImpactSequence
+from .impact_sequence import IMPACT, PHASE, RELEASE, ImpactSequence
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import first_motion, run_in_fmu, single_impacts
 
@@ -128,7 +130,7 @@ class OrbitJob(OneItemQuestion):
         """The structure under its excitation."""
         return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Find it."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return table_of([find_orbit(instance, self)])
@@ -315,7 +317,7 @@ def orbit(
     given = one_point(structure, eta, frequency, amplitude)
     require_delaminated(structure)
     given.excitation.check(structure)
-    count = whole("period", period, 1, MAX_PERIODS)
+    count = checked_integer("period", period, 1, MAX_PERIODS)
     job = OrbitJob(
         name=f"orbit_{structure.label()}_{count}T",
         structure=structure,
@@ -323,9 +325,9 @@ def orbit(
         box_acceleration=finite_number("box_acceleration", box_acceleration),
         period=count,
         guess=first_guess(guess, structure, given.excitation.frequency, count),
-        transient=whole("transient", transient, 0),
-        search=whole("search", search, count + 1),
-        tries=whole("tries", tries, 1),
+        transient=checked_integer("transient", transient, 0),
+        search=checked_integer("search", search, count + 1),
+        tries=checked_integer("tries", tries, 1),
     )
     return answer(job, running, finder(running))
 

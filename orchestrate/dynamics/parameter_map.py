@@ -17,11 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, REST, EventInstance, Impacts, Instance, finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, parameter, variable
 from ..response.multiplicity import DECIDED, REPEATED, UNDECIDED, Decision
 from ..response.questions import (
-    ASKED,
+    EXCITATION_PARAMETERS,
     Numbers,
     Point,
     Question,
@@ -31,7 +32,6 @@ from ..response.questions import (
     point,
     positive,
     state,
-    whole,
 )
 from ..response.respond import Response, respond
 from ..response.sweep import HOW_DECIDED
@@ -39,7 +39,7 @@ from ..running.job import Inputs, Table, plain
 from ..running.options import Running, RunOptions
 from ..running.runner import answer
 from ..structures import PARAMETERS, Structure
-from ..structures.ranges import check_flag, one_of
+from ..structures.ranges import check_flag, expected_one_of
 from .clusters import transient_periods
 from .following import follow_impacts
 from .lyapunov import largest_exponent, without_impacts
@@ -152,7 +152,9 @@ class MapJob(Question):
         """Return the points."""
         return self.points
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
+    ) -> Table:
         """Compute some points."""
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             rows = [self.row(plain, eventful, item) for item in items]
@@ -226,7 +228,7 @@ def map_points(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> 
         Where there are not two lists, the excitation is incomplete, or a number is out of range.
     """
     values = dict(given)
-    check_form(values.keys() & ASKED.keys())
+    check_form(values.keys() & EXCITATION_PARAMETERS.keys())
     lists = {name: value for name, value in given if isinstance(value, tuple)}
     if len(lists) != 2:
         names = ", ".join(lists) or "none"
@@ -317,20 +319,22 @@ def map(
     known = [field.name for field in fields(RunOptions)]
     for name in running:
         if name not in known:
-            raise InputError(f"{name}: no parameter; {one_of(name, (*PARAMETERS, *known))}")
+            raise InputError(
+                f"{name}: no parameter; {expected_one_of(name, (*PARAMETERS, *known))}"
+            )
     asked: dict[str, Any] = {"eta": eta, "frequency": frequency, "amplitude": amplitude, **others}
     arguments = {name: numbers(name, asked[name]) for name in asked if name not in running}
     job = MapJob(
         structure=checked_structure(structure),
         name=f"map_{structure.label()}",
         given=tuple((name, value) for name, value in arguments.items() if value is not None),
-        transient=whole("transient", transient, 0),
+        transient=checked_integer("transient", transient, 0),
         settle=positive("settle", settle),
-        samples=whole("samples", samples, 4),
+        samples=checked_integer("samples", samples, 4),
         tolerance=positive("tolerance", tolerance),
-        longest=whole("longest", longest, 0),
+        longest=checked_integer("longest", longest, 0),
         start=state("start", start, structure),
         exponent=check_flag("exponent", exponent),
-        periods=whole("periods", periods, 1),
+        periods=checked_integer("periods", periods, 1),
     )
     return answer(job, running, finder(running))

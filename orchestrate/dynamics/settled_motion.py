@@ -8,9 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..response.multiplicity import LEAST_GAP
+from ..constants import TURN
+from ..response.multiplicity import MIN_RELATIVE_GAP
 from ..response.questions import Point
-from .impact_sequence import PHASE, TURN, PeriodicOrbit
+from .impact_sequence import PHASE, PeriodicOrbit
 from .turning_points import Amplitudes, stroboscopic_states, turning_points
 
 Floats = NDArray[np.float64]
@@ -122,7 +123,7 @@ class KnownStates:
     """States of a motion at one phase in successive periods, and what differences compare with.
 
     Displacements and velocities over the frequency are compared with the largest of them; the gap
-    and its rate with the largest gap, as by :func:`orchestrate.response.multiplicity.over_size`.
+    and its rate with the largest gap, as by :func:`orchestrate.response.multiplicity.scale_states`.
 
     Attributes
     ----------
@@ -144,7 +145,7 @@ class KnownStates:
         matrix = LENGTHS / np.array([1.0, 1.0, frequency, frequency])[:, np.newaxis]
         values = states @ matrix
         size = float(np.abs(values[:, :4]).max()) or 1.0
-        of_gap = max(gap, LEAST_GAP * size)
+        of_gap = max(gap, MIN_RELATIVE_GAP * size)
         of_rate = max(of_gap, float(np.abs(values[:, 5]).max()))
         sizes = np.array([size, size, size, size, of_gap, of_rate])
         return cls(states, values / sizes, matrix / sizes)

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..flags import flag_words
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -62,6 +64,4 @@ def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
 
 def kind_names(branch: xr.Dataset) -> dict[int, str]:
     """Return the names of the kinds of bifurcations by number."""
-    words = branch.bifurcation_kind.attrs
-    names = [word.replace("_", " ") for word in words["flag_meanings"].split()]
-    return dict(zip(map(int, words["flag_values"]), names, strict=True))
+    return flag_words(branch.bifurcation_kind.attrs)

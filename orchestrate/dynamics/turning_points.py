@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..constants import TURN
 from .closed_form import Floats
-from .impact_sequence import PHASE, TURN, PeriodicOrbit
+from .impact_sequence import PHASE, PeriodicOrbit
 
 XI_1, XI_2, GAP = range(3)  # quantities that turn, as weights of the two masses
 WEIGHTS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]])

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..flags import flag_words
 from .shipped import READING
 
 if TYPE_CHECKING:
@@ -73,13 +74,12 @@ def bifurcations(found: xr.Dataset) -> list[dict[str, Any]]:
     if not found.sizes.get("bifurcation"):
         return []
     kinds = found.bifurcation_kind
-    words = str(kinds.attrs["flag_meanings"]).split()
-    names = dict(zip(np.atleast_1d(kinds.attrs["flag_values"]).tolist(), words, strict=True))
+    names = flag_words(kinds.attrs)
     return [
         {
             "eta": float(value),
             "gap": float(np.max(gaps)),
-            "kind": names[int(kind)].replace("_", " "),
+            "kind": names[int(kind)],
         }
         for value, kind, gaps in zip(
             found.bifurcation_value.values,

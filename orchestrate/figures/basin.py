@@ -10,15 +10,15 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from .labels import about, orbit_label, symbol
-from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, entitle, in_our_look, panels
+from .labels import orbit_label, symbol, title_from_attributes
+from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, panels, set_title, styled
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the most frequent attractors
 OTHER = "#bbbbbb"
 STATE = ("x1", "x2", "v1", "v2")
 
 
-@in_our_look
+@styled
 def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -> Figure:
     """Draw the plane, each start in the colour of its attractor.
 
@@ -42,13 +42,13 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     plane.set(xlabel=names[0] or symbol(x), ylabel=names[1] or symbol(y))
     plane.grid(False)
     eta = [rf"$\eta$ = {float(data.eta):.4g}"] if "eta" in data.coords else []
-    entitle(figure, title or ", ".join([about(data, ("eta", x, y)), *eta]))
+    set_title(figure, title or ", ".join([title_from_attributes(data, ("eta", x, y)), *eta]))
     figure.legend(loc="outside lower left")
     return figure
 
 
 def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
-    """A cross where a state on each attractor lies, seen along what the plane does not vary."""
+    """Mark a state on each attractor by a cross, projected along what the plane does not vary."""
     y, x = map(str, data.attractor_of.dims)
     if "state" not in data or "phase" in (x, y):
         return
@@ -70,7 +70,7 @@ def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
 
 
 def label_attractors(plane: Axes, data: xr.Dataset) -> None:
-    """A line in the legend for each attractor that has a colour, and for what has none."""
+    """Add a legend entry for each attractor that has a colour, and one for the rest."""
     for index, colour in zip(range(data.sizes["attractor"]), COLOURS, strict=False):
         part = data.isel(attractor=index)
         n, impacts = float(part.multiplicity), float(part.impacts_per_period)

@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .labels import symbol
-from .style import BLACK, BLUE, GREEN, ORANGE, RED, in_our_look, panels
+from .style import BLACK, BLUE, GREEN, ORANGE, RED, panels, styled
 
 COLOURS = {
     "fold": ORANGE,
@@ -17,7 +17,7 @@ COLOURS = {
 }
 
 
-@in_our_look
+@styled
 def draw(*curves: xr.Dataset, title: str = "") -> Figure:
     """Draw bifurcations over two parameters.
 

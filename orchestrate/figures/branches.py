@@ -8,11 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..errors import InputError
-from .labels import EXCITATION, about, meanings, symbol
+from ..flags import flag_words
+from .labels import EXCITATION, symbol, title_from_attributes
 from .marks import Marks, draw_samples
-from .orbit_diagram import scale
+from .orbit_diagram import set_gap_scale
 from .scales import HERTZ, in_si
-from .style import BLUE, GREY, RED, XI_REL, in_our_look, legend_below, panels
+from .style import BLUE, GREY, RED, XI_REL, legend_below, panels, styled
 
 MARKERS = {  # by the bifurcation's kind
     "fold": "<",
@@ -26,7 +27,7 @@ MARKERS = {  # by the bifurcation's kind
 }
 
 
-@in_our_look
+@styled
 def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str = "") -> Figure:
     """Draw branches of orbits over an orbit diagram.
 
@@ -48,59 +49,65 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
     if responses is not None and name not in responses.xi_rel.dims:
         along = ", ".join(map(str, responses.xi_rel.dims))
         raise InputError(f"responses along {along}: expected a result of sweep along {name}")
-    gaps = np.concatenate([found.xi_rel.values.ravel() for found in branches])
-    scale(plane, gaps if responses is None else np.append(gaps, responses.xi_rel.values.ravel()))
+    gaps = np.concatenate([branch.xi_rel.values.ravel() for branch in branches])
+    set_gap_scale(
+        plane, gaps if responses is None else np.append(gaps, responses.xi_rel.values.ravel())
+    )
     unit, label = unit_of(branches[0], name)
-    low = min(float(found[name].min()) for found in branches) / unit
-    high = max(float(found[name].max()) for found in branches) / unit
+    low = min(float(branch[name].min()) for branch in branches) / unit
+    high = max(float(branch[name].max()) for branch in branches) / unit
     edge = 0.01 * (high - low)  # room for markers at the ends
     plane.set(xlabel=label, ylabel=rf"{XI_REL}$(nT)$", xlim=(low - edge, high + edge))
-    plane.set_title(title or about(branches[0], EXCITATION))
+    plane.set_title(title or title_from_attributes(branches[0], EXCITATION))
     if responses is not None:
         gaps_of = responses.xi_rel.stack(of_all=[d for d in responses.xi_rel.dims if d != name])
         draw_samples(plane, responses[name].values / unit, gaps_of.values, Marks(GREY))
     shown: set[str] = set()
-    for found in branches:
-        draw_branch(plane, found, name, unit)
-        draw_bifurcations(plane, found, shown, unit)
+    for branch in branches:
+        draw_branch(plane, branch, name, unit)
+        draw_bifurcations(plane, branch, shown, unit)
     legend_below(figure, [plane], columns=8)
     return figure
 
 
 def unit_of(data: xr.Dataset, name: str) -> tuple[float, str]:
-    """What values of the parameter are divided by, and its label: hertz for a structure in SI."""
+    """Return what values of the parameter are divided by, and its label: hertz for a structure in
+    SI.
+    """
     if name == "frequency" and in_si(data):
         return 2.0 * np.pi, HERTZ
     return 1.0, symbol(name)
 
 
-def draw_branch(plane: Axes, found: xr.Dataset, name: str, unit: float) -> None:
-    """One line for each phase 0 of the orbit."""
-    along, stable = found[name].values / unit, found.stable.values == 1
+def draw_branch(plane: Axes, branch: xr.Dataset, name: str, unit: float) -> None:
+    """Draw one line for each phase 0 of the orbit."""
+    along, stable = branch[name].values / unit, branch.stable.values == 1
     # a step of which one end is unstable is drawn as unstable
     both = stable & np.append(stable[1:], True) & np.append(True, stable[:-1])
-    for gaps in found.xi_rel.transpose("sample", "point").values:
+    for gaps in branch.xi_rel.transpose("sample", "point").values:
         plane.plot(along, np.where(stable, gaps, np.nan), "-", color=BLUE, linewidth=1.2)
         plane.plot(along, np.where(both, np.nan, gaps), "--", color=RED, linewidth=0.9)
 
 
-def draw_bifurcations(plane: Axes, found: xr.Dataset, shown: set[str], unit: float) -> None:
-    """A marker for each kind; each kind once in the legend."""
-    if not found.sizes.get("bifurcation"):
+def draw_bifurcations(
+    plane: Axes, branch: xr.Dataset, already_shown: set[str], unit: float
+) -> None:
+    """Draw a marker for each kind; each kind once in the legend."""
+    if not branch.sizes.get("bifurcation"):
         return
-    names = meanings(found.bifurcation_kind)
-    for i, kind in enumerate(found.bifurcation_kind.values):
+    names = flag_words(branch.bifurcation_kind.attrs)
+    for i, kind in enumerate(branch.bifurcation_kind.values):
         word = names[int(kind)].replace("Neimark Sacker", "Neimark-Sacker")
-        gaps = found.bifurcation_xi_rel.values[i]
+        gaps = branch.bifurcation_xi_rel.values[i]
         plane.plot(
-            np.full(len(gaps), found.bifurcation_value.values[i] / unit),
+            np.full(len(gaps), branch.bifurcation_value.values[i] / unit),
             gaps,
             MARKERS[word],
             color="black",
             markerfacecolor="white",
             markersize=5,
             linestyle="none",
-            label=word if word not in shown else None,
+            label=word if word not in already_shown else None,
             zorder=3,
         )
-        shown.add(word)
+        already_shown.add(word)

@@ -10,15 +10,15 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLACK, GREY, in_our_look, panels
+from .style import BLACK, GREY, panels, styled
 
 PASSED, UNDECIDED = "tab:green", "tab:orange"
 FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, averaged theory"}
 
 
-@in_our_look
+@styled
 def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
-    """Draw capture maps, one a column.
+    """Draw capture maps, one per column.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
 
 
 def kinds_of(data: xr.Dataset) -> dict[str, tuple[np.ndarray, dict[str, Any]]]:
-    """Where starts pass, are captured or undecided, and their marks."""
+    """Return where starts pass, are captured or undecided, and their marks."""
     passed = data.passes.values > 0
     undecided = data.decision.isin(["undecided", "settled at the resonance"]).values
     kinds: dict[str, tuple[np.ndarray, dict[str, Any]]] = {
@@ -55,12 +55,12 @@ def kinds_of(data: xr.Dataset) -> dict[str, tuple[np.ndarray, dict[str, Any]]]:
 
 
 def is_wide(data: xr.Dataset) -> bool:
-    """Whether undecided starts leave a border wider than it was to be."""
+    """Return whether undecided starts leave a border wider than it was to be."""
     return bool((data.border_high - data.border_low > data.border.attrs["tolerance"]).any())
 
 
 def draw_map(axes: Axes, data: xr.Dataset, over: str) -> None:
-    """Passed, captured and undecided over voltage and parameter, the border, and the fold."""
+    """Draw passed, captured and undecided over voltage and parameter, the border, and the fold."""
     data = data.transpose(over, "voltage")
     volts, values = np.meshgrid(data.voltage.values, data[over].values)
     for name, (chosen, mark) in kinds_of(data).items():
@@ -78,7 +78,7 @@ def draw_map(axes: Axes, data: xr.Dataset, over: str) -> None:
 
 
 def draw_line(axes: Axes, data: xr.Dataset) -> None:
-    """Time of the passage over the voltage."""
+    """Draw the time of the passage over the voltage."""
     volts = data.voltage.values
     low: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False, "linestyle": "none"}
     for name, (chosen, mark) in kinds_of(data).items():

@@ -1,4 +1,4 @@
-"""Curves as they are stored: points one after the other, each with the panel it belongs to.
+"""Access to stored curves: points one after the other, each with the panel it belongs to.
 
 Variables along ``point``: ``tau``, ``state`` (xi_1, xi_2, xi_1', xi_2'), ``kind`` (of the three
 states of Figure 5) and ``panel_of``; along ``panel``: ``e``, ``D``, ``eta`` and ``multiplicity``.
@@ -11,12 +11,12 @@ import xarray as xr
 
 
 def panel_of(data: xr.Dataset, panel: int) -> xr.Dataset:
-    """The points of one panel."""
+    """Return the points of one panel."""
     return data.isel(point=data.panel_of.values == panel)
 
 
 def relative(data: xr.Dataset, panel: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Time tau, gap xi_Rel and its velocity along one panel's curve."""
+    """Return time tau, gap xi_Rel and its velocity along one panel's curve."""
     part = panel_of(data, panel)
     state = part.state.values
     return part.tau.values, state[:, 1] - state[:, 0], state[:, 3] - state[:, 2]

@@ -5,13 +5,13 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .style import in_our_look, panels
+from .style import panels, styled
 from .weak_drive import COLOURS
 
 FLOOR = 1e-6  # of the largest amplitude: the lower end of the axis
 
 
-@in_our_look
+@styled
 def draw(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
     """Draw spectra one below the other.
 

@@ -10,7 +10,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ..files import write_whole
-from .style import XI_REL, look, panels
+from .style import XI_REL, panels, style
 
 UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, today and tomorrow
     "pdf": {"CreationDate": None},
@@ -20,8 +20,8 @@ UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, tod
 
 
 def prepare() -> None:
-    """What a process's first picture takes most of a second for: fonts, and formulas in them."""
-    with look():
+    """Import fonts and formulas, which a process's first picture takes most of a second for."""
+    with style():
         figure, (axes,) = panels(1, 1, (1.0, 1.0))
         axes.set_xlabel(XI_REL)
         figure.savefig(io.BytesIO(), format="png")
@@ -30,7 +30,7 @@ def prepare() -> None:
 def save(
     figure: Figure, path: str | Path, formats: Iterable[str] = ("png",), **options: Any
 ) -> list[Path]:
-    """Write a figure, once in each format.
+    """Write a figure in each format, every file whole or not at all.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def save(
         target = Path(f"{path}.{ending}")
 
         def write(temporary: Path, ending: str = ending) -> None:
-            with look():
+            with style():
                 figure.savefig(temporary, format=ending, metadata=UNDATED.get(ending), **options)
 
         write_whole(target, write)

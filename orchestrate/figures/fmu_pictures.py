@@ -9,24 +9,24 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from .style import in_our_look, panels
+from .style import panels, styled
 
 
 def sketch(width: float) -> tuple[Figure, Axes]:
-    """A figure for a drawing by hand, half as high as it is wide."""
+    """Make a figure for a drawing by hand, half as high as it is wide."""
     figure = Figure(figsize=(width, width * 0.5))
     return figure, figure.add_subplot()
 
 
 def bare(axes: Axes, xlim: tuple[float, float], ylim: tuple[float, float]) -> None:
-    """Equal scales, and no frame."""
+    """Set equal scales and hide the frame."""
     axes.set(xlim=xlim, ylim=ylim)
     axes.set_aspect("equal")
     axes.axis("off")
 
 
 def spring(axes: Axes, x: float, y: float, length: float) -> None:
-    """A zigzag from (x, y) to the right."""
+    """Draw a zigzag from (x, y) to the right."""
     n = 9
     zigzag = [x + length * (0.15 + 0.7 * (i + 0.5) / n) for i in range(n)]
     xs = [x, x + 0.15 * length, *zigzag, x + 0.85 * length, x + length]
@@ -35,7 +35,7 @@ def spring(axes: Axes, x: float, y: float, length: float) -> None:
 
 
 def damper(axes: Axes, x: float, y: float, length: float) -> None:
-    """A dashpot from (x, y) to the right."""
+    """Draw a dashpot from (x, y) to the right."""
     middle = x + 0.5 * length
     left, right = middle - 0.18, middle + 0.18
     axes.plot([x, left], [y, y], "k", lw=1.4)
@@ -44,9 +44,9 @@ def damper(axes: Axes, x: float, y: float, length: float) -> None:
     axes.plot([middle + 0.05, x + length], [y, y], "k", lw=1.4)
 
 
-@in_our_look
+@styled
 def draw_scheme(width: float = 4.8) -> Figure:
-    """Two masses in a shaken box (Figure 4)."""
+    """Draw two masses in a shaken box (Figure 4)."""
     figure, axes = sketch(width)
     axes.add_patch(Rectangle((0, 0), 10, 4, fill=False, lw=2.5))
     for x, name in ((3.4, "$m_1$"), (5.0, "$m_2$")):
@@ -66,9 +66,9 @@ def draw_scheme(width: float = 4.8) -> Figure:
     return figure
 
 
-@in_our_look
+@styled
 def draw_example(times: np.ndarray, values: Mapping[str, np.ndarray]) -> Figure:
-    """Displacements, gap and permanent contact over time.
+    """Draw displacements, gap and permanent contact over time.
 
     Parameters
     ----------

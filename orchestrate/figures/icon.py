@@ -12,7 +12,7 @@ EDGE: dict[str, Any] = {"edgecolor": "#1b3a57", "linewidth": 2.5}
 
 
 def draw_icon(shaker: bool) -> Figure:
-    """A sign that can still be told at 64 pixels: no letters, thick lines.
+    """Draw an icon that is recognizable at 64 pixels: no letters, thick lines.
 
     Two masses that touch between springs, or one with a disc and its unbalance on a spring.
     """

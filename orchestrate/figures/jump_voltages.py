@@ -8,15 +8,15 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .style import in_our_look, panels
+from .style import panels, styled
 from .weak_drive import COLOURS
 
 EXPONENT = 2.0 / 3.0
 
 
-@in_our_look
+@styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw jump voltages, a panel for each direction.
+    """Draw jump voltages, one panel per direction.
 
     Parameters
     ----------
@@ -37,17 +37,17 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
                 error = float(at.standard_error)
                 text = f"{structure}: {end:.4f} V"
                 text += f" ± {error:.1g}" if np.isfinite(error) else ""
-                there = np.isfinite(at.voltage.values)
-                order = np.argsort(lag[there])
-                through = np.append(end, at.voltage.values[there][order])
+                finite = np.isfinite(at.voltage.values)
+                order = np.argsort(lag[finite])
+                through = np.append(end, at.voltage.values[finite][order])
                 line: Any = {"color": colour, "linewidth": 1.0, "label": text}
-                panel.plot(np.append(0.0, lag[there][order]), through, "-", **line)
+                panel.plot(np.append(0.0, lag[finite][order]), through, "-", **line)
                 panel.errorbar(0.0, end, np.nan_to_num(error), fmt="s", color=colour, capsize=3)
         if panel.get_legend_handles_labels()[0]:
             panel.legend(loc="best", title="at rate 0")
         else:
-            place: Any = {"transform": panel.transAxes, "ha": "center", "va": "center"}
-            panel.text(0.5, 0.5, f"no jump {jump}", **place)
+            in_the_middle: Any = {"transform": panel.transAxes, "ha": "center", "va": "center"}
+            panel.text(0.5, 0.5, f"no jump {jump}", **in_the_middle)
         panel.set(xlabel="rate$^{2/3}$ in (V/s)$^{2/3}$", ylabel="voltage in V")
         panel.set_title(f"jump {jump}")
     if title:

@@ -1,4 +1,4 @@
-"""Names of parameters and of kinds of responses, as pictures and legends write them."""
+"""Text in pictures and legends: parameters, structures, and kinds of responses."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any
 
 import xarray as xr
 
-GRAVITY = 9.80665  # m/s^2, by definition
+from ..constants import GRAVITY
+
 SYMBOLS = {
     "eta": r"$\eta$",
     "e": "$e$",
@@ -39,20 +40,20 @@ SYMBOLS = {
     "zeta1": r"$\zeta_1$",
     "zeta2": r"$\zeta_2$",
 }
-USUAL = {"mu": 1.0, "kappa": 1.2, "gamma": 1e-4, "omega": 1.0}  # what a title leaves out
+USUAL_VALUES = {"mu": 1.0, "kappa": 1.2, "gamma": 1e-4, "omega": 1.0}  # what a title leaves out
 EXCITATION = ("eta", "frequency", "amplitude")
-OF_HALVES = {"m1", "m2", "k1", "k2", "d1", "d2", "mu", "kappa", "omega", "D", "D1", "D2"}
-OF_HALVES |= {"f1", "f2", "zeta1", "zeta2"}
+HALF_PARAMETERS = {"m1", "m2", "k1", "k2", "d1", "d2", "mu", "kappa", "omega", "D", "D1", "D2"}
+HALF_PARAMETERS |= {"f1", "f2", "zeta1", "zeta2"}
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def symbol(name: str) -> str:
-    """A parameter's name for an axis; what has no symbol keeps its name."""
+    """Return a parameter's symbol for an axis; what has none keeps its name."""
     return SYMBOLS.get(name, name.replace("_", " "))
 
 
-def parameters_text(values: Mapping[str, float]) -> str:
-    """Parameters with their values, for a title."""
+def format_parameters(values: Mapping[str, float]) -> str:
+    """Format parameters with their values, for a title."""
     parts = []
     for name, value in values.items():
         letter, _, unit = symbol(name).partition(" in ")
@@ -60,8 +61,8 @@ def parameters_text(values: Mapping[str, float]) -> str:
     return ", ".join(parts)
 
 
-def about(data: xr.Dataset, beside: Iterable[str] = ()) -> str:
-    r"""A dataset's structure and excitation for a title: e, D, and what is not usual.
+def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ()) -> str:
+    r"""Format a dataset's structure and excitation for a title: e, D, and what is not usual.
 
     A structure that is not in the paper's units is described by its halves: frequencies in Hz,
     damping ratios at them in per cent.
@@ -70,51 +71,56 @@ def about(data: xr.Dataset, beside: Iterable[str] = ()) -> str:
     ----------
     data : xarray.Dataset
         With the structure's SI parameters as attributes, as questions give them.
-    beside : iterable of str
-        Names that are told elsewhere, beside the dataset's dimensions.
+    shown_elsewhere : iterable of str
+        Names that are shown elsewhere, like the dataset's dimensions.
 
     Examples
     --------
-    >>> about(xr.Dataset(attrs=dict(m1=1.0, m2=2.0, k1=1.0, k2=1.2, d1=0.01, d2=0.02, e=0.7)))
+    >>> attributes = dict(m1=1.0, m2=2.0, k1=1.0, k2=1.2, d1=0.01, d2=0.02, e=0.7)
+    >>> title_from_attributes(xr.Dataset(attrs=attributes))
     '$e$ = 0.7, $D$ = 0.005, $\\mu$ = 2'
     """
     known = {name: float(value) for name, value in data.attrs.items() if is_number(value)}
-    told = {*map(str, data.dims), *beside}
-    found = {"e": known["e"]} if "e" in known else {}
-    by_halves = is_real(known) and not told & OF_HALVES
-    found |= {} if by_halves else ratios(known)
-    found |= {"gamma": known["gamma"]} if "gamma" in known else {}
-    usual = {name for name, value in USUAL.items() if found.get(name) == value}
-    moved = {"D", "D1", "D2"} if "D" in told else set()
-    left_out = told | usual | moved
-    text = parameters_text({name: value for name, value in found.items() if name not in left_out})
+    shown = {*map(str, data.dims), *shown_elsewhere}
+    values = {"e": known["e"]} if "e" in known else {}
+    by_halves = is_in_si(known) and not shown & HALF_PARAMETERS
+    values |= {} if by_halves else ratios(known)
+    values |= {"gamma": known["gamma"]} if "gamma" in known else {}
+    left_at_usual = {name for name, value in USUAL_VALUES.items() if values.get(name) == value}
+    moved = {"D", "D1", "D2"} if "D" in shown else set()
+    left_out = shown | left_at_usual | moved
+    text = format_parameters(
+        {name: value for name, value in values.items() if name not in left_out}
+    )
     if by_halves:
-        text = ", ".join(filter(None, [halves_text(known), text]))
-    shaken = [words for name, words in excitation(data, known).items() if name not in told]
+        text = ", ".join(filter(None, [format_halves(known), text]))
+    shaken = [words for name, words in excitation_texts(data, known).items() if name not in shown]
     return ", ".join(filter(None, [text, "bonded" if known.get("bonded") else "", *shaken]))
 
 
-def excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
-    """The box's motion by its parameters: what is one number in a dataset, in Hz and in m."""
-    found = {}
+def excitation_texts(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
+    """Format the box's motion by its parameters: what is one number in a dataset, in Hz and in
+    m.
+    """
+    texts = {}
     if "eta" in known:
-        found["eta"] = parameters_text({"eta": known["eta"]})
+        texts["eta"] = format_parameters({"eta": known["eta"]})
     if "frequency" in known:
-        found["frequency"] = rf"$\Omega/2\pi$ = {known['frequency'] / (2.0 * math.pi):.5g} Hz"
+        texts["frequency"] = rf"$\Omega/2\pi$ = {known['frequency'] / (2.0 * math.pi):.5g} Hz"
     if "amplitude" in known:
         factor, letter = prefix(known["amplitude"])
-        found["amplitude"] = f"$a$ = {known['amplitude'] / factor:.4g} {letter}m"
+        texts["amplitude"] = f"$a$ = {known['amplitude'] / factor:.4g} {letter}m"
     elif "frequency" in data.dims and "amplitude" in data.coords:
         level = (data.amplitude * data.frequency**2).values
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
-            found["amplitude"] = (
+            texts["amplitude"] = (
                 rf"$a\,\Omega^2$ = {level.max():.4g} m/s$^2$ ({level.max() / GRAVITY:.3g} g)"
             )
-    return found
+    return texts
 
 
 def prefix(largest: float) -> tuple[float, str]:
-    """The largest SI prefix of a length that leaves it at least 1, and its factor.
+    """Return the largest SI prefix of a length that leaves it at least 1, with its factor.
 
     Examples
     --------
@@ -125,7 +131,7 @@ def prefix(largest: float) -> tuple[float, str]:
 
 
 def is_number(value: Any) -> bool:
-    """Whether an attribute is one finite number."""
+    """Return whether an attribute is one finite number."""
     try:
         return not isinstance(value, str) and math.isfinite(value)
     except TypeError:
@@ -133,7 +139,9 @@ def is_number(value: Any) -> bool:
 
 
 def ratios(known: Mapping[str, float]) -> dict[str, float]:
-    """The paper's numbers of a structure given in SI (6) to (8), as far as it is known."""
+    """Return the paper's numbers of a structure given in SI, (6) to (8), as far as they are
+    known.
+    """
     if not {"m1", "m2", "k1", "k2", "d1", "d2"} <= set(known):
         return {}
     m1, m2, k1, k2 = (known[name] for name in ("m1", "m2", "k1", "k2"))
@@ -143,17 +151,19 @@ def ratios(known: Mapping[str, float]) -> dict[str, float]:
     return {**damping, "mu": m2 / m1, "kappa": k2 / k1, "omega": omega}
 
 
-def is_real(known: Mapping[str, float]) -> bool:
-    """Whether a structure has a frequency of its own: the paper's unit of frequency is 1 rad/s."""
+def is_in_si(known: Mapping[str, float]) -> bool:
+    """Return whether a structure has a frequency of its own: the paper's unit of frequency is 1
+    rad/s.
+    """
     return ratios(known).get("omega", 1.0) != 1.0
 
 
-def halves_text(known: Mapping[str, float]) -> str:
-    r"""Natural frequency and damping ratio of each half alone, and the ratio of the masses.
+def format_halves(known: Mapping[str, float]) -> str:
+    r"""Format natural frequency and damping ratio of each half alone, and the ratio of the masses.
 
     Examples
     --------
-    >>> halves_text(dict(m1=1.5, m2=1.5, k1=8437.5, k2=8437.5, d1=1.125, d2=2.25))
+    >>> format_halves(dict(m1=1.5, m2=1.5, k1=8437.5, k2=8437.5, d1=1.125, d2=2.25))
     '$f_1$ = 11.94 Hz, $f_2$ = 11.94 Hz, $\\zeta_1$ = 0.5 %, $\\zeta_2$ = 1 %'
     """
     frequencies, damping = [], []
@@ -162,28 +172,21 @@ def halves_text(known: Mapping[str, float]) -> str:
         frequencies.append(f"$f_{half}$ = {math.sqrt(k / m) / (2.0 * math.pi):.4g} Hz")
         damping.append(rf"$\zeta_{half}$ = {50.0 * d / math.sqrt(k * m):.4g} %")
     mu = known["m2"] / known["m1"]
-    masses = [] if mu == USUAL["mu"] else [parameters_text({"mu": mu})]
+    masses = [] if mu == USUAL_VALUES["mu"] else [format_parameters({"mu": mu})]
     return ", ".join([*frequencies, *damping, *masses])
 
 
 def kind_of(multiplicity: int) -> str:
-    """A response's kind in the paper's words: ``T``, ``2T`` or not periodic."""
+    """Return a response's kind in the paper's words: ``T``, ``2T`` or not periodic."""
     if multiplicity == 0:
         return "not periodic"
     return "$T$" if multiplicity == 1 else f"${multiplicity}T$"
 
 
-def meanings(variable: xr.DataArray) -> dict[int, str]:
-    """What the values of a variable stand for, from CF's ``flag_values`` and ``flag_meanings``."""
-    words = variable.attrs["flag_meanings"].split()
-    return {
-        int(value): word.replace("_", " ")
-        for value, word in zip(variable.attrs["flag_values"], words, strict=True)
-    }
-
-
 def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
-    """A periodic motion for a legend: "2T, 3 impacts"; empty for one that is not periodic."""
+    """Format a periodic motion for a legend: "2T, 3 impacts"; empty for one that is not
+    periodic.
+    """
     n = round(multiplicity)
     if not n:
         return ""

@@ -9,18 +9,19 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import about, meanings
+from ..flags import flag_words
+from .labels import title_from_attributes
 from .scales import along, parameter_of
-from .style import BLACK, BLUE, RED, in_our_look, legend_below, panels
+from .style import BLACK, BLUE, RED, legend_below, panels, styled
 
 VERDICTS = {1: (RED, "o"), 0: (BLUE, "s"), -1: (BLACK, ".")}  # chaotic, neutral, periodic
 
 
-@in_our_look
+@styled
 def draw(
     *cases: xr.Dataset, title: str = "", titles: tuple[str, ...] = (), lowest: float = -0.1
 ) -> Figure:
-    """One panel a case; a bar is one standard error, up and down.
+    """Draw one panel per case; a bar is one standard error, up and down.
 
     Parameters
     ----------
@@ -36,10 +37,10 @@ def draw(
     size = (9.6, 0.6 + 2.2 * len(cases))
     figure, axes = panels(len(cases), 1, size, sharex=True, sharey=True)
     highest = max(float(data.exponent.max()) for data in cases)
-    least = min(float(data.exponent.min()) for data in cases)
-    lowest = min(max(1.2 * least, lowest), -0.01)
+    minimum = min(float(data.exponent.min()) for data in cases)
+    lowest = min(max(1.2 * minimum, lowest), -0.01)
     axes[0].set_ylim(lowest, max(0.05, 1.2 * highest))
-    names = titles or (*([title] if title else map(about, cases)),)
+    names = titles or (*([title] if title else map(title_from_attributes, cases)),)
     for plane, data, words in zip(axes, cases, names, strict=True):
         draw_case(plane, data, lowest)
         plane.axhline(0.0, color="0.5", linewidth=0.8)
@@ -50,15 +51,15 @@ def draw(
 
 
 def draw_case(axes: Axes, data: xr.Dataset, lowest: float) -> None:
-    """Exponents of one case by verdict, each verdict in the legend."""
-    names, parameter = meanings(data.verdict), parameter_of(data.exponent)
+    """Draw the exponents of one case by verdict, each verdict in the legend."""
+    names, parameter = flag_words(data.verdict.attrs), parameter_of(data.exponent)
     x = along(data, parameter).values
     size = float(np.clip(1000.0 / len(x), 2.0, 4.0))
     for verdict, (colour, shape) in VERDICTS.items():
-        here = data.verdict.values == verdict
-        exponent, error = data.exponent.values[here], data.standard_error.values[here]
+        of_verdict = data.verdict.values == verdict
+        exponent, error = data.exponent.values[of_verdict], data.standard_error.values[of_verdict]
         style: Any = {"fmt": shape, "color": colour, "markersize": size, "linewidth": 0.7}
-        axes.errorbar(x[here], exponent, yerr=error, label=names[verdict], **style)
+        axes.errorbar(x[of_verdict], exponent, yerr=error, label=names[verdict], **style)
     below = data.exponent.values < lowest
     if below.any():
         edge = axes.get_xaxis_transform()

@@ -11,7 +11,7 @@ from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from .labels import about, symbol
+from .labels import symbol, title_from_attributes
 from .scales import along
 from .style import (
     BLACK,
@@ -22,9 +22,9 @@ from .style import (
     SKY,
     XI_REL,
     YELLOW,
-    entitle,
-    in_our_look,
     panels,
+    set_title,
+    styled,
 )
 
 FREQUENCIES = ("eta", "frequency")
@@ -44,9 +44,9 @@ KINDS = ("1", "2", "3", "4", "5", "6", "7", "8+", "none")
 NOTHING = "#d9d9d9"  # no impacts
 
 
-@in_our_look
+@styled
 def draw(*maps: xr.Dataset, title: str = "") -> Figure:
-    """One row of maps a dataset.
+    """Draw one row of maps per dataset.
 
     Parameters
     ----------
@@ -59,14 +59,14 @@ def draw(*maps: xr.Dataset, title: str = "") -> Figure:
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
     size = (max(3.1 * len(columns), 4.5), 0.4 + 2.8 * len(maps))
     figure, axes = panels(len(maps), len(columns), size)
-    entitle(figure, title or (about(maps[0]) if len(maps) == 1 else ""))
+    set_title(figure, title or (title_from_attributes(maps[0]) if len(maps) == 1 else ""))
     for row, data in enumerate(maps):
         first, second = map(str, data[columns[0]].dims)
         up, right = (second, first) if first in FREQUENCIES else (first, second)
         for column, name in enumerate(columns):
             plane = axes[row * len(columns) + column]
             draw_map(plane, data[name].transpose(up, right), along(data, right).values)
-            words = "" if column or title or len(maps) == 1 else about(data)
+            words = "" if column or title or len(maps) == 1 else title_from_attributes(data)
             plane.set_title("\n".join(filter(None, [words, COLUMNS[name]])))
             label = along(data, right).label
             plane.set(ylabel="" if column else symbol(up), xlabel=label)
@@ -74,9 +74,9 @@ def draw(*maps: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray) -> None:
-    """One map with its colour bar; a parameter in equal ratios on a logarithmic axis."""
+    """Draw one map with its colour bar; a parameter in equal ratios on a logarithmic axis."""
     parameter = str(data.dims[0])
-    values, shades = shading(str(data.name), data.values)
+    values, shades = colour_scale(str(data.name), data.values)
     picture = plane.pcolormesh(x, data[parameter], values, rasterized=True, **shades)
     bar = plane.figure.colorbar(picture, ax=plane)
     if data.name == "multiplicity":
@@ -89,25 +89,27 @@ def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray) -> None:
     if np.ma.is_masked(values):
         plane.set_facecolor(NOTHING)
         bar.ax.set_xlabel("grey: none", fontsize=7)
-    plane.set_yscale("log" if in_equal_ratios(data[parameter].values) else "linear")
+    plane.set_yscale("log" if is_geometric(data[parameter].values) else "linear")
     plane.grid(False)
 
 
-def shading(name: str, values: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
-    """The values of a quantity as they are coloured, and how; what is 0 has no logarithm."""
+def colour_scale(name: str, values: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
+    """Return the values of a quantity as they are coloured, and their scale; what is 0 has no
+    logarithm.
+    """
     if name == "multiplicity":
         shown = np.where(values == 0, 9, np.minimum(values, 8))
         return shown, {"vmin": 0.5, "vmax": 9.5, "cmap": ListedColormap(SHADES)}
     if name == "exponent":
         reach = float(np.nanmax(np.abs(values)))
         return values, {"vmin": -reach, "vmax": reach, "cmap": "PuOr_r"}
-    some = values[values > 0.0]
+    above_zero = values[values > 0.0]
     shown = np.ma.masked_less_equal(values, 0.0)
-    return shown, {"norm": LogNorm(some.min(), some.max()) if some.size else None}
+    return shown, {"norm": LogNorm(above_zero.min(), above_zero.max()) if above_zero.size else None}
 
 
-def in_equal_ratios(values: np.ndarray) -> bool:
-    """Whether values grow by a factor from one to the next."""
+def is_geometric(values: np.ndarray) -> bool:
+    """Return whether values grow by a constant factor from one to the next."""
     if len(values) < 3 or values[0] <= 0.0 or values[-1] <= values[0]:
         return False
     return bool(np.allclose(values, np.geomspace(values[0], values[-1], len(values))))

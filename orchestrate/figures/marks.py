@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 
-FEW = 600  # values along an axis that marks are told apart at
+MAX_DISTINCT = 600  # values along an axis that marks are told apart at
 CELLS = (1500, 750)  # of a panel, for samples that lie on each other
 SHADES = ((1, 0.35), (3, 0.6), (8, 1.0))  # from so many samples in a cell on: opacity
 
 
 class Marks(NamedTuple):
-    """How values are marked.
+    """Style in which values are marked.
 
     Attributes
     ----------
@@ -30,11 +30,11 @@ class Marks(NamedTuple):
 
 
 def mark(count: int, marks: Marks) -> dict[str, Any]:
-    """Settings of a line of marks for so many values side by side."""
+    """Return the style of a line of marks for so many values side by side."""
     style = {"linestyle": "none", "color": marks.colour}
-    if count > FEW and marks.size <= 1.0:
+    if count > MAX_DISTINCT and marks.size <= 1.0:
         return {**style, "marker": ","}
-    if count > FEW:
+    if count > MAX_DISTINCT:
         return {**style, "marker": "s", "markersize": marks.size, "markeredgewidth": 0.0}
     size = float(np.clip(400.0 / count, 1.6, 5.0)) * marks.size
     if marks.filled:
@@ -42,8 +42,8 @@ def mark(count: int, marks: Marks) -> dict[str, Any]:
     return {**style, "marker": "o", "markersize": size, "markerfacecolor": "none"}
 
 
-def cells(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """One sample of each cell of a panel that samples fall into, and how many fall there.
+def one_per_cell(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return one sample of each cell of a panel that samples fall into, and how many fall there.
 
     Parameters
     ----------
@@ -59,8 +59,8 @@ def cells(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.ndarray, n
     count : ndarray of int
     """
     columns, rows = CELLS
-    column = part_of(axes.xaxis, x, columns)
-    row = part_of(axes.yaxis, samples, rows)
+    column = cell_index(axes.xaxis, x, columns)
+    row = cell_index(axes.yaxis, samples, rows)
     cell = (column[:, None] * rows + row).ravel()
     last = np.full(columns * rows, -1)
     last[cell] = np.arange(len(cell))
@@ -68,18 +68,19 @@ def cells(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.ndarray, n
     return chosen, np.bincount(cell, minlength=columns * rows)[last >= 0]
 
 
-def part_of(axis: Axis, values: np.ndarray, count: int) -> np.ndarray:
-    """Which of so many equal parts of an axis values fall into."""
+def cell_index(axis: Axis, values: np.ndarray, count: int) -> np.ndarray:
+    """Return which of so many equal parts of an axis values fall into."""
     change = axis.get_transform().transform
     first, last = change(axis.get_view_interval())
-    place = (change(values.ravel()) - first) * (count / (last - first))
-    return place.clip(0.0, count - 1.0).astype(np.intp).reshape(values.shape)
+    position = (change(values.ravel()) - first) * (count / (last - first))
+    return position.clip(0.0, count - 1.0).astype(np.intp).reshape(values.shape)
 
 
 def draw_samples(
     axes: Axes, x: np.ndarray, samples: np.ndarray, marks: Marks, label: str = ""
 ) -> None:
-    """Samples over their parameter, darker where there are more; the panel has its scales.
+    """Draw samples over their parameter, darker where there are more; the panel has its scales
+    already.
 
     Parameters
     ----------
@@ -91,14 +92,14 @@ def draw_samples(
     """
     gaps, each = samples.ravel(), samples.shape[1]
     style = {**mark(len(x), marks), "rasterized": True}
-    if len(x) <= FEW:
+    if len(x) <= MAX_DISTINCT:
         axes.plot(np.repeat(x, each), gaps, **style, alpha=0.8, label=label)
         return
-    chosen, count = cells(axes, x, samples)
-    ends = [*(least for least, _ in SHADES[1:]), np.inf]
-    for (least, opacity), end in zip(SHADES, ends, strict=True):
-        some = chosen[(count >= least) & (count < end)]
-        axes.plot(x[some // each], gaps[some], **style, alpha=opacity)
+    chosen, count = one_per_cell(axes, x, samples)
+    ends = [*(minimum for minimum, _ in SHADES[1:]), np.inf]
+    for (minimum, opacity), end in zip(SHADES, ends, strict=True):
+        of_shade = chosen[(count >= minimum) & (count < end)]
+        axes.plot(x[of_shade // each], gaps[of_shade], **style, alpha=opacity)
     size: Any = {"marker": "s", "markersize": 5.0, "linestyle": "none", "color": marks.colour}
     axes.plot([], [], **size, label=label)
 
@@ -106,9 +107,9 @@ def draw_samples(
 def draw_steps(
     axes: Axes, x: np.ndarray, values: np.ndarray, colour: str, width: float = 1.0, **more: Any
 ) -> None:
-    """A quantity that is constant in pieces, with its values marked where they are few."""
+    """Draw a quantity that is constant in pieces, with its values marked where they are few."""
     order = np.argsort(x, kind="stable")
     axes.plot(x[order], values[order], color=colour, linewidth=width, drawstyle="steps-mid", **more)
-    if len(x) <= FEW:
+    if len(x) <= MAX_DISTINCT:
         more = {**more, "label": None}
         axes.plot(x, values, **mark(len(x), Marks(colour, 0.7)), **more)

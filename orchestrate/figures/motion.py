@@ -10,23 +10,23 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import about, prefix
+from .labels import prefix, title_from_attributes
 from .scales import in_si
-from .style import BLACK, BLUE, GREY, RED, entitle, in_our_look, say
+from .style import BLACK, BLUE, GREY, RED, set_title, styled, write_in_panel
 
-PLACES: list[Any] = [["masses", "phases"], ["gap", "relative"], ["force", "spectrum"]]
+LAYOUT: list[Any] = [["masses", "phases"], ["gap", "relative"], ["force", "spectrum"]]
 MASSES: tuple[tuple[str, dict[str, Any]], ...] = (
     ("1", {"color": BLUE, "linewidth": 1.4, "label": "mass 1"}),
     ("2", {"color": RED, "linewidth": 1.0, "linestyle": "--", "label": "mass 2"}),
 )
 GLUED: dict[str, Any] = {"color": GREY, "linewidth": 3.0, "alpha": 0.6, "zorder": 1}
 GLUED["label"] = "both, bonded"
-LEAST = 4  # periods that a spectrum takes
+MIN_PERIODS = 4  # periods that a spectrum takes
 
 
-@in_our_look
+@styled
 def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
-    """Draw a motion over the periods of the excitation, and what it is made of.
+    """Draw a motion over the periods of the excitation, with its phase planes and spectrum.
 
     Parameters
     ----------
@@ -38,8 +38,8 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
         The same of the bonded structure, drawn behind it.
     """
     figure = Figure(figsize=(10.4, 6.8), layout="constrained")
-    axes = figure.subplot_mosaic(PLACES, width_ratios=(2.2, 1))
-    entitle(figure, title or about(data))
+    axes = figure.subplot_mosaic(LAYOUT, width_ratios=(2.2, 1))
+    set_title(figure, title or title_from_attributes(data))
     reach = max(float(np.abs(data[name]).max()) for name in ("x1", "x2"))
     factor, letter = prefix(reach)
     draw_histories(axes, data, factor, letter)
@@ -57,7 +57,7 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
 
 
 def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, letter: str) -> None:
-    """Both masses, the gap with its impacts, and the contact force."""
+    """Draw both masses, the gap with its impacts, and the contact force."""
     turns = data.periods_done.values
     time, gap, _ = relative(data)
     for number, style in MASSES:
@@ -73,7 +73,7 @@ def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, le
     if float(data.contact_force.max()):
         axes["force"].plot(turns, data.contact_force, color=BLACK, linewidth=1.0)
     else:
-        say(axes["force"], "no permanent contact")
+        write_in_panel(axes["force"], "no permanent contact")
     for name in ("masses", "gap"):
         axes[name].sharex(axes["force"])
         axes[name].tick_params(labelbottom=False)
@@ -81,7 +81,7 @@ def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, le
 
 
 def draw_planes(masses: Axes, plane: Axes, data: xr.Dataset, factor: float, letter: str) -> None:
-    """The phase planes of both masses, and of their relative motion."""
+    """Draw the phase planes of both masses, and of their relative motion."""
     slow, prefixed = prefix(speed_of(data))
     for number, style in MASSES:
         masses.plot(data[f"x{number}"] / factor, data[f"v{number}"] / slow, **style)
@@ -92,12 +92,12 @@ def draw_planes(masses: Axes, plane: Axes, data: xr.Dataset, factor: float, lett
 
 
 def speed_of(data: xr.Dataset) -> float:
-    """The largest speed of a mass."""
+    """Return the largest speed of a mass."""
     return max(float(np.abs(data[name]).max()) for name in ("v1", "v2"))
 
 
 def relative(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Time, gap and gap velocity, with both sides of each impact (14) among the points."""
+    """Return time, gap and gap velocity, with both sides of each impact (14) among the points."""
     at, closing = data.impact_time.values, data.impact_velocity.values
     after = np.where(data.sticks.values == 1, 0.0, float(data.attrs.get("e", 0.0)) * closing)
     time = np.concatenate([data.time.values, at, at])
@@ -110,12 +110,14 @@ def relative(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def draw_spectrum(
     axes: Axes, data: xr.Dataset, masses: Iterable[tuple[str, dict[str, Any]]], highest: float = 20
 ) -> float:
-    """Amplitudes of accelerations in the box, the impacts' impulses in them; the largest."""
+    """Draw amplitudes of accelerations in the box, impulses of impacts included; return the
+    largest.
+    """
     turns, time = data.periods_done.values, data.time.values
     periods = float(turns[-1] - turns[0])
-    if periods < LEAST:
+    if periods < MIN_PERIODS:
         if not axes.texts:
-            say(axes, f"a spectrum takes {LEAST} periods")
+            write_in_panel(axes, f"a spectrum takes {MIN_PERIODS} periods")
         return 0.0
     base, top = periods / (time[-1] - time[0]), 0.0
     for number, style in masses:
@@ -130,7 +132,7 @@ def draw_spectrum(
 
 
 def spectrum(displacement: np.ndarray, interval: float) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies in Hz, and (2 pi f)^2 times the displacement's amplitudes (Hann window).
+    """Return frequencies in Hz, and (2 pi f)^2 times the displacement's amplitudes (Hann window).
 
     An impulse is a kink of the displacement, so it is in them.
     """

@@ -11,20 +11,20 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from .style import GREY, in_our_look, panels
+from ..constants import TURN
+from .style import GREY, panels, styled
 from .weak_drive import COLOURS, SINKS
 
-TURN = 2.0 * np.pi
-MOST = 4  # revolutions after which a motion is seen to repeat
-CALM = 0.9  # of the revolutions: the others belong to the jump
+MAX_REPETITION = 4  # revolutions after which a motion is seen to repeat
+CALM_SHARE = 0.9  # of the revolutions: the others belong to the jump
 FLOOR = 1e-4  # of the largest line: the lower end of the colours
 
 
-@in_our_look
+@styled
 def draw(
     runs: Mapping[str, xr.Dataset], spectra: Mapping[str, xr.Dataset], title: str = ""
 ) -> Figure:
-    """Draw passages, one a column.
+    """Draw passages, one per column.
 
     Parameters
     ----------
@@ -37,25 +37,25 @@ def draw(
     """
     count = len(runs)
     figure, axes = panels(5, count, (6.5 * count + 1.0, 14), sharex="col", sharey="row")
-    top = max(float(found.acceleration.max()) for found in spectra.values())
+    top = max(float(spectrum.acceleration.max()) for spectrum in spectra.values())
     for column, (name, data) in enumerate(runs.items()):
-        begin, words = beginning(data)
-        own = axes[column::count]
+        begin, words = time_origin(data)
+        column_axes = axes[column::count]
         period = repeats_after(data)
-        means = over_revolutions(data, period)
+        means = revolution_means(data, period)
         time = data.time.values - begin
-        draw_speed(own[0], time, data, means)
-        own[1].plot(time, data.voltage, color="k", linewidth=1.0)
-        own[2].plot(time, data.x1, color=COLOURS.get(name, "C0"), linewidth=0.3)
-        draw_powers(own[3], time, means)
-        mesh = draw_waterfall(own[4], spectra[name], begin, top)
-        for panel in own[:4]:
+        draw_speed(column_axes[0], time, data, means)
+        column_axes[1].plot(time, data.voltage, color="k", linewidth=1.0)
+        column_axes[2].plot(time, data.x1, color=COLOURS.get(name, "C0"), linewidth=0.3)
+        draw_powers(column_axes[3], time, means)
+        mesh = draw_waterfall(column_axes[4], spectra[name], begin, top)
+        for panel in column_axes[:4]:
             panel.axvline(0.0, color=GREY, linewidth=0.8, zorder=0)
-        own[0].set_title(f"{name}: {told(data)}")
+        column_axes[0].set_title(f"{name}: {format_jumps(data)}")
         turns = "a revolution" if period == 1 else f"{period} revolutions"
-        own[3].set_title(f"means of {turns}, twice")
-        own[4].set_xlabel(f"time {words} in s")
-        own[4].set_xlim(time[0], time[-1])
+        column_axes[3].set_title(f"means of {turns}, twice")
+        column_axes[4].set_xlabel(f"time {words} in s")
+        column_axes[4].set_xlim(time[0], time[-1])
     labels = ("speed in rad/s", "voltage in V", "$x_1$ in m", "power in W", "multiple of the speed")
     for panel, label in zip(axes[::count], labels, strict=True):
         panel.set_ylabel(label)
@@ -68,8 +68,8 @@ def draw(
     return figure
 
 
-def beginning(data: xr.Dataset) -> tuple[float, str]:
-    """The time that counts as 0, and its name."""
+def time_origin(data: xr.Dataset) -> tuple[float, str]:
+    """Return the time that counts as 0, and its name."""
     jumps = data.jump_time.values
     known = np.flatnonzero(np.isfinite(jumps))
     if known.size:
@@ -78,17 +78,19 @@ def beginning(data: xr.Dataset) -> tuple[float, str]:
     return (passed, "from the passage") if np.isfinite(passed) else (0.0, "from the start")
 
 
-def told(data: xr.Dataset) -> str:
-    """The jumps in words, or whether the resonance is passed."""
-    found = [
-        f"jump {way} at {float(data.jumps.sel(jump=way)):.4f} V"
-        for way in data.jump.values
-        if np.isfinite(float(data.jumps.sel(jump=way)))
+def format_jumps(data: xr.Dataset) -> str:
+    """Format the jumps, or whether the resonance is passed."""
+    texts = [
+        f"jump {direction} at {float(data.jumps.sel(jump=direction)):.4f} V"
+        for direction in data.jump.values
+        if np.isfinite(float(data.jumps.sel(jump=direction)))
     ]
     pairs = zip(data.jump.values, data.decided.values, strict=True)
-    found += [f"jump {way} undecided" for way, how in pairs if how == "undecided"]
-    if found:
-        return ", ".join(found)
+    texts += [
+        f"jump {direction} undecided" for direction, decision in pairs if decision == "undecided"
+    ]
+    if texts:
+        return ", ".join(texts)
     passed = float(data.passage_time)
     if np.isfinite(passed):
         return f"beyond the resonance from {passed:.4g} s on"
@@ -96,61 +98,64 @@ def told(data: xr.Dataset) -> str:
 
 
 def repeats_after(data: xr.Dataset) -> int:
-    """Revolutions after which what is lost in impacts in each repeats best; 1 without impacts."""
+    """Return the number of revolutions after which the losses in impacts repeat best; 1 without
+    impacts.
+    """
     angle = np.maximum.accumulate(np.abs(data.angle.values))
     turns = ((angle - angle[0]) // TURN).astype(int)
     first = np.unique(turns, return_index=True)[1]
     lost = np.diff(data.impact_loss.values[first])
-    if len(lost) < 4 * MOST or not lost.any():
+    if len(lost) < 4 * MAX_REPETITION or not lost.any():
         return 1
-    changes = [np.sort(np.abs(lost[lag:] - lost[:-lag])) for lag in range(1, MOST + 1)]
-    sizes = np.array([change[: int(CALM * len(change))].mean() for change in changes])
+    changes = [np.sort(np.abs(lost[lag:] - lost[:-lag])) for lag in range(1, MAX_REPETITION + 1)]
+    sizes = np.array([change[: int(CALM_SHARE * len(change))].mean() for change in changes])
     return 1 + int(np.flatnonzero(sizes <= 2.0 * sizes.min())[0])
 
 
-def over_revolutions(data: xr.Dataset, count: int = 1) -> dict[str, np.ndarray]:
-    """Mean speed of the revolution around each sample, and mean powers of ``count`` revolutions,
-    twice: of one that an impact enters a little late they would jump. NaN at the ends.
+def revolution_means(data: xr.Dataset, count: int = 1) -> dict[str, np.ndarray]:
+    """Return the mean speed of the revolution around each sample, and mean powers of ``count``
+    revolutions, averaged twice: single means would jump when an impact enters a little late. NaN at
+    the ends.
     """
     angle, powers = np.abs(data.angle.values), means_over(data, count)
-    twice = {name: mean_again(angle, values, count) for name, values in powers.items()}
+    twice = {name: smooth_edges(angle, values, count) for name, values in powers.items()}
     return {**twice, "speed": means_over(data, 1)["speed"]}
 
 
-def mean_again(angle: np.ndarray, means: np.ndarray, count: int) -> np.ndarray:
-    """Means of ``count`` revolutions around each sample of what is NaN at the ends."""
+def smooth_edges(angle: np.ndarray, means: np.ndarray, count: int) -> np.ndarray:
+    """Average means of ``count`` revolutions once more; NaN at the ends."""
     from scipy.integrate import cumulative_trapezoid
 
-    far, half = np.maximum.accumulate(angle), 0.5 * count * TURN
+    distance, half = np.maximum.accumulate(angle), 0.5 * count * TURN
     known = np.flatnonzero(np.isfinite(means))
     if not known.size:
         return means
     inner = slice(known[0], known[-1] + 1)
-    total = cumulative_trapezoid(means[inner], far[inner], initial=0.0)
-    before, after = (np.interp(angle + side, far[inner], total) for side in (-half, half))
-    whole = (angle - half >= far[known[0]]) & (angle + half <= far[known[-1]])
-    return np.where(whole, (after - before) / (2.0 * half), np.nan)
+    total = cumulative_trapezoid(means[inner], distance[inner], initial=0.0)
+    before, after = (np.interp(angle + side, distance[inner], total) for side in (-half, half))
+    complete = (angle - half >= distance[known[0]]) & (angle + half <= distance[known[-1]])
+    return np.where(complete, (after - before) / (2.0 * half), np.nan)
 
 
 def means_over(data: xr.Dataset, count: int) -> dict[str, np.ndarray]:
-    """Mean speed and powers of ``count`` revolutions around each sample; NaN at the ends."""
+    """Return mean speed and powers of ``count`` revolutions around each sample; NaN at the ends."""
     angle, time, half = np.abs(data.angle.values), data.time.values, 0.5 * count * TURN
-    far = np.maximum.accumulate(angle)
-    before, after = (np.interp(angle + side, far, time) for side in (-half, half))
+    distance = np.maximum.accumulate(angle)
+    before, after = (np.interp(angle + side, distance, time) for side in (-half, half))
     span = after - before
-    whole = (angle - half > far[0]) & (angle + half < far[-1])
+    complete = (angle - half > distance[0]) & (angle + half < distance[-1])
     turned = np.interp(after, time, angle) - np.interp(before, time, angle)
-    found = {"speed": turned / span}
+    means = {"speed": turned / span}
     for account in ("motor", *SINKS, "stored"):
         values = data[account].values
-        found[account] = (np.interp(after, time, values) - np.interp(before, time, values)) / span
-    return {name: np.where(whole, values, np.nan) for name, values in found.items()}
+        means[account] = (np.interp(after, time, values) - np.interp(before, time, values)) / span
+    return {name: np.where(complete, values, np.nan) for name, values in means.items()}
 
 
 def draw_speed(
     axes: Axes, time: np.ndarray, data: xr.Dataset, revolution: Mapping[str, np.ndarray]
 ) -> None:
-    """The speed at each instant, and its mean over a revolution."""
+    """Draw the speed at each instant, and its mean over a revolution."""
     instant: Any = {"color": "C0", "linewidth": 0.4, "alpha": 0.6, "label": "at the instant"}
     axes.plot(time, np.abs(data.speed), **instant)
     mean: Any = {"color": "k", "linewidth": 1.2, "label": "mean of a revolution"}
@@ -158,7 +163,7 @@ def draw_speed(
 
 
 def draw_powers(axes: Axes, time: np.ndarray, means: Mapping[str, np.ndarray]) -> None:
-    """Where the motor's power goes, means of the motion's period."""
+    """Draw where the motor's power goes, as means over the motion's period."""
     axes.plot(time, means["motor"], "k", linewidth=1.6, label="motor")
     for account, label in SINKS.items():
         axes.plot(time, means[account], linewidth=1.0, label=label)
@@ -166,7 +171,9 @@ def draw_powers(axes: Axes, time: np.ndarray, means: Mapping[str, np.ndarray]) -
 
 
 def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, top: float) -> Any:
-    """Lines over time as colours; the slow swinging of the box below half the speed left out."""
+    """Draw lines over time as colours; the slow swinging of the box below half the speed is left
+    out.
+    """
     shown = spectra.sel(order=slice(0.25, None))
     values = shown.acceleration.values.T.clip(FLOOR * top)
     norm = LogNorm(FLOOR * top, top)

@@ -9,8 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..flags import flag_words
 from .curve_data import panel_of, relative
-from .labels import meanings
 from .style import (
     BLACK,
     BLUE,
@@ -18,18 +18,18 @@ from .style import (
     RED,
     XI_REL,
     XI_REL_RATE,
-    in_our_look,
     legend_below,
     panels,
+    styled,
 )
 
 KIND_COLOURS = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent contact
 CONTACT = 2
 
 
-@in_our_look
+@styled
 def draw_states(data: xr.Dataset) -> Figure:
-    """Both phase planes of one response: of the masses, and of their relative motion.
+    """Draw both phase planes of one response: of the masses, and of their relative motion.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def draw_states(data: xr.Dataset) -> Figure:
     figure, (left, right) = panels(1, 2, (8.5, 4.2))
     state, kind = data.state.values, data.kind.values
     _, gap, rate = relative(data, 0)
-    names = meanings(data.kind)
+    names = flag_words(data.kind.attrs)
     draw_kinds(left, (state[:, 0], state[:, 2]), kind, "-", names)
     draw_kinds(left, (state[:, 1], state[:, 3]), kind, "--", names)
     draw_kinds(right, (gap, rate), kind, "-", names, dotted=True)
@@ -58,20 +58,20 @@ def draw_kinds(
     names: dict[int, str],
     dotted: bool = False,
 ) -> None:
-    """A curve in the colours of its states; contact is thick, or a dot where it is a point."""
+    """Draw a curve in the colours of its states; contact is thick, or a dot where it is a point."""
     for index, colour in enumerate(KIND_COLOURS):
-        here = np.where(kind == index, 1.0, np.nan)
+        of_kind = np.where(kind == index, 1.0, np.nan)
         contact = index == CONTACT
         width = 2.5 if contact and not dotted else 1.0
         marker = "o" if contact and dotted else ""
         label = names[index] if style == "-" else None
         line: Any = {"color": colour, "linewidth": width, "label": label, "marker": marker}
-        axes.plot(curve[0] * here, curve[1] * here, style, **line)
+        axes.plot(curve[0] * of_kind, curve[1] * of_kind, style, **line)
 
 
-@in_our_look
+@styled
 def draw_masses(data: xr.Dataset) -> Figure:
-    """The phase planes of both masses, a panel a response, on one scale.
+    """Draw the phase planes of both masses, one panel per response, on one scale.
 
     Parameters
     ----------

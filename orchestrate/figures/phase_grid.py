@@ -7,12 +7,12 @@ from matplotlib.figure import Figure
 
 from .curve_data import relative
 from .labels import kind_of
-from .style import XI_REL, XI_REL_RATE, in_our_look, panels
+from .style import XI_REL, XI_REL_RATE, panels, styled
 
 
-@in_our_look
+@styled
 def draw(data: xr.Dataset, columns: int = 4) -> Figure:
-    """One phase plane a response.
+    """Draw one phase plane per response.
 
     Parameters
     ----------

@@ -10,17 +10,17 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import about, prefix
-from .marks import FEW, Marks, mark
+from .labels import prefix, title_from_attributes
+from .marks import MAX_DISTINCT, Marks, mark
 from .scales import Along, along, parameter_of
-from .style import BLACK, BLUE, RED, entitle, in_our_look, legend_below
+from .style import BLACK, BLUE, RED, legend_below, set_title, styled
 
 COLOURS = {"delaminated": RED, "bonded": BLUE}
 STYLES: dict[str, Any] = {  # down lies on up
     "up": {"linestyle": "-", "linewidth": 1.8, "alpha": 0.75},
     "down": {"linestyle": "--", "linewidth": 1.0},
 }
-PLACES: list[Any] = [["x1_max", "x2_max"], ["a1_max", "a2_max"], ["x_rel_max", "x_rel_max"]]
+LAYOUT: list[Any] = [["x1_max", "x2_max"], ["a1_max", "a2_max"], ["x_rel_max", "x_rel_max"]]
 NAMES = {
     "x1_max": "max $|x_1|$ in {}m",
     "x2_max": "max $|x_2|$ in {}m",
@@ -30,7 +30,7 @@ NAMES = {
 }
 
 
-@in_our_look
+@styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
     """Draw resonance curves, their peaks and their jumps.
 
@@ -44,9 +44,9 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
         What is shaken; by default the structure and the excitation.
     """
     figure = Figure(figsize=(9.6, 7.6), layout="constrained")
-    rows = [row for row in PLACES if row[0] in data]
+    rows = [row for row in LAYOUT if row[0] in data]
     axes = figure.subplot_mosaic(rows, sharex=True)
-    entitle(figure, title or about(data))
+    set_title(figure, title or title_from_attributes(data))
     parameter = parameter_of(data[rows[0][0]])
     x = along(data, parameter)
     for name, plane in axes.items():
@@ -62,11 +62,13 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_quantity(axes: Axes, values: xr.DataArray, x: Along) -> None:
-    """One quantity's curves, the largest value of each structure told; bonded there is no gap."""
+    """Draw one quantity's curves, with the largest value of each structure; bonded there is no
+    gap.
+    """
     name = str(values.name)
     factor, letter = unit_of(values)
     largest: dict[str, tuple[float, float]] = {}
-    for words, part in curves(values):
+    for words, part in curves_with_labels(values):
         curve = part.values / factor
         if np.nanmax(curve, initial=0.0) <= 0.0:
             continue
@@ -74,7 +76,7 @@ def draw_quantity(axes: Axes, values: xr.DataArray, x: Along) -> None:
         style = STYLES[words.rpartition(", ")[2] if "direction" in values.dims else "up"]
         colour = COLOURS.get(structure, BLACK)
         axes.plot(x.values, curve, **style, color=colour, label=words)
-        if len(x.values) <= FEW // 4:
+        if len(x.values) <= MAX_DISTINCT // 4:
             axes.plot(x.values, curve, **mark(len(x.values), Marks(colour, 0.6)))
         at = int(np.nanargmax(curve))
         largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[at], x.values[at]))
@@ -84,26 +86,26 @@ def draw_quantity(axes: Axes, values: xr.DataArray, x: Along) -> None:
 
 
 def unit_of(values: xr.DataArray) -> tuple[float, str]:
-    """The prefix of a quantity's unit."""
+    """Return the prefix of a quantity's unit."""
     length = str(values.name).startswith("x")
     return prefix(float(values.max())) if length else (1.0, "")
 
 
-def curves(values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
-    """Each structure's and each direction's curve, with its words for the legend."""
-    found = [("", values)]
+def curves_with_labels(values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
+    """Return each structure's and each direction's curve, with its legend entry."""
+    curves = [("", values)]
     for name in ("structure", "direction"):
         if name in values.dims:
-            found = [
+            curves = [
                 (", ".join(filter(None, [words, str(value)])), part.sel({name: value}))
-                for words, part in found
+                for words, part in curves
                 for value in values[name].values
             ]
-    return found
+    return curves
 
 
 def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: Along) -> None:
-    """A triangle on each peak that was found, but where responses are irregular."""
+    """Draw a triangle on each peak, but not where responses are irregular."""
     if not data.sizes.get("peak"):
         return
     factor, _ = unit_of(data[name])
@@ -114,34 +116,34 @@ def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: Along
         height = float(peak[f"peak_{name}"]) / factor
         if height > 0.0:
             colour = COLOURS.get(str(peak.peak_structure.values), BLACK)
-            at = place(float(peak[f"peak_{parameter}"]), data[parameter], x)
+            at = axis_position(float(peak[f"peak_{parameter}"]), data[parameter], x)
             axes.plot(at, height, "v", color=colour, markersize=6.0, markeredgecolor="white")
 
 
 def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: Along) -> None:
-    """A dotted line at each jump of the gap, with its frequency and its direction."""
+    """Draw a dotted line at each jump of the gap, with its frequency and its direction."""
     count = data.sizes.get("jump", 0)
     if count:
         axes.set_ylim(bottom=axes.get_ylim()[0] / 4.0)  # room for words below the curves
     for i in range(count):
         jump = data.isel(jump=i)
-        way = str(jump.jump_direction.values)
-        at = place(float(jump[f"jump_{parameter}"]), data[parameter], x)
+        direction = str(jump.jump_direction.values)
+        at = axis_position(float(jump[f"jump_{parameter}"]), data[parameter], x)
         axes.axvline(at, color=BLACK, linestyle=":", linewidth=0.8)
-        beside: Any = {"fontsize": 7, "rotation": 90, "va": "bottom"}
-        side = "left" if way == "up" else "right"
-        words = f" {at:.5g}, jump {way}"
-        axes.text(at, 0.02, words, ha=side, transform=axes.get_xaxis_transform(), **beside)
+        text_style: Any = {"fontsize": 7, "rotation": 90, "va": "bottom"}
+        side = "left" if direction == "up" else "right"
+        words = f" {at:.5g}, jump {direction}"
+        axes.text(at, 0.02, words, ha=side, transform=axes.get_xaxis_transform(), **text_style)
 
 
-def place(value: float, parameter: xr.DataArray, x: Along) -> float:
-    """Where a value of the parameter is on the axis."""
+def axis_position(value: float, parameter: xr.DataArray, x: Along) -> float:
+    """Return where a value of the parameter is on the axis."""
     order = np.argsort(parameter.values)
     return float(np.interp(value, parameter.values[order], x.values[order]))
 
 
 def list_largest(axes: Axes, largest: Mapping[str, tuple[float, float]]) -> None:
-    """The largest value of each structure with its place, in the corner away from them."""
+    """Write the largest value of each structure with its place, in the corner away from them."""
     middle = float(np.mean(axes.get_xlim()))
     right = all(at < middle for _, at in largest.values())
     for row, (structure, (value, at)) in enumerate(largest.items()):

@@ -10,8 +10,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import GREY, in_our_look, panels
-from .weak_drive import COLOURS, FEW, SINKS
+from .style import GREY, panels, styled
+from .weak_drive import COLOURS, POWER_REVOLUTIONS, SINKS
 
 ROWS = {
     "speed": "mean speed in rad/s",
@@ -21,9 +21,9 @@ ROWS = {
 }
 
 
-@in_our_look
+@styled
 def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> Figure:
-    """Draw runs over time, one a column.
+    """Draw runs over time, one per column.
 
     Parameters
     ----------
@@ -37,15 +37,17 @@ def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> F
     count, rows = len(runs), len(ROWS) + 1
     figure, axes = panels(rows, count, (6.5 * count, 2.6 * rows), sharex=True, sharey="row")
     for column, (name, data) in enumerate(runs.items()):
-        own = axes[column::count]
-        for panel, what in zip(own, ROWS, strict=False):
+        column_axes = axes[column::count]
+        for panel, what in zip(column_axes, ROWS, strict=False):
             points: Any = {"color": COLOURS.get(name, "C0"), "linewidth": 1.0}
             style = "." if what == "impacts" else "-"
             panel.plot(data.time, data[what], style, markersize=2.5, **points)
-        own[0].axhline(resonance, color=GREY, linewidth=1.0, linestyle="--", label="resonance")
-        own[0].set_title(f"{name}: {outcome(data)}")
-        draw_powers(own[-1], data)
-        own[-1].set_xlabel("time in s")
+        column_axes[0].axhline(
+            resonance, color=GREY, linewidth=1.0, linestyle="--", label="resonance"
+        )
+        column_axes[0].set_title(f"{name}: {outcome(data)}")
+        draw_powers(column_axes[-1], data)
+        column_axes[-1].set_xlabel("time in s")
     for panel, label in zip(axes[::count], (*ROWS.values(), "power in W"), strict=True):
         panel.set_ylabel(label)
     axes[0].legend(loc="best")
@@ -56,7 +58,7 @@ def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> F
 
 
 def outcome(data: xr.Dataset) -> str:
-    """Whether the resonance is passed."""
+    """Format whether the resonance is passed."""
     passed = float(data.passage_time)
     if np.isfinite(passed):
         return f"beyond the resonance from {passed:.4g} s on"
@@ -64,13 +66,16 @@ def outcome(data: xr.Dataset) -> str:
 
 
 def draw_powers(axes: Axes, data: xr.Dataset) -> None:
-    """Where the motor's power goes."""
+    """Draw where the motor's power goes."""
     time = data.time.values
-    span, middle = time[FEW:] - time[:-FEW], 0.5 * (time[FEW:] + time[:-FEW])
+    span, middle = (
+        time[POWER_REVOLUTIONS:] - time[:-POWER_REVOLUTIONS],
+        0.5 * (time[POWER_REVOLUTIONS:] + time[:-POWER_REVOLUTIONS]),
+    )
 
     def power(account: str) -> np.ndarray:
         values = data[account].values
-        return np.asarray((values[FEW:] - values[:-FEW]) / span)
+        return np.asarray((values[POWER_REVOLUTIONS:] - values[:-POWER_REVOLUTIONS]) / span)
 
     axes.plot(middle, power("motor"), "k", linewidth=1.6, label="motor")
     for account, label in SINKS.items():

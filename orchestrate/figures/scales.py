@@ -1,4 +1,4 @@
-"""Which numbers an axis shows: hertz and metres for a structure in SI, else the paper's ratios."""
+"""Units of axes: hertz and metres for a structure in SI, else the paper's ratios."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ HERTZ = r"frequency $\Omega/2\pi$ in Hz"
 
 
 class Along(NamedTuple):
-    """What the horizontal axis shows.
+    """Values and label of a horizontal axis.
 
     Attributes
     ----------
@@ -28,27 +28,31 @@ class Along(NamedTuple):
 
 
 def parameter_of(data: xr.DataArray) -> str:
-    """The dimension that a quantity runs along, beside the direction and the structure."""
+    """Return the dimension that a quantity runs along, beside the direction and the structure."""
     (name,) = (str(name) for name in data.dims if name not in ("direction", "structure"))
     return name
 
 
 def in_si(data: xr.Dataset) -> bool:
-    """Whether a structure is told in SI: omega is not 1 rad/s, or frequencies were asked for."""
+    """Return whether a structure is given in SI: omega is not 1 rad/s, or frequencies were asked
+    for.
+    """
     known = all(is_number(data.attrs.get(name)) for name in ("k1", "m1"))
-    own = known and not math.isclose(data.attrs["k1"], data.attrs["m1"], rel_tol=1e-9)
-    return bool(own or "frequency" in data.dims)
+    has_own_frequency = known and not math.isclose(data.attrs["k1"], data.attrs["m1"], rel_tol=1e-9)
+    return bool(has_own_frequency or "frequency" in data.dims)
 
 
 def along(data: xr.Dataset, parameter: str) -> Along:
-    """The parameter's values: frequencies of a structure in SI in hertz."""
+    """Return the parameter's values: frequencies of a structure in SI in hertz."""
     if parameter in ("eta", "frequency") and "frequency" in data.coords and in_si(data):
         return Along(data.frequency.values / (2.0 * np.pi), HERTZ)
     return Along(data[parameter].values, symbol(parameter))
 
 
 def gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
-    """Gaps over a eta^2 as an axis shows them, in m for a structure in SI, and their label."""
+    """Return gaps over a eta^2 as an axis shows them, in m for a structure in SI, and their
+    label.
+    """
     if not (in_si(data) and {"amplitude", "eta"} <= set(data.coords)):
         return values, XI_REL
     metres = values * data.amplitude * data.eta**2

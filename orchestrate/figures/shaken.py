@@ -9,8 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import about, prefix
-from .style import BLACK, BLUE, RED, entitle, in_our_look, say
+from .labels import prefix, title_from_attributes
+from .style import BLACK, BLUE, RED, set_title, styled, write_in_panel
 
 COLUMNS = 400  # of an envelope
 SHORT = 5000  # points that are drawn as a line
@@ -20,7 +20,7 @@ MASSES: tuple[tuple[str, dict[str, Any]], ...] = (
 )
 
 
-@in_our_look
+@styled
 def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
     """Draw a record: what the box did, what both masses felt, the gap and the impacts.
 
@@ -35,7 +35,7 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     """
     figure = Figure(figsize=(10.4, 7.2), layout="constrained")
     rows = figure.subplots(4, 1, sharex=True, height_ratios=(1.0, 1.6, 1.2, 1.2))
-    entitle(figure, title or f"{data.attrs['excitation']}; {about(data)}")
+    set_title(figure, title or f"{data.attrs['excitation']}; {title_from_attributes(data)}")
     box, masses, gap, impacts = rows
     envelope(box, data, "box_acceleration", 1.0, color=BLACK)
     box.set_ylabel("box in m/s$^2$")
@@ -54,11 +54,11 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
 
 
 def draw_impacts(axes: Axes, data: xr.Dataset) -> None:
-    """Each impact's impulse at its time."""
+    """Draw each impact's impulse at its time."""
     count = data.sizes["impact"]
     axes.set_ylabel("impulse in N s")
     if not count:
-        say(axes, "no impacts")
+        write_in_panel(axes, "no impacts")
         return
     size = 5 if count < COLUMNS else 2
     axes.plot(data.impact_time, data.impulse, ".", color=RED, markersize=size)
@@ -66,7 +66,7 @@ def draw_impacts(axes: Axes, data: xr.Dataset) -> None:
 
 
 def outline(axes: Axes, bonded: xr.Dataset) -> None:
-    """The bonded structure's acceleration, as the two lines that it stays between."""
+    """Draw the bonded structure's acceleration as the two lines that it stays between."""
     time, low, high = extremes(bonded.time.values, bonded.a1_abs.values)
     axes.plot(time, high, color=BLACK, linewidth=0.9, label="both, bonded")
     axes.plot(time, low, color=BLACK, linewidth=0.9)
@@ -79,7 +79,9 @@ def extremes(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def envelope(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
-    """A signal: itself where it is short, between its least and largest values where it is long."""
+    """Draw a signal: itself where it is short, between its least and largest values where it is
+    long.
+    """
     time, values = data.time.values, data[name].values / factor
     if len(time) <= SHORT:
         axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})

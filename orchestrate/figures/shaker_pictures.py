@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
 from .fmu_pictures import bare, damper, sketch, spring
-from .style import in_our_look, panels
+from .style import panels, styled
 
 TEXTS = (
     *((1.5, 3.35, "$k_b$"), (1.5, 0.3, "$c_b$"), (3.5, 0.55, "$M_t$")),
@@ -15,9 +15,9 @@ TEXTS = (
 )
 
 
-@in_our_look
+@styled
 def draw_shaker(width: float = 4.2) -> Figure:
-    """A box on a spring and a damper, with a motor that turns an unbalance."""
+    """Draw a box on a spring and a damper, with a motor that turns an unbalance."""
     figure, axes = sketch(width)
     axes.plot([0, 0], [0, 4], "k", lw=2.5)
     spring(axes, 0.0, 2.9, 3.0)
@@ -34,9 +34,9 @@ def draw_shaker(width: float = 4.2) -> Figure:
     return figure
 
 
-@in_our_look
+@styled
 def draw_run_up(times: np.ndarray, speed: np.ndarray, position: np.ndarray) -> Figure:
-    """Speed of the rotor and position of the box over time.
+    """Draw speed of the rotor and position of the box over time.
 
     Parameters
     ----------

@@ -9,9 +9,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import about
+from .labels import title_from_attributes
 from .scales import in_si
-from .style import BLACK, BLUE, ORANGE, entitle, in_our_look, legend_below, panels
+from .style import BLACK, BLUE, ORANGE, legend_below, panels, set_title, styled
 
 SIDES: tuple[dict[str, dict[str, Any]], ...] = (  # left and right; a thin line lies on a wide one
     {"bonded": {"color": BLUE, "linewidth": 1.2, "label": "bonded"}},
@@ -26,9 +26,9 @@ SIDES: tuple[dict[str, dict[str, Any]], ...] = (  # left and right; a thin line 
 )
 
 
-@in_our_look
+@styled
 def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> Figure:
-    """A row a frequency, the bonded structure left and the delaminated one right.
+    """Draw one row per frequency, the bonded structure left and the delaminated one right.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
     along = str(shown.dims[0])
     count = data.sizes[along]
     figure, axes = panels(count, 2, (9.6, 0.9 + 2.1 * count), sharex=not in_si(data), sharey="row")
-    entitle(figure, title or about(data))
+    set_title(figure, title or title_from_attributes(data))
     for index in range(count):
         part = shown.isel({along: index})
         for plane, kinds in zip(axes[2 * index : 2 * index + 2], SIDES, strict=True):
@@ -65,13 +65,15 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
 def draw_panel(
     axes: Axes, data: xr.Dataset, amplitudes: xr.DataArray, kinds: dict[str, dict[str, Any]]
 ) -> None:
-    """Some kinds of lines at one frequency."""
+    """Draw the spectra of some structures (bonded, delaminated) at one frequency."""
     si = in_si(data)
     speed = float(amplitudes.frequency)
     lines = data.order.values * (speed / (2.0 * np.pi) if si else 1.0)
     for kind, style in kinds.items():
         if kind in data.kind.values:
             axes.semilogy(lines, amplitudes.sel(kind=kind), **style)
-    place = f"{speed / (2.0 * np.pi):.4g} Hz" if si else rf"$\eta$ = {float(amplitudes.eta):.4g}"
-    axes.set_title(f"{next(iter(kinds))}, {place}")
+    frequency_text = (
+        f"{speed / (2.0 * np.pi):.4g} Hz" if si else rf"$\eta$ = {float(amplitudes.eta):.4g}"
+    )
+    axes.set_title(f"{next(iter(kinds))}, {frequency_text}")
     axes.set_xlim(0.0, float(lines.max()))

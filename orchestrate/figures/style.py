@@ -1,4 +1,4 @@
-"""The one look of all pictures, in force while one is drawn and no longer."""
+"""Style of all pictures, in force while one is drawn and no longer."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ BLACK, GREY = "#000000", "#8c8c8c"
 BLUE, RED, GREEN = "#0072b2", "#d55e00", "#009e73"
 ORANGE, SKY, PURPLE, YELLOW = "#e69f00", "#56b4e9", "#cc79a7", "#f0e442"
 PALETTE = (BLUE, ORANGE, GREEN, RED, PURPLE, SKY, YELLOW)
-LOOK: dict[str, Any] = {
+STYLE: dict[str, Any] = {
     "axes.grid": True,
     "axes.axisbelow": True,
     "grid.alpha": 0.25,
@@ -37,22 +37,22 @@ LOOK: dict[str, Any] = {
 }
 XI_REL, XI_REL_RATE = r"$\xi_{\mathrm{Rel}}$", r"$\xi'_{\mathrm{Rel}}$"
 LETTERS_AN_INCH = 14  # of a title
-HARD = "\xa0"  # a space that no line breaks at
+NO_BREAK_SPACE = "\xa0"  # a space that no line breaks at
 
 Arguments = ParamSpec("Arguments")
 
 
-def look() -> AbstractContextManager[None]:
-    """Our settings on top of matplotlib's own, whatever the user's are, inside a ``with``."""
-    return matplotlib.style.context(LOOK, after_reset=True)
+def style() -> AbstractContextManager[None]:
+    """Return a context in which our settings replace the user's."""
+    return matplotlib.style.context(STYLE, after_reset=True)
 
 
-def in_our_look(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
-    """A drawing function that draws in our look."""
+def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
+    """Decorate a drawing function so that it draws in our style."""
 
     @functools.wraps(draw)
     def drawn(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Figure:
-        with look():
+        with style():
             return draw(*args, **kwargs)
 
     return drawn
@@ -61,7 +61,7 @@ def in_our_look(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure
 def panels(
     rows: int, columns: int, size: tuple[float, float], **more: Any
 ) -> tuple[Figure, list[Axes]]:
-    """A figure with its axes as a flat list, row by row.
+    """Make a figure with its axes as a flat list, row by row.
 
     Parameters
     ----------
@@ -76,17 +76,19 @@ def panels(
     return figure, list(axes.ravel())
 
 
-def entitle(figure: Figure, title: str) -> None:
-    """A title above all panels, on as many lines as it needs."""
+def set_title(figure: Figure, title: str) -> None:
+    """Write a title above all panels, on as many lines as it needs."""
     if title:
         letters = int(LETTERS_AN_INCH * figure.get_figwidth())
-        parts = title.replace(" ", HARD).replace(f",{HARD}", ", ")  # breaks after commas alone
+        parts = title.replace(" ", NO_BREAK_SPACE).replace(
+            f",{NO_BREAK_SPACE}", ", "
+        )  # breaks after commas alone
         lines = textwrap.fill(parts, letters, break_long_words=False)
-        figure.suptitle(lines.replace(HARD, " "), x=0.01, ha="left")
+        figure.suptitle(lines.replace(NO_BREAK_SPACE, " "), x=0.01, ha="left")
 
 
 def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:
-    """One legend for some panels, below them, where it covers nothing; each word once.
+    """Draw one legend for some panels, below them, where it covers nothing; each entry once.
 
     Parameters
     ----------
@@ -102,11 +104,11 @@ def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more:
         handles, labels = plane.get_legend_handles_labels()
         words = {**dict(zip(labels, handles, strict=True)), **words}
     if words:
-        place: Any = {"loc": "outside lower right", "ncols": min(columns, len(words))}
-        figure.legend(list(words.values()), list(words), **place, **more)
+        position: Any = {"loc": "outside lower right", "ncols": min(columns, len(words))}
+        figure.legend(list(words.values()), list(words), **position, **more)
 
 
-def say(axes: Axes, words: str) -> None:
-    """Words in the middle of a panel that has nothing to show."""
+def write_in_panel(axes: Axes, words: str) -> None:
+    """Write a text in the middle of a panel that has nothing to show."""
     middle: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
     axes.text(0.5, 0.5, words, color=GREY, fontsize=11, **middle)

@@ -8,12 +8,12 @@ from matplotlib.figure import Figure
 
 from .curve_data import relative
 from .labels import kind_of
-from .style import BLACK, BLUE, XI_REL, in_our_look, panels
+from .style import BLACK, BLUE, XI_REL, panels, styled
 
 
-@in_our_look
+@styled
 def draw(data: xr.Dataset) -> Figure:
-    """Gap over time in periods of the excitation, and sin(eta tau).
+    """Draw the gap over time in periods of the excitation, and sin(eta tau).
 
     Parameters
     ----------

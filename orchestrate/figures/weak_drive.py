@@ -10,18 +10,20 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import in_our_look, panels
+from .style import panels, styled
 
 COLOURS = {"bonded": "C0", "delaminated": "C3"}
-BACK = "C1"  # impacts on the way back
+COLOUR_OF_RETURN = "C1"  # impacts on the way back
 SINKS = {
     "dampers": "dampers of the masses",
     "box_damper": "damper of the box",
     "impact_loss": "impacts",
 }
-WINDOW = 10  # revolutions that impacts are averaged over
-FEW = 2  # revolutions that powers are averaged over, twice: a motion may repeat after two
-AROUND = 500.0  # time shown before and after a jump, in 1/omega
+IMPACT_REVOLUTIONS = 10  # revolutions that impacts are averaged over
+POWER_REVOLUTIONS = (
+    2  # revolutions that powers are averaged over, twice: a motion may repeat after two
+)
+TIME_AROUND_JUMP = 500.0  # time shown before and after a jump, in 1/omega
 THEORY = "averaged theory, bonded"
 MARKS = {  # of bifurcations
     **{"fold": "o", "Neimark-Sacker": "s", "period doubling": "^"},
@@ -30,7 +32,7 @@ MARKS = {  # of bifurcations
 HISTORIES = {"speed": "mean speed in rad/s", "amplitude": "amplitude of $x_1$ in m"}
 
 
-@in_our_look
+@styled
 def draw(
     runs: Mapping[str, xr.Dataset],
     theory: xr.Dataset | None = None,
@@ -51,16 +53,20 @@ def draw(
         What is shown: set, rate, volts.
     """
     shown = {name: without_beginning(data) for name, data in runs.items()}
-    jumps = [str(way) for way in ("up", "down") if any(jumped(data, way) for data in runs.values())]
+    jumps = [
+        str(direction)
+        for direction in ("up", "down")
+        if any(jumped(data, direction) for data in runs.values())
+    ]
     figure, axes = panels(2 + len(jumps), 2, (13, 8.5 + 4.25 * len(jumps)))
     for name, data in shown.items():
-        for part, style, way in ways(data):
-            label = f"{name}, {way}"
+        for part, style, direction in split_directions(data):
+            label = f"{name}, {direction}"
             line: Any = {"color": COLOURS[name], "linewidth": 1.2, "label": label}
             axes[0].plot(data.voltage[part], data.speed[part], style, **line)
             axes[1].plot(data.speed[part], data.amplitude[part], style, **line)
             if name == "delaminated":
-                draw_impacts(axes[2], data.isel(revolution=part), way)
+                draw_impacts(axes[2], data.isel(revolution=part), direction)
         mark_jumps(axes[0], data, name)
     for row, jump in enumerate(jumps):
         draw_histories(axes[4 + 2 * row], runs, jump, "speed")
@@ -75,14 +81,16 @@ def draw(
         figure.suptitle(title)
     name = list(runs)[-1]
     draw_powers(axes[3], shown[name], name)
-    axes[0].set_title("\n".join(filter(None, (jumps_of(*item) for item in runs.items()))))
+    axes[0].set_title("\n".join(filter(None, (format_jumps(*item) for item in runs.items()))))
     label_axes(axes)
     limit_axes(axes, list(shown.values()))
     return figure
 
 
 def without_beginning(data: xr.Dataset) -> xr.Dataset:
-    """A run without its spin-up and settling: up to the end of the first constant voltage."""
+    """Return a run without its spin-up and settling: up to the end of the first constant
+    voltage.
+    """
     change = np.abs(np.diff(data.voltage.values))
     holds = change <= 1e-3 * change.max(initial=0.0)
     if not holds.any() or holds.all():
@@ -94,42 +102,44 @@ def without_beginning(data: xr.Dataset) -> xr.Dataset:
     return data.isel(revolution=slice(end, None)) if early else data
 
 
-def jumped(data: xr.Dataset, way: str) -> bool:
-    """Whether there is a jump up or down."""
-    return bool(np.isfinite(float(data.jumps.sel(jump=way))))
+def jumped(data: xr.Dataset, direction: str) -> bool:
+    """Return whether there is a jump up or down."""
+    return bool(np.isfinite(float(data.jumps.sel(jump=direction))))
 
 
-def jumps_of(name: str, data: xr.Dataset) -> str:
-    """The jumps of a run in words."""
-    found = [
-        f"{way} at {float(data.jumps.sel(jump=way)):.4f} V"
-        for way in ("up", "down")
-        if jumped(data, way)
+def format_jumps(name: str, data: xr.Dataset) -> str:
+    """Format the jumps of a run."""
+    texts = [
+        f"{direction} at {float(data.jumps.sel(jump=direction)):.4f} V"
+        for direction in ("up", "down")
+        if jumped(data, direction)
     ]
-    found += [f"{way} undecided" for way in undecided_ways(data)]
-    return f"{name}: jump {', '.join(found)}" if found else f"{name}: no jump"
+    texts += [f"{direction} undecided" for direction in undecided_directions(data)]
+    return f"{name}: jump {', '.join(texts)}" if texts else f"{name}: no jump"
 
 
-def undecided_ways(data: xr.Dataset) -> list[str]:
-    """Directions in which held voltages leave it undecided whether the speed jumps."""
+def undecided_directions(data: xr.Dataset) -> list[str]:
+    """Return directions in which the held-voltage test leaves undecided whether the speed jumps."""
     decided = zip(data.jump.values, data.decided.values, strict=True)
-    return [str(way) for way, how in decided if how == "undecided"]
+    return [str(direction) for direction, decision in decided if decision == "undecided"]
 
 
-def ways(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
-    """Revolutions on the way there and on the way back, with a line style and a name for each."""
+def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
+    """Return the revolutions of the way there and of the way back, with a line style and a name for
+    each.
+    """
     voltage = data.voltage.values
     turn = int(np.argmax(np.abs(voltage - voltage[0])))
-    there, back = np.arange(0, turn + 1), np.arange(turn + 1, len(voltage))
+    outward, back = np.arange(0, turn + 1), np.arange(turn + 1, len(voltage))
     if turn == 0:  # a constant voltage
-        there, back = np.arange(len(voltage)), np.arange(0)
-    found = [(there, "-", "there"), (back, "--", "back")]
-    return [way for way in found if way[0].size]
+        outward, back = np.arange(len(voltage)), np.arange(0)
+    legs = [(outward, "-", "there"), (back, "--", "back")]
+    return [leg for leg in legs if leg[0].size]
 
 
-@in_our_look
+@styled
 def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
-    """Draw stationary motions alone.
+    """Draw branches of stationary motions alone, without runs.
 
     Parameters
     ----------
@@ -157,7 +167,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
-    """Stationary motions, thin and pale under the ramps: dashed where they are unstable."""
+    """Draw stationary motions, thin and pale under the ramps: dashed where they are unstable."""
     for name in branches.structure.values:
         for i, leg in enumerate(branches.leg.values):
             branch = branches.sel(structure=name, leg=leg)
@@ -173,44 +183,46 @@ def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
                 axes[1].plot(speed, amplitude, style, **line)
 
 
-def mean_of(values: np.ndarray, count: int = WINDOW) -> np.ndarray:
-    """The running mean."""
+def running_mean(values: np.ndarray, count: int = IMPACT_REVOLUTIONS) -> np.ndarray:
+    """Return the running mean."""
     return np.convolve(values, np.full(count, 1.0 / count), "valid")
 
 
-def draw_impacts(axes: Axes, data: xr.Dataset, way: str) -> None:
-    """Impacts of each revolution, and their running mean."""
+def draw_impacts(axes: Axes, data: xr.Dataset, direction: str) -> None:
+    """Draw the impacts of each revolution, and their running mean."""
     speed, count = data.speed.values, data.impacts.values
-    colour, style = (COLOURS["delaminated"], "-") if way == "there" else (BACK, "--")
+    colour, style = (
+        (COLOURS["delaminated"], "-") if direction == "there" else (COLOUR_OF_RETURN, "--")
+    )
     axes.plot(speed, count, ".", markersize=2.0, color=colour, alpha=0.3)
-    if len(count) > WINDOW:
-        label = f"delaminated, {way}, mean of {WINDOW}"
+    if len(count) > IMPACT_REVOLUTIONS:
+        label = f"delaminated, {direction}, mean of {IMPACT_REVOLUTIONS}"
         line: Any = {"color": colour, "linewidth": 1.2, "label": label}
-        axes.plot(mean_of(speed), mean_of(count), style, **line)
+        axes.plot(running_mean(speed), running_mean(count), style, **line)
     if count.size and count.max() > 10.0:
         axes.set_yscale("log")
 
 
 def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
-    """The voltages at which the speed jumps."""
+    """Mark the voltages at which the speed jumps."""
     for value in data.jumps.values:
         if np.isfinite(value):
             axes.axvline(value, color=COLOURS[name], linewidth=0.6, alpha=0.6)
-    for way in undecided_ways(data):
-        at = data.sel(jump=way)
+    for direction in undecided_directions(data):
+        at = data.sel(jump=direction)
         ends = [float(at.held_jumps) + sign * float(at.held_error) for sign in (-1.0, 1.0)]
         if np.isfinite(ends).all():
-            label = f"{name}, jump {way} undecided"
+            label = f"{name}, jump {direction} undecided"
             axes.axvspan(*ends, color=COLOURS[name], linewidth=0.0, alpha=0.15, label=label)
 
 
 def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str, what: str) -> None:
-    """Speed or amplitude over time around a jump."""
+    """Draw speed or amplitude over time around a jump."""
     for name, data in runs.items():
         at = data.sel(jump=jump)
         if not jumped(data, jump):
             continue
-        span = AROUND * float(data.Omega[-1] / data.speed[-1])
+        span = TIME_AROUND_JUMP * float(data.Omega[-1] / data.speed[-1])
         time = data.time.values - float(at.jump_time)
         near = np.abs(time) < span
         label = f"{name}, {float(at.jumps):.4f} V"
@@ -219,27 +231,31 @@ def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str, what: 
 
 
 def draw_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
-    """Mean power of the motor and where it goes, against the speed, one way."""
-    there = ways(data)[0][0]
-    if len(there) < 3 * FEW:
+    """Draw the mean power of the motor and where it goes, against the speed, one way."""
+    outward = split_directions(data)[0][0]
+    if len(outward) < 3 * POWER_REVOLUTIONS:
         return
-    time, ends = data.time.values[there], data.speed.values[there]
-    span = time[FEW:] - time[:-FEW]
-    speed = mean_of(mean_of(ends[1:], FEW), FEW)
+    time, ends = data.time.values[outward], data.speed.values[outward]
+    span = time[POWER_REVOLUTIONS:] - time[:-POWER_REVOLUTIONS]
+    speed = running_mean(running_mean(ends[1:], POWER_REVOLUTIONS), POWER_REVOLUTIONS)
 
     def power(account: str) -> np.ndarray:
-        values = data[account].values[there]
-        return mean_of((values[FEW:] - values[:-FEW]) / span, FEW)
+        values = data[account].values[outward]
+        return running_mean(
+            (values[POWER_REVOLUTIONS:] - values[:-POWER_REVOLUTIONS]) / span, POWER_REVOLUTIONS
+        )
 
     axes.plot(speed, power("motor"), "k", linewidth=1.5, label="motor")
     for account, label in SINKS.items():
         axes.plot(speed, power(account), linewidth=1.0, label=label)
     axes.plot(speed, power("stored"), color="0.7", linewidth=0.8, label="stored")
-    axes.set_title(f"power, {name}, on the way there, means of {FEW} revolutions, twice")
+    axes.set_title(
+        f"power, {name}, on the way there, means of {POWER_REVOLUTIONS} revolutions, twice"
+    )
 
 
 def label_axes(axes: Sequence[Axes]) -> None:
-    """Names of what is drawn."""
+    """Label all axes."""
     speed = "mean speed in rad/s"
     axes[0].set(xlabel="voltage in V", ylabel=speed)
     axes[1].set(xlabel=speed, ylabel="amplitude of $x_1$ in m")
@@ -251,7 +267,7 @@ def label_axes(axes: Sequence[Axes]) -> None:
 
 
 def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:
-    """Ranges of the computed runs: the theory goes on."""
+    """Limit the axes to the computed runs: the theory goes on."""
 
     def ends(name: str) -> tuple[float, float]:
         values = np.concatenate([data[name].values for data in runs])

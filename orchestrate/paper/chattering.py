@@ -72,7 +72,7 @@ class ChatteringJob(Job):
         ]
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Structure], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
         """One sequence."""
         (structure,) = items

@@ -107,7 +107,7 @@ class CurvesJob(Job):
         return list(enumerate(self.panels([inputs[name] for name in self.sweeps])))
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[tuple[int, Panel]], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[tuple[int, Panel]], previous: Table | None
     ) -> Table:
         """One panel."""
         ((index, panel),) = items

@@ -31,11 +31,11 @@ class DerivedJob(Job):
         return [(job, item) for item in job.items({})]
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[tuple[Job, Any]], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[tuple[Job, Any]], previous: Table | None
     ) -> Table:
         """Some of its items."""
         job = items[0][0]
-        return job.work(fmus, [item for _, item in items], carry)
+        return job.work(fmus, [item for _, item in items], previous)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Its result."""

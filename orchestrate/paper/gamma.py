@@ -62,7 +62,7 @@ class GammaJob(Job):
         self,
         fmus: Mapping[str, Path],
         items: Sequence[tuple[Structure, tuple[float, float]]],
-        carry: Table | None,
+        previous: Table | None,
     ) -> Table:
         """One short sweep."""
         ((structure, ends),) = items

@@ -133,7 +133,7 @@ class LargestJob(Job):
         return Candidate(point, tuple((end * point.scale).tolist()), screened)
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Searched], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Searched], previous: Table | None
     ) -> Table:
         """One region: its candidates in turn, until one is steady."""
         ((number, candidates),) = items

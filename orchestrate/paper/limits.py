@@ -110,7 +110,7 @@ class LimitsJob(Job):
         self,
         fmus: Mapping[str, Path],
         items: Sequence[tuple[int, Structure, tuple[float, ...]]],
-        carry: Table | None,
+        previous: Table | None,
     ) -> Table:
         """One branch."""
         ((number, structure, state),) = items

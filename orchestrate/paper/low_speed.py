@@ -67,7 +67,9 @@ class LowSpeedJob(Job):
         """The structures under their excitations."""
         return self.points
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
+    ) -> Table:
         """Some motions."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return {"rows": np.array([self.counted(instance, point) for point in items])}

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..running.executors import Processes, at_work
+from ..running.executors import Processes, running_workers
 from ..running.store import load
 
 if TYPE_CHECKING:
@@ -56,11 +56,11 @@ def attractors(name: str, data: xr.Dataset) -> Figure:
 def basin(name: str, data: xr.Dataset) -> Figure:
     """The plane of starts."""
     from ..figures import basin as figure
-    from ..figures.labels import about
+    from ..figures.labels import title_from_attributes
     from ..figures.style import XI_REL, XI_REL_RATE
 
     replaced = "frequency", "amplitude"  # by what the job has found
-    title = rf"{about(data, replaced)}, $\eta$ = {float(data.eta):.3f}"
+    title = rf"{title_from_attributes(data, replaced)}, $\eta$ = {float(data.eta):.3f}"
     return figure.draw(data, title, (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
 
 
@@ -113,7 +113,7 @@ def draw_all(parts: Sequence[Part], output: Path, processes: int) -> dict[str, P
     waiting = [part for part in parts if not is_current(part, output)]
     if min(len(waiting), processes) < 2:
         return {part.name: draw_part(part, output) for part in parts}
-    with at_work(Processes(processes)) as workers, warnings.catch_warnings():
+    with running_workers(Processes(processes)) as workers, warnings.catch_warnings():
         restarted = "A worker was restarted"  # loky: a picture took memory, which is no leak
         warnings.filterwarnings("ignore", message=restarted)
         submit = workers.executor.submit

@@ -64,7 +64,7 @@ def reproduce(
     """
     whole = plan.make(resolution)
     parts = whole.choose(figures)
-    options, find = RunOptions.of(running), finder(running)
+    options, find = RunOptions.from_keywords(running), finder(running)
     answer_all(whole.needed(parts), output, options, find)
     drawn = [part for part in parts if part.picture]
     pictures = draw_all(drawn, output, options.processes)

@@ -44,7 +44,7 @@ class SettledJob(OnwardQuestion):
     chunk: ClassVar[int] = 20
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
     ) -> Table:
         """Some responses."""
         rows, ends, contacts = [], [], []

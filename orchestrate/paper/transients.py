@@ -47,7 +47,7 @@ class LaterJob(OnwardQuestion):
     chunk: ClassVar[int] = 20
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Followed], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
     ) -> Table:
         """Some responses."""
         rows = []

@@ -1,18 +1,20 @@
 """How a shaken structure responds: its motion in time, along a parameter, as spectra.
 
-=====================  ============================================================================
-module                 idea
-=====================  ============================================================================
-:mod:`.questions`      at which structures and excitations a question is asked
-:mod:`.labels`         units and long names of what is answered
-:mod:`.equations`      accelerations from the state: (6) and (18)
-:mod:`.multiplicity`   after how many periods a response repeats
-:mod:`.respond`        one settled response: stroboscopic samples, impacts, largest gap
-:mod:`.peaks`          amplitudes and peak accelerations of both masses
-:mod:`.simulate`       a motion in time
-:mod:`.sweep`          responses along a parameter, each from the end of the last
-:mod:`.resonance`      resonance curves, bonded against delaminated, with peaks and jumps
-:mod:`.curves`         phase curves with both sides of each impact
-:mod:`.spectra`        amplitude spectra of the masses' accelerations
-=====================  ============================================================================
+==========================  ==================================================================
+module                      idea
+==========================  ==================================================================
+:mod:`.questions`           arguments of a question: structures and excitations
+:mod:`.labels`              units and long names of results
+:mod:`.equations`           accelerations from the state: (6) and (18)
+:mod:`.multiplicity`        period of a response in excitation periods
+:mod:`.respond`             steady-state response at one excitation
+:mod:`.peaks`               amplitudes and peak accelerations of both masses
+:mod:`.simulate`            a motion in time
+:mod:`.sweep`               responses along a parameter, each from the end of the last
+:mod:`.resonance`           resonance curves, bonded against delaminated, with peaks and jumps
+:mod:`.relative_resonance`  continuation of a response until its largest gap has a maximum
+:mod:`.turns_and_jumps`     significant maxima and jumps of a curve
+:mod:`.curves`              phase curves with both sides of each impact
+:mod:`.spectra`             amplitude spectra of the masses' accelerations
+==========================  ==================================================================
 """

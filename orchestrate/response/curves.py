@@ -17,7 +17,7 @@ KINDS = {FLIGHT: "separate motion", SEQUENCE: "sequence of impacts", CONTACT: "p
 
 
 class Curve(NamedTuple):
-    """A motion with its jumps: at an impact two points have the same time.
+    """Sampled motion with its jumps: at an impact two points have the same time.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ def trace(
     periods: int,
     points: int,
 ) -> Curve:
-    """A motion after ``transient`` periods, over ``periods`` periods.
+    """Compute a motion over ``periods`` periods after a transient.
 
     Parameters
     ----------
@@ -71,21 +71,21 @@ def trace(
         begin(instance, *point, start)
         if transient:
             instance.step(0.0, first)
-        here = np.array([instance.get(*STATE)])
-        states = np.concatenate([here, sampled(instance, first, last, periods * points)])
-    return put_together(np.linspace(first, last, len(states)), states, impacts, point)
+        end_state = np.array([instance.get(*STATE)])
+        states = np.concatenate([end_state, sampled(instance, first, last, periods * points)])
+    return merge_by_time(np.linspace(first, last, len(states)), states, impacts, point)
 
 
-def put_together(
+def merge_by_time(
     grid: NDArray[np.float64], states: NDArray[np.float64], impacts: Impacts, point: Point
 ) -> Curve:
-    """States at equal times, before and after impacts, in the order of time."""
+    """Merge states at equal times with those before and after impacts, in the order of time."""
     count = len(impacts.time)
     time = np.concatenate([grid, impacts.time, impacts.time])
-    place = np.repeat([0, 1, 2], [len(grid), count, count])
-    order = np.lexsort((place, time))
-    parts = [states, impacts.before(point.structure), impacts.state]
-    state, time = np.concatenate(parts)[order], time[order]
+    rank = np.repeat([0, 1, 2], [len(grid), count, count])
+    order = np.lexsort((rank, time))
+    pieces = [states, impacts.before(point.structure), impacts.state]
+    state, time = np.concatenate(pieces)[order], time[order]
     kind = kinds(time, state, impacts)
     omega = point.structure.omega
     return Curve(omega * time - omega * grid[0], state / point.scale, kind)
@@ -94,7 +94,7 @@ def put_together(
 def kinds(
     time: NDArray[np.float64], state: NDArray[np.float64], impacts: Impacts
 ) -> NDArray[np.int8]:
-    """Which of the three states of Figure 5 each point belongs to.
+    """Classify each point by the three states of Figure 5.
 
     A sequence of impacts is what leads to permanent contact: flights each shorter than the one
     before it.

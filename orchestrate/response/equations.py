@@ -1,4 +1,4 @@
-"""Accelerations from the state by (6), in permanent contact those of both masses as one.
+"""Accelerations from the state by (6); in permanent contact those of both masses as one.
 
 In space a mass feels springs, dampers and the other mass; relative to the box minus the box's
 acceleration, ``a Omega^2 sin(phase)``, comes to it.
@@ -31,8 +31,8 @@ class Rates(NamedTuple):
     damping: Floats
 
     @classmethod
-    def of(cls, structures: Iterable[Structure]) -> Rates:
-        """Those of n structures."""
+    def from_structures(cls, structures: Iterable[Structure]) -> Rates:
+        """Return the rates of n structures."""
         rows = [(s.m1, s.m2, s.k1, s.k2, s.d1, s.d2) for s in structures]
         m1, m2, k1, k2, d1, d2 = np.array(rows).T
         both = m1 + m2
@@ -40,8 +40,8 @@ class Rates(NamedTuple):
         damping = [d1 / m1, d2 / m2, (d1 + d2) / both]
         return cls(np.array(stiffness), np.array(damping))
 
-    def felt(self, touching: Flags) -> Rates:
-        """What each mass feels: its own rates, or those of both where they touch.
+    def effective(self, touching: Flags) -> Rates:
+        """Return the rates that act on each mass: its own, or those of both while they touch.
 
         Parameters
         ----------
@@ -54,28 +54,29 @@ class Rates(NamedTuple):
 
         return Rates(chosen(self.stiffness), chosen(self.damping))
 
-    def pull(self, x: Floats, v: Floats) -> Floats:
-        """``-(k x + d v)/m`` of each mass, from rates that it feels; shape (2, ...)."""
-        found: Floats = -(self.stiffness * x + self.damping * v)
-        return found
+    def restoring_acceleration(self, x: Floats, v: Floats) -> Floats:
+        """Return ``-(k x + d v)/m`` of each mass, by the rates that act on it; shape (2, ...)."""
+        acceleration: Floats = -(self.stiffness * x + self.damping * v)
+        return acceleration
 
 
 def in_touch(states: Floats) -> Flags:
-    """Whether states are of permanent contact: there the FMU gives both masses the same numbers.
+    """Return whether states are of permanent contact: there the FMU gives both masses the same
+    numbers.
 
     Parameters
     ----------
     states : ndarray, shape (..., 4)
         x1, x2, v1, v2.
     """
-    found: Flags = (states[..., 0] == states[..., 1]) & (states[..., 2] == states[..., 3])
-    return found
+    touching: Flags = (states[..., 0] == states[..., 1]) & (states[..., 2] == states[..., 3])
+    return touching
 
 
 def absolute_accelerations(
     states: Floats, structure: Structure, touching: Flags | None = None
 ) -> Floats:
-    """Accelerations in space, what an accelerometer on a mass reads between impacts.
+    """Return accelerations in space: what an accelerometer on a mass reads between impacts.
 
     Parameters
     ----------
@@ -97,6 +98,6 @@ def absolute_accelerations(
     array([[ 1. , -1.2]])
     """
     together = in_touch(states) if touching is None else touching
-    felt = Rates.of([structure]).felt(together[None])
+    felt = Rates.from_structures([structure]).effective(together[None])
     columns = states.T[:, None, :]
-    return felt.pull(columns[:2], columns[2:])[:, 0].T
+    return felt.restoring_acceleration(columns[:2], columns[2:])[:, 0].T

@@ -1,4 +1,4 @@
-"""Units and long names: every variable and coordinate of a result says what it is."""
+"""Units and long names of every variable and coordinate of a result."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..structures.ranges import EXCITATION, NUMBERS, STRUCTURE
+from ..structures.ranges import EXCITATION, RATIO_QUANTITIES, STRUCTURE
 
 Dims = str | tuple[str, ...]
 Variable = tuple[Dims, Any, dict[str, Any]]
@@ -16,12 +16,12 @@ STATE = ("x1", "x2", "v1", "v2")  # of a state in m and m/s
 
 
 def variable(dims: Dims, values: Any, units: str, long_name: str, **more: Any) -> Variable:
-    """A variable or coordinate as :class:`xarray.Dataset` takes it."""
+    """Return a variable or coordinate as :class:`xarray.Dataset` takes it."""
     return dims, values, {"units": units, "long_name": long_name, **more}
 
 
 def flags(dims: Dims, values: Any, long_name: str, meanings: Mapping[int, str]) -> Variable:
-    """Numbers that stand for words, with CF's attributes that say which."""
+    """Return numbers that stand for words, with CF's attributes that give the words."""
     words = " ".join(word.replace(" ", "_") for word in meanings.values())
     numbers = np.array(list(meanings), dtype=np.int8)
     values = np.asarray(values, dtype=np.int8)
@@ -29,23 +29,23 @@ def flags(dims: Dims, values: Any, long_name: str, meanings: Mapping[int, str]) 
 
 
 def yes_or_no(dims: Dims, values: Any, long_name: str) -> Variable:
-    """What is true or false, as 1 or 0."""
+    """Return a truth value as 1 or 0."""
     return flags(dims, values, long_name, {0: "no", 1: "yes"})
 
 
 def parameter(name: str, dims: Dims, values: Any) -> Variable:
-    """A parameter of a structure or an excitation, by its name."""
-    quantity = {**STRUCTURE, **NUMBERS, **EXCITATION}[name]
+    """Return a parameter of a structure or an excitation as a variable, by its name."""
+    quantity = {**STRUCTURE, **RATIO_QUANTITIES, **EXCITATION}[name]
     return variable(dims, np.asarray(values, dtype=float), quantity.unit, quantity.description)
 
 
 def nondimensional_state() -> dict[str, Variable]:
-    """The coordinate along a state in the paper's units."""
+    """Return the coordinate along a state in the paper's units."""
     text = "co-ordinate of the state: x/(a eta^2), and its derivative by tau"
     return {"coordinate": variable("coordinate", np.array(COORDINATES), "1", text)}
 
 
 def si_state() -> dict[str, Variable]:
-    """The coordinate along a state in m and m/s."""
+    """Return the coordinate along a state in m and m/s."""
     text = "co-ordinate of the state: x1, x2 in m, v1, v2 in m/s"
     return {"coordinate": variable("coordinate", np.array(STATE), "1", text)}

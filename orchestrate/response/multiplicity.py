@@ -1,4 +1,4 @@
-"""After how many periods a response repeats, and how that was decided.
+"""Period of a response in excitation periods, and how it was decided.
 
 A tolerance alone decides little: a transient that turns round, or that changes sides as next to a
 period doubling, comes back closer after some periods than after one; a torus comes back as close as
@@ -14,22 +14,28 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-LEAST_GAP = 2.0**-20  # of the motion's size: smaller gaps are not compared with their own size
+MIN_RELATIVE_GAP = (
+    2.0**-20
+)  # of the motion's size: smaller gaps are not compared with their own size
 ROUNDING = 1e-9  # of the motion's size: what is left of deviations that have died, with room
 IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
 DECIDED = {IRREGULAR: "irregular", REPEATED: "repeated", UNDECIDED: "undecided"}
 BLOCKS = 5  # parts of the later half from each of which to the next a dying deviation shrinks
-STEADY = 0.05  # logarithm of a ratio of deviations, of which chance makes as much
-STILL = 1e-4  # of a distance that stays: change over the samples seen, of one that dies it is more
-DYING = 0.8  # ratio of deviations late and early, below which they die
-OFTEN = 5  # a quarter of the samples over it: periods after which states are seen often enough
-SURE = 0.5  # ratio of deviations that shrink, beyond chance
-FEW = 1e-3  # of the tolerance: a deviation that counts as none where it is seen a few times only
+CHANCE_LOG_RATIO = 0.05  # logarithm of a ratio of deviations, of which chance makes as much
+MAX_DRIFT = (
+    1e-4  # of a distance that stays: change over the samples seen, of one that dies it is more
+)
+MAX_DYING_RATIO = 0.8  # ratio of deviations late and early, below which they die
+MIN_VISITS = 5  # a quarter of the samples over it: periods after which states are seen often enough
+MAX_CONTRACTION = 0.5  # ratio of deviations that shrink, beyond chance
+NEGLIGIBLE = (
+    1e-3  # of the tolerance: a deviation that counts as none where it is seen a few times only
+)
 Floats = NDArray[np.float64]
 
 
 class Repetition(NamedTuple):
-    """How a response repeats.
+    """Period of a response, and the deviation from exact repetition.
 
     Attributes
     ----------
@@ -45,7 +51,7 @@ class Repetition(NamedTuple):
 
 
 class Decision(NamedTuple):
-    """After how many periods a response repeats, and how it was decided.
+    """Period of a response, and how it was decided.
 
     Attributes
     ----------
@@ -59,8 +65,8 @@ class Decision(NamedTuple):
     decided: int
 
 
-def over_size(samples: ArrayLike, frequency: float = 1.0, gap: float | None = None) -> Floats:
-    """States over the size of the motion, so that their differences compare with a tolerance.
+def scale_states(samples: ArrayLike, frequency: float = 1.0, gap: float | None = None) -> Floats:
+    """Divide states by the size of the motion, so that their differences compare with a tolerance.
 
     Parameters
     ----------
@@ -91,24 +97,24 @@ def over_size(samples: ArrayLike, frequency: float = 1.0, gap: float | None = No
     size = float(np.abs(later).max(initial=0.0)) or 1.0
     if gap is None:
         return states / size
-    apart = states[:, 1::2] - states[:, ::2]  # the gap, and its rate over the frequency
-    of_gap = max(gap, LEAST_GAP * size)
-    of_rate = max(of_gap, float(np.abs(apart[len(states) // 2 :, 1]).max(initial=0.0)))
-    return np.column_stack([states / size, apart / (of_gap, of_rate)])
+    gap_and_rate = states[:, 1::2] - states[:, ::2]  # the gap, and its rate over the frequency
+    of_gap = max(gap, MIN_RELATIVE_GAP * size)
+    of_rate = max(of_gap, float(np.abs(gap_and_rate[len(states) // 2 :, 1]).max(initial=0.0)))
+    return np.column_stack([states / size, gap_and_rate / (of_gap, of_rate)])
 
 
 def repetition(states: Floats, tolerance: float) -> Repetition:
-    """The least n such that the state repeats after n periods, and how closely it does.
+    """Return the least n such that the state repeats after n periods, and the largest deviation.
 
     Parameters
     ----------
     states : ndarray, shape (n_samples, n_co-ordinates)
-        Of :func:`over_size`.
+        Of :func:`scale_states`.
     tolerance : float
         Largest deviation of a repeated state.
     """
     later, limit = later_half(states)
-    for n in within(later, limit, tolerance):
+    for n in repeating_periods(later, limit, tolerance):
         return Repetition(n, float(deviations(later, n).max()))
     return Repetition(0, np.inf)
 
@@ -116,14 +122,14 @@ def repetition(states: Floats, tolerance: float) -> Repetition:
 def multiplicity(
     samples: ArrayLike, tolerance: float, frequency: float = 1.0, gap: float | None = None
 ) -> int:
-    """The least n such that the state repeats after n periods.
+    """Return the least n such that the state repeats after n periods.
 
     Parameters
     ----------
     samples : array_like, shape (n_samples, 4)
         x1, x2 in m, v1, v2 in m/s at the same phase of successive periods.
     tolerance : float
-        Largest deviation of a repeated state over the motion's size, see :func:`over_size`.
+        Largest deviation of a repeated state over the motion's size, see :func:`scale_states`.
     frequency : float
         Of the excitation, rad/s.
     gap : float, optional
@@ -146,16 +152,16 @@ def multiplicity(
     >>> multiplicity([one, other] * 20, 1e-2)
     2
     """
-    return repetition(over_size(samples, frequency, gap), tolerance).multiplicity
+    return repetition(scale_states(samples, frequency, gap), tolerance).multiplicity
 
 
 def decide(states: Floats, tolerance: float) -> Decision:
-    """The multiplicity of a response, and how it was decided.
+    """Return the multiplicity of a response, and how it was decided.
 
     Parameters
     ----------
     states : ndarray, shape (n_samples, n_co-ordinates)
-        Of :func:`over_size`.
+        Of :func:`scale_states`.
     tolerance : float
         Largest deviation of a repeated state, and how far it may still go.
 
@@ -180,36 +186,40 @@ def decide(states: Floats, tolerance: float) -> Decision:
     later, limit = later_half(states)
     many = later.shape[1] // 4
     nearly = drifting = 0
-    for n in within(later, limit, tolerance):
+    for n in repeating_periods(later, limit, tolerance):
         away = deviations(later, n)
         if n > many:
-            if not (nearly or drifting) and away.max() <= FEW * tolerance:
+            if not (nearly or drifting) and away.max() <= NEGLIGIBLE * tolerance:
                 return Decision(n, REPEATED)
             nearly = nearly or (0 if drifting else n)
             break
         spread = float(spread_of(later, n))
         died = spread <= ROUNDING
-        left = ROUNDING if died else remaining(later, n, spread)
-        least = max(4.0 * left, spread / STILL if died else tolerance)
-        if left <= tolerance and differ_earlier(later, n, least):
+        left = ROUNDING if died else remaining_change(later, n, spread)
+        minimum = max(4.0 * left, spread / MAX_DRIFT if died else tolerance)
+        if left <= tolerance and has_persistent_difference(later, n, minimum):
             return Decision(n, REPEATED)
-        if spread <= tolerance or abs(np.log(growth(away))) > STEADY:
+        if spread <= tolerance or abs(np.log(growth_ratio(away))) > CHANCE_LOG_RATIO:
             nearly = nearly or n
         else:
             drifting = n
-    ratio = DYING if nearly else SURE
-    shorter = range(1, min(nearly or many, many // OFTEN) + 1)
+    ratio = MAX_DYING_RATIO if nearly else MAX_CONTRACTION
+    shorter = range(1, min(nearly or many, many // MIN_VISITS) + 1)
     guess = next((n for n in shorter if contraction(later, n) < ratio), nearly)
     return Decision(guess, UNDECIDED if guess else IRREGULAR)
 
 
 def later_half(states: Floats) -> tuple[Floats, int]:
-    """The later half of the states, a row a co-ordinate, and the most periods compared."""
+    """Return the later half of the states, one row per co-ordinate, and the most periods
+    compared.
+    """
     return np.ascontiguousarray(states[len(states) // 2 :].T), max(1, len(states) // 4)
 
 
-def within(later: Floats, limit: int, tolerance: float) -> Iterator[int]:
-    """Numbers of periods after which all states are within a tolerance, the least first."""
+def repeating_periods(later: Floats, limit: int, tolerance: float) -> Iterator[int]:
+    """Yield the numbers of periods after which all states agree within a tolerance, the least
+    first.
+    """
     first = np.abs(later[:, 1 : limit + 1] - later[:, :1]).max(axis=0, initial=0.0)
     for n in ((first <= tolerance).nonzero()[0] + 1).tolist():
         if np.abs(later[:, n:] - later[:, :-n]).max() <= tolerance:
@@ -217,20 +227,20 @@ def within(later: Floats, limit: int, tolerance: float) -> Iterator[int]:
 
 
 def deviations(later: Floats, n: int) -> Floats:
-    """How far each state is from that n periods before."""
+    """Return how far each state is from that n periods before."""
     away: Floats = np.abs(later[:, n:] - later[:, :-n]).max(axis=0)
     return away
 
 
-def growth(away: Floats) -> float:
-    """The largest of the later half of deviations over the largest of the earlier half."""
-    half = max(1, len(away) // 2)
-    early, late = float(away[:half].max()), float(away[-half:].max())
+def growth_ratio(deviation: Floats) -> float:
+    """Return the largest deviation of the later half over the largest of the earlier half."""
+    half = max(1, len(deviation) // 2)
+    early, late = float(deviation[:half].max()), float(deviation[-half:].max())
     return late / early if early and late else 1.0
 
 
 def spread_of(states: Floats, n: int) -> Floats:
-    """The largest distance of states any multiple of n periods apart.
+    """Return the largest distance of states any multiple of n periods apart.
 
     Parameters
     ----------
@@ -251,19 +261,21 @@ def spread_of(states: Floats, n: int) -> Floats:
     return spread
 
 
-def remaining(later: Floats, n: int, spread: float) -> float:
-    """How far states n periods apart still go; infinity where their deviation does not die.
+def remaining_change(later: Floats, n: int, spread: float) -> float:
+    """Estimate how far states n periods apart still go; infinity where their deviation does not
+    die.
 
     Like a geometric series: what shrinks by q over the samples seen and has moved by ``spread``
     still moves by ``spread q/(1 - q)``, less where it turns round.
     """
     ratio = contraction(later, n)
     q = ratio**2  # over twice the time
-    return spread * q / (1.0 - q) if ratio < DYING else np.inf
+    return spread * q / (1.0 - q) if ratio < MAX_DYING_RATIO else np.inf
 
 
 def contraction(later: Floats, n: int) -> float:
-    """Spread of states n periods apart late over that early; 1 where it cannot be told.
+    """Return the spread of states n periods apart late over that early; 1 if it cannot be
+    determined.
 
     The spread over many periods sees a deviation that turns round, and that is small after one turn
     of n periods by chance, at its full size.
@@ -273,16 +285,20 @@ def contraction(later: Floats, n: int) -> float:
         away = deviations(later, n)
         blocks = [float(part.max()) for part in np.array_split(away, BLOCKS) if len(part)]
         steady = len(blocks) == BLOCKS and bool((np.diff(blocks) < 0.0).all())
-        return growth(away) if steady else 1.0
+        return growth_ratio(away) if steady else 1.0
     early, late = spread_of(np.array([later[:, :half], later[:, -half:]]), n).tolist()
     return late / early if early else 1.0
 
 
-def differ_earlier(later: Floats, n: int, least: float) -> bool:
-    """Whether states fewer periods apart differ for good: by more than ``least``, and steadily.
+def has_persistent_difference(later: Floats, n: int, minimum: float) -> bool:
+    """Return whether states fewer periods apart differ for good: by more than ``minimum``, and
+    steadily.
 
     Next to a period doubling the deviation after half the periods dies slowly: while it does,
     nothing tells the response from the doubled one.
     """
-    parts = (deviations(later, part) for part in range(1, n) if n % part == 0)
-    return all(away[-n:].max() > least and abs(np.log(growth(away))) < STEADY for away in parts)
+    fractions = (deviations(later, divisor) for divisor in range(1, n) if n % divisor == 0)
+    return all(
+        away[-n:].max() > minimum and abs(np.log(growth_ratio(away))) < CHANCE_LOG_RATIO
+        for away in fractions
+    )

@@ -24,7 +24,7 @@ Rows = NDArray[np.intp]
 
 
 class Motion(NamedTuple):
-    """A motion at some times, in the order of ``PEAKS`` along the first axis.
+    """Motion at some times, in the order of ``PEAKS`` along the first axis.
 
     Attributes
     ----------
@@ -39,55 +39,61 @@ class Motion(NamedTuple):
     bend: Floats
 
     @classmethod
-    def of(cls, states: Floats, felt: Rates, drive: tuple[Floats, Floats]) -> Motion:
-        """By the equations of motion.
+    def from_states(cls, states: Floats, rates: Rates, forces: tuple[Floats, Floats]) -> Motion:
+        """Return the motion with its derivatives, by the equations of motion.
 
         Parameters
         ----------
         states : ndarray, shape (4, ...)
             x1, x2, v1, v2.
-        felt : Rates
-        drive : (ndarray, ndarray)
+        rates : Rates
+        forces : (ndarray, ndarray)
             Minus the box's acceleration, and its time derivative.
         """
         x, v = states[:2], states[2:]
-        absolute = felt.pull(x, v)
-        relative = absolute + drive[0]
-        rate = felt.pull(v, relative)
+        absolute = rates.restoring_acceleration(x, v)
+        relative = absolute + forces[0]
+        rate = rates.restoring_acceleration(v, relative)
         value, slope = np.concatenate([x, absolute]), np.concatenate([v, rate])
-        return cls(value, slope, np.concatenate([relative, rate + drive[1]]))
+        return cls(value, slope, np.concatenate([relative, rate + forces[1]]))
 
     def part(self, index: tuple[Any, ...]) -> Motion:
-        """At some of the times."""
+        """Return the motion at some of the times."""
         return self.each(lambda array: array[(slice(None), *index)])
 
     def each(self, change: Callable[[Floats], Floats]) -> Motion:
-        """The same of each array."""
+        """Apply a function to each of the arrays."""
         return Motion(change(self.value), change(self.slope), change(self.bend))
 
 
-class Drive(NamedTuple):
-    """The box's motion, a row a point: frequency, and amplitude of its acceleration."""
+class BoxMotion(NamedTuple):
+    """The box's motion, one row per point: frequency, and amplitude of its acceleration."""
 
     frequency: Floats
     amplitude: Floats
 
-    def at(self, angle: Floats) -> tuple[Floats, Floats]:
-        """Minus the box's acceleration at a phase, and its time derivative."""
-        return self.forces(np.sin(angle), np.cos(angle))
+    def forcing_at(self, angle: Floats) -> tuple[Floats, Floats]:
+        """Return the inertial forcing (minus the box's acceleration) at a phase, and its time
+        derivative.
+        """
+        return self.forcing(np.sin(angle), np.cos(angle))
 
-    def forces(self, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
-        """The same by the phase's sine and cosine."""
+    def forcing(self, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
+        """Return the inertial forcing and its time derivative from the phase's sine and cosine."""
         return self.amplitude * sine, self.amplitude * self.frequency * cosine
 
 
-def periods_of(multiplicity: int, most: int) -> int:
-    """Periods looked at: those it repeats after, ``most`` at most; half of them if it does not."""
-    return min(multiplicity, most) or (most + 1) // 2
+def periods_to_sample(multiplicity: int, max_periods: int) -> int:
+    """Return the periods after which a response repeats, at most ``max_periods``; half of them if
+    it does not.
+    """
+    return min(multiplicity, max_periods) or (max_periods + 1) // 2
 
 
-def orbit(instance: Instance, point: Point, response: Response, first: int, periods: int) -> Floats:
-    """States over some periods from phase 0 on.
+def sample_periods(
+    instance: Instance, point: Point, response: Response, first: int, periods: int
+) -> Floats:
+    """Sample states over some periods from phase 0 on.
 
     Parameters
     ----------
@@ -112,7 +118,7 @@ def orbit(instance: Instance, point: Point, response: Response, first: int, peri
 def peaks(
     points: Sequence[Point], periods: Sequence[int], states: Floats, jump: float = 1e-3
 ) -> dict[str, Floats]:
-    """Largest displacements and accelerations of both masses.
+    """Return the largest displacements and accelerations of both masses.
 
     Parameters
     ----------
@@ -141,71 +147,73 @@ def peaks(
     the others may then be missed by up to ``w h`` of it.
     """
     count = states.shape[1] - 1
-    rates = Rates.of(point.structure for point in points)
+    rates = Rates.from_structures(point.structure for point in points)
     speed = np.array([[point.excitation.frequency] for point in points])
-    drive = Drive(speed, np.array([[p.excitation.amplitude] for p in points]) * speed**2)
+    drive = BoxMotion(speed, np.array([[p.excitation.amplitude] for p in points]) * speed**2)
     kinds, kind = np.unique(periods, return_inverse=True)
     angles = 2.0 * np.pi * np.outer(kinds, np.arange(count + 1)) / count
     angle = angles[kind]
     width = angle[:, 1:2] / speed
     touching = in_touch(states)
     columns = np.ascontiguousarray(np.moveaxis(states, -1, 0))
-    forces = drive.forces(np.sin(angles)[kind], np.cos(angles)[kind])
-    motion = Motion.of(columns, rates.felt(touching), forces)
+    forces = drive.forcing(np.sin(angles)[kind], np.cos(angles)[kind])
+    motion = Motion.from_states(columns, rates.effective(touching), forces)
     left, right = (motion.part((slice(None), side)) for side in (np.s_[:-1], np.s_[1:]))
     smooth = without_impact(left, right, width, jump * np.abs(columns[2:]).max(axis=(0, 2)))
     largest = np.abs(motion.value).max(axis=2)
-    raise_by_crests(largest, np.broadcast_to(smooth, left.value.shape), left, right, width)
+    include_cubic_extrema(largest, np.broadcast_to(smooth, left.value.shape), left, right, width)
     index = np.nonzero(~smooth & ~touching[:, :-1])
     sides = left.part(index), right.part(index)
-    cut = Cut(index[0], *sides, width[index[0], 0], angle[index]).that_may_raise(largest)
+    cut = ImpactIntervals(index[0], *sides, width[index[0], 0], angle[index]).that_can_exceed(
+        largest
+    )
     if len(cut.row):
-        raise_at_impacts(largest, cut, points, rates, drive)
+        include_impacts(largest, cut, points, rates, drive)
     return dict(zip(PEAKS, largest, strict=True))
 
 
 def without_impact(left: Motion, right: Motion, width: Floats, jump: Floats) -> Flags:
-    """Whether velocities differ by the integral of the acceleration alone, shape (n, k)."""
+    """Return whether velocities differ by the integral of the acceleration alone, shape (n, k)."""
     change = 0.5 * width * (left.bend[:2] + right.bend[:2])
     change += width * width / 12.0 * (left.bend[2:] - right.bend[2:])
-    found = np.abs(right.slope[:2] - left.slope[:2] - change) <= jump[:, None]
-    both: Flags = np.logical_and(found[0], found[1])
+    matches = np.abs(right.slope[:2] - left.slope[:2] - change) <= jump[:, None]
+    both: Flags = np.logical_and(matches[0], matches[1])
     return both
 
 
-def crests(left: Motion, right: Motion, width: Floats) -> Floats:
-    """Extrema between two points of cubics with their values and slopes, whose signs differ."""
+def cubic_extrema(left: Motion, right: Motion, width: Floats) -> Floats:
+    """Return the extrema of Hermite cubics whose slopes at both ends differ in sign."""
     rise, start, end = right.value - left.value, left.slope * width, right.slope * width
     b, c = 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise
     # the slope is start + 2 b u + 3 c u^2, with one root in (0, 1)
     q = -(b + np.copysign(np.sqrt(np.maximum(b * b - 3.0 * c * start, 0.0)), b))
     with np.errstate(divide="ignore", invalid="ignore"):
-        one, other = q / (3.0 * c), start / q
-    u = np.where((one >= 0.0) & (one <= 1.0), one, other)
-    found: Floats = left.value + u * (start + u * (b + u * c))
-    return found
+        first_root, second_root = q / (3.0 * c), start / q
+    u = np.where((first_root >= 0.0) & (first_root <= 1.0), first_root, second_root)
+    extremum: Floats = left.value + u * (start + u * (b + u * c))
+    return extremum
 
 
-def raise_by_crests(
-    largest: Floats, among: Flags, left: Motion, right: Motion, width: Floats
+def include_cubic_extrema(
+    largest: Floats, candidates: Flags, left: Motion, right: Motion, width: Floats
 ) -> None:
-    """Take extrema between the ends of intervals into account.
+    """Update the largest values by extrema inside intervals.
 
     Parameters
     ----------
     largest : ndarray, shape (4, n)
-    among : ndarray of bool, shape (4, n, k)
+    candidates : ndarray of bool, shape (4, n, k)
         Intervals to look at.
     left, right : Motion
         At their ends, shape (4, n, k).
     width : ndarray, shape (n, 1)
     """
-    turns = np.nonzero(among & (left.slope * right.slope < 0.0))
+    turns = np.nonzero(candidates & (left.slope * right.slope < 0.0))
     ends = [side.each(lambda array: array[turns]) for side in (left, right)]
-    np.maximum.at(largest, turns[:2], np.abs(crests(ends[0], ends[1], width[turns[1], 0])))
+    np.maximum.at(largest, turns[:2], np.abs(cubic_extrema(ends[0], ends[1], width[turns[1], 0])))
 
 
-class Cut(NamedTuple):
+class ImpactIntervals(NamedTuple):
     """Intervals with an impact: rows of their points, both ends, length, phase at the left one."""
 
     row: Rows
@@ -214,51 +222,56 @@ class Cut(NamedTuple):
     width: Floats
     angle: Floats
 
-    def part(self, some: Flags) -> Cut:
-        """Some of them."""
+    def part(self, chosen: Flags) -> ImpactIntervals:
+        """Return some of the intervals."""
         row, left, right, width, angle = self
-        ends = left.part((some,)), right.part((some,))
-        return Cut(row[some], *ends, width[some], angle[some])
+        ends = left.part((chosen,)), right.part((chosen,))
+        return ImpactIntervals(row[chosen], *ends, width[chosen], angle[chosen])
 
-    def that_may_raise(self, largest: Floats) -> Cut:
-        """Those in which something larger may be found: most cannot reach so far."""
+    def that_can_exceed(self, largest: Floats) -> ImpactIntervals:
+        """Return the intervals in which a larger value is possible: most cannot reach so far."""
         _, left, right, width, _ = self
         reach = np.maximum(np.abs(left.value), np.abs(right.value))
         reach += width * (np.abs(left.slope) + np.abs(right.slope))
         return self.part(np.any(reach > largest[:, self.row], axis=0))
 
 
-def raise_at_impacts(
-    largest: Floats, cut: Cut, points: Sequence[Point], rates: Rates, drive: Drive
+def include_impacts(
+    largest: Floats, cut: ImpactIntervals, points: Sequence[Point], rates: Rates, drive: BoxMotion
 ) -> None:
-    """Take both sides of impacts into account, and extrema between them and the samples."""
+    """Raise the largest values by those at both sides of impacts, and between impacts and
+    samples.
+    """
     time = first_touch(cut)
-    some = np.isfinite(time)
-    cut, time = cut.part(some), time[some]
-    felt = Rates(*(part[:2, cut.row] for part in rates))
-    drive = Drive(drive.frequency[cut.row, 0], drive.amplitude[cut.row, 0])
-    forcing = drive.at(cut.angle + drive.frequency * time)
-    before = ahead(cut.left, time)
-    after = bounced(before, [points[row] for row in cut.row])
-    ends = [Motion.of(states, felt, forcing) for states in (before, after)]
-    found = np.maximum(np.abs(ends[0].value), np.abs(ends[1].value))
-    everywhere = np.ones((*found.shape, 1), dtype=bool)
+    touches = np.isfinite(time)
+    cut, time = cut.part(touches), time[touches]
+    effective_rates = Rates(*(part[:2, cut.row] for part in rates))
+    drive = BoxMotion(drive.frequency[cut.row, 0], drive.amplitude[cut.row, 0])
+    forcing = drive.forcing_at(cut.angle + drive.frequency * time)
+    before = taylor_step(cut.left, time)
+    after = after_impacts(before, [points[row] for row in cut.row])
+    ends = [Motion.from_states(states, effective_rates, forcing) for states in (before, after)]
+    extreme = np.maximum(np.abs(ends[0].value), np.abs(ends[1].value))
+    everywhere = np.ones((*extreme.shape, 1), dtype=bool)
     for left, right, width in ((cut.left, ends[0], time), (ends[1], cut.right, cut.width - time)):
         sides = [side.each(lambda array: array[..., None]) for side in (left, right)]
-        raise_by_crests(found, everywhere, sides[0], sides[1], width[:, None])
-    for channel, values in enumerate(found):
+        include_cubic_extrema(extreme, everywhere, sides[0], sides[1], width[:, None])
+    for channel, values in enumerate(extreme):
         np.maximum.at(largest[channel], cut.row, values)
 
 
-def ahead(motion: Motion, time: Floats) -> Floats:
-    """States x1, x2, v1, v2 a time later, by the Taylor series up to the third derivative."""
+def taylor_step(motion: Motion, time: Floats) -> Floats:
+    """Return the states x1, x2, v1, v2 a time later, by the Taylor series up to the third
+    derivative.
+    """
     x, v, a, j = motion.value[:2], motion.slope[:2], motion.bend[:2], motion.bend[2:]
-    moved = x + time * (v + time * (a / 2.0 + time * j / 6.0))
-    return np.concatenate([moved, v + time * (a + time * j / 2.0)])
+    position = x + time * (v + time * (a / 2.0 + time * j / 6.0))
+    return np.concatenate([position, v + time * (a + time * j / 2.0)])
 
 
-def first_touch(cut: Cut, rounds: int = 20) -> Floats:
-    """Time from the left end to where the gap vanishes; NaN where it does not in the interval.
+def first_touch(cut: ImpactIntervals, iterations: int = 20) -> Floats:
+    """Return the time from the left end to where the gap vanishes; NaN if it does not in the
+    interval.
 
     Newton's method, and halving where it would leave what is known to hold the root.
     """
@@ -266,13 +279,13 @@ def first_touch(cut: Cut, rounds: int = 20) -> Floats:
     g = [part[1] - part[0] for part in taylor]
 
     def gap(s: Floats) -> Floats:
-        found: Floats = g[0] + s * (g[1] + s * (g[2] / 2.0 + s * g[3] / 6.0))
-        return found
+        distance: Floats = g[0] + s * (g[1] + s * (g[2] / 2.0 + s * g[3] / 6.0))
+        return distance
 
     low, high, time = np.zeros_like(cut.width), cut.width, 0.5 * cut.width
-    for _ in range(rounds):
-        apart = gap(time) > 0.0
-        low, high = np.where(apart, time, low), np.where(apart, high, time)
+    for _ in range(iterations):
+        is_open = gap(time) > 0.0
+        low, high = np.where(is_open, time, low), np.where(is_open, high, time)
         slope = g[1] + time * (g[2] + time * g[3] / 2.0)
         with np.errstate(divide="ignore", invalid="ignore"):
             step = time - gap(time) / slope
@@ -280,8 +293,10 @@ def first_touch(cut: Cut, rounds: int = 20) -> Floats:
     return np.where((g[0] > 0.0) & (gap(cut.width) <= 0.0), time, np.nan)
 
 
-def bounced(before: Floats, points: Sequence[Point]) -> Floats:
-    """States after impacts, by (15) with ``(1+e)/(1+mu)`` in its second line; shape (4, n)."""
+def after_impacts(before: Floats, points: Sequence[Point]) -> Floats:
+    """Return states after impacts, by (15) with ``(1+e)/(1+mu)`` in its second line; shape (4,
+    n).
+    """
     e, m1, m2 = np.array([(p.structure.e, p.structure.m1, p.structure.m2) for p in points]).T
     impulse = (1.0 + e) * m1 * m2 / (m1 + m2) * (before[2] - before[3])
     after = before.copy()

@@ -1,6 +1,6 @@
-"""At which structures and excitations a question is asked: at one, or along one parameter.
+"""Arguments of a question: structures and excitations, at one point or along one parameter.
 
-An excitation is told as ``eta``: frequency ``eta omega`` and amplitude ``1/eta^2`` m, so that x is
+An excitation is given as ``eta``: frequency ``eta omega`` and amplitude ``1/eta^2`` m, so that x is
 the xi of (3) in metres; or as ``frequency`` in rad/s with ``amplitude`` in m.
 """
 
@@ -17,20 +17,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import REST
+from ..checks import MAX_COUNT
 from ..errors import InputError
 from ..running.job import Job, brief
 from ..structures import PARAMETERS, Excitation, Structure
-from ..structures.ranges import EXCITATION, NUMBERS, one_of
+from ..structures.ranges import EXCITATION, RATIO_QUANTITIES, expected_one_of
 from .labels import Variable, parameter, variable
 
 Numbers = float | tuple[float, ...]
-ASKED = {"eta": NUMBERS["eta"], **{name: EXCITATION[name] for name in ("frequency", "amplitude")}}
+EXCITATION_PARAMETERS = {
+    "eta": RATIO_QUANTITIES["eta"],
+    **{name: EXCITATION[name] for name in ("frequency", "amplitude")},
+}
 FORMS = "expected eta=, or frequency= with amplitude="
-MOST = 1_000_000  # periods, samples, values: more is a slip of the pen
 
 
 class Point(NamedTuple):
-    """A structure under an excitation."""
+    """Structure under an excitation."""
 
     structure: Structure
     excitation: Excitation
@@ -47,7 +50,7 @@ class Point(NamedTuple):
 
     @property
     def scale(self) -> NDArray[np.float64]:
-        """Units of the four co-ordinates of a state."""
+        """Units of the four coordinates of a state."""
         length = self.length
         speed = self.structure.omega * length
         return np.array([length, length, speed, speed])
@@ -73,25 +76,25 @@ class Series:
     etas: tuple[float, ...]
 
     def coordinates(self) -> dict[str, Variable]:
-        """The parameter, and the excitation along it."""
+        """Return the parameter, and the excitation along it."""
         excitations = [point.excitation for point in self.points]
         along = {
             "eta": self.etas,
             "frequency": [excitation.frequency for excitation in excitations],
             "amplitude": [excitation.amplitude for excitation in excitations],
         }
-        found = {name: parameter(name, self.name, values) for name, values in along.items()}
-        found[self.name] = parameter(self.name, self.name, self.values)
-        found["period"] = variable(
+        coordinates = {name: parameter(name, self.name, values) for name, values in along.items()}
+        coordinates[self.name] = parameter(self.name, self.name, self.values)
+        coordinates["period"] = variable(
             self.name,
             2.0 * np.pi / np.array(self.etas),
             "1",
             "excitation period T = 2 pi/eta in units of tau (22)",
         )
-        return found
+        return coordinates
 
     def scales(self) -> NDArray[np.float64]:
-        """Units of the four co-ordinates of each point's state, shape (n, 4)."""
+        """Return the units of the four coordinates of each point's state, shape (n, 4)."""
         return np.array([point.scale for point in self.points])
 
 
@@ -104,7 +107,7 @@ def series(
     over: str | None = None,
     values: Numbers | None = None,
 ) -> Series:
-    """What a question along one parameter is asked at.
+    """Return the points of a question along one parameter.
 
     Parameters
     ----------
@@ -121,16 +124,20 @@ def series(
     InputError
         Where these are no question of one form along one parameter, or a value is out of its range.
     """
-    given = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    excitation = {name: value for name, value in given.items() if value is not None}
-    varied = with_values(over, values, excitation)
-    check_form(excitation.keys() | (varied.keys() & ASKED.keys()))
+    excitation_values = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
+    excitation = {name: value for name, value in excitation_values.items() if value is not None}
+    varied = values_along(over, values, excitation)
+    check_form(excitation.keys() | (varied.keys() & EXCITATION_PARAMETERS.keys()))
     for name in list(excitation):
         value = excitation[name]
         if isinstance(value, tuple):
             varied[name] = value
             del excitation[name]
-    name = over or next((name for name in ASKED if name in varied), None) or next(iter(excitation))
+    name = (
+        over
+        or next((name for name in EXCITATION_PARAMETERS if name in varied), None)
+        or next(iter(excitation))
+    )
     varied = varied or {name: (excitation[name],)}
     check_lengths(name, over, varied)
     rows = [dict(zip(varied, row, strict=True)) for row in zip(*varied.values(), strict=True)]
@@ -141,19 +148,19 @@ def series(
     return Series(name, varied[name], tuple(points), etas)
 
 
-def with_values(
+def values_along(
     over: str | None, values: Numbers | None, excitation: Mapping[str, Numbers]
 ) -> dict[str, Any]:
-    """The values of the parameter named by ``over``, if any."""
+    """Return the values of the parameter named by ``over``, if any."""
     if over is None:
         if values is not None:
             raise InputError(
                 "values: expected with over=, the name of the parameter that takes them"
             )
         return {}
-    known = (*ASKED, *PARAMETERS)
+    known = (*EXCITATION_PARAMETERS, *PARAMETERS)
     if over not in known:
-        raise InputError(f"over = {over!r}: no parameter; {one_of(over, known)}")
+        raise InputError(f"over = {over!r}: no parameter; {expected_one_of(over, known)}")
     if values is None:
         raise InputError(f"over = {over!r}: expected values= with it")
     if over in excitation:
@@ -162,14 +169,16 @@ def with_values(
 
 
 def check_form(names: Any) -> None:
-    """Whether an excitation is told in one of the two forms, whole."""
+    """Check that an excitation is given completely in one of the two forms."""
     if set(names) not in ({"eta"}, {"frequency", "amplitude"}):
-        found = " and ".join(f"{name}=" for name in ASKED if name in names) or "nothing"
-        raise InputError(f"excitation: {found} given; {FORMS}")
+        present = (
+            " and ".join(f"{name}=" for name in EXCITATION_PARAMETERS if name in names) or "nothing"
+        )
+        raise InputError(f"excitation: {present} given; {FORMS}")
 
 
 def check_lengths(name: str, over: str | None, varied: Mapping[str, tuple[float, ...]]) -> None:
-    """Whether there is one parameter, or a frequency with an amplitude for each."""
+    """Check that there is one parameter, or a frequency with an amplitude for each."""
     others = [other for other in varied if other != name]
     if over and others:
         raise InputError(f"{others[0]}: is a list beside over = {over!r}; expected one number")
@@ -181,14 +190,16 @@ def check_lengths(name: str, over: str | None, varied: Mapping[str, tuple[float,
             )
 
 
-def point(structure: Structure, given: Mapping[str, Any]) -> Point:
-    """A structure under an excitation, from parameters of either by name."""
-    changes = {name: value for name, value in given.items() if name not in ASKED}
+def point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
+    """Make a structure under an excitation from parameters of either, by name."""
+    changes = {
+        name: value for name, value in arguments.items() if name not in EXCITATION_PARAMETERS
+    }
     changed = structure.replace(**changes) if changes else structure
-    if "eta" in given:
-        excitation = Excitation.nondimensional(given["eta"], changed)
+    if "eta" in arguments:
+        excitation = Excitation.nondimensional(arguments["eta"], changed)
     else:
-        excitation = Excitation(frequency=given["frequency"], amplitude=given["amplitude"])
+        excitation = Excitation(frequency=arguments["frequency"], amplitude=arguments["amplitude"])
     return Point(changed, excitation)
 
 
@@ -198,97 +209,90 @@ def one_point(
     frequency: ArrayLike | None,
     amplitude: ArrayLike | None,
 ) -> Point:
-    """What a question at a single excitation is asked at.
+    """Return the point of a question at a single excitation.
 
     Raises
     ------
     InputError
         Where a list is given, too.
     """
-    given = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    told = {name: numbers(name, value) for name, value in given.items() if value is not None}
-    check_form(told)
-    for name, value in told.items():
+    arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
+    checked = {name: numbers(name, value) for name, value in arguments.items() if value is not None}
+    check_form(checked)
+    for name, value in checked.items():
         if isinstance(value, tuple):
             raise InputError(f"{name}: {len(value)} values; expected one number")
-    return point(checked_structure(structure), told)
+    return point(checked_structure(structure), checked)
 
 
 # -- what was given, checked ----------------------------------------------------------------------
 
 
 def checked_structure(structure: object) -> Structure:
-    """The structure, if it is one."""
+    """Return the structure; raise if it is none."""
     if not isinstance(structure, Structure):
         raise InputError(f"structure = {structure!r}: expected a Structure")
     return structure
 
 
-def numbers(name: str, given: ArrayLike | None) -> Numbers | None:
-    """A number or a list of numbers, each in the parameter's range.
+def numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
+    """Return a number or a list of numbers, each in the parameter's range.
 
     Parameters
     ----------
     name : str
         Of the parameter; ranges of a structure's are checked by the structure.
-    given : array_like, optional
+    argument : array_like, optional
 
     Raises
     ------
     InputError
         Where these are no finite numbers, none at all, a table, or out of range.
     """
-    if given is None:
+    if argument is None:
         return None
     try:
-        array = np.asarray(given)
+        array = np.asarray(argument)
         if array.dtype.kind not in "iuf":
             raise ValueError
         array = array.astype(float)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} = {given!r}: expected a number or a list of numbers") from None
-    if array.ndim > 1 or not 1 <= array.size <= MOST:
+        raise InputError(f"{name} = {argument!r}: expected a number or a list of numbers") from None
+    if array.ndim > 1 or not 1 <= array.size <= MAX_COUNT:
         shape = "x".join(map(str, array.shape))
-        raise InputError(f"{name}: {shape} values; expected a number or a list of 1 to {MOST}")
-    found = tuple(array.ravel().tolist())
-    check = ASKED[name].check if name in ASKED else float
-    found = tuple(check(value) for value in found)
-    bad = [value for value in found if not math.isfinite(value) or (name in ASKED and value <= 0.0)]
+        raise InputError(f"{name}: {shape} values; expected a number or a list of 1 to {MAX_COUNT}")
+    result = tuple(array.ravel().tolist())
+    check = EXCITATION_PARAMETERS[name].check if name in EXCITATION_PARAMETERS else float
+    result = tuple(check(number) for number in result)
+    bad = [
+        number
+        for number in result
+        if not math.isfinite(number) or (name in EXCITATION_PARAMETERS and number <= 0.0)
+    ]
     if bad:
-        raise InputError(f"{name} = {bad[0]!r}: expected finite numbers" + " > 0" * (name in ASKED))
-    return found if array.ndim else found[0]
+        raise InputError(
+            f"{name} = {bad[0]!r}: expected finite numbers"
+            + " > 0" * (name in EXCITATION_PARAMETERS)
+        )
+    return result if array.ndim else result[0]
 
 
-def whole(name: str, given: Any, least: int, most: int = MOST) -> int:
-    """A whole number in a range.
-
-    Raises
-    ------
-    InputError
-        Where it is none.
-    """
-    good = isinstance(given, (int, np.integer)) and not isinstance(given, bool)
-    if not good or not least <= given <= most:
-        raise InputError(f"{name} = {given!r}: expected a whole number from {least} to {most}")
-    return int(given)
-
-
-def positive(name: str, given: Any) -> float:
-    """A finite number above zero.
+def positive(name: str, value: Any) -> float:
+    """Return a finite number above zero.
 
     Raises
     ------
     InputError
         Where it is none.
     """
-    number = numbers(name, given)
+    number = numbers(name, value)
     if not isinstance(number, float) or number <= 0.0:
-        raise InputError(f"{name} = {given!r}: expected a number > 0")
+        raise InputError(f"{name} = {value!r}: expected a number > 0")
     return number
 
 
-def states(name: str, given: ArrayLike | None, structure: Structure) -> NDArray[np.float64]:
-    """States x1, x2 in m, v1, v2 in m/s of a structure, shape (n, 4); rest by default.
+def states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[np.float64]:
+    """Return states x1, x2 in m, v1, v2 in m/s of a structure, shape (n, 4); rest by default.
 
     Raises
     ------
@@ -297,28 +301,28 @@ def states(name: str, given: ArrayLike | None, structure: Structure) -> NDArray[
     """
     expected = "expected x1, x2 in m, v1, v2 in m/s with x2 >= x1"
     try:
-        found = np.atleast_2d(np.asarray(REST if given is None else given, dtype=float))
+        rows = np.atleast_2d(np.asarray(REST if value is None else value, dtype=float))
     except (TypeError, ValueError):
-        told = "a dataset" if hasattr(given, "data_vars") else repr(given)
-        raise InputError(f"{name} = {told}: {expected}") from None
-    if found.ndim != 2 or found.shape[1] != 4 or not len(found):
-        raise InputError(f"{name}: shape {found.shape}; {expected}")
-    wrong = ~np.isfinite(found).all(axis=1) | (found[:, 1] < found[:, 0])
+        text = "a dataset" if hasattr(value, "data_vars") else repr(value)
+        raise InputError(f"{name} = {text}: {expected}") from None
+    if rows.ndim != 2 or rows.shape[1] != 4 or not len(rows):
+        raise InputError(f"{name}: shape {rows.shape}; {expected}")
+    wrong = ~np.isfinite(rows).all(axis=1) | (rows[:, 1] < rows[:, 0])
     if structure.bonded:
         expected = "expected x2 = x1 and v2 = v1 of a bonded structure"
-        wrong |= (found[:, 0] != found[:, 1]) | (found[:, 2] != found[:, 3])
+        wrong |= (rows[:, 0] != rows[:, 1]) | (rows[:, 2] != rows[:, 3])
     if wrong.any():
-        state = tuple(found[wrong.argmax()].tolist())
+        state = tuple(rows[wrong.argmax()].tolist())
         raise InputError(f"{name} = {state!r}: {expected}")
-    return found
+    return rows
 
 
-def state(name: str, given: ArrayLike | None, structure: Structure) -> tuple[float, ...]:
-    """One state."""
-    found = states(name, given, structure)
-    if len(found) != 1:
-        raise InputError(f"{name}: {len(found)} states; expected one")
-    return tuple(found[0].tolist())
+def state(name: str, value: ArrayLike | None, structure: Structure) -> tuple[float, ...]:
+    """Return one state."""
+    rows = states(name, value, structure)
+    if len(rows) != 1:
+        raise InputError(f"{name}: {len(rows)} states; expected one")
+    return tuple(rows[0].tolist())
 
 
 # -- jobs -----------------------------------------------------------------------------------------
@@ -326,7 +330,7 @@ def state(name: str, given: ArrayLike | None, structure: Structure) -> tuple[flo
 
 @dataclass(frozen=True, kw_only=True)
 class Question(Job, ABC):
-    """A job that answers a function of the public API.
+    """Job that answers a function of the public API.
 
     Attributes
     ----------
@@ -337,21 +341,25 @@ class Question(Job, ABC):
     asked: ClassVar[str] = ""  # name of the function
 
     def call(self) -> str:
-        """The call that asks it."""
-        told: dict[str, Any] = {}
+        """Return the call of the public function as text."""
+        arguments: dict[str, Any] = {}
         for name, value in self.parameters().items():
             inside = isinstance(value, dict) and "sha256" not in value and name != "structure"
-            told.update(value if inside else {name: value})
-        if not told.get("phase"):
-            told.pop("phase", None)
-        parts = [f"Structure{brief(told.pop('structure'))}"]
-        parts += [f"{name}={brief(told[name])}" for name in told if told[name] not in (None, "")]
-        return f"{self.asked}({', '.join(parts)})"
+            arguments.update(value if inside else {name: value})
+        if not arguments.get("phase"):
+            arguments.pop("phase", None)
+        texts = [f"Structure{brief(arguments.pop('structure'))}"]
+        texts += [
+            f"{name}={brief(arguments[name])}"
+            for name in arguments
+            if arguments[name] not in (None, "")
+        ]
+        return f"{self.asked}({', '.join(texts)})"
 
 
 @dataclass(frozen=True, kw_only=True)
 class SeriesQuestion(Question, ABC):
-    """A question along one parameter.
+    """Question along one parameter.
 
     Attributes
     ----------
@@ -379,11 +387,11 @@ class SeriesQuestion(Question, ABC):
         )
 
     def count(self) -> int:
-        """Number of values."""
+        """Return the number of values."""
         return len(self.series.values)
 
 
-def asked_along(
+def series_arguments(
     structure: Structure,
     eta: ArrayLike | None,
     frequency: ArrayLike | None,
@@ -391,8 +399,13 @@ def asked_along(
     over: str | None = None,
     values: ArrayLike | None = None,
 ) -> dict[str, Any]:
-    """The fields of a :class:`SeriesQuestion` from what a user gave."""
-    given = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    told = {name: numbers(name, value) for name, value in given.items()}
-    found = numbers(over if over in ASKED else "values", values)
-    return {"structure": checked_structure(structure), **told, "over": over, "values": found}
+    """Return the fields of a :class:`SeriesQuestion` from a user's arguments."""
+    arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
+    checked = {name: numbers(name, value) for name, value in arguments.items()}
+    checked_values = numbers(over if over in EXCITATION_PARAMETERS else "values", values)
+    return {
+        "structure": checked_structure(structure),
+        **checked,
+        "over": over,
+        "values": checked_values,
+    }

@@ -1,4 +1,4 @@
-"""A response followed in frequency until its largest gap has passed a maximum."""
+"""Continuation of a response in frequency until its largest gap has passed a maximum."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .respond import Response, follow
 
 @dataclass(frozen=True)
 class Peak:
-    """A relative resonance.
+    """Relative resonance: frequency ratio, state and largest gap.
 
     Attributes
     ----------
@@ -43,7 +43,8 @@ def follow_to_peak(
     samples: int = 80,
     tolerance: float = 1e-2,
 ) -> Peak:
-    """Go on upwards in eta from a response with one impact in its period, to its largest gap.
+    """Increase eta from a response with one impact per period until the largest gap has passed its
+    peak.
 
     Parameters
     ----------
@@ -69,17 +70,19 @@ def follow_to_peak(
     """
     etas = np.round(eta + step * np.arange(1, round(reach / step)), 9)
     points = series(structure, tuple(etas.tolist()), None, None).points
-    found, largest = Peak(eta, tuple(np.asarray(start, dtype=float).tolist())), 0.0
+    peak, largest = Peak(eta, tuple(np.asarray(start, dtype=float).tolist())), 0.0
     responses = follow(instance, points, start, transient, samples, tolerance)
-    for there, response in zip(etas, responses, strict=True):
+    for current_eta, response in zip(etas, responses, strict=True):
         if response.x_rel_max < (1.0 - fall) * largest:
             break
         if response.x_rel_max > largest and is_simple(response, multiplicity):
-            found, largest = Peak(float(there), response.end), response.x_rel_max
-    return found
+            peak, largest = Peak(float(current_eta), response.end), response.x_rel_max
+    return peak
 
 
 def is_simple(response: Response, multiplicity: int, slack: float = 0.1) -> bool:
-    """Whether a response has the multiplicity and one impact in its period, but for ``slack``."""
+    """Return whether a response has the multiplicity and one impact per period, but for
+    ``slack``.
+    """
     impacts = response.impacts_per_period * multiplicity
     return response.multiplicity == multiplicity and abs(impacts - 1.0) < slack

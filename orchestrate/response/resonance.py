@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -17,8 +18,8 @@ from ..structures import Structure
 from .labels import Variable, variable, yes_or_no
 from .multiplicity import IRREGULAR
 from .peaks import PEAKS
-from .questions import Point, asked_along, positive, whole
-from .sweep import NUMBERS, Direction, SweepJob, multiplicities
+from .questions import Point, positive, series_arguments
+from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, multiplicities
 from .turns_and_jumps import inside_irregular, jumps, maxima
 
 if TYPE_CHECKING:
@@ -28,9 +29,9 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
-ALONG = ("structure", "direction")
-TOLD = {**NUMBERS, "x_rel_max": ("m", "largest gap over the sampled periods")}
-OF_PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max", "impacts_per_period")
+DIMENSIONS = ("structure", "direction")
+REPORTED = {**RESPONSE_QUANTITIES, "x_rel_max": ("m", "largest gap over the sampled periods")}
+PEAK_QUANTITIES = ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max", "impacts_per_period")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,18 +53,18 @@ class ResonanceJob(SweepJob):
         if self.direction == "given":
             raise InputError("direction = 'given': expected one of up, down, both")
 
-    def lanes(self) -> int:
-        """Each structure in each direction knows nothing of the others."""
-        return len(KINDS) * super().lanes()
+    def independent_series(self) -> int:
+        """Return twice the series of a sweep: bonded and delaminated are independent."""
+        return len(KINDS) * super().independent_series()
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Bonded first."""
+        """Return structure and excitation of each response, bonded first."""
         both = self.structure.as_bonded(), self.structure.as_delaminated()
         points = super().items(inputs)
         return [Point(structure, point.excitation) for structure in both for point in points]
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Everything over structure, direction and frequency."""
+        """Return everything over structure, direction and frequency."""
         import xarray as xr
 
         curves = xr.Dataset(
@@ -74,16 +75,16 @@ class ResonanceJob(SweepJob):
         return curves.assign(self.peaks(curves) | self.jumps(curves))
 
     def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
-        """Rows over structure, direction and the values as they were given."""
-        found = []
+        """Return rows over structure, direction and the values as they were given."""
+        ordered = []
         for part in np.split(values, len(KINDS)):
             rows = super().in_order(part)
-            found.append(rows if self.direction == "both" else rows[None])
-        return np.array(found)
+            ordered.append(rows if self.direction == "both" else rows[None])
+        return np.array(ordered)
 
     def variables(self, table: Table) -> dict[str, Variable]:
-        """Amplitudes, accelerations and what goes with them."""
-        along = (*ALONG, self.series.name)
+        """Return amplitudes, accelerations and related variables."""
+        along = (*DIMENSIONS, self.series.name)
         length = self.series.scales()[:, 0]
         numbers = {
             **{name: table[name] for name in (*PEAKS, "x_rel_max", "impacts_per_period")},
@@ -92,13 +93,13 @@ class ResonanceJob(SweepJob):
         }
         contact = "whether permanent contact occurs in the sampled periods"
         return {
-            **{name: variable(along, numbers[name], *TOLD[name]) for name in TOLD},
+            **{name: variable(along, numbers[name], *REPORTED[name]) for name in REPORTED},
             "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
             **multiplicities(along, table),
         }
 
     def coordinates(self) -> dict[str, Variable]:
-        """Structure, direction and the excitation, in Hz too."""
+        """Return structure, direction and the excitation, in Hz too."""
         name = self.series.name
         turns = [point.excitation.frequency / (2.0 * np.pi) for point in self.series.points]
         directions = ["up", "down"] if self.direction == "both" else [self.direction]
@@ -113,32 +114,36 @@ class ResonanceJob(SweepJob):
         }
 
     def curves(self, data: xr.Dataset) -> list[xr.Dataset]:
-        """The curves that differ, by increasing frequency: bonded, both directions are one."""
+        """Return the curves that differ, by increasing frequency: bonded, both directions are
+        one.
+        """
         ordered = data.sortby(self.series.name)
         glued = [ordered.isel(structure=0, direction=0)]
         return glued + [ordered.isel(structure=1, direction=i) for i in range(data.direction.size)]
 
     def peaks(self, data: xr.Dataset) -> dict[str, Variable]:
-        """Where the larger one of both displacements has its maxima."""
+        """Return the maxima of the larger one of both displacements."""
         rows, noise = [], []
         for curve in self.curves(data):
             parts = str(curve.structure.values) != KINDS[0]  # glued, no response is irregular
             inside = inside_irregular(parts & (curve.multiplicity_decided.values == IRREGULAR))
-            for index in maxima(reach(curve), self.prominence):
+            for index in maxima(larger_displacement(curve), self.prominence):
                 rows.append(curve.isel({self.series.name: index}))
                 noise.append(inside[index])
         text = "whether it lies inside a range of irregular responses, where a maximum is chance"
         return {
-            **self.named("peak", rows),
+            **self.locations("peak", rows),
             "peak_irregular": yes_or_no("peak", noise, text),
             **{
-                f"peak_{name}": variable("peak", [float(row[name]) for row in rows], *TOLD[name])
-                for name in OF_PEAKS
+                f"peak_{name}": variable(
+                    "peak", [float(row[name]) for row in rows], *REPORTED[name]
+                )
+                for name in PEAK_QUANTITIES
             },
         }
 
     def jumps(self, data: xr.Dataset) -> dict[str, Variable]:
-        """Where the largest gap jumps on the way in its direction."""
+        """Return where the largest gap jumps, in the direction of the sweep."""
         rows, sizes = [], []
         for curve in self.curves(data):
             down = str(curve.direction.values) == "down"
@@ -150,18 +155,18 @@ class ResonanceJob(SweepJob):
         text = "largest gap {} the jump"
         before, after = np.reshape(sizes, (-1, 2)).T
         return {
-            **self.named("jump", rows),
+            **self.locations("jump", rows),
             "jump_before": variable("jump", before, "m", text.format("before")),
             "jump_after": variable("jump", after, "m", text.format("after")),
         }
 
-    def named(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
-        """Structure, direction and frequency of peaks or of jumps."""
+    def locations(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
+        """Return structure, direction and frequency of peaks or of jumps."""
         words = {
             f"{what}_{name}": variable(
                 what, np.array([str(row[name].values) for row in rows], dtype="U11"), "1", name
             )
-            for name in ALONG
+            for name in DIMENSIONS
         }
         name, text = self.series.name, {"peak": "of the maximum", "jump": "just after the jump"}
         return words | {
@@ -175,8 +180,8 @@ class ResonanceJob(SweepJob):
         }
 
 
-def reach(curve: xr.Dataset) -> NDArray[np.float64]:
-    """The larger one of both displacements."""
+def larger_displacement(curve: xr.Dataset) -> NDArray[np.float64]:
+    """Return the larger one of both displacements."""
     return np.maximum(curve.x1_max.values, curve.x2_max.values)
 
 
@@ -195,7 +200,8 @@ def resonance(
     jump: float = 0.15,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Resonance curves of a structure, bonded against delaminated, with their peaks and jumps.
+    """Compute resonance curves of a structure, bonded against delaminated, with their peaks and
+    jumps.
 
     Parameters
     ----------
@@ -237,7 +243,8 @@ def resonance(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is
+        out of its range.
 
     Notes
     -----
@@ -254,13 +261,13 @@ def resonance(
     ('bonded', 1.05)
     """
     job = ResonanceJob(
-        **asked_along(structure, eta, frequency, amplitude),
+        **series_arguments(structure, eta, frequency, amplitude),
         name=f"resonance_{structure.label()}",
         direction=direction,
-        transient=whole("transient", transient, 0),
-        samples=whole("samples", samples, 1),
+        transient=checked_integer("transient", transient, 0),
+        samples=checked_integer("samples", samples, 1),
         tolerance=positive("tolerance", tolerance),
-        peak_periods=whole("peak_periods", peak_periods, 1),
+        peak_periods=checked_integer("peak_periods", peak_periods, 1),
         prominence=positive("prominence", prominence),
         jump=positive("jump", jump),
     )

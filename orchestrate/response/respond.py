@@ -1,4 +1,6 @@
-"""One settled response: stroboscopic samples, impacts, the largest gap, and where it ends."""
+"""Steady-state response at one excitation: stroboscopic samples, impacts, largest gap, final
+state.
+"""
 
 from __future__ import annotations
 
@@ -10,15 +12,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import STATE, Instance, begin, last_samples, room_for_samples
+from ..access import STATE, Instance, begin, last_samples, samples_per_step
 from ..structures import Excitation, Structure
-from .multiplicity import Decision, Repetition, decide, over_size, repetition
+from .multiplicity import Decision, Repetition, decide, repetition, scale_states
 from .questions import Point
 
 
 @dataclass(frozen=True)
 class Response:
-    """The response to one excitation, in m and m/s.
+    """Response to one excitation, in m and m/s.
 
     Attributes
     ----------
@@ -48,37 +50,37 @@ class Response:
 
     @cached_property
     def states(self) -> NDArray[np.float64]:
-        """The samples over the motion's size, see :func:`.multiplicity.over_size`."""
-        return over_size(self.samples, self.frequency, self.x_rel_max)
+        """The samples over the motion's size, see :func:`.multiplicity.scale_states`."""
+        return scale_states(self.samples, self.frequency, self.x_rel_max)
 
     @cached_property
     def multiplicity(self) -> int:
-        """Least n such that the state repeats after n periods within the tolerance; 0: none. How
-        far to believe it: :meth:`decision`.
+        """Least n such that the state repeats after n periods within the tolerance; 0: none.
+        :meth:`decision` says how reliable it is.
         """
         return self.repetition(self.tolerance).multiplicity
 
     def repetition(self, tolerance: float) -> Repetition:
-        """After how many periods states repeat within a tolerance, and how closely they do."""
+        """Return after how many periods states repeat within a tolerance, and how closely."""
         return repetition(self.states, tolerance)
 
     def decision(self, tolerance: float) -> Decision:
-        """The multiplicity by how deviations develop, see :func:`.multiplicity.decide`."""
+        """Return the multiplicity by how deviations develop, see :func:`.multiplicity.decide`."""
         return decide(self.states, tolerance)
 
     @property
     def gap(self) -> NDArray[np.float64]:
-        """Of the samples, m."""
+        """Gap at the samples, m."""
         return self.samples[:, 1] - self.samples[:, 0]
 
     @cached_property
     def end(self) -> tuple[float, ...]:
-        """The state at the last sample, which a next response starts from."""
-        return without_last_digits(self.samples[-1])
+        """State at the last sample, from which a next response starts."""
+        return round_state(self.samples[-1])
 
 
-def without_last_digits(state: NDArray[np.float64], bits: int = 44) -> tuple[float, ...]:
-    """A state to 13 digits, so that it does not tell how its response was reached.
+def round_state(state: NDArray[np.float64], bits: int = 44) -> tuple[float, ...]:
+    """Round a state to 13 digits, so that it does not depend on how its response was reached.
 
     Rounding never settles: what has converged to one response from two sides goes on to differ in
     its last digits for good. Without them it is the same to the last bit, and parts of a sweep that
@@ -93,21 +95,21 @@ def without_last_digits(state: NDArray[np.float64], bits: int = 44) -> tuple[flo
 
     Examples
     --------
-    >>> without_last_digits(np.array([0.25, 0.3, 1.0, -1.0]))
+    >>> round_state(np.array([0.25, 0.3, 1.0, -1.0]))
     (0.25, 0.30000000000001137, 1.0, -1.0)
     """
     x1, x2, v1, v2 = state.tolist()
-    return (*to_bits(x1, x2, bits), *to_bits(v1, v2, bits))
+    return (*round_to_bits(x1, x2, bits), *round_to_bits(v1, v2, bits))
 
 
-def to_bits(one: float, other: float, bits: int) -> tuple[float, float]:
-    """Two values rounded to so many binary digits of the larger one."""
-    digit = math.ldexp(1.0, math.frexp(max(abs(one), abs(other)))[1] - bits)
+def round_to_bits(first: float, second: float, bits: int) -> tuple[float, float]:
+    """Round two values to so many binary digits of the larger one."""
+    digit = math.ldexp(1.0, math.frexp(max(abs(first), abs(second)))[1] - bits)
     if digit == 0.0:  # of the smallest numbers there are
-        return one, other
+        return first, second
     return (
-        math.copysign(round(one / digit) * digit, one),
-        math.copysign(round(other / digit) * digit, other),
+        math.copysign(round(first / digit) * digit, first),
+        math.copysign(round(second / digit) * digit, second),
     )
 
 
@@ -120,7 +122,7 @@ def respond(
     samples: int,
     tolerance: float,
 ) -> Response:
-    """The response after a transient, from a state at phase 0.
+    """Compute the response after a transient, from a state at phase 0.
 
     Parameters
     ----------
@@ -160,7 +162,7 @@ def respond(
 def sample(
     instance: Instance, period: float, transient: int, samples: int
 ) -> tuple[NDArray[np.float64], float]:
-    """Stroboscopic samples after the transient, inside as few steps as the FMU has room for.
+    """Take stroboscopic samples after the transient, in as few steps as the FMU has room for.
 
     Returns
     -------
@@ -168,7 +170,7 @@ def sample(
     peak : float
         Largest gap on the way.
     """
-    room = room_for_samples(instance)
+    room = samples_per_step(instance)
     states, peak = np.empty((len(STATE), samples)).T, 0.0
     for done in range(0, samples, room):
         count = min(room, samples - done)
@@ -181,7 +183,7 @@ def sample(
 
 
 def impacts_since(instance: Instance, before: int, time: float, target: float) -> int:
-    """Impacts until a time, after a count that was read before.
+    """Count impacts until a time, after a count that was read before.
 
     Parameters
     ----------
@@ -199,7 +201,7 @@ def impacts_since(instance: Instance, before: int, time: float, target: float) -
 
 
 def impacts_in(instance: Instance, point: Point, start: ArrayLike, periods: int) -> int:
-    """Impacts in some periods from a state at phase 0 on, in m and m/s."""
+    """Return the impacts in some periods from a state at phase 0 on, in m and m/s."""
     begin(instance, *point, start)
     (before,) = instance.get("impact_count")
     return impacts_since(instance, before, 0.0, periods * point.excitation.period)
@@ -213,7 +215,7 @@ def follow(
     samples: int,
     tolerance: float,
 ) -> Iterator[Response]:
-    """Responses one after the other, each from the state that the last one passes on.
+    """Yield responses one after the other, each from the final state of the one before.
 
     Parameters
     ----------

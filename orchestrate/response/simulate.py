@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, EventInstance, Impacts, begin, finder
+from ..checks import checked_integer
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Excitation, Structure
 from .equations import absolute_accelerations
 from .labels import Variable, variable, yes_or_no
-from .questions import Point, Question, one_point, state, whole
+from .questions import Point, Question, one_point, state
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,7 +45,7 @@ IN_TIME = {  # units, long name
 
 @dataclass(frozen=True, kw_only=True)
 class SimulateJob(Question):
-    """A motion in time.
+    """One motion in time.
 
     Attributes
     ----------
@@ -65,45 +66,47 @@ class SimulateJob(Question):
     asked: ClassVar[str] = "simulate"
 
     def count(self) -> int:
-        """One motion."""
+        """Return 1: there is one motion."""
         return 1
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """What moves."""
+        """Return the structure under its excitation."""
         return [Point(self.structure, self.excitation)]
 
     def grid(self) -> NDArray[np.float64]:
-        """Communication points, s."""
+        """Return the communication points, s."""
         numbers = np.arange(self.periods * self.points + 1)
         return (self.transient + numbers / self.points) * self.excitation.period
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
-        """The motion."""
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
+    ) -> Table:
+        """Compute the motion."""
         grid = self.grid()
         with EventInstance(fmus[OSCILLATOR]) as instance:
             begin(instance, *items[0], self.start)
             instance.advance(0.0, float(grid[0]))
-            rows, touching, impacts = recorded(instance, grid)
-        found = dict(zip(OUTPUTS, rows.T, strict=True))
-        found["in_contact"] = touching
-        found |= impact_columns(impacts, self.structure)
-        return {**found, **self.accelerations(rows, touching)}
+            rows, touching, impacts = run_grid(instance, grid)
+        columns = dict(zip(OUTPUTS, rows.T, strict=True))
+        columns["in_contact"] = touching
+        columns |= impact_columns(impacts, self.structure)
+        return {**columns, **self.accelerations(rows, touching)}
 
     def accelerations(
         self, rows: NDArray[np.float64], touching: NDArray[np.bool_]
     ) -> dict[str, NDArray[np.float64]]:
-        """Of both masses and of the box, by the equations of motion."""
+        """Return the accelerations of both masses and of the box, by the equations of motion."""
         excitation, phase = self.excitation, rows[:, OUTPUTS.index("phase")]
         box = -excitation.amplitude * excitation.frequency**2 * np.sin(phase)
-        one, two = absolute_accelerations(rows[:, :4], self.structure, touching).T
+        first, second = absolute_accelerations(rows[:, :4], self.structure, touching).T
         return {
             "box_acceleration": box,
-            **{"a1_abs": one, "a2_abs": two},
-            **{"a1": one - box, "a2": two - box},
+            **{"a1_abs": first, "a2_abs": second},
+            **{"a1": first - box, "a2": second - box},
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The motion in time, and its impacts."""
+        """Return the motion in time, and its impacts."""
         import xarray as xr
 
         contact = "whether the masses are in permanent contact"
@@ -118,7 +121,7 @@ class SimulateJob(Question):
         )
 
     def coordinates(self) -> dict[str, Variable]:
-        """Time in seconds, in units of 1/omega, and in periods."""
+        """Return time in seconds, in units of 1/omega, and in periods."""
         time = self.grid()
         tau, turns = self.structure.omega * time, time / self.excitation.period
         return {
@@ -129,7 +132,7 @@ class SimulateJob(Question):
 
 
 def impact_variables(table: Table) -> dict[str, Variable]:
-    """The impacts of the time kept."""
+    """Return the impacts of the stored time as variables."""
     closing, impulse = table["impact_velocity"], table["impulse"]
     text = "whether permanent contact follows the impact (17)"
     return {
@@ -141,7 +144,7 @@ def impact_variables(table: Table) -> dict[str, Variable]:
 
 
 def impact_columns(impacts: Impacts, structure: Structure) -> Table:
-    """Impacts as columns of a table."""
+    """Return impacts as columns of a table."""
     return {
         "impact_time": impacts.time,
         "impact_velocity": impacts.closing,
@@ -150,10 +153,10 @@ def impact_columns(impacts: Impacts, structure: Structure) -> Table:
     }
 
 
-def recorded(
+def run_grid(
     instance: EventInstance, grid: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_], Impacts]:
-    """A motion at communication points, and its impacts between them.
+    """Return a motion at communication points, and its impacts between them.
 
     Parameters
     ----------
@@ -172,12 +175,12 @@ def recorded(
     touch = instance.flag("in_contact")
     rows, touching = np.empty((len(grid), len(OUTPUTS))), np.empty(len(grid), dtype=bool)
     rows[0], touching[0] = instance.read(*OUTPUTS), touch()
-    parts = []
+    pieces = []
     for index in range(1, len(grid)):
-        parts.append(instance.impacts(float(grid[index - 1]), float(grid[index])))
+        pieces.append(instance.impacts(float(grid[index - 1]), float(grid[index])))
         rows[index], touching[index] = instance.read(*OUTPUTS), touch()
     names = ("time", "state", "closing", "sticks")
-    joined = [np.concatenate([getattr(part, name) for part in parts]) for name in names]
+    joined = [np.concatenate([getattr(piece, name) for piece in pieces]) for name in names]
     return rows, touching, Impacts(*joined)
 
 
@@ -194,7 +197,7 @@ def simulate(
     phase: float = 0.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """A motion in time, with its impacts.
+    """Compute a motion in time, with its impacts.
 
     Parameters
     ----------
@@ -228,7 +231,8 @@ def simulate(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is
+        out of its range.
 
     Notes
     -----
@@ -249,9 +253,9 @@ def simulate(
         name=f"motion_{structure.label()}",
         structure=chosen,
         excitation=excitation.replace(phase=phase),
-        periods=whole("periods", periods, 1),
-        transient=whole("transient", transient, 0),
-        points=whole("points", points, 1),
+        periods=checked_integer("periods", periods, 1),
+        transient=checked_integer("transient", transient, 0),
+        points=checked_integer("points", points, 1),
         start=state("start", start, structure),
     )
     return answer(job, running, finder(running))

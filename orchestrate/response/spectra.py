@@ -16,13 +16,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, Instance, begin, finder, sampled
+from ..checks import checked_integer
 from ..errors import InputError
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .equations import absolute_accelerations
 from .labels import variable
-from .questions import Point, SeriesQuestion, asked_along, positive, whole
+from .questions import Point, SeriesQuestion, positive, series_arguments
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +36,7 @@ Floats = NDArray[np.float64]
 
 
 def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floats]:
-    """Amplitude spectrum through a Hann window: a sine of amplitude A shows as A.
+    """Return the amplitude spectrum through a Hann window: a sine of amplitude A shows as A.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
 
 @dataclass(frozen=True, kw_only=True)
 class SpectraJob(SeriesQuestion):
-    """Spectra of settled responses.
+    """Spectra of steady-state responses.
 
     Attributes
     ----------
@@ -101,26 +102,30 @@ class SpectraJob(SeriesQuestion):
             )
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Structure and excitation of each."""
+        """Return structure and excitation of each response."""
         return self.series.points
 
     def orders(self) -> Floats:
-        """Lines as multiples of the excitation frequency."""
+        """Return the lines as multiples of the excitation frequency."""
         orders = np.arange(self.periods * self.points // 2 + 1) / self.periods
         return orders[orders <= self.highest]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
-        """Bonded, delaminated, and delaminated without its impulses."""
-        found = []
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
+    ) -> Table:
+        """Compute spectra: bonded, delaminated, and delaminated without its impulses."""
+        amplitudes = []
         with Instance(fmus[OSCILLATOR]) as instance:
             for structure, excitation in items:
                 glued = self.spectrum(instance, Point(structure.as_bonded(), excitation))
                 free = self.spectrum(instance, Point(structure.as_delaminated(), excitation))
-                found.append([glued[0], *free])
-        return {"acceleration": np.array(found)}
+                amplitudes.append([glued[0], *free])
+        return {"acceleration": np.array(amplitudes)}
 
     def spectrum(self, instance: Instance, point: Point) -> tuple[Floats, Floats]:
-        """Of both masses, shape (2, lines): with impulses, and of the acceleration between them."""
+        """Return spectra of both masses, shape (2, lines): with impulses, and of the acceleration
+        between them.
+        """
         span, count = point.excitation.period, self.periods * self.points
         first, last = self.transient * span, (self.transient + self.periods) * span
         begin(instance, *point, REST)
@@ -136,7 +141,7 @@ class SpectraJob(SeriesQuestion):
         return (frequency**2 * displaced)[:, :shown], between[:, :shown]
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Amplitudes over the lines."""
+        """Return amplitudes over the lines."""
         import xarray as xr
 
         along, orders = self.series.name, self.orders()
@@ -173,7 +178,7 @@ def spectra(
     highest: float = 40.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Amplitude spectra of the masses' accelerations in space, bonded beside delaminated.
+    """Compute amplitude spectra of the masses' accelerations in space, bonded beside delaminated.
 
     Parameters
     ----------
@@ -203,7 +208,8 @@ def spectra(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is
+        out of its range.
 
     Notes
     -----
@@ -220,11 +226,11 @@ def spectra(
     array([0. , 9.3, 0. ])
     """
     job = SpectraJob(
-        **asked_along(structure, eta, frequency, amplitude),
+        **series_arguments(structure, eta, frequency, amplitude),
         name=f"spectra_{structure.label()}",
-        periods=whole("periods", periods, 1),
-        points=whole("points", points, 2),
-        transient=whole("transient", transient, 0),
+        periods=checked_integer("periods", periods, 1),
+        points=checked_integer("points", points, 2),
+        transient=checked_integer("transient", transient, 0),
         highest=positive("highest", highest),
     )
     return answer(job, running, finder(running))

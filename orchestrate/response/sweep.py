@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, Instance, finder
+from ..checks import checked_integer
 from ..errors import InputError
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .labels import Dims, Variable, flags, nondimensional_state, variable, yes_or_no
 from .multiplicity import DECIDED, REPEATED
-from .peaks import PEAKS, orbit, peaks, periods_of
-from .questions import Point, SeriesQuestion, asked_along, positive, state, whole
+from .peaks import PEAKS, peaks, periods_to_sample, sample_periods
+from .questions import Point, SeriesQuestion, positive, series_arguments, state
 from .respond import Response, follow, impacts_since
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 Direction = Literal["up", "down", "both", "given"]
 DIRECTIONS = ("up", "down", "both", "given")
-NUMBERS = {  # one a response: units, long name
+RESPONSE_QUANTITIES = {  # one a response: units, long name
     "xi_rel_max": ("1", "largest gap over the sampled periods, between samples too"),
     "impacts_per_period": (
         "1",
@@ -49,7 +50,7 @@ HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a g
 
 @dataclass(frozen=True, kw_only=True)
 class SweepJob(SeriesQuestion):
-    """A sweep.
+    """Responses along one parameter.
 
     Attributes
     ----------
@@ -74,7 +75,7 @@ class SweepJob(SeriesQuestion):
     asked: ClassVar[str] = "sweep"
     chunk: ClassVar[int] = 100
     sequential: ClassVar[bool] = True
-    lead: ClassVar[int] = 16  # most responses forget where they came from within as many
+    warmup_items: ClassVar[int] = 16  # most responses forget where they came from within as many
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -89,27 +90,31 @@ class SweepJob(SeriesQuestion):
             )
 
     def orders(self) -> list[NDArray[np.intp]]:
-        """Indices of the values in the order in which they are computed, for each direction."""
+        """Return indices of the values in the order in which they are computed, for each
+        direction.
+        """
         up = np.argsort(self.series.values, kind="stable")
         known = {"up": [up], "down": [up[::-1]], "both": [up, up[::-1]]}
         return known.get(self.direction) or [np.arange(len(up))]
 
-    def lanes(self) -> int:
-        """Up and down know nothing of each other."""
+    def independent_series(self) -> int:
+        """Return the number of directions: up and down are independent."""
         return len(self.orders())
 
     def count(self) -> int:
-        """Number of responses."""
-        return self.lanes() * super().count()
+        """Return the number of responses."""
+        return self.independent_series() * super().count()
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Structure and excitation of each response."""
+        """Return structure and excitation of each response."""
         points = self.series.points
         return [points[index] for order in self.orders() for index in order]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Point], carry: Table | None) -> Table:
-        """Some responses, from the state that the last one passes on."""
-        start = self.start if carry is None else carry["end"][-1]
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
+    ) -> Table:
+        """Compute a chunk of responses; each starts from the end of the one before."""
+        start = self.start if previous is None else previous["end"][-1]
         settings = self.transient, self.samples, self.tolerance
         with Instance(fmus[OSCILLATOR]) as instance:
             rows = [
@@ -123,11 +128,11 @@ class SweepJob(SeriesQuestion):
         return {**table, **peaks(items, spans, np.array(orbits))}
 
     def row(self, instance: Instance, point: Point, response: Response) -> dict[str, Any]:
-        """One response, and how it goes on after the samples."""
+        """Return one response, and how it goes on after the samples."""
         n, decided = response.decision(self.tolerance)
-        span = periods_of(n, self.peak_periods)
+        span = periods_to_sample(n, self.peak_periods)
         first = self.transient + self.samples
-        states = orbit(instance, point, response, first, span)
+        states = sample_periods(instance, point, response, first, span)
         impacts = response.impacts_per_period
         if decided == REPEATED:
             done, end = ((first + count) * point.excitation.period for count in (span, n))
@@ -144,28 +149,28 @@ class SweepJob(SeriesQuestion):
             "orbit": states,
         }
 
-    def seam(self, table: Table) -> bytes:
-        """The state that the next response starts from."""
+    def boundary_state(self, table: Table) -> bytes:
+        """Return the state that the next response starts from."""
         return bytes(table["end"][-1].tobytes())
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Everything over the parameter, in the order of its values."""
+        """Return everything over the parameter, in the order of its values."""
         import xarray as xr
 
-        found = {name: self.in_order(values) for name, values in table.items()}
-        return xr.Dataset(self.variables(found), self.coordinates(), {"title": self.title()})
+        ordered = {name: self.in_order(values) for name, values in table.items()}
+        return xr.Dataset(self.variables(ordered), self.coordinates(), {"title": self.title()})
 
     def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
-        """Rows as the values were given, with a first axis where there are both directions."""
+        """Return rows as the values were given, with a first axis if there are both directions."""
         orders = self.orders()
         rows = values.reshape(len(orders), -1, *values.shape[1:])
-        found = np.empty_like(rows)
+        ordered = np.empty_like(rows)
         for index, order in enumerate(orders):
-            found[index, order] = rows[index]
-        return found if self.direction == "both" else found[0]
+            ordered[index, order] = rows[index]
+        return ordered if self.direction == "both" else ordered[0]
 
     def variables(self, table: Table) -> dict[str, Variable]:
-        """What was computed, in the paper's units too."""
+        """Return what was computed, in the paper's units too."""
         along: Dims = (self.series.name,)
         if self.direction == "both":
             along = ("direction", self.series.name)
@@ -183,32 +188,35 @@ class SweepJob(SeriesQuestion):
             "xi_rel": variable(
                 (*along, "sample"), gaps, "1", "stroboscopic samples of the gap xi_2 - xi_1 (21)"
             ),
-            **{name: variable(along, numbers[name], *NUMBERS[name]) for name in NUMBERS},
+            **{
+                name: variable(along, numbers[name], *RESPONSE_QUANTITIES[name])
+                for name in RESPONSE_QUANTITIES
+            },
             "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
             **multiplicities(along, table),
             "end_state": variable((*along, "coordinate"), table["end"] / scales, "1", END),
         }
 
     def coordinates(self) -> dict[str, Variable]:
-        """The parameter, the excitation along it, periods and names."""
+        """Return the parameter, the excitation along it, periods and names."""
         numbers = np.arange(self.transient + 1, self.transient + self.samples + 1)
-        found = {
+        coordinates = {
             **self.series.coordinates(),
             **nondimensional_state(),
             "sample": variable("sample", numbers, "1", "excitation period n of the sample"),
         }
         if self.direction == "both":
             text = "order in which the values were computed"
-            found["direction"] = variable("direction", np.array(["up", "down"]), "1", text)
-        return found
+            coordinates["direction"] = variable("direction", np.array(["up", "down"]), "1", text)
+        return coordinates
 
     def title(self) -> str:
-        """What it is, for people."""
+        """Return the title of the result."""
         return f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
 
 
 def multiplicities(along: Dims, table: Table) -> dict[str, Variable]:
-    """The multiplicity, and how it was decided."""
+    """Return the multiplicity, and how it was decided, as variables."""
     return {
         "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
         "multiplicity_decided": flags(along, table["decided"], HOW_DECIDED, DECIDED),
@@ -231,7 +239,7 @@ def sweep(
     peak_periods: int = 8,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Responses along a parameter, each started from a state of the last.
+    """Compute responses along a parameter, each started from a state of the last.
 
     Parameters
     ----------
@@ -277,7 +285,8 @@ def sweep(
     Raises
     ------
     InputError
-        Where the question is not whole, or a number is out of its range.
+        Where a required argument is missing, arguments contradict each other, or a number is
+        out of its range.
 
     Notes
     -----
@@ -296,10 +305,10 @@ def sweep(
     Impacts of a response that has repeated are counted over its own period, those of others over
     the samples.
 
-    What is passed on from value to value is the state at the last sample to 44 bits, 13 digits:
-    what has converged to one response then comes to the very same numbers, whatever rounding it was
-    reached with. So parts of a sweep that are computed elsewhere, begun a few values early from
-    rest, join it, and all cores work on one sweep.
+    Each value starts from the state at the last sample of the one before, rounded to 44 bits, 13
+    digits: what has converged to one response then comes to the very same numbers, whatever
+    rounding it was reached with. So parts of a sweep that are computed elsewhere, begun a few
+    values early from rest, join it, and all cores work on one sweep.
 
     Examples
     --------
@@ -313,13 +322,13 @@ def sweep(
     array([10., 30.])
     """
     job = SweepJob(
-        **asked_along(structure, eta, frequency, amplitude, over, values),
+        **series_arguments(structure, eta, frequency, amplitude, over, values),
         name=f"sweep_{structure.label()}_{direction}",
         direction=direction,
-        transient=whole("transient", transient, 0),
-        samples=whole("samples", samples, 1),
+        transient=checked_integer("transient", transient, 0),
+        samples=checked_integer("samples", samples, 1),
         tolerance=positive("tolerance", tolerance),
         start=state("start", start, structure),
-        peak_periods=whole("peak_periods", peak_periods, 1),
+        peak_periods=checked_integer("peak_periods", peak_periods, 1),
     )
     return answer(job, running, finder(running))

@@ -1,4 +1,4 @@
-"""Where a curve has a maximum that counts, and where it jumps."""
+"""Significant maxima and jumps of a curve."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Rows = NDArray[np.intp]
-WINDOW = 3  # values that a window has at least to show a maximum of its own
-NEIGHBOURS, TIMES = 2, 3.0  # of the curve's own slope, which a jump must stand out from
+WINDOW = 3  # values: the least that can show a maximum of their own
+NEIGHBOURS, JUMP_FACTOR = 2, 3.0  # of the curve's own slope, which a jump must stand out from
 
 
 def maxima(curve: ArrayLike, prominence: float) -> Rows:
-    """Indices of maxima inside a curve that stand out.
+    """Return the indices of maxima inside a curve that stand out.
 
     Parameters
     ----------
@@ -30,12 +30,12 @@ def maxima(curve: ArrayLike, prominence: float) -> Rows:
 
     values = np.asarray(curve, dtype=float)
     ratios = np.log(np.maximum(values, np.finfo(float).tiny))
-    found: Rows = find_peaks(ratios, prominence=np.log1p(prominence))[0]
-    return found
+    indices: Rows = find_peaks(ratios, prominence=np.log1p(prominence))[0]
+    return indices
 
 
 def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
-    """Which values of a curve lie inside a range of irregular responses.
+    """Return which values of a curve lie inside a range of irregular responses.
 
     Parameters
     ----------
@@ -56,17 +56,17 @@ def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
     from scipy.ndimage import binary_closing
 
     padded = np.pad(np.asarray(irregular, dtype=bool), WINDOW)
-    found: NDArray[np.bool_] = binary_closing(padded, np.ones(WINDOW))[WINDOW:-WINDOW]
-    return found
+    inside: NDArray[np.bool_] = binary_closing(padded, np.ones(WINDOW))[WINDOW:-WINDOW]
+    return inside
 
 
-def jumps(curve: ArrayLike, least: float) -> Rows:
-    """Indices of values from which a curve jumps to the next one.
+def jumps(curve: ArrayLike, minimum: float) -> Rows:
+    """Return the indices of values from which a curve jumps to the next one.
 
     Parameters
     ----------
     curve : array_like, shape (n,)
-    least : float
+    minimum : float
         Part of the larger one of both values that a jump is at least. It must also be some times
         as large as the steps next to it: a steep curve does not jump, nor does an irregular one.
 
@@ -79,13 +79,15 @@ def jumps(curve: ArrayLike, least: float) -> Rows:
     """
     values = np.asarray(curve, dtype=float)
     steps = np.abs(np.diff(values))
-    large = steps > least * np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
+    large = steps > minimum * np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
     padded = np.pad(steps, NEIGHBOURS)
     around = [np.roll(padded, shift)[NEIGHBOURS:-NEIGHBOURS] for shift in offsets()]
-    found: Rows = np.flatnonzero(large & (steps > TIMES * np.max(around, axis=0, initial=0.0)))
-    return found
+    indices: Rows = np.flatnonzero(
+        large & (steps > JUMP_FACTOR * np.max(around, axis=0, initial=0.0))
+    )
+    return indices
 
 
 def offsets() -> list[int]:
-    """Places next to a step."""
+    """Return the offsets of the neighbours of a step."""
     return [shift for shift in range(-NEIGHBOURS, NEIGHBOURS + 1) if shift]

@@ -1,17 +1,19 @@
 """All that is long, in one way: chunks on all cores or a cluster, resumable, whole or not at all.
 
-==================  ===============================================================================
+==================  =========================================================================
 module              idea
-==================  ===============================================================================
-:mod:`.job`         what a long computation is: items, chunks, what decides its numbers
-:mod:`.identity`    what a stored result answers: the question, the FMUs, the code
-:mod:`.options`     how a question is computed, whatever it asks
-:mod:`.store`       where chunks and results are kept: in memory or on disk
+==================  =========================================================================
+:mod:`.job`         definition of a long computation: items, chunks, what decides its numbers
+:mod:`.identity`    identity of a stored result: the question, the FMUs, the code
+:mod:`.options`     keywords that all questions share
+:mod:`.store`       storage of chunks and results, in memory or on disk
 :mod:`.journal`     chunks on disk while a job is under way
-:mod:`.provenance`  where a dataset comes from, in its attributes
-:mod:`.executors`   who computes: this process, or processes of this machine
+:mod:`.checksum`    checksum of a result, however it is stored
+:mod:`.formats`     export of a result: CSV, MATLAB, Excel
+:mod:`.provenance`  attributes that say where a dataset comes from
+:mod:`.executors`   this process, or worker processes of this machine
 :mod:`.cluster`     the workers of a Dask scheduler
-:mod:`.progress`    how far a job is, and what may be computed next, guesses included
-:mod:`.runner`      keeps them busy until every result is there
-==================  ===============================================================================
+:mod:`.progress`    chunks done, under way, guessed; what may be computed next
+:mod:`.runner`      keeps the workers busy until every result is there
+==================  =========================================================================
 """

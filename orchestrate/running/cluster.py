@@ -10,27 +10,33 @@ from contextlib import suppress
 from typing import Any
 
 from ..errors import InputError
-from .executors import ended_at_once
+from .executors import workers_ended_on_error
 
-DASK = (
+DASK_LOGGERS = (
     *("distributed.batched", "distributed.client", "distributed.comm.core", "distributed.comm.tcp"),
     *("distributed.core", "distributed.utils", "distributed.utils_comm", "tornado.application"),
 )
-CONNECTION = (OSError, CancelledError, asyncio.CancelledError, asyncio.TimeoutError)
-CONNECT = "5s"
+CONNECTION_ERRORS = (OSError, CancelledError, asyncio.CancelledError, asyncio.TimeoutError)
+CONNECT_TIMEOUT = "5s"
 RETRIES = 3  # a chunk whose worker is lost is computed by others
 
 
-def is_no_lost_connection(record: logging.LogRecord) -> bool:
-    """Whether a line of Dask's log stays: a lost connection is an exception of ours already."""
+def is_worth_logging(record: logging.LogRecord) -> bool:
+    """Decide whether a line of Dask's log stays; lost connections are reported by our own
+    exceptions.
+    """
     kind = record.exc_info[0] if record.exc_info else None
-    lost = kind is not None and issubclass(kind, CONNECTION)
-    told = record.getMessage()
-    return not lost and "CommClosedError" not in told and not told.startswith("Failed to reconnect")
+    lost = kind is not None and issubclass(kind, CONNECTION_ERRORS)
+    message = record.getMessage()
+    return (
+        not lost
+        and "CommClosedError" not in message
+        and not message.startswith("Failed to reconnect")
+    )
 
 
 class Cluster:
-    """Workers of a Dask scheduler.
+    """Computes chunks on the workers of a Dask scheduler.
 
     Parameters
     ----------
@@ -57,22 +63,22 @@ class Cluster:
             CancelledError: "the scheduler of the cluster has ended",
             KilledWorker: "workers of the cluster ended without a word (killed, or out of memory)",
         }
-        for name in DASK:
-            logging.getLogger(name).addFilter(is_no_lost_connection)
+        for name in DASK_LOGGERS:
+            logging.getLogger(name).addFilter(is_worth_logging)
         connect: Any = Client
         try:
-            with ThreadPoolExecutor(1) as beside:  # a notebook has a loop in this thread
-                beside.submit(asyncio.run, greet(address)).result()
-            self._client = connect(address, timeout=CONNECT, set_as_default=False)
+            with ThreadPoolExecutor(1) as thread_pool:  # a notebook has a loop in this thread
+                thread_pool.submit(asyncio.run, check_scheduler(address)).result()
+            self._client = connect(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
         except Exception as error:  # of whatever answers there, and however
             raise InputError(
                 f"cluster {address}: no scheduler answers there ({str(error) or 'silence'}); "
                 "`dask scheduler` starts one"
             ) from None
-        self.executor: Executor = Submitting(
+        self.executor: Executor = DaskExecutor(
             self._client.get_executor(pure=False, retries=RETRIES), self._client
         )
-        with ended_at_once(self):
+        with workers_ended_on_error(self):
             if not self._cores():
                 raise InputError(
                     f"cluster {address}: the scheduler has no workers; "
@@ -80,45 +86,47 @@ class Cluster:
                 )
 
     def _cores(self) -> int:
-        """Cores of all workers."""
+        """Count the cores of all workers."""
         try:
             return int(sum(self._client.ncores().values()))
         except Exception as error:  # one of many, where the connection is lost
             raise CancelledError from error
 
-    def room(self) -> int:
-        """Two chunks for each core; workers may come and go."""
+    def max_in_flight(self) -> int:
+        """Return two chunks for each core; workers may come and go."""
         return 2 * max(1, self._cores())
 
     def close(self, in_haste: bool) -> None:
-        """Leave the scheduler, where it is there; what it still computes for us is cancelled."""
+        """Disconnect from the scheduler; what it still computes for us is cancelled."""
         with suppress(Exception):
             self.executor.shutdown(wait=not in_haste)
         with suppress(Exception):
             self._client.close()
 
 
-async def greet(address: str) -> None:
-    """See whether Dask answers at an address; its client waits for ever for one that is silent."""
+async def check_scheduler(address: str) -> None:
+    """Check that Dask answers at an address; its own client waits for ever for one that does
+    not.
+    """
     from dask.utils import parse_timedelta
     from distributed.comm import connect
     from distributed.security import Security
 
     call: Any = connect
     security: Any = Security
-    answer = call(address, timeout=CONNECT, **security().get_connection_args("client"))
-    reached = await asyncio.wait_for(answer, 1.0 + parse_timedelta(CONNECT))
+    answer = call(address, timeout=CONNECT_TIMEOUT, **security().get_connection_args("client"))
+    reached = await asyncio.wait_for(answer, 1.0 + parse_timedelta(CONNECT_TIMEOUT))
     reached.abort()
 
 
-class Submitting(Executor):
-    """Dask's executor, where a call that finds no scheduler is one that is cancelled."""
+class DaskExecutor(Executor):
+    """Wraps Dask's executor: a call that finds no scheduler counts as cancelled."""
 
     def __init__(self, pool: Any, client: Any) -> None:
         self._pool, self._client = pool, client
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Hand out a call."""
+        """Submit a call."""
         try:
             future: Future[Any] = self._pool.submit(fn, *args, **kwargs)
         except Exception as error:
@@ -128,5 +136,5 @@ class Submitting(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Wait for what is under way, or cancel it."""
+        """Shut down Dask's executor; ``wait`` waits for running calls, else they are cancelled."""
         self._pool.shutdown(wait=wait)

@@ -1,4 +1,4 @@
-"""Who computes: this process, processes of this machine, or others (:mod:`.cluster`).
+"""Executors: this process, worker processes of this machine, or others (:mod:`.cluster`).
 
 Processes are loky's: they start without running the caller's script again, so a script needs no
 ``__main__`` guard and a notebook works. A chunk is the same call for all three.
@@ -24,31 +24,31 @@ from typing import Any, ClassVar, Protocol
 from ..errors import WorkerError
 from ..files import write_whole
 from ..temporary import process_folder
-from .identity import changed, code_of
+from .identity import changed_modules, code_digests
 from .job import Job, Table, last_entries
 
-IDLE = 30  # s that processes wait for another question
+IDLE_TIMEOUT = 30  # s that worker processes wait for the next question before they end
 
 
 def compute(
     job: Job,
     fmus: Mapping[str, Path | bytes],
     items: Sequence[Any],
-    carry: Table | None,
-    lead: Sequence[Any],
+    previous: Table | None,
+    warmup_items: Sequence[Any],
     code: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Table]:
-    """One chunk, wherever it is computed; FMUs travel to other machines as bytes.
+    """Compute one chunk, in any process; to other machines FMUs travel as bytes.
 
     Parameters
     ----------
     job : Job
     fmus : mapping
     items : sequence
-    carry : dict of ndarray, optional
+    previous : dict of ndarray, optional
         What the chunk starts from.
-    lead : sequence
-        Items to compute first, from the job's own beginning, in place of ``carry``.
+    warmup_items : sequence
+        Items to compute first, from the job's own beginning, in place of ``previous``.
     code : mapping of str to str, optional
         Digests of the sources that the job belongs to, where it travels to another machine.
 
@@ -63,35 +63,35 @@ def compute(
     WorkerError
         Where the sources here are others: they would give other numbers.
     """
-    here = code_of(type(job).__module__) if code is not None else {}
-    if code is not None and here != code:
-        names = changed(here, code)
+    own_code = code_digests(type(job).__module__) if code is not None else {}
+    if code is not None and own_code != code:
+        names = changed_modules(own_code, code)
         raise WorkerError(f"a worker has other sources ({names}); expected the same version there")
     paths = {
-        model: unpacked(model, fmu) if isinstance(fmu, bytes) else fmu
+        model: fmu_file(model, fmu) if isinstance(fmu, bytes) else fmu
         for model, fmu in fmus.items()
     }
-    if lead:
-        carry = last_entries(job.work(paths, lead, None))
-    start = job.seam(carry) if job.lead and carry is not None else b""
-    return start, job.work(paths, items, carry)
+    if warmup_items:
+        previous = last_entries(job.work(paths, warmup_items, None))
+    start = job.boundary_state(previous) if job.warmup_items and previous is not None else b""
+    return start, job.work(paths, items, previous)
 
 
-def unpacked(model: str, content: bytes) -> Path:
-    """An FMU that came as bytes, as a file."""
-    return kept(model, hashlib.sha256(content).hexdigest(), content)
+def fmu_file(model: str, content: bytes) -> Path:
+    """Write an FMU that came as bytes to a file; return its path."""
+    return write_fmu_once(model, hashlib.sha256(content).hexdigest(), content)
 
 
 @functools.lru_cache(maxsize=16)
-def kept(model: str, digest: str, content: bytes) -> Path:
+def write_fmu_once(model: str, digest: str, content: bytes) -> Path:
     """Write an FMU into the temporary folder of this process, once."""
     folder = process_folder() / f"sent-{digest[:32]}"
     folder.mkdir(exist_ok=True)
-    return write_whole(folder / f"{model}.fmu", lambda place: place.write_bytes(content))
+    return write_whole(folder / f"{model}.fmu", lambda path: path.write_bytes(content))
 
 
 class Workers(Protocol):
-    """Those who compute chunks."""
+    """Interface of everything that computes chunks."""
 
     @property
     def executor(self) -> Executor:
@@ -99,46 +99,46 @@ class Workers(Protocol):
 
     @property
     def remote(self) -> bool:
-        """Whether they share no disk with this process."""
+        """Whether the workers share no disk with this process."""
 
     @property
     def losses(self) -> Mapping[type[BaseException], str]:
-        """Exceptions by which it shows that they are lost, and what has happened then."""
+        """Exceptions that show that workers are lost, and what has happened then."""
 
-    def room(self) -> int:
-        """Chunks worth having under way."""
+    def max_in_flight(self) -> int:
+        """Return how many chunks should be submitted at once."""
 
     def close(self, in_haste: bool) -> None:
-        """Let them go, in the middle of their chunks where ``in_haste``."""
+        """Release the workers; ``in_haste`` ends them in the middle of their chunks."""
 
 
-class Here(Executor):
-    """A call is carried out by this process, when it is submitted."""
+class InlineExecutor(Executor):
+    """Runs each call in this process as soon as it is submitted."""
 
     remote = False
     losses: ClassVar[Mapping[type[BaseException], str]] = {}
 
     @property
     def executor(self) -> Executor:
-        """Itself."""
+        """Return itself."""
         return self
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Carry a call out; what it raises is raised here."""
+        """Run a call now; what it raises is raised here."""
         future: Future[Any] = Future()
         future.set_result(fn(*args, **kwargs))
         return future
 
-    def room(self) -> int:
-        """One chunk at a time."""
+    def max_in_flight(self) -> int:
+        """Return 1: chunks are computed one at a time."""
         return 1
 
     def close(self, in_haste: bool) -> None:
-        """Nobody to let go."""
+        """Do nothing: there are no workers to release."""
 
 
 class Processes:
-    """Processes of this machine."""
+    """Computes chunks in worker processes of this machine (loky)."""
 
     remote = False
     losses: ClassVar[Mapping[type[BaseException], str]] = {
@@ -150,14 +150,14 @@ class Processes:
         import loky
 
         self.count = count
-        self.executor: Executor = Deaf(
+        self.executor: Executor = SigintMaskedExecutor(
             loky.get_reusable_executor(
-                count, timeout=IDLE, initializer=attend, initargs=(os.getpid(),)
+                count, timeout=IDLE_TIMEOUT, initializer=initialize_worker, initargs=(os.getpid(),)
             )
         )
 
-    def room(self) -> int:
-        """One chunk more than are computed."""
+    def max_in_flight(self) -> int:
+        """Return one chunk more than there are processes, so that none waits."""
         return self.count + 1
 
     def close(self, in_haste: bool) -> None:
@@ -166,26 +166,26 @@ class Processes:
             self.executor.shutdown(wait=True, cancel_futures=True)
 
 
-class Deaf(Executor):
-    """An executor whose processes do not hear Ctrl-C, from their first instruction on."""
+class SigintMaskedExecutor(Executor):
+    """Wraps an executor whose processes ignore Ctrl-C from their first instruction on."""
 
     def __init__(self, pool: Any) -> None:
         self._pool = pool
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Hand out a call; processes that are started for it inherit that Ctrl-C is held back."""
-        with interrupts_held():
+        """Submit a call; processes that are started for it inherit the blocked signal."""
+        with sigint_masked():
             future: Future[Any] = self._pool.submit(fn, *args, **kwargs)
             return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End the processes, in the middle of what they do."""
+        """End the processes; ``cancel_futures`` kills them in the middle of their work."""
         self._pool.shutdown(wait=wait, kill_workers=cancel_futures)
 
 
 @contextmanager
-def interrupts_held() -> Iterator[None]:
-    """Hold Ctrl-C back for a moment; what is started meanwhile holds it back for good."""
+def sigint_masked() -> Iterator[None]:
+    """Block SIGINT (Ctrl-C) for a moment; processes started meanwhile keep it blocked."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -197,8 +197,8 @@ def interrupts_held() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def attend(parent: int) -> None:
-    """End this process when its parent has ended: nobody waits for its results."""
+def initialize_worker(parent: int) -> None:
+    """Set up a worker process: ignore Ctrl-C, and end when the parent process has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform == "win32":  # there a process does not learn of it
         return
@@ -212,23 +212,23 @@ def attend(parent: int) -> None:
 
 
 @contextmanager
-def ended_at_once(workers: Workers) -> Iterator[None]:
-    """End workers where something is raised, and say so where they are lost."""
+def workers_ended_on_error(workers: Workers) -> Iterator[None]:
+    """End the workers if something is raised; a lost worker becomes a ``WorkerError``."""
     try:
         yield
     except BaseException as error:
         workers.close(True)
-        for kind, what in workers.losses.items():
+        for kind, explanation in workers.losses.items():
             if isinstance(error, kind):
                 raise WorkerError(
-                    f"{what}; what was stored is kept, the same call goes on from there"
+                    f"{explanation}; what was stored is kept, the same call goes on from there"
                 ) from None
         raise
 
 
 @contextmanager
-def at_work(workers: Workers) -> Iterator[Workers]:
-    """Workers for a while."""
-    with ended_at_once(workers):
+def running_workers(workers: Workers) -> Iterator[Workers]:
+    """Provide workers for a block of code and release them afterwards."""
+    with workers_ended_on_error(workers):
         yield workers
     workers.close(False)

@@ -1,4 +1,4 @@
-"""A result in the formats of other tools: CSV, MATLAB and Excel, each file whole or not at all.
+"""Export of a result to other tools: CSV, MATLAB and Excel, each file whole or not at all.
 
 =======  =========================================================================================
 ending   what
@@ -23,17 +23,18 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..files import write_whole
+from ..flags import flag_words
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-MOST_ROWS = 1_048_575  # of a sheet in Excel, below its header
-LONGEST = 31  # letters of a sheet's name
+MAX_SHEET_ROWS = 1_048_575  # Excel's limit, less the header
+MAX_SHEET_NAME = 31  # letters, Excel's limit
 
 
 def write(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write a dataset in the format that a path's ending names.
+    """Write a dataset in the format that the path's suffix names.
 
     Parameters
     ----------
@@ -60,86 +61,87 @@ def write(data: xr.Dataset, path: Path) -> list[Path]:
 
 
 def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
-    """Tables by the dimensions of their variables, the first variable's first; units in headers."""
+    """Return tables keyed by their dimensions, in the order of the variables; units in the
+    headers.
+    """
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, array in data.data_vars.items():
         groups.setdefault(tuple(map(str, array.dims)), []).append(str(name))
-    found = {}
+    frames = {}
     for dims, names in groups.items():
         part = data[names]
         if not dims:
-            found["numbers"] = table_of(part)
+            frames["numbers"] = make_table(part)
         else:
             scalars = [name for name, array in part.coords.items() if not array.dims]
-            found["_".join(dims)] = table_of(part.drop_vars(scalars))
-    return found
+            frames["_".join(dims)] = make_table(part.drop_vars(scalars))
+    return frames
 
 
-def table_of(data: xr.Dataset) -> pd.DataFrame:
-    """Variables over the same dimensions, a row a point."""
+def make_table(data: xr.Dataset) -> pd.DataFrame:
+    """Return variables over the same dimensions as a table, one row per point."""
     import pandas as pd
 
-    words = {name: in_words(array) for name, array in data.variables.items()}
-    plain = data.assign({n: (data[n].dims, values) for n, values in words.items()})
+    decoded = {name: decode_flags(array) for name, array in data.variables.items()}
+    plain = data.assign({n: (data[n].dims, values) for n, values in decoded.items()})
     if data.sizes:
         frame = plain.to_dataframe(dim_order=list(next(iter(data.values())).dims)).reset_index()
     else:
         frame = pd.DataFrame(
             {str(n): [array.values.item()] for n, array in plain.variables.items()}
         )
-    return frame.rename(columns={name: heading(str(name), data) for name in frame.columns})
+    return frame.rename(columns={name: column_heading(str(name), data) for name in frame.columns})
 
 
-def in_words(array: xr.Variable) -> NDArray[Any]:
-    """Values as people read them: of flags that are not yes or no, their words."""
+def decode_flags(array: xr.Variable) -> NDArray[Any]:
+    """Return an array's values; those of flags that are not yes or no as their words."""
     meanings = str(array.attrs.get("flag_meanings", "no yes"))
     if meanings == "no yes":
         return np.asarray(array.values)
-    pairs = zip(array.attrs["flag_values"], meanings.split(), strict=True)
-    words = {int(value): word.replace("_", " ") for value, word in pairs}
-    found = [words.get(int(value), "") for value in np.ravel(array.values)]
-    return np.array(found, dtype=object).reshape(array.shape)
+    words = flag_words(array.attrs)
+    decoded = [words.get(int(value), "") for value in np.ravel(array.values)]
+    return np.array(decoded, dtype=object).reshape(array.shape)
 
 
-def heading(name: str, data: xr.Dataset) -> str:
-    """A column's name with its unit: ``x1 [m]``."""
+def column_heading(name: str, data: xr.Dataset) -> str:
+    """Return a column's name with its unit: ``x1 [m]``."""
     units = str(data[name].attrs.get("units", "1")) if name in data.variables else "1"
     return name if units == "1" else f"{name} [{units}]"
 
 
 def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
-    """A file a table."""
-    found = tables(data)
+    """Write one file per table."""
+    frames = tables(data)
     written = []
-    for name, frame in found.items():
-        place = path if len(found) == 1 else path.with_name(f"{path.stem}.{name}.csv")
-        written.append(write_whole(place, partial(frame.to_csv, index=False)))
+    for name, frame in frames.items():
+        file = path if len(frames) == 1 else path.with_name(f"{path.stem}.{name}.csv")
+        written.append(write_whole(file, partial(frame.to_csv, index=False)))
     return written
 
 
 def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
-    """A sheet a table, and one about them."""
+    """Write one sheet per table, and a sheet that explains them."""
     import pandas as pd
 
-    found = tables(data)
-    for name, frame in found.items():
-        if len(frame) > MOST_ROWS:
+    frames = tables(data)
+    for name, frame in frames.items():
+        if len(frame) > MAX_SHEET_ROWS:
             raise InputError(
                 f"{path}: the table over {name} has {len(frame)} rows, a sheet at most "
-                f"{MOST_ROWS}; expected csv, mat or nc"
+                f"{MAX_SHEET_ROWS}; expected csv, mat or nc"
             )
 
-    def sheets(place: Path) -> None:
-        with place.open("wb") as file, pd.ExcelWriter(file, engine="openpyxl") as book:
-            for name, frame in found.items():
-                frame.to_excel(book, sheet_name=name[:LONGEST], index=False, inf_rep="inf")
-            about(data).to_excel(book, sheet_name="about", index=False)
+    def sheets(path_to_write: Path) -> None:
+        with path_to_write.open("wb") as file, pd.ExcelWriter(file, engine="openpyxl") as book:
+            for name, frame in frames.items():
+                frame.to_excel(book, sheet_name=name[:MAX_SHEET_NAME], index=False, inf_rep="inf")
+            metadata_table(data).to_excel(book, sheet_name="about", index=False)
 
     return [write_whole(path, sheets)]
 
 
-def about(data: xr.Dataset) -> pd.DataFrame:
-    """What names mean: variables with their units, then parameters with their values."""
+def metadata_table(data: xr.Dataset) -> pd.DataFrame:
+    """Return what names mean: variables with their units, then parameters with their values."""
     import pandas as pd
 
     rows = [
@@ -151,25 +153,25 @@ def about(data: xr.Dataset) -> pd.DataFrame:
 
 
 def write_mat(data: xr.Dataset, path: Path) -> list[Path]:
-    """Arrays by name, structures with what they are."""
+    """Write arrays by name, and structures that explain them."""
     from scipy.io import savemat
 
     variables = data.variables.items()
-    content: dict[str, Any] = {str(name): for_matlab(array.values) for name, array in variables}
+    content: dict[str, Any] = {str(name): matlab_value(array.values) for name, array in variables}
     content["units"] = {str(n): str(a.attrs.get("units", "")) for n, a in variables}
     content["long_names"] = {str(n): str(a.attrs.get("long_name", "")) for n, a in variables}
     content["dimensions"] = {str(n): ", ".join(map(str, a.dims)) for n, a in variables}
     content["attributes"] = {name: str(value) for name, value in data.attrs.items()}
 
-    def save(place: Path) -> None:
-        with place.open("wb") as file:
+    def save(path_to_write: Path) -> None:
+        with path_to_write.open("wb") as file:
             savemat(file, content, long_field_names=True, oned_as="column", do_compression=True)
 
     return [write_whole(path, save)]
 
 
-def for_matlab(values: NDArray[Any]) -> NDArray[Any]:
-    """Texts as a cell array, anything else as it is."""
+def matlab_value(values: NDArray[Any]) -> NDArray[Any]:
+    """Return texts as a cell array, anything else unchanged."""
     return values.astype(object) if values.dtype.kind in "USO" else values
 
 

@@ -1,6 +1,6 @@
-"""What a stored result answers: the question with all its parameters, the FMUs, and the code.
+"""Identity of a stored result: the question with its parameters, the FMUs, and the code.
 
-Three things decide the numbers of a result. Where one of them has changed, a stored result does
+These three decide the numbers of a result. If one of them has changed, a stored result does
 not answer the question any more, and :func:`difference` says what has changed.
 """
 
@@ -18,35 +18,35 @@ from .job import Job
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ROOT = PACKAGE.name
-NUMBERLESS = ("running", "cli", "figures")  # packages that decide no number
-DIGITS = 16
+PACKAGES_WITHOUT_NUMBERS = ("running", "cli", "figures")  # packages that do not affect any number
+DIGITS = 16  # hexadecimal, of a digest: short to read, and equal by chance in 2^-64
 
 
 class Fmu(Protocol):
-    """What is asked of an FMU's description."""
+    """Interface of an FMU's description, as far as it is needed here."""
 
     @property
     def path(self) -> Path:
-        """Its file."""
+        """The FMU file."""
 
     @property
     def name(self) -> str:
-        """Its model name."""
+        """The model name."""
 
     @property
     def guid(self) -> str:
-        """Its GUID, or instantiation token."""
+        """The GUID, or instantiation token."""
 
     @property
     def fmi_version(self) -> str:
-        """Such as 3.0."""
+        """The FMI version, such as 3.0."""
 
 
 Identity = dict[str, Any]
 
 
 def identity_of(job: Job, fmus: Mapping[str, Fmu], known: Mapping[str, Identity]) -> Identity:
-    """What a job's result answers.
+    """Return the identity of a job's result.
 
     Parameters
     ----------
@@ -56,52 +56,54 @@ def identity_of(job: Job, fmus: Mapping[str, Fmu], known: Mapping[str, Identity]
     known : mapping
         Identities of the jobs it needs, by name.
     """
-    found: Identity = {
+    identity: Identity = {
         "question": {"kind": type(job).__name__, **job.parameters()},
         "fmu": {model: fmus[model].guid for model in job.models},
-        "code": code_of(type(job).__module__),
+        "code": code_digests(type(job).__module__),
     }
     if job.needs():
-        found["from"] = {name: fingerprint(known[name]) for name in job.needs()}
-    return normal(found)
+        identity["from"] = {name: fingerprint(known[name]) for name in job.needs()}
+    return json_round_trip(identity)
 
 
-def normal(identity: Identity) -> Identity:
-    """An identity as it comes back from disk."""
-    found: Identity = json.loads(json.dumps(identity))
-    return found
+def json_round_trip(identity: Identity) -> Identity:
+    """Return an identity as it comes back from disk."""
+    restored: Identity = json.loads(json.dumps(identity))
+    return restored
 
 
 def fingerprint(identity: Identity) -> str:
-    """A short name for an identity."""
+    """Return a short digest of an identity."""
     return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()[:DIGITS]
 
 
-def difference(found: Identity, wanted: Identity) -> str:
-    """Where two identities differ, as a phrase; empty where they do not."""
-    for part in sorted(set(found) | set(wanted), key=lambda name: (name != "question", name)):
-        line = first_difference(found.get(part), wanted.get(part), "")
+def difference(stored: Identity, current: Identity) -> str:
+    """Describe where two identities differ; return an empty string if they do not."""
+    for part in sorted(set(stored) | set(current), key=lambda name: (name != "question", name)):
+        line = first_difference(stored.get(part), current.get(part), "")
         if line and part == "code":
-            return f"{changed(found.get(part) or {}, wanted.get(part) or {})} changed since"
+            return (
+                f"{changed_modules(stored.get(part) or {}, current.get(part) or {})} changed since"
+            )
         if line:
             return f"made by another FMU: {line}" if part == "fmu" else line
     return ""
 
 
-def same_question(found: Identity, wanted: Identity) -> bool:
-    """Whether two identities differ in code and FMU at the most."""
-    return found.get("question") == wanted.get("question")
+def same_question(stored: Identity, current: Identity) -> bool:
+    """Return whether two identities differ at most in code and FMU."""
+    return stored.get("question") == current.get("question")
 
 
-def changed(found: Mapping[str, str], wanted: Mapping[str, str]) -> str:
-    """Modules that differ, by their files."""
-    names = sorted(name for name in {*found, *wanted} if found.get(name) != wanted.get(name))
+def changed_modules(stored: Mapping[str, str], current: Mapping[str, str]) -> str:
+    """List the source files that differ, at most three by name."""
+    names = sorted(name for name in {*stored, *current} if stored.get(name) != current.get(name))
     shown = ", ".join(f"{name.replace('.', '/')}.py" for name in names[:3])
     return shown if len(names) <= 3 else f"{shown} and {len(names) - 3} more"
 
 
 def first_difference(a: Any, b: Any, name: str) -> str:
-    """The first place where two parts of an identity differ."""
+    """Describe the first entry in which two parts of an identity differ."""
     if a == b:
         return ""
     if isinstance(a, dict) and isinstance(b, dict):
@@ -115,22 +117,26 @@ def first_difference(a: Any, b: Any, name: str) -> str:
 # -- the code that makes a result -----------------------------------------------------------------
 
 
-def code_of(module: str) -> dict[str, str]:
-    """Digests of the modules that a module of this package depends on, itself included."""
-    found: dict[str, str] = {}
+def code_digests(module: str) -> dict[str, str]:
+    """Return digests of the modules that a module of this package depends on, itself included."""
+    digests: dict[str, str] = {}
     waiting = [module]
     while waiting:
         name = waiting.pop()
-        path = source_of(name)
-        if name in found or path is None or name.split(".")[1:2] in [[p] for p in NUMBERLESS]:
+        path = source_file(name)
+        if (
+            name in digests
+            or path is None
+            or name.split(".")[1:2] in [[p] for p in PACKAGES_WITHOUT_NUMBERS]
+        ):
             continue
-        found[name], imported = read_source(path, name)
+        digests[name], imported = read_source(path, name)
         waiting += imported
-    return dict(sorted(found.items()))
+    return dict(sorted(digests.items()))
 
 
-def source_of(module: str) -> Path | None:
-    """The file of a module of this package; None for all others and the package's own face."""
+def source_file(module: str) -> Path | None:
+    """Return the file of a module of this package; None for all others and the package itself."""
     parts = module.split(".")
     if parts[0] != ROOT or len(parts) == 1:
         return None
@@ -143,17 +149,19 @@ def source_of(module: str) -> Path | None:
 
 @functools.cache
 def read_source(path: Path, module: str) -> tuple[str, tuple[str, ...]]:
-    """Digest of a source file, and the names that it imports."""
+    """Return the digest of a source file and the names that it imports."""
     source = path.read_bytes().replace(b"\r\n", b"\n")
-    beside = path.with_suffix(".c")  # what the module has compiled
-    own = source + (beside.read_bytes().replace(b"\r\n", b"\n") if beside.is_file() else b"")
+    c_source = path.with_suffix(".c")  # what the module has compiled
+    content = source + (
+        c_source.read_bytes().replace(b"\r\n", b"\n") if c_source.is_file() else b""
+    )
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
     names = tuple(dict.fromkeys(imported_names(ast.parse(source), package)))
-    return hashlib.sha256(own).hexdigest()[:DIGITS], names
+    return hashlib.sha256(content).hexdigest()[:DIGITS], names
 
 
 def imported_names(tree: ast.AST, package: str) -> Iterator[str]:
-    """Absolute names of what a module imports, wherever in it, and of the packages around."""
+    """Yield the absolute names that a module imports anywhere, and of the packages around them."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for alias in node.names:
@@ -161,13 +169,13 @@ def imported_names(tree: ast.AST, package: str) -> Iterator[str]:
         elif isinstance(node, ast.ImportFrom):
             parts = package.split(".")
             base = parts[: len(parts) - node.level + 1] if node.level else []
-            stem = ".".join([*base, *([node.module] if node.module else [])])
+            prefix = ".".join([*base, *([node.module] if node.module else [])])
             for alias in node.names:
-                yield from prefixes(f"{stem}.{alias.name}")
+                yield from prefixes(f"{prefix}.{alias.name}")
 
 
 def prefixes(name: str) -> Iterator[str]:
-    """``a``, ``a.b`` and ``a.b.c`` of ``a.b.c``: importing the last imports all."""
+    """Yield ``a``, ``a.b`` and ``a.b.c`` for ``a.b.c``: importing the last imports all."""
     parts = name.split(".")
     for count in range(1, len(parts) + 1):
         yield ".".join(parts[:count])

@@ -1,4 +1,4 @@
-"""Chunks on disk while a job is under way.
+"""Journal: the chunks of a job on disk while it is under way.
 
 An SQLite database, one chunk a row, one transaction a row: a process killed at any moment loses the
 chunks that were being computed, a full disk the one that was being written. Each row is sealed: its
@@ -23,11 +23,11 @@ from .job import Table
 
 log = logging.getLogger(__name__)
 ENDINGS = ("", "-wal", "-shm")  # files of a database
-ANEW = "remove it to begin anew"
+ANEW = "remove it to start again"
 
 
 def journal_path(result: Path, anew: bool = False) -> Path:
-    """Where the journal of a result lies; another one where a finished result is computed anew."""
+    """Return the path of a result's journal; another one where a finished result is recomputed."""
     return result.with_name(f"{result.name}{'.anew' * anew}.journal")
 
 
@@ -38,20 +38,20 @@ def discard(path: Path) -> None:
 
 
 def pack(table: Table) -> bytes:
-    """Arrays as bytes."""
+    """Return arrays as bytes."""
     stream = io.BytesIO()
     np.savez(stream, **table)  # type: ignore[arg-type]
     return stream.getvalue()
 
 
 def unpack(data: bytes) -> Table:
-    """The inverse of :func:`pack`."""
+    """Return the arrays in bytes of :func:`pack`."""
     with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
         return dict(arrays)
 
 
-def seal(*parts: bytes) -> str:
-    """A checksum of several texts, and of where one ends and the next begins."""
+def checksum_of_parts(*parts: bytes) -> str:
+    """Return a checksum of several byte strings and of where each of them ends."""
     digest = hashlib.sha256()
     for part in parts:
         digest.update(len(part).to_bytes(8, "little"))
@@ -60,7 +60,7 @@ def seal(*parts: bytes) -> str:
 
 
 class Journal:
-    """Chunks of one job.
+    """The chunks of one job, in an SQLite database.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class Journal:
 
     def __init__(self, path: Path, identity: Identity, begun: str) -> None:
         self.path = path
-        self._about = b""  # what each row's seal covers, beside the row
+        self._identity_text = b""  # part of each row's checksum
         try:
             self._db = sqlite3.connect(path, timeout=30.0, isolation_level=None)
             self._prepare()
@@ -93,7 +93,7 @@ class Journal:
             ) from error
 
     def _prepare(self) -> None:
-        """The tables, where they are not there yet."""
+        """Create the tables if they are not there yet."""
         self._db.execute("PRAGMA journal_mode=WAL")
         self._db.execute("PRAGMA synchronous=NORMAL")  # a power cut may cost the last chunks
         self._db.execute("CREATE TABLE IF NOT EXISTS about (name TEXT PRIMARY KEY, text TEXT)")
@@ -102,75 +102,78 @@ class Journal:
         )
 
     def _begin(self, identity: str, begun: str) -> None:
-        """Say of a new journal what it is of."""
+        """Write the identity into a new journal."""
         self._db.execute("BEGIN IMMEDIATE")
         if not self._db.execute("SELECT 1 FROM about LIMIT 1").fetchall():
-            about = {"identity": identity, "begun": begun}
-            about["sha256"] = seal(identity.encode(), begun.encode())
-            self._db.executemany("INSERT INTO about VALUES (?, ?)", about.items())
+            entries = {"identity": identity, "begun": begun}
+            entries["sha256"] = checksum_of_parts(identity.encode(), begun.encode())
+            self._db.executemany("INSERT INTO about VALUES (?, ?)", entries.items())
         self._db.execute("COMMIT")
 
     def _read(self) -> tuple[Identity, str]:
-        """What the journal is of, and when it was begun."""
+        """Return the identity and the time of the beginning."""
         if self._db.execute("PRAGMA quick_check(1)").fetchall() != [("ok",)]:
             raise ValueError("damaged")
-        about = dict(self._db.execute("SELECT name, text FROM about").fetchall())
-        identity, begun = about.get("identity"), about.get("begun")
+        entries = dict(self._db.execute("SELECT name, text FROM about").fetchall())
+        identity, begun = entries.get("identity"), entries.get("begun")
         if not (isinstance(identity, str) and isinstance(begun, str)):
             raise ValueError("it does not say of what job")
-        if about.get("sha256") != seal(identity.encode(), begun.encode()):
+        if entries.get("sha256") != checksum_of_parts(identity.encode(), begun.encode()):
             raise ValueError("damaged, or of an earlier version")
-        self._about = identity.encode()
-        found: Identity = json.loads(identity)
-        return found, begun
+        self._identity_text = identity.encode()
+        restored: Identity = json.loads(identity)
+        return restored, begun
 
-    def _seal(self, index: int, data: bytes) -> str:
-        """The checksum of a row."""
-        return seal(self._about, str(index).encode(), data)
+    def _row_checksum(self, index: int, data: bytes) -> str:
+        """Return the checksum of a row."""
+        return checksum_of_parts(self._identity_text, str(index).encode(), data)
 
     def indices(self) -> set[int]:
-        """Which chunks are there and undamaged; damaged ones are dropped."""
-        found = set()
+        """Return the undamaged chunks; delete damaged ones."""
+        indices = set()
         for index, digest, data in self._query("SELECT i, sha256, CAST(data AS BLOB) FROM chunks"):
-            if isinstance(data, bytes) and self._seal(index, data) == digest:
-                found.add(index)
+            if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
+                indices.add(index)
             else:
                 self.drop(index, "damaged")
-        return found
+        return indices
 
     def drop(self, index: int, reason: str) -> None:
-        """Forget a chunk, so that it is computed anew."""
+        """Delete a chunk, so that it is computed again."""
         log.warning("%s: chunk %s is %s, it is computed anew", self.path, index, reason)
         self._query("DELETE FROM chunks WHERE i = ?", index)
 
     def is_empty(self) -> bool:
-        """Whether there is no chunk at all."""
+        """Return whether there is no chunk at all."""
         return not self._query("SELECT 1 FROM chunks LIMIT 1")
 
     def get(self, index: int) -> Table:
-        """One chunk."""
+        """Return one chunk."""
         rows = self._query("SELECT sha256, CAST(data AS BLOB) FROM chunks WHERE i = ?", index)
         for digest, data in rows:
-            if isinstance(data, bytes) and self._seal(index, data) == digest:
+            if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
                 return unpack(data)
         raise StoreError(f"{self.path}: chunk {index} is damaged; the same call goes on from it")
 
     def put(self, index: int, table: Table) -> None:
-        """Enter a chunk."""
+        """Store a chunk."""
         data = pack(table)
         self._query(
-            "INSERT OR REPLACE INTO chunks VALUES (?, ?, ?)", index, self._seal(index, data), data
+            "INSERT OR REPLACE INTO chunks VALUES (?, ?, ?)",
+            index,
+            self._row_checksum(index, data),
+            data,
         )
 
     def _query(self, statement: str, *values: object) -> list[tuple]:  # type: ignore[type-arg]
-        """All answers to a statement."""
+        """Run a statement; return all its rows."""
         try:
             return self._db.execute(statement, values).fetchall()
         except (sqlite3.Error, OverflowError) as error:
-            kept = "what was computed before is kept, the same call goes on from there"
+            advice = "what was computed before is kept, the same call goes on from there"
             if any(word in str(error) for word in ("malformed", "not a database", "decode")):
-                kept = ANEW
-            raise StoreError(f"{self.path}: {error}; {kept}") from error
+                advice = ANEW
+            raise StoreError(f"{self.path}: {error}; {advice}") from error
 
     def close(self) -> None:
         """Close the database."""
@@ -183,13 +186,14 @@ class Journal:
         discard(self.path)
 
 
-def reason(error: Exception) -> str:
-    """Why a file cannot be opened."""
+def error_text(error: Exception) -> str:
+    """Return why a file cannot be opened."""
     return str(getattr(error, "strerror", None) or error)
 
 
 class Lock:
-    """Keeps a second process off a result that is being computed; it ends with the process.
+    """Lock that keeps other processes off a result that is being computed; it ends with the
+    process.
 
     Parameters
     ----------
@@ -218,11 +222,11 @@ class Lock:
                     f"{path}: another process is computing it; wait for it, or choose another place"
                 ) from None
             raise StoreError(
-                f"{self.path}: cannot be made ({reason(error)}); expected a writable "
+                f"{self.path}: cannot be made ({error_text(error)}); expected a writable "
                 "place where no folder or other file of this name is: remove that"
             ) from error
 
     def release(self) -> None:
-        """Let others at it."""
+        """Release the lock."""
         self.path.unlink(missing_ok=True)
         self._db.close()

@@ -1,4 +1,4 @@
-"""How a question is computed, whatever it asks: the keywords that all public functions share."""
+"""Keywords that all public functions share: how a question is computed, whatever it asks."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TypedDict
 
+from ..checks import checked_integer
 from ..errors import InputError
 
-MOST_JOBS = 1024  # processes of one machine
+MAX_JOBS = 1024  # processes of one machine
 FmuFiles = str | os.PathLike[str] | Mapping[str, str | os.PathLike[str]]
 
 
@@ -51,7 +52,7 @@ class Running(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class RunOptions:
-    """The same keywords with their defaults, checked."""
+    """The keywords of :class:`Running` with their defaults, checked."""
 
     jobs: int | None = None
     cluster: str | None = None
@@ -63,15 +64,14 @@ class RunOptions:
     build_folder: str | os.PathLike[str] | None = None
 
     def __post_init__(self) -> None:
-        whole = isinstance(self.jobs, int) and not isinstance(self.jobs, bool)
-        if self.jobs is not None and not (whole and 1 <= self.jobs <= MOST_JOBS):
-            raise InputError(f"jobs = {self.jobs!r}: expected a whole number from 1 to {MOST_JOBS}")
+        if self.jobs is not None:
+            object.__setattr__(self, "jobs", checked_integer("jobs", self.jobs, 1, MAX_JOBS))
         if self.cluster is not None and not isinstance(self.cluster, str):
             raise InputError(f"cluster = {self.cluster!r}: expected the address of a scheduler")
 
     @classmethod
-    def of(cls, running: Mapping[str, object]) -> RunOptions:
-        """The keywords that a public function was given.
+    def from_keywords(cls, running: Mapping[str, object]) -> RunOptions:
+        """Return the options from the keywords of a public function.
 
         Raises
         ------
@@ -89,19 +89,21 @@ class RunOptions:
 
     @property
     def processes(self) -> int:
-        """Processes at once."""
-        return self.jobs or cores()
+        """Number of worker processes at once."""
+        return self.jobs or available_cores()
 
     def path(self, name: str) -> Path | None:
-        """The result's file: ``store`` itself, or a file of that name where it is a folder."""
+        """Return the result's file: ``store`` itself, or a file of that name where it is a
+        folder.
+        """
         if self.store is None:
             return None
         path = Path(self.store)
         return path if path.suffix == ".nc" else path / f"{name}.nc"
 
 
-def cores() -> int:
-    """Cores that this process may use."""
+def available_cores() -> int:
+    """Count the cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -1,4 +1,4 @@
-"""How far a job is: which chunks are there, and what may be computed next.
+"""Progress of a job: which chunks are done, and what may be computed next.
 
 A sequential job's chunk starts from the end of the one before. Where the job forgets its beginning
 (a response that converges), a chunk may be guessed: computed before the one before is known, from
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
     import xarray as xr
 
 log = logging.getLogger(__name__)
-GAP = 3  # chunks that nobody has begun, from which it is worth beginning in their middle
+MIN_GAP = 3  # chunks in a row not begun: from here on, guessing the middle one pays
 
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker needs for a chunk.
+    """One chunk to compute, with all that a worker needs for it.
 
     Attributes
     ----------
     chunk : Chunk
     items : sequence
-    carry : dict of ndarray, optional
+    previous : dict of ndarray, optional
         What it starts from: the last entries of the chunk before.
-    lead : sequence
+    warmup_items : sequence
         Items to compute first, from any state, where it is guessed what it starts from.
     guess : bool
         Whether what it starts from is not known to be true.
@@ -43,8 +43,8 @@ class Task:
 
     chunk: Chunk
     items: Sequence[Any]
-    carry: Table | None
-    lead: Sequence[Any]
+    previous: Table | None
+    warmup_items: Sequence[Any]
     guess: bool
 
 
@@ -64,7 +64,7 @@ class Guess:
 
 
 class Progress:
-    """One job on its way.
+    """State of one job: chunks done, under way, and guessed.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Progress:
         self.job, self.store, self.identity, self.fmus = job, store, identity, fmus
         self.chunks = job.chunks()
         self.result = store.result()
-        self.there = set(range(len(self.chunks))) if self.complete else self.sound()
+        self.done_chunks = set(range(len(self.chunks))) if self.complete else self.valid_chunks()
         self.under_way: set[int] = set()
         self.guesses: dict[int, Guess] = {}
         self._ends: dict[int, Table] = {}  # last entries of chunks that are certain
@@ -86,19 +86,19 @@ class Progress:
         self.inputs: Mapping[str, xr.Dataset] = {}
         self.items: Sequence[Any] | None = None
 
-    def sound(self) -> set[int]:
-        """Chunks that are there and are this job's; others are dropped."""
-        found = set()
+    def valid_chunks(self) -> set[int]:
+        """Return the stored chunks that belong to this job; delete others."""
+        valid = set()
         for index in sorted(self.store.indices()):
             problem = self.problem(index)
             if problem:
                 self.store.drop(index, problem)
             else:
-                found.add(index)
-        return found
+                valid.add(index)
+        return valid
 
     def problem(self, index: int) -> str:
-        """Why a stored chunk cannot be one of this job's; an empty string where it can."""
+        """Return why a stored chunk cannot be one of this job's; an empty string if it can."""
         if not 0 <= index < len(self.chunks):
             return f"none of the {len(self.chunks)} of this job"
         try:
@@ -116,11 +116,11 @@ class Progress:
         return self.result is not None
 
     def done(self) -> int:
-        """Items computed, guessed ones included."""
-        return sum(self.size(index) for index in {*self.there, *self.guesses})
+        """Count the computed items, guessed ones included."""
+        return sum(self.size(index) for index in {*self.done_chunks, *self.guesses})
 
     def size(self, index: int) -> int:
-        """Items of a chunk."""
+        """Return the number of items of a chunk."""
         return self.chunks[index].last - self.chunks[index].first
 
     def start(self, inputs: Mapping[str, xr.Dataset]) -> None:
@@ -132,76 +132,80 @@ class Progress:
     # -- what may be computed next ----------------------------------------------------------------
 
     def next_task(self) -> Task | None:
-        """What a worker should compute now: what is certain, then what goes on, then a guess."""
-        for find in (self.certain, self.continued, self.begun_in_a_gap):
+        """Return what to compute now: first certain chunks, then continuations of guesses, then a
+        guess.
+        """
+        for find in (self.certain_tasks, self.continuing_tasks, self.gap_task):
             task = next(find(), None)
             if task is not None:
                 return task
         return None
 
-    def untouched(self, index: int) -> bool:
-        """Whether nobody has computed a chunk or is at it."""
-        return not (index in self.there or index in self.under_way or index in self.guesses)
+    def is_untouched(self, index: int) -> bool:
+        """Return whether a chunk is neither computed nor under way."""
+        return not (index in self.done_chunks or index in self.under_way or index in self.guesses)
 
-    def certain(self) -> Iterator[Task]:
-        """Chunks whose beginning is known."""
+    def certain_tasks(self) -> Iterator[Task]:
+        """Yield the chunks whose start is known."""
         for chunk in self.chunks:
             if self.is_certain(chunk):
-                yield Task(chunk, self.items_of(chunk), self.carry(chunk), (), False)
+                yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
 
-    def carry(self, chunk: Chunk) -> Table | None:
-        """What a chunk starts from: the end of the one before, or all of them."""
+    def previous_table(self, chunk: Chunk) -> Table | None:
+        """Return what a chunk starts from: the end of the one before, or all of them."""
         if chunk.after is None:
             return None
-        if (self.job.closing or self.job.gathers) and chunk.index == len(self.chunks) - 1:
+        if (self.job.has_final_chunk or self.job.gathers) and chunk.index == len(self.chunks) - 1:
             return self.store.table(chunk.index)
         return self.end_of(chunk.after)
 
     def end_of(self, index: int) -> Table:
-        """The last entries of a chunk that is certain."""
+        """Return the last entries of a chunk that is certain."""
         if index not in self._ends:
             self._ends[index] = last_entries(self.store.get(index))
         return self._ends[index]
 
     def is_certain(self, chunk: Chunk) -> bool:
-        """Whether nobody is at a chunk whose beginning is known."""
-        if not self.untouched(chunk.index) or chunk.after is None:
-            return self.untouched(chunk.index)
+        """Return whether a chunk's start is known and it is not under way."""
+        if not self.is_untouched(chunk.index) or chunk.after is None:
+            return self.is_untouched(chunk.index)
         if self.job.gathers:
-            return len(self.there) == chunk.index
-        return chunk.after in self.there
+            return len(self.done_chunks) == chunk.index
+        return chunk.after in self.done_chunks
 
-    def continued(self) -> Iterator[Task]:
-        """Chunks that go on from a guessed one, in place of guesses that began elsewhere: a run of
-        chunks is rather right as a whole.
+    def continuing_tasks(self) -> Iterator[Task]:
+        """Yield chunks that continue a guessed one, in place of guesses that started elsewhere: a
+        run of chunks is more likely to be right as a whole.
         """
         for index in sorted(self.guesses):
             following = index + 1
             if following < len(self.chunks) and self.chunks[following].after == index:
-                carry = last_entries(self.guesses[index].table)
-                if self.untouched(following) or self.begun_elsewhere(following, carry):
+                previous = last_entries(self.guesses[index].table)
+                if self.is_untouched(following) or self.started_elsewhere(following, previous):
                     chunk = self.chunks[following]
-                    yield Task(chunk, self.items_of(chunk), carry, (), True)
+                    yield Task(chunk, self.items_of(chunk), previous, (), True)
 
-    def begun_elsewhere(self, index: int, before: Table) -> bool:
-        """Whether a chunk was guessed from another state than the chunk before ends in."""
+    def started_elsewhere(self, index: int, previous: Table) -> bool:
+        """Return whether a chunk was guessed from another state than the chunk before ends in."""
         guess = None if index in self.under_way else self.guesses.get(index)
-        return guess is not None and guess.start != self.job.seam(before)
+        return guess is not None and guess.start != self.job.boundary_state(previous)
 
-    def begun_in_a_gap(self) -> Iterator[Task]:
-        """A chunk in the middle of the longest run of chunks that nobody has begun."""
+    def gap_task(self) -> Iterator[Task]:
+        """Yield a chunk in the middle of the longest run of chunks that are not begun."""
         first, last = max(self.gaps(), key=lambda gap: gap[1] - gap[0], default=(0, 0))
-        if self.job.lead and last - first >= GAP:
+        if self.job.warmup_items and last - first >= MIN_GAP:
             chunk = self.chunks[(first + last) // 2]
             begin = self.chunks[first].first
-            lead = self.range(max(chunk.first - self.job.lead, begin), chunk.first)
-            yield Task(chunk, self.items_of(chunk), None, lead, True)
+            warmup_items = self.item_range(
+                max(chunk.first - self.job.warmup_items, begin), chunk.first
+            )
+            yield Task(chunk, self.items_of(chunk), None, warmup_items, True)
 
     def gaps(self) -> Iterator[tuple[int, int]]:
-        """Runs of chunks that nobody has begun, as first and one past the last."""
+        """Yield the runs of chunks that are not begun, as first and one past the last."""
         first = 0
         for chunk in self.chunks:
-            if not self.untouched(chunk.index):
+            if not self.is_untouched(chunk.index):
                 yield first, chunk.index
                 first = chunk.index + 1
             elif chunk.after is None:
@@ -210,57 +214,57 @@ class Progress:
         yield first, len(self.chunks)
 
     def items_of(self, chunk: Chunk) -> Sequence[Any]:
-        """A chunk's items."""
-        return self.range(chunk.first, chunk.last)
+        """Return a chunk's items."""
+        return self.item_range(chunk.first, chunk.last)
 
-    def range(self, first: int, last: int) -> Sequence[Any]:
-        """Some items."""
+    def item_range(self, first: int, last: int) -> Sequence[Any]:
+        """Return the items from ``first`` up to, not including, ``last``."""
         assert self.items is not None, "not started"
         return self.items[first:last]
 
     def open_tasks(self) -> int:
-        """How many workers could be busy now, about."""
+        """Estimate how many workers could be busy now."""
         if self.complete:
             return 0
-        longest = max((last - first for first, last in self.gaps()), default=0)
+        longest_gap = max((last - first for first, last in self.gaps()), default=0)
         certain = sum(map(self.is_certain, self.chunks))
-        return certain + (longest // GAP if self.job.lead else 0)
+        return certain + (longest_gap // MIN_GAP if self.job.warmup_items else 0)
 
     # -- what was computed ------------------------------------------------------------------------
 
-    def enter(self, task: Task, start: bytes, table: Table) -> None:
-        """Keep a chunk; the last one makes the result."""
+    def add_result(self, task: Task, start: bytes, table: Table) -> None:
+        """Take over a computed chunk; the last one makes the result."""
         index = task.chunk.index
         self.under_way.discard(index)
         if task.guess:
             self.wasted += self.size(index) if index in self.guesses else 0
             self.guesses[index] = Guess(start, table)
         else:
-            self.keep(index, table)
-        self.settle()
+            self.store_chunk(index, table)
+        self.resolve_guesses()
         self.finish_if_done()
 
-    def keep(self, index: int, table: Table) -> None:
-        """Keep a chunk that is certain."""
+    def store_chunk(self, index: int, table: Table) -> None:
+        """Store a chunk that is certain."""
         self.store.put(index, table)
-        self.there.add(index)
+        self.done_chunks.add(index)
         if self.job.sequential:
             self._ends[index] = last_entries(table)
 
-    def settle(self) -> None:
-        """Take over guesses that began where the chunk before ends, throw away the others."""
+    def resolve_guesses(self) -> None:
+        """Accept guesses that started where the chunk before ends; discard the others."""
         for index in sorted(self.guesses):
             after = self.chunks[index].after
-            if after is None or after in self.there:
+            if after is None or after in self.done_chunks:
                 guess = self.guesses.pop(index)
-                if after is None or self.job.seam(self.end_of(after)) == guess.start:
-                    self.keep(index, guess.table)
+                if after is None or self.job.boundary_state(self.end_of(after)) == guess.start:
+                    self.store_chunk(index, guess.table)
                 else:
                     self.wasted += self.size(index)
 
     def finish_if_done(self) -> None:
-        """Make the result where all chunks are there."""
-        if self.complete or len(self.there) < len(self.chunks):
+        """Make the result if all chunks are done."""
+        if self.complete or len(self.done_chunks) < len(self.chunks):
             return
         if self.wasted:
             log.debug("%s: %d items were guessed in vain", self.job.name, self.wasted)
@@ -270,7 +274,9 @@ class Progress:
         self.inputs, self.items = {}, None
 
     def table(self) -> Table:
-        """All chunks put together; the last one of a job that gathers has arrays of its own."""
+        """Return all chunks concatenated; the last one of a job that gathers has arrays of its
+        own.
+        """
         last = len(self.chunks) - 1
         if self.job.gathers:
             return {**self.store.table(last), **self.store.get(last)}

@@ -1,4 +1,4 @@
-"""Where a dataset comes from, in its attributes: the question, the FMU, the code, the time."""
+"""Provenance of a dataset in its attributes: the question, the FMU, the code, the time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def with_provenance(
     dataset: xr.Dataset, job: Job, identity: Identity, fmus: Mapping[str, Fmu], begun: str
 ) -> xr.Dataset:
-    """A result with all attributes it is to have; those it has already stay.
+    """Return a result with provenance attributes; those it has already stay.
 
     Parameters
     ----------
@@ -29,40 +29,40 @@ def with_provenance(
         When the job was begun.
     """
     call = job.call()
-    found: dict[str, Any] = {
-        **flat(job.parameters()),
-        **about_fmus(fmus),
+    attributes: dict[str, Any] = {
+        **flatten_parameters(job.parameters()),
+        **fmu_attributes(fmus),
         "Conventions": "CF-1.11",
         "source": f"vibroimpact {__version__}",
         "call": call,
         "history": f"{begun}: {call}",
         "identity": json.dumps(identity, sort_keys=True),
     }
-    return dataset.assign_attrs({**found, **dataset.attrs})
+    return dataset.assign_attrs({**attributes, **dataset.attrs})
 
 
-def about_fmus(fmus: Mapping[str, Fmu]) -> dict[str, str]:
-    """Name, GUID and FMI version of each FMU."""
-    found: dict[str, str] = {}
+def fmu_attributes(fmus: Mapping[str, Fmu]) -> dict[str, str]:
+    """Return name, GUID and FMI version of each FMU as attributes."""
+    attributes: dict[str, str] = {}
     for model, fmu in fmus.items():
         ending = f"_{model}" if len(fmus) > 1 else ""
-        found[f"fmu_model{ending}"] = fmu.name
-        found[f"fmu_guid{ending}"] = fmu.guid
-        found[f"fmi_version{ending}"] = fmu.fmi_version
-    return found
+        attributes[f"fmu_model{ending}"] = fmu.name
+        attributes[f"fmu_guid{ending}"] = fmu.guid
+        attributes[f"fmi_version{ending}"] = fmu.fmi_version
+    return attributes
 
 
-def flat(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """Parameters as attributes of a NetCDF file: numbers and texts, without nesting."""
-    found: dict[str, Any] = {}
+def flatten_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return parameters as attributes of a NetCDF file: numbers and texts, without nesting."""
+    attributes: dict[str, Any] = {}
     for name, value in parameters.items():
         if isinstance(value, dict) and "sha256" not in value:
-            for inner, part in flat(value).items():
-                found[f"{name}_{inner}" if inner in found else inner] = part
+            for inner, part in flatten_parameters(value).items():
+                attributes[f"{name}_{inner}" if inner in attributes else inner] = part
         elif isinstance(value, bool):
-            found[name] = int(value)
+            attributes[name] = int(value)
         elif isinstance(value, (int, float, str)):
-            found[name] = value
+            attributes[name] = value
         elif value is not None:
-            found[name] = brief(value)
-    return found
+            attributes[name] = brief(value)
+    return attributes

@@ -1,4 +1,4 @@
-"""Keeps the workers busy until every result is there.
+"""Runner: keeps the workers busy until every result is there.
 
 Any worker may take any chunk that is ready, the earliest job's first. Small questions are answered
 in this process; where much is left after the first chunks, processes are started. Who computes
@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..files import open_folder
-from .executors import Here, Processes, Workers, at_work, compute
+from .executors import InlineExecutor, Processes, Workers, compute, running_workers
 from .identity import Fmu, Identity, identity_of
 from .job import Job, Table
 from .options import RunOptions
@@ -32,14 +32,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 log = logging.getLogger(__name__)
-Find = Callable[[str], Fmu]  # from a model's name to its FMU
-WORTH = 2.0  # s of work left from which processes are worth their start
-POLL = 0.5  # s
-SEEN = 1.0  # s after which there is a bar to be seen
+FmuFinder = Callable[[str], Fmu]  # from a model's name to its FMU
+MIN_PARALLEL_SECONDS = 2.0  # estimated work left from which starting processes pays
+POLL_SECONDS = 0.5  # between two looks at the clock while chunks are computed
+BAR_DELAY = 1.0  # s until the progress bar shows: shorter work needs none
 
 
-def answer(job: Job, running: Mapping[str, object], find: Find) -> xr.Dataset:
-    """The result of one job.
+def answer(job: Job, running: Mapping[str, object], find: FmuFinder) -> xr.Dataset:
+    """Compute one job, or read its stored result.
 
     Parameters
     ----------
@@ -53,13 +53,13 @@ def answer(job: Job, running: Mapping[str, object], find: Find) -> xr.Dataset:
     -------
     xarray.Dataset
     """
-    return Runner([job], RunOptions.of(running), find).run()[job.name]
+    return Runner([job], RunOptions.from_keywords(running), find).run()[job.name]
 
 
 def answer_all(
-    jobs: Sequence[Job], folder: Path, options: RunOptions, find: Find
+    jobs: Sequence[Job], folder: Path, options: RunOptions, find: FmuFinder
 ) -> dict[str, Path]:
-    """The results of many jobs, each a file in a folder.
+    """Compute many jobs, each result a file in a folder.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def answer_all(
 
 
 class Runner:
-    """Jobs on their way to results.
+    """Computes jobs and their dependencies until all results are there.
 
     Parameters
     ----------
@@ -90,28 +90,28 @@ class Runner:
     find : callable
     """
 
-    def __init__(self, jobs: Sequence[Job], options: RunOptions, find: Find) -> None:
+    def __init__(self, jobs: Sequence[Job], options: RunOptions, find: FmuFinder) -> None:
         self.jobs, self.options = jobs, options
         self.fmus: dict[str, Fmu] = {model: find(model) for job in jobs for model in job.models}
         self.states: dict[str, Progress] = {}
         self.futures: dict[Future[tuple[bytes, Table]], tuple[Progress, Task]] = {}
-        self.clock = time.perf_counter()
-        self.fresh = 0  # items computed by this call
+        self.start_time = time.perf_counter()
+        self.computed_items = 0  # items computed by this call
 
     def run(self) -> dict[str, xr.Dataset]:
-        """Compute what is not there yet."""
+        """Compute what is not there yet; return the results by name."""
         try:
             self.open()
             if not self.finished():
                 self.compute_all()
-            found = ((name, state.result) for name, state in self.states.items())
-            return {name: result for name, result in found if result is not None}
+            results = ((name, state.result) for name, state in self.states.items())
+            return {name: result for name, result in results if result is not None}
         finally:
             for state in self.states.values():
                 state.store.close()
 
     def open(self) -> None:
-        """See what is there already."""
+        """Open the stores and read what is there already."""
         known: dict[str, Identity] = {}
         for job in self.jobs:
             fmus = {model: self.fmus[model] for model in job.models}
@@ -124,24 +124,24 @@ class Runner:
                 raise
 
     def finished(self) -> bool:
-        """Whether every result is there."""
+        """Return whether every result is there."""
         return all(state.complete for state in self.states.values())
 
     def compute_all(self) -> None:
-        """In this process as long as little is left, then by others."""
+        """Compute in this process while little is left, then with workers."""
         with self.bar() as bar:
             if not self.options.cluster:
-                with at_work(Here()) as workers:
-                    self.work(workers, self.deliveries(workers), bar, self.little_left)
+                with running_workers(InlineExecutor()) as workers:
+                    self.work(workers, self.fmus_to_send(workers), bar, self.little_left)
             if not self.finished():
-                with at_work(self.others()) as workers:
-                    fmus = self.deliveries(workers)
+                with running_workers(self.start_workers()) as workers:
+                    fmus = self.fmus_to_send(workers)
                     self.hand_out(workers, fmus, bar)  # workers start while this process imports
                     threading.Thread(target=import_xarray, daemon=True).start()
                     self.work(workers, fmus, bar, lambda: True)
 
-    def others(self) -> Workers:
-        """Those who compute much."""
+    def start_workers(self) -> Workers:
+        """Return the workers for long computations: cluster or processes."""
         if self.options.cluster:
             from .cluster import Cluster  # brings asyncio, which worker processes do without
 
@@ -149,23 +149,23 @@ class Runner:
         return Processes(self.options.processes)
 
     def done(self) -> int:
-        """Items computed."""
+        """Count the computed items of all jobs."""
         return sum(state.done() for state in self.states.values())
 
     def little_left(self) -> bool:
-        """Whether what is left is not worth starting processes, or cannot be shared out."""
-        if self.options.processes == 1 or not self.fresh:
+        """Return whether the rest is not worth starting processes, or cannot be shared."""
+        if self.options.processes == 1 or not self.computed_items:
             return True
         left = sum(state.job.count() for state in self.states.values()) - self.done()
-        seconds = (time.perf_counter() - self.clock) / self.fresh * left
-        return seconds < WORTH or self.share() < 2
+        seconds = (time.perf_counter() - self.start_time) / self.computed_items * left
+        return seconds < MIN_PARALLEL_SECONDS or self.busy_workers() < 2
 
-    def share(self) -> int:
-        """How many workers could be busy now, about."""
+    def busy_workers(self) -> int:
+        """Estimate how many workers could be busy now."""
         return sum(state.open_tasks() for state in self.states.values() if self.ready(state))
 
     def bar(self) -> Any:
-        """A progress bar over all items."""
+        """Return a progress bar over all items."""
         tqdm = progress_bar(self.options.progress)
         total = sum(state.job.count() for state in self.states.values())
         single = self.jobs[0] if len(self.jobs) == 1 else None
@@ -175,21 +175,21 @@ class Runner:
             desc=self.title(),
             unit=single.item if single else "item",
             disable=not self.options.progress,
-            delay=SEEN,
+            delay=BAR_DELAY,
             dynamic_ncols=True,
             smoothing=0.1,
             unit_scale=total > 100_000,
         )
 
     def title(self) -> str:
-        """What the progress bar is about."""
+        """Return the title of the progress bar."""
         return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"
 
-    def describe(self, bar: Any, aside: str) -> None:
-        """Say at the bar what is done aside, where the bar can be seen already."""
-        if time.perf_counter() - self.clock > SEEN:
+    def describe(self, bar: Any, note: str) -> None:
+        """Show a note beside the progress bar, if the bar is visible already."""
+        if time.perf_counter() - self.start_time > BAR_DELAY:
             bar.delay = 0.0  # it is shown from now on, or tqdm would not end its line
-            bar.set_description(f"{self.title()}, {aside}" if aside else self.title())
+            bar.set_description(f"{self.title()}, {note}" if note else self.title())
 
     def work(
         self,
@@ -198,22 +198,22 @@ class Runner:
         bar: Any,
         go_on: Callable[[], bool],
     ) -> None:
-        """Hand out chunks and take results until all is done, or ``go_on`` says no."""
+        """Submit chunks and collect results until all is done, or ``go_on`` returns false."""
         while not self.finished() and (go_on() or self.futures):
             if go_on():
                 self.hand_out(workers, fmus, bar)
             if not self.futures:
                 assert self.finished() or not go_on(), "nothing is under way, nothing is ready"
                 continue
-            finished, _ = wait(self.futures, timeout=POLL, return_when=FIRST_COMPLETED)
+            finished, _ = wait(self.futures, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
             for future in finished:
                 state, task = self.futures.pop(future)
-                state.enter(task, *future.result())
-                self.fresh += len(task.items)
+                state.add_result(task, *future.result())
+                self.computed_items += len(task.items)
             bar.update(self.done() - bar.n)
 
-    def deliveries(self, workers: Workers) -> dict[str, Path | bytes]:
-        """FMUs as they travel."""
+    def fmus_to_send(self, workers: Workers) -> dict[str, Path | bytes]:
+        """Return the FMUs as they are sent to workers: a path, or bytes for remote ones."""
         return {
             model: fmu.path.read_bytes() if workers.remote else fmu.path.resolve()
             for model, fmu in self.fmus.items()
@@ -222,21 +222,21 @@ class Runner:
     def hand_out(self, workers: Workers, fmus: Mapping[str, Path | bytes], bar: Any) -> None:
         """Submit chunks until the workers have enough."""
         for state in self.states.values():
-            while len(self.futures) < workers.room() and self.ready(state):
+            while len(self.futures) < workers.max_in_flight() and self.ready(state):
                 task = state.next_task()
                 if task is None:
                     break
                 chosen = {model: fmus[model] for model in state.job.models}
                 state.under_way.add(task.chunk.index)
-                self.describe(bar, state.job.aside(task.chunk.first))
+                self.describe(bar, state.job.progress_note(task.chunk.first))
                 code = state.identity["code"] if workers.remote else None
                 future = workers.executor.submit(
-                    compute, state.job, chosen, task.items, task.carry, task.lead, code
+                    compute, state.job, chosen, task.items, task.previous, task.warmup_items, code
                 )
                 self.futures[future] = state, task
 
     def ready(self, state: Progress) -> bool:
-        """Whether a job's chunks can be computed; starts it where what it needs is there."""
+        """Return whether a job's chunks can be computed; start it if what it needs is there."""
         if state.complete:
             return False
         if state.items is None:
@@ -248,16 +248,16 @@ class Runner:
 
 
 def import_xarray() -> None:
-    """What a result needs and takes most of a second to import, Dask's arrays with it."""
+    """Import what a result needs and takes most of a second to import, Dask's arrays with it."""
     with suppress(Exception):  # a process that ends lets nobody import; it comes again where used
         import xarray as xr
 
         xr.Dataset({"number": ("place", np.zeros(1))})
 
 
-def progress_bar(wanted: bool) -> Any:
-    """tqdm's bar: a notebook's in a notebook that can show one, a terminal's elsewhere."""
-    if not wanted:
+def progress_bar(shown: bool) -> Any:
+    """Return tqdm's bar: a notebook's in a notebook that can show one, a terminal's elsewhere."""
+    if not shown:
         from tqdm import tqdm
 
         return tqdm
@@ -268,8 +268,10 @@ def progress_bar(wanted: bool) -> Any:
         return automatic
 
 
-def gather(jobs: Iterable[Job], running: Mapping[str, object], find: Find) -> list[xr.Dataset]:
-    """Results of several jobs that are computed side by side, in their order."""
+def gather(jobs: Iterable[Job], running: Mapping[str, object], find: FmuFinder) -> list[xr.Dataset]:
+    """Compute several jobs side by side with common workers; return their results in the same
+    order.
+    """
     listed = list(jobs)
-    found = Runner(listed, RunOptions.of(running), find).run()
-    return [found[job.name] for job in listed]
+    results = Runner(listed, RunOptions.from_keywords(running), find).run()
+    return [results[job.name] for job in listed]

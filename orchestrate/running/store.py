@@ -1,4 +1,4 @@
-"""Where the chunks of a job and its result are kept: in memory, or on disk beside each other."""
+"""Store: keeps the chunks of a job and its result, in memory or on disk."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 log = logging.getLogger(__name__)
-COMPRESSED = 10_000  # values from which a variable is worth compressing
+MIN_COMPRESSED = 10_000  # values from which a variable is worth compressing
 LAST_SECOND = 253_402_300_799  # of the year 9999
-LEVEL = 1  # of zlib: the last digits of numbers do not shrink, however long it tries
+ZLIB_LEVEL = 1  # not higher: the last digits of numbers do not shrink, however long it tries
 
 
 STARTED: set[Path] = set()  # journals with chunks that this process has seen or written
@@ -36,7 +36,7 @@ FINISHED: set[Path] = set()  # results, likewise; both for who says what an inte
 
 
 def now() -> str:
-    """The time as ISO 8601; SOURCE_DATE_EPOCH in the environment fixes it, for equal bytes.
+    """Return the time as ISO 8601; SOURCE_DATE_EPOCH in the environment fixes it, for equal bytes.
 
     Raises
     ------
@@ -53,46 +53,46 @@ def now() -> str:
 
 
 class Store(ABC):
-    """One job's chunks and result."""
+    """Interface of the storage of one job's chunks and result."""
 
     begun: str
 
     @abstractmethod
     def result(self) -> xr.Dataset | None:
-        """The finished result, where it is there."""
+        """Return the finished result, or None."""
 
     @abstractmethod
     def indices(self) -> set[int]:
-        """Chunks that are there."""
+        """Return which chunks are stored."""
 
     @abstractmethod
     def get(self, index: int) -> Table:
-        """One of them."""
+        """Return one chunk."""
 
     @abstractmethod
     def put(self, index: int, table: Table) -> None:
-        """Keep a chunk."""
+        """Store a chunk."""
 
     @abstractmethod
     def drop(self, index: int, reason: str) -> None:
-        """Forget a chunk that cannot be used, so that it is computed anew."""
+        """Delete a chunk that cannot be used, so that it is computed again."""
 
     @abstractmethod
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Keep the result and drop the chunks."""
+        """Store the result and delete the chunks."""
 
     @abstractmethod
     def close(self) -> None:
-        """Let go of everything."""
+        """Release all files."""
 
     def table(self, count: int) -> Table:
-        """All chunks put together along their first axis."""
+        """Return all chunks concatenated along their first axis."""
         parts = [self.get(index) for index in range(count)]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 class Memory(Store):
-    """Nothing is left when the process ends."""
+    """Storage in memory; nothing is left when the process ends."""
 
     def __init__(self) -> None:
         self.begun = now()
@@ -100,37 +100,37 @@ class Memory(Store):
         self._result: xr.Dataset | None = None
 
     def result(self) -> xr.Dataset | None:
-        """The finished result, where it is there."""
+        """Return the finished result, or None."""
         return self._result
 
     def indices(self) -> set[int]:
-        """Chunks that are there."""
+        """Return which chunks are stored."""
         return set(self._chunks)
 
     def get(self, index: int) -> Table:
-        """One of them."""
+        """Return one chunk."""
         return self._chunks[index]
 
     def put(self, index: int, table: Table) -> None:
-        """Keep a chunk."""
+        """Store a chunk."""
         self._chunks[index] = table
 
     def drop(self, index: int, reason: str) -> None:
-        """Forget a chunk."""
+        """Delete a chunk."""
         del self._chunks[index]
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Keep the result and drop the chunks."""
+        """Store the result and delete the chunks."""
         self._chunks.clear()
         self._result = dataset
         return dataset
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """Do nothing: there are no files to release."""
 
 
 class Disk(Store):
-    """A NetCDF file, and a journal beside it until that is finished.
+    """Storage on disk: a NetCDF file, and a journal beside it until that is finished.
 
     Parameters
     ----------
@@ -161,14 +161,14 @@ class Disk(Store):
             )
         self._lock = Lock(path)
         self._journal: Journal | None = None
-        self._found: xr.Dataset | None = None
+        self._result: xr.Dataset | None = None
         try:
             if path.exists() and options.force:
                 read_identity(path)  # of another's file there is nothing to replace
                 self._open(journal_path(path, anew=True))
             elif path.exists():
                 identity = read_identity(path)
-                self._found = load(path)  # first of all, or damage is taken for another question
+                self._result = load(path)  # first of all, or damage is taken for another question
                 self.check(identity, path)
                 FINISHED.add(path)
                 discard(journal_path(path))  # where the process was killed before it did so
@@ -179,14 +179,14 @@ class Disk(Store):
             raise
 
     def _open(self, path: Path) -> None:
-        """Open the journal that this run goes on with."""
+        """Open the journal that this run continues."""
         self._journal = self.open_journal(path)
         self.begun = self._journal.begun
         if not self._journal.is_empty():
             STARTED.add(path)
 
     def open_journal(self, path: Path) -> Journal:
-        """The journal of this job, begun where there is none."""
+        """Return the journal of this job; create it if there is none."""
         journal: Journal | None = None
         try:
             journal = Journal(path, self.identity, now())
@@ -202,26 +202,26 @@ class Disk(Store):
             return Journal(path, self.identity, now())
         return journal
 
-    def check(self, found: Identity, path: Path) -> None:
-        """Whether what is on disk answers this question."""
-        line = difference(found, self.identity)
-        if not line:
+    def check(self, stored: Identity, path: Path) -> None:
+        """Check that what is on disk answers this question."""
+        reason = difference(stored, self.identity)
+        if not reason:
             return
-        if not same_question(found, self.identity):
+        if not same_question(stored, self.identity):
             raise InputError(
-                f"{path}: holds another question's answer ({line}); choose "
+                f"{path}: contains the result of a different calculation ({reason}); choose "
                 "another place, or force to replace it"
             )
         if not self.options.keep_stale:
             raise StaleError(
-                f"{path}: stale ({line}); force to compute it anew, or "
+                f"{path}: stale ({reason}); force to compute it anew, or "
                 "keep stale results as they are"
             )
-        log.warning("%s: stale (%s), taken as it is", path, line)
+        log.warning("%s: stale (%s), taken as it is", path, reason)
 
     def result(self) -> xr.Dataset | None:
-        """The finished result, where it is there."""
-        return self._found
+        """Return the finished result, or None."""
+        return self._result
 
     @property
     def journal(self) -> Journal:
@@ -230,35 +230,35 @@ class Disk(Store):
         return self._journal
 
     def indices(self) -> set[int]:
-        """Chunks that are there."""
+        """Return which chunks are stored."""
         return self.journal.indices()
 
     def get(self, index: int) -> Table:
-        """One of them."""
+        """Return one chunk."""
         return self.journal.get(index)
 
     def put(self, index: int, table: Table) -> None:
-        """Keep a chunk."""
+        """Store a chunk."""
         self.journal.put(index, table)
         STARTED.add(self.journal.path)
 
     def drop(self, index: int, reason: str) -> None:
-        """Forget a chunk."""
+        """Delete a chunk."""
         self.journal.drop(index, reason)
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Keep the result, in place of the one that was there, and drop the chunks."""
+        """Store the result, in place of the one that was there, and delete the chunks."""
         write_netcdf(dataset, self.path)
         FINISHED.add(self.path)
         STARTED.discard(self.journal.path)
         self.journal.remove()
         discard(journal_path(self.path))  # of a run that was killed as it finished
         self._journal = None
-        self._found = load(self.path)
-        return self._found
+        self._result = load(self.path)
+        return self._result
 
     def close(self) -> None:
-        """Close the journal and let others at it; where nothing is in it, it goes."""
+        """Close the journal and release the lock; an empty journal is deleted."""
         if self._journal is not None:
             with suppress(StoreError):
                 if self._journal.is_empty():
@@ -268,13 +268,13 @@ class Disk(Store):
 
 
 def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
-    """Where a job is kept."""
+    """Return the storage of a job: in memory, or on disk if the options name a place."""
     path = options.path(name)
     return Memory() if path is None else Disk(path, identity, options)
 
 
 def load(path: Path) -> xr.Dataset:
-    """A result from disk, in memory; its checksum has been verified and is left out.
+    """Read a result from disk; its checksum is verified and left out.
 
     A result without one, of a version that wrote none or of another tool, is taken as it is.
 
@@ -288,8 +288,8 @@ def load(path: Path) -> xr.Dataset:
     check_name(path)
     try:
         data = xr.load_dataset(path, engine="netcdf4")
-        told = data.attrs.pop(ATTRIBUTE, None)
-        fits = told is None or told == checksum(data)
+        stored_checksum = data.attrs.pop(ATTRIBUTE, None)
+        fits = stored_checksum is None or stored_checksum == checksum(data)
     except Exception as error:
         if path.is_file() and not is_netcdf(path):
             raise StoreError(f"{path}: not readable; expected a NetCDF file") from error
@@ -303,18 +303,18 @@ def load(path: Path) -> xr.Dataset:
 
 
 def is_netcdf(path: Path) -> bool:
-    """Whether a file begins as NetCDF does, version 4 or an older one."""
+    """Return whether a file begins as NetCDF does, version 4 or an older one."""
     with path.open("rb") as file:
         return file.read(4).startswith((b"\x89HDF", b"CDF"))
 
 
 def first_line(error: BaseException) -> str:
-    """An exception in a line."""
+    """Return the first line of an exception's text."""
     return (str(error).splitlines() or [type(error).__name__])[0]
 
 
 def read_identity(path: Path) -> Identity:
-    """What a finished result answers.
+    """Read the identity of a finished result.
 
     Raises
     ------
@@ -324,8 +324,8 @@ def read_identity(path: Path) -> Identity:
     import netCDF4
 
     try:
-        with netCDF4.Dataset(path) as found:
-            identity: Identity = json.loads(found.getncattr("identity"))
+        with netCDF4.Dataset(path) as file:
+            identity: Identity = json.loads(file.getncattr("identity"))
         identity["question"]  # or it is another's attribute of the same name
         return identity
     except Exception as error:
@@ -340,13 +340,15 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
     from xarray.backends import NetCDF4DataStore
 
     dataset = dataset.assign_attrs({ATTRIBUTE: checksum(dataset)})
-    large = [name for name, variable in dataset.data_vars.items() if variable.size > COMPRESSED]
-    encoding = {name: {"zlib": True, "complevel": LEVEL} for name in large}
-    make: Any = NetCDF4DataStore.open
+    large_variables = [
+        name for name, variable in dataset.data_vars.items() if variable.size > MIN_COMPRESSED
+    ]
+    encoding = {name: {"zlib": True, "complevel": ZLIB_LEVEL} for name in large_variables}
+    open_file: Any = NetCDF4DataStore.open
 
-    def write(place: Path) -> None:
+    def write(path_to_write: Path) -> None:
         # xarray's to_netcdf imports Dask's scheduler to find a lock that nobody needs here
-        with make(place, mode="w", lock=False) as file:
+        with open_file(path_to_write, mode="w", lock=False) as file:
             dataset.dump_to_store(file, encoding=encoding)
 
     return write_whole(path, write)

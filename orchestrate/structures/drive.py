@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from os import PathLike
 
 from ..errors import InputError
-from .ranges import DRIVE, NUMBERS, made_of, recover
+from .ranges import DRIVE, RATIO_QUANTITIES, construct_or_explain, exact_inverse
 from .structure import Structure
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """A direct-current motor with an unbalance, and the box that it shakes.
+    """Direct-current motor with an unbalance, and the box that it shakes.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class Drive:
         length: float = 1.0,
         motor_constant: float = 1.0,
     ) -> Drive:
-        """A drive by its non-dimensional numbers, for a structure.
+        """Make a drive from its non-dimensional numbers, for a structure.
 
         Parameters
         ----------
@@ -95,23 +95,23 @@ class Drive:
         >>> drive.box_mass, drive.b(structure), drive.Omega_b(structure)
         (4.0, 0.02, 0.1)
         """
-        given = {"beta": beta, "epsilon": epsilon, "b": b, "Omega_b": Omega_b, "D_b": D_b}
-        given = {name: NUMBERS[name].check(value) for name, value in given.items()}
+        checked = {"beta": beta, "epsilon": epsilon, "b": b, "Omega_b": Omega_b, "D_b": D_b}
+        checked = {name: RATIO_QUANTITIES[name].check(value) for name, value in checked.items()}
         length, omega = DRIVE["unbalance_radius"].check(length), structure.omega
-        mass = structure.m1 / given["beta"]
-        inertia = length**2 * mass / given["epsilon"]
+        mass = structure.m1 / checked["beta"]
+        inertia = length**2 * mass / checked["epsilon"]
         constant = DRIVE["motor_constant"].check(motor_constant)
-        return made_of(
-            given,
+        return construct_or_explain(
+            checked,
             lambda: cls(
                 box_mass=mass,
-                box_stiffness=stiffness(given["Omega_b"], omega, mass),
-                box_damping=damping(given["D_b"], omega, mass),
+                box_stiffness=stiffness(checked["Omega_b"], omega, mass),
+                box_damping=damping(checked["D_b"], omega, mass),
                 unbalance_mass=0.01 * mass,
                 unbalance_radius=100.0 * length,
                 rotor_inertia=inertia,
                 motor_constant=constant,
-                armature_resistance=constant**2 / (given["b"] * inertia * omega),
+                armature_resistance=constant**2 / (checked["b"] * inertia * omega),
             ),
         )
 
@@ -131,7 +131,7 @@ class Drive:
         mechanical_time_constant: float | None = None,
         armature_inductance: float = 0.0,
     ) -> Drive:
-        """A drive with a motor as its datasheet describes it.
+        """Make a drive from a motor's datasheet.
 
         Parameters
         ----------
@@ -193,7 +193,8 @@ class Drive:
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], structure: Structure | None = None) -> Drive:
-        """The ``[motor]`` and ``[box]`` of a TOML file or of a set that comes with the package.
+        """Read the ``[motor]`` and ``[box]`` of a TOML file or of a set that comes with the
+        package.
 
         Parameters
         ----------
@@ -203,73 +204,74 @@ class Drive:
         """
         from .files import read_section
 
-        found = read_section(path, "drive", structure)
-        assert isinstance(found, cls)
-        return found
+        drive = read_section(path, "drive", structure)
+        assert isinstance(drive, cls)
+        return drive
 
     @property
     def length(self) -> float:
-        """The unit of length S/M_t, m."""
+        """Unit of length S/M_t, m."""
         return self.unbalance_mass * self.unbalance_radius / self.box_mass
 
     @property
     def epsilon(self) -> float:
-        """The unbalance's share in the inertia, S^2/(J M_t)."""
+        """Share of the unbalance in the inertia, S^2/(J M_t)."""
         return self.length**2 * self.box_mass / self.rotor_inertia
 
     def beta(self, structure: Structure) -> float:
-        """The mass ratio m1/M_t."""
+        """Return the mass ratio m1/M_t."""
         return structure.m1 / self.box_mass
 
     def b(self, structure: Structure) -> float:
-        """The slope of the torque line, K^2/(R_a J omega)."""
+        """Return the slope of the torque line, K^2/(R_a J omega)."""
         slope = self.motor_constant**2 / self.armature_resistance
         return slope / (self.rotor_inertia * structure.omega)
 
     def Omega_b(self, structure: Structure) -> float:
-        """The box's own frequency over omega, without the structure."""
+        """Return the box's own frequency over omega, without the structure."""
         omega, mass = structure.omega, self.box_mass
         guess = math.sqrt(self.box_stiffness / mass) / omega
-        return recover(guess, lambda ratio: stiffness(ratio, omega, mass), self.box_stiffness)
+        return exact_inverse(guess, lambda ratio: stiffness(ratio, omega, mass), self.box_stiffness)
 
     def D_b(self, structure: Structure) -> float:
-        """The box's damping ratio, c_b/(2 omega M_t)."""
+        """Return the box's damping ratio, c_b/(2 omega M_t)."""
         omega, mass = structure.omega, self.box_mass
         guess = self.box_damping / (2.0 * omega * mass)
-        return recover(guess, lambda ratio: damping(ratio, omega, mass), self.box_damping)
+        return exact_inverse(guess, lambda ratio: damping(ratio, omega, mass), self.box_damping)
 
     def volts(self, structure: Structure) -> float:
-        """The voltage whose no-load speed is omega, V."""
+        """Return the voltage whose no-load speed is omega, V."""
         return self.motor_constant * structure.omega
 
     def energy(self, structure: Structure) -> float:
-        """The unit of energy M_t (omega S/M_t)^2, J."""
+        """Return the unit of energy M_t (omega S/M_t)^2, J."""
         return self.box_mass * (structure.omega * self.length) ** 2
 
     def replace(self, **changes: float) -> Drive:
-        """A drive that differs in some of its SI values."""
+        """Return a drive that differs in some of its SI values."""
         return dataclasses.replace(self, **changes)
 
     def parameters(self) -> dict[str, float]:
-        """The start values of ``MotorShaker``."""
+        """Return the start values of ``MotorShaker``."""
         return dataclasses.asdict(self)
 
 
 def torque_line(
     rated_voltage: float, no_load_speed: float, stall_torque: float
 ) -> tuple[float, float]:
-    """K in N m/A and R_a in Ohm of the line between a datasheet's two points, V, rad/s and N m.
+    """Return K in N m/A and R_a in Ohm of the line between a datasheet's two points, V, rad/s and N
+    m.
 
     Raises
     ------
     InputError
     """
-    given = {
+    checked = {
         "rated_voltage": rated_voltage,
         "no_load_speed": no_load_speed,
         "stall_torque": stall_torque,
     }
-    for name, value in given.items():
+    for name, value in checked.items():
         if not (math.isfinite(value) and value > 0.0):
             raise InputError(f"{name} = {value}: expected a number > 0")
     constant = rated_voltage / no_load_speed
@@ -277,10 +279,10 @@ def torque_line(
 
 
 def stiffness(ratio: float, omega: float, mass: float) -> float:
-    """The suspension of the box's own frequency over omega, k_b = M_t (Omega_b omega)^2."""
+    """Return the stiffness of the suspension, k_b = M_t (Omega_b omega)^2."""
     return mass * (ratio * omega) ** 2
 
 
 def damping(ratio: float, omega: float, mass: float) -> float:
-    """The damper of a damping ratio, c_b = 2 D_b omega M_t."""
+    """Return the damper of a damping ratio, c_b = 2 D_b omega M_t."""
     return 2.0 * ratio * omega * mass

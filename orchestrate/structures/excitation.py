@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from os import PathLike
 
 from ..errors import InputError
-from .ranges import EXCITATION, NUMBERS, made_of, recover
+from .ranges import EXCITATION, RATIO_QUANTITIES, construct_or_explain, exact_inverse
 from .structure import Structure
 
 
 @dataclass(frozen=True, kw_only=True)
 class Excitation:
-    """The box moves by ``a sin(Omega t + phase)``.
+    """Harmonic motion of the box, ``a sin(Omega t + phase)``.
 
     Parameters
     ----------
@@ -49,22 +49,23 @@ class Excitation:
 
     @classmethod
     def nondimensional(cls, eta: float, structure: Structure, phase: float = 0.0) -> Excitation:
-        """Frequency ratio ``eta`` with the amplitude 1/eta^2 m, so that xi of (3) is x in metres.
+        """Return the excitation of frequency ratio ``eta`` with the amplitude 1/eta^2 m, so that xi
+        of (3) is x in metres.
 
         Examples
         --------
         >>> Excitation.nondimensional(0.5, Structure())
         Excitation(frequency=0.5, amplitude=4.0, phase=0.0)
         """
-        eta = NUMBERS["eta"].check(eta)
+        eta = RATIO_QUANTITIES["eta"].check(eta)
         frequency, amplitude = eta * structure.omega, 1.0 / (eta * eta)
-        return made_of(
+        return construct_or_explain(
             {"eta": eta}, lambda: cls(frequency=frequency, amplitude=amplitude, phase=phase)
         )
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], structure: Structure | None = None) -> Excitation:
-        """The ``[excitation]`` of a TOML file.
+        """Read the ``[excitation]`` of a TOML file.
 
         Parameters
         ----------
@@ -74,29 +75,29 @@ class Excitation:
         """
         from .files import read_section
 
-        found = read_section(path, "excitation", structure)
-        assert isinstance(found, cls)
-        return found
+        excitation = read_section(path, "excitation", structure)
+        assert isinstance(excitation, cls)
+        return excitation
 
     @property
     def period(self) -> float:
-        """One period of the box, s: (22) as it must read."""
+        """Period of the box, s: (22) as it must read."""
         return 2.0 * math.pi / self.frequency
 
     def eta(self, structure: Structure) -> float:
-        """The frequency ratio Omega/omega (6)."""
+        """Return the frequency ratio Omega/omega (6)."""
         omega = structure.omega
-        return recover(self.frequency / omega, lambda eta: eta * omega, self.frequency)
+        return exact_inverse(self.frequency / omega, lambda eta: eta * omega, self.frequency)
 
     def length(self, structure: Structure) -> float:
-        """The unit of xi of (3), a eta^2 in m; exactly 1 where it is 1 but for rounding."""
+        """Return the unit of xi of (3), a eta^2 in m; exactly 1 where it is 1 but for rounding."""
         eta = self.eta(structure)
         length = self.amplitude * (eta * eta)
         return 1.0 if math.isclose(length, 1.0, rel_tol=2e-15) else length
 
     def check(self, structure: Structure, least: float = 1e-12) -> None:
-        """Whether the structure has a periodic response with digits to spare: none without damping
-        at a resonance, where amplitudes grow with time.
+        """Check that the structure has a periodic response with digits to spare: none without
+        damping at a resonance, where amplitudes grow with time.
 
         Parameters
         ----------
@@ -121,20 +122,22 @@ class Excitation:
             ratio = frequency * frequency * mass / stiffness
             loss = sum(dampers.values()) * frequency / stiffness
             if (1.0 - ratio) ** 2 + loss**2 <= 4.0 * least:
-                given = " and ".join(f"{damper} = {dampers[damper]!r} N s/m" for damper in dampers)
+                dampers_text = " and ".join(
+                    f"{damper} = {dampers[damper]!r} N s/m" for damper in dampers
+                )
                 natural = math.sqrt(stiffness / mass)
                 raise InputError(
                     f"frequency = {frequency!r} rad/s (eta = {self.eta(structure)!r}): the natural "
-                    f"frequency of {name}, {natural!r} rad/s, with {given}; expected "
+                    f"frequency of {name}, {natural!r} rad/s, with {dampers_text}; expected "
                     f"{' + '.join(dampers)} > 0, or a frequency further than 1e-6 of it away"
                 )
 
     def replace(self, **changes: float) -> Excitation:
-        """An excitation that differs in some of its numbers."""
+        """Return an excitation that differs in some of its numbers."""
         return dataclasses.replace(self, **changes)
 
     def inputs(self) -> dict[str, float]:
-        """The FMU's inputs and start values."""
+        """Return the FMU's inputs and start values."""
         return {
             "box_amplitude": self.amplitude,
             "box_frequency": self.frequency,
@@ -143,7 +146,7 @@ class Excitation:
 
 
 def oscillators(structure: Structure) -> Iterator[tuple[str, float, float, dict[str, float]]]:
-    """Name, stiffness, mass and dampers of what moves by itself: each mass, and both together."""
+    """Return name, stiffness, mass and dampers of what oscillates: each mass, and both together."""
     s = structure
     if not s.bonded:
         yield "mass 1", s.k1, s.m1, {"d1": s.d1}

@@ -35,20 +35,20 @@ from ..errors import InputError
 from ..files import read_text, write_whole
 from .drive import Drive
 from .excitation import Excitation
-from .ranges import DRIVE, STRUCTURE, one_of
+from .ranges import DRIVE, STRUCTURE, expected_one_of
 from .sections import Section, read_drive, read_excitation, read_structure
 from .structure import Structure
 
 FOLDER = Path(__file__).parent / "sets"
 SETS = {name: FOLDER / f"{name}.toml" for name in ("paper", "quick", "beam", "rig")}
-MOST_BYTES = 1 << 16  # of a file: some twenty numbers and as many remarks as they need
+MAX_BYTES = 1 << 16  # of a file: some twenty numbers and as many remarks as they need
 SECTIONS = ("structure", "excitation", "motor", "box")
 
 Described = Structure | Excitation | Drive
 
 
 def resolve(source: str | PathLike[str]) -> Path:
-    """The file of a shipped set's name or of a path.
+    """Return the file of a shipped set's name or of a path.
 
     Raises
     ------
@@ -65,13 +65,13 @@ def resolve(source: str | PathLike[str]) -> Path:
     path = Path(source)
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
-        expected = one_of(str(source), SETS).replace("expected", "expected a TOML file or")
+        expected = expected_one_of(str(source), SETS).replace("expected", "expected a TOML file or")
         raise InputError(f"{source}: {what}; {expected}")
     return path
 
 
 def read(source: str | PathLike[str], structure: Structure | None = None) -> dict[str, Described]:
-    """Read all that a file describes.
+    """Read everything that a file describes.
 
     Parameters
     ----------
@@ -105,39 +105,39 @@ def read(source: str | PathLike[str], structure: Structure | None = None) -> dic
             text = f"{name} = {values!r}: outside of a section; expected it below one of {places}"
             raise InputError(f"{path}: {text}")
         if name not in SECTIONS:
-            raise InputError(f"{path}: {name}: no section; {one_of(name, SECTIONS)}")
+            raise InputError(f"{path}: {name}: no section; {expected_one_of(name, SECTIONS)}")
     sections = {name: Section(path, name, values) for name, values in tables.items()}
-    found: dict[str, Described] = {}
+    contents: dict[str, Described] = {}
     if "structure" in sections:
-        found["structure"] = structure = read_structure(sections["structure"])
+        contents["structure"] = structure = read_structure(sections["structure"])
     if "excitation" in sections:
-        found["excitation"] = read_excitation(sections["excitation"], structure)
+        contents["excitation"] = read_excitation(sections["excitation"], structure)
     if sections.keys() & {"motor", "box"}:
         for name in {"motor", "box"} - sections.keys():
             raise InputError(f"{path}: no section [{name}]; expected [motor] and [box] together")
-        found["drive"] = read_drive(sections["motor"], sections["box"], structure)
-    return found
+        contents["drive"] = read_drive(sections["motor"], sections["box"], structure)
+    return contents
 
 
 def read_section(
     source: str | PathLike[str], name: str, structure: Structure | None = None
 ) -> Described:
-    """Read one thing that a file describes, ``"structure"``, ``"excitation"`` or ``"drive"``."""
-    found = read(source, structure)
-    if name not in found:
+    """Read one section of a file: ``"structure"``, ``"excitation"`` or ``"drive"``."""
+    contents = read(source, structure)
+    if name not in contents:
         expected = "[motor] and [box]" if name == "drive" else f"[{name}]"
         raise InputError(f"{source}: describes no {name}; expected {expected}")
-    return found[name]
+    return contents[name]
 
 
 def parse(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file."""
+    """Parse the tables of a TOML file."""
     if sys.version_info >= (3, 11):
         import tomllib
     else:
         import tomli as tomllib
     try:
-        return tomllib.loads(read_text(path, MOST_BYTES))
+        return tomllib.loads(read_text(path, MAX_BYTES))
     except OSError as error:
         reason = error.strerror or str(error)
     except ValueError as error:  # of the syntax, or of the encoding
@@ -187,7 +187,7 @@ def write(
 
 
 def toml_table(name: str, values: Mapping[str, float | bool]) -> str:
-    """One section as TOML, with the meaning of each key."""
+    """Format one section as TOML, with the meaning of each key."""
     described = {**STRUCTURE, **DRIVE}
     lines = [f"[{name}]"]
     for key, value in values.items():

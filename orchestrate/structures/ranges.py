@@ -1,4 +1,4 @@
-"""Names, units, defaults and ranges of what a user describes, from the FMUs' variable tables."""
+"""Names, units, defaults and ranges of a user's parameters, from the FMUs' variable tables."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Described = TypeVar("Described")
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number that a user gives.
+    """Number that a user gives, with its unit, default and range.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Quantity:
         return f"{self.minimum:g} <= {self.name} <= {self.maximum:g}{unit}"
 
     def check(self, value: Any) -> float:
-        """Give ``value`` as a float.
+        """Return ``value`` as a float; raise if it is out of range.
 
         Raises
         ------
@@ -66,12 +66,14 @@ class Quantity:
 
 
 def plain(value: Any) -> Any:
-    """What stands in an array or labelled array of no dimensions; anything else as it is."""
+    """Return the value of an array or labelled array without dimensions; anything else
+    unchanged.
+    """
     return value.item() if getattr(value, "shape", None) == () else value
 
 
 def check_flag(name: str, value: Any) -> bool:
-    """Give ``value`` as a bool.
+    """Return ``value`` as a bool; raise if it is none.
 
     Raises
     ------
@@ -84,8 +86,8 @@ def check_flag(name: str, value: Any) -> bool:
     return flag
 
 
-def table(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Quantity]:
-    """Quantities of an FMU's variable table, by name."""
+def quantities_of(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Quantity]:
+    """Return quantities of an FMU's variable table, by name."""
     known = {variable.name: variable for variable in variables}
     return {
         v.name: Quantity(v.name, v.unit, v.description, v.minimum, v.maximum, v.start)
@@ -93,8 +95,8 @@ def table(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Quantity]
     }
 
 
-STRUCTURE = table(oscillator.VARIABLES, ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma"))
-DRIVE = table(
+STRUCTURE = quantities_of(oscillator.VARIABLES, ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma"))
+DRIVE = quantities_of(
     motor_shaker.VARIABLES,
     (
         *("box_mass", "box_stiffness", "box_damping"),
@@ -104,7 +106,7 @@ DRIVE = table(
 )
 
 SMALLEST, LARGEST = STRUCTURE["m1"].minimum, STRUCTURE["m1"].maximum
-INPUTS = table(oscillator.VARIABLES, ("box_amplitude", "box_frequency", "phase_start"))
+INPUTS = quantities_of(oscillator.VARIABLES, ("box_amplitude", "box_frequency", "phase_start"))
 EXCITATION = {
     quantity.name: quantity
     for quantity in (
@@ -121,58 +123,60 @@ EXCITATION = {
 }
 
 
-def positive(name: str, description: str) -> Quantity:
-    """A dimensionless number above zero."""
+def positive_quantity(name: str, description: str) -> Quantity:
+    """Return a dimensionless quantity above zero."""
     return Quantity(name, "1", description, SMALLEST, LARGEST)
 
 
-def not_negative(name: str, description: str) -> Quantity:
-    """A dimensionless number that may be zero."""
+def non_negative_quantity(name: str, description: str) -> Quantity:
+    """Return a dimensionless quantity that may be zero."""
     return Quantity(name, "1", description, 0.0, LARGEST / 2.0)
 
 
-NUMBERS = {
+RATIO_QUANTITIES = {
     quantity.name: quantity
     for quantity in (
         Quantity("omega", "rad/s", "Frequency unit sqrt(k1/m1), (2)", SMALLEST, LARGEST),
-        positive("mu", "Mass ratio m2/m1, (2)"),
-        positive("kappa", "Stiffness ratio k2/k1, (2)"),
-        not_negative("D", "Damping ratio of both masses, (8)"),
-        not_negative("D1", "Damping ratio of mass 1, (8)"),
-        not_negative("D2", "Damping ratio of mass 2, (8)"),
+        positive_quantity("mu", "Mass ratio m2/m1, (2)"),
+        positive_quantity("kappa", "Stiffness ratio k2/k1, (2)"),
+        non_negative_quantity("D", "Damping ratio of both masses, (8)"),
+        non_negative_quantity("D1", "Damping ratio of mass 1, (8)"),
+        non_negative_quantity("D2", "Damping ratio of mass 2, (8)"),
         Quantity("f1", "Hz", "Natural frequency of mass 1 alone", SMALLEST, LARGEST),
         Quantity("f2", "Hz", "Natural frequency of mass 2 alone", SMALLEST, LARGEST),
-        not_negative("zeta1", "Damping ratio of mass 1 at its own frequency"),
-        not_negative("zeta2", "Damping ratio of mass 2 at its own frequency"),
+        non_negative_quantity("zeta1", "Damping ratio of mass 1 at its own frequency"),
+        non_negative_quantity("zeta2", "Damping ratio of mass 2 at its own frequency"),
         Quantity("eta", "1", "Frequency ratio Omega/omega, (6)", 1e-6, 1e6),
-        positive("beta", "Mass ratio m1/M_t"),
-        positive("epsilon", "The unbalance's share in the inertia, S^2/(J M_t)"),
-        positive("b", "Slope of the torque line, K^2/(R_a J omega)"),
-        not_negative("Omega_b", "The box's own frequency over omega"),
-        not_negative("D_b", "Damping ratio of the box, c_b/(2 omega M_t)"),
+        positive_quantity("beta", "Mass ratio m1/M_t"),
+        positive_quantity("epsilon", "The unbalance's share in the inertia, S^2/(J M_t)"),
+        positive_quantity("b", "Slope of the torque line, K^2/(R_a J omega)"),
+        non_negative_quantity("Omega_b", "The box's own frequency over omega"),
+        non_negative_quantity("D_b", "Damping ratio of the box, c_b/(2 omega M_t)"),
     )
 }
 
 
-def one_of(name: str, known: Iterable[str]) -> str:
-    """What is expected instead of an unknown name, the nearest one first where there is one."""
+def expected_one_of(name: str, known: Iterable[str]) -> str:
+    """Format what is expected instead of an unknown name, a similar one first."""
     names = list(known)
-    near = [other for other in names if other.lower() == name.lower()]
+    near = [candidate for candidate in names if candidate.lower() == name.lower()]
     near = near or difflib.get_close_matches(name, names, n=1, cutoff=0.5)
     return f"expected one of {', '.join(names)}" + (f" (did you mean {near[0]}?)" if near else "")
 
 
-def made_of(given: Mapping[str, float], make: Callable[[], Described]) -> Described:
-    """What ``make`` makes; where that is out of range, the error names the numbers given."""
+def construct_or_explain(
+    arguments: Mapping[str, float], construct: Callable[[], Described]
+) -> Described:
+    """Call ``construct``; if a number is out of range, name the arguments that led to it."""
     try:
-        return make()
+        return construct()
     except InputError as error:
-        numbers_given = ", ".join(f"{name} = {value!r}" for name, value in given.items())
+        numbers_given = ", ".join(f"{name} = {value!r}" for name, value in arguments.items())
         raise InputError(f"{numbers_given}: they make {error}") from None
 
 
-def recover(guess: float, forward: Callable[[float], float], target: float) -> float:
-    """The number that ``forward`` turns into ``target`` to the last bit.
+def exact_inverse(guess: float, forward: Callable[[float], float], target: float) -> float:
+    """Return the number that ``forward`` turns into ``target`` to the last bit.
 
     Division does not undo a multiplication exactly. Of the few numbers about ``guess`` that give
     the target, the one with the fewest digits is taken: it is the one that somebody wrote down.
@@ -181,7 +185,7 @@ def recover(guess: float, forward: Callable[[float], float], target: float) -> f
     --------
     >>> 0.05 * 0.7 / 0.7
     0.049999999999999996
-    >>> recover(0.05 * 0.7 / 0.7, lambda number: number * 0.7, 0.05 * 0.7)
+    >>> exact_inverse(0.05 * 0.7 / 0.7, lambda number: number * 0.7, 0.05 * 0.7)
     0.05
     """
     near = [guess]

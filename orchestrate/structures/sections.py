@@ -1,14 +1,14 @@
-"""Sections of a TOML file, read key by key: what is wrong is said with file, section and key."""
+"""Sections of a TOML file, read key by key: errors name file, section and key."""
 
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from .drive import Drive
 from .excitation import Excitation
@@ -16,22 +16,21 @@ from .ranges import (
     DRIVE,
     EXCITATION,
     LARGEST,
-    NUMBERS,
+    RATIO_QUANTITIES,
     SMALLEST,
     STRUCTURE,
     Quantity,
     check_flag,
-    one_of,
+    expected_one_of,
 )
 from .structure import Structure
 
-GRAVITY = 9.80665  # m/s^2, by definition
 TO_RAD_S: dict[str, Callable[[float], float]] = {
-    "hz": lambda value: 2.0 * math.pi * value,
+    "hz": lambda value: TURN * value,
     "rad_s": lambda value: value,
-    "rpm": lambda value: 2.0 * math.pi * value / 60.0,
+    "rpm": lambda value: TURN * value / 60.0,
 }
-COMMON = ("e", "gamma", "bonded")
+COMMON_KEYS = ("e", "gamma", "bonded")
 SI_STRUCTURE = ("m1", "m2", "k1", "k2", "d1", "d2")
 OMEGAS = tuple(f"omega_{unit}" for unit in TO_RAD_S)
 HALVES = ("f1_hz", "f2_hz", "zeta1", "zeta2")
@@ -40,13 +39,16 @@ FREQUENCIES = (*(f"frequency_{unit}" for unit in TO_RAD_S), "eta")
 AMPLITUDES = ("amplitude", "acceleration_g")
 SI_BOX = tuple(name for name in DRIVE if name.startswith("box_"))
 SI_MOTOR = tuple(name for name in DRIVE if name not in SI_BOX)
-LINE = ("motor_constant", "armature_resistance")  # what a datasheet tells in its own way:
+TORQUE_LINE_KEYS = (
+    "motor_constant",
+    "armature_resistance",
+)  # what a datasheet tells in its own way:
 SPEEDS = tuple(f"no_load_speed_{unit}" for unit in TO_RAD_S)
-SHEET = ("rated_voltage", "stall_torque", *SPEEDS, "mechanical_time_constant")
+DATASHEET_KEYS = ("rated_voltage", "stall_torque", *SPEEDS, "mechanical_time_constant")
 MOTOR_NUMBERS, BOX_NUMBERS = ("beta", "epsilon", "b"), ("Omega_b", "D_b")
 QUANTITIES = {
     **{q.name: q for q in (*STRUCTURE.values(), *EXCITATION.values(), *DRIVE.values())},
-    **NUMBERS,
+    **RATIO_QUANTITIES,
     **{
         f"{what}_{unit}": Quantity(f"{what}_{unit}", "1", "", SMALLEST, LARGEST)
         for what in ("omega", "frequency", "no_load_speed")
@@ -54,10 +56,12 @@ QUANTITIES = {
     },
     **{
         name: Quantity(name, unit, "", SMALLEST, LARGEST)
-        for name, unit in zip(SHEET[:2] + SHEET[-1:], ("V", "N.m", "s"), strict=True)
+        for name, unit in zip(
+            DATASHEET_KEYS[:2] + DATASHEET_KEYS[-1:], ("V", "N.m", "s"), strict=True
+        )
     },
-    "f1_hz": dataclasses.replace(NUMBERS["f1"], name="f1_hz"),
-    "f2_hz": dataclasses.replace(NUMBERS["f2"], name="f2_hz"),
+    "f1_hz": dataclasses.replace(RATIO_QUANTITIES["f1"], name="f1_hz"),
+    "f2_hz": dataclasses.replace(RATIO_QUANTITIES["f2"], name="f2_hz"),
     "acceleration_g": Quantity("acceleration_g", "1", "", 0.0, LARGEST),
 }
 Described = TypeVar("Described")
@@ -65,73 +69,75 @@ Described = TypeVar("Described")
 
 @dataclass(frozen=True)
 class Section:
-    """A section's keys and values, and where they stand."""
+    """Keys and values of a section, and where they stand in the file."""
 
     path: Path
     name: str
     values: dict[str, Any]
 
     def error(self, key: str, text: str) -> InputError:
-        """A mistake at a key."""
+        """Return an error about a key."""
         value = f" = {self.values[key]!r}" if key in self.values else ""
         return InputError(f"{self.path}: {self.name}.{key}{value}: {text}")
 
     def allow(self, *known: str) -> None:
-        """See that there are no other keys."""
+        """Check that there are no other keys."""
         for key in self.values:
             if key not in known:
-                raise self.error(key, f"no key of [{self.name}]; {one_of(key, known)}")
+                raise self.error(key, f"no key of [{self.name}]; {expected_one_of(key, known)}")
 
-    def given(self, keys: Collection[str]) -> list[str]:
-        """Those of the keys that are there."""
+    def present(self, keys: Collection[str]) -> list[str]:
+        """Return those of the keys that are there."""
         return [key for key in keys if key in self.values]
 
-    def either(self, first: Collection[str], second: Collection[str]) -> bool:
-        """Whether there are keys of the second kind; there may not be both kinds."""
-        one, two = self.given(first), self.given(second)
-        if one and two:
+    def uses_second_form(self, first: Collection[str], second: Collection[str]) -> bool:
+        """Return whether there are keys of the second form; keys of both are an error."""
+        first_keys, second_keys = self.present(first), self.present(second)
+        if first_keys and second_keys:
             kinds = f"{', '.join(first)}, or {', '.join(second)}"
-            raise self.error(two[0], f"beside {one[0]}; expected keys of one kind: {kinds}")
-        return bool(two)
+            raise self.error(
+                second_keys[0], f"beside {first_keys[0]}; expected keys of one kind: {kinds}"
+            )
+        return bool(second_keys)
 
     def at_most_one(self, keys: Collection[str]) -> str | None:
-        """The one of the keys that is there."""
-        found = self.given(keys)
-        if len(found) > 1:
-            raise self.error(found[1], f"beside {found[0]}; expected one of {', '.join(keys)}")
-        return found[0] if found else None
+        """Return the one of the keys that is there, or None; more than one is an error."""
+        present = self.present(keys)
+        if len(present) > 1:
+            raise self.error(present[1], f"beside {present[0]}; expected one of {', '.join(keys)}")
+        return present[0] if present else None
 
     def exactly_one(self, keys: Collection[str]) -> str:
-        """The one of the keys that has to be there."""
-        found = self.at_most_one(keys)
-        if found is None:
+        """Return the one of the keys that is there; none is an error."""
+        key = self.at_most_one(keys)
+        if key is None:
             raise InputError(f"{self.path}: [{self.name}]: expected one of {', '.join(keys)}")
-        return found
+        return key
 
     def need(self, keys: Collection[str]) -> None:
-        """See that all of the keys are there."""
+        """Check that all of the keys are there."""
         for key in keys:
             if key not in self.values:
                 raise self.error(key, f"missing; expected all of {', '.join(keys)}")
 
     def number(self, key: str) -> float:
-        """The number at a key, in its range."""
+        """Return the number at a key, checked for its range."""
         try:
             return QUANTITIES[key].check(self.values[key])
         except InputError as error:
             raise InputError(f"{self.path}: {self.name}.{error}") from None
 
     def numbers(self, keys: Collection[str]) -> dict[str, float]:
-        """The numbers at those of the keys that are there."""
-        return {key: self.number(key) for key in self.given(keys)}
+        """Return the numbers at those of the keys that are there."""
+        return {key: self.number(key) for key in self.present(keys)}
 
     def rad_s(self, key: str) -> float:
-        """The frequency at a key whose ending says the unit, rad/s."""
+        """Return the frequency at a key whose ending is the unit, rad/s."""
         unit = next(unit for unit in TO_RAD_S if key.endswith(f"_{unit}"))
         return TO_RAD_S[unit](self.number(key))
 
     def make(self, maker: Callable[[], Described]) -> Described:
-        """What ``maker`` makes, its complaints with the section's name."""
+        """Call ``maker``; its errors name the section."""
         try:
             return maker()
         except InputError as error:
@@ -139,24 +145,24 @@ class Section:
 
 
 def read_structure(section: Section) -> Structure:
-    """The structure of ``[structure]``."""
-    section.allow(*COMMON, *SI_STRUCTURE, *HALVES, *RATIOS)
+    """Read the structure of ``[structure]``."""
+    section.allow(*COMMON_KEYS, *SI_STRUCTURE, *HALVES, *RATIOS)
     values: dict[str, Any] = section.numbers(("e", "gamma"))
     if "bonded" in section.values:
         try:
             values["bonded"] = check_flag("bonded", section.values["bonded"])
         except InputError as error:
             raise InputError(f"{section.path}: {section.name}.{error}") from None
-    if section.given(HALVES):
-        section.either(HALVES, (*SI_STRUCTURE[2:], *RATIOS))
+    if section.present(HALVES):
+        section.uses_second_form(HALVES, (*SI_STRUCTURE[2:], *RATIOS))
         section.need(("m1", "m2", *HALVES))
         values |= section.numbers(("m1", "m2", *HALVES))
         frequencies = {name: values.pop(f"{name}_hz") for name in ("f1", "f2")}
         return section.make(lambda: Structure.from_halves(**frequencies, **values))
-    if not section.either(SI_STRUCTURE[1:], RATIOS):
+    if not section.uses_second_form(SI_STRUCTURE[1:], RATIOS):
         values |= section.numbers(SI_STRUCTURE)
         return section.make(lambda: Structure(**values))
-    if section.either(("D",), ("D1", "D2")):
+    if section.uses_second_form(("D",), ("D1", "D2")):
         section.need(("D1", "D2"))
     values |= section.numbers(("m1", "mu", "kappa", "D", "D1", "D2"))
     omega = section.at_most_one(OMEGAS)
@@ -166,7 +172,7 @@ def read_structure(section: Section) -> Structure:
 
 
 def read_excitation(section: Section, structure: Structure | None) -> Excitation:
-    """The excitation of ``[excitation]``."""
+    """Read the excitation of ``[excitation]``."""
     section.allow(*FREQUENCIES, *AMPLITUDES, "phase")
     key = section.exactly_one(FREQUENCIES)
     amplitude_key = section.at_most_one(AMPLITUDES)
@@ -187,14 +193,14 @@ def read_excitation(section: Section, structure: Structure | None) -> Excitation
 
 
 def read_drive(motor: Section, box: Section, structure: Structure | None) -> Drive:
-    """The drive of ``[motor]`` and ``[box]``."""
-    motor.allow(*SI_MOTOR, *SHEET, *MOTOR_NUMBERS)
+    """Read the drive of ``[motor]`` and ``[box]``."""
+    motor.allow(*SI_MOTOR, *DATASHEET_KEYS, *MOTOR_NUMBERS)
     box.allow(*SI_BOX, *BOX_NUMBERS)
-    by_numbers = motor.either((*SI_MOTOR, *SHEET), MOTOR_NUMBERS)
-    if box.either(SI_BOX, BOX_NUMBERS) != by_numbers:
+    by_numbers = motor.uses_second_form((*SI_MOTOR, *DATASHEET_KEYS), MOTOR_NUMBERS)
+    if box.uses_second_form(SI_BOX, BOX_NUMBERS) != by_numbers:
         kind = ", ".join(BOX_NUMBERS if by_numbers else SI_BOX)
-        beside = "non-dimensional" if by_numbers else "SI"
-        raise InputError(f"{box.path}: [box] beside a {beside} [motor]: expected {kind}")
+        form = "non-dimensional" if by_numbers else "SI"
+        raise InputError(f"{box.path}: [box] beside a {form} [motor]: expected {kind}")
     if not by_numbers:
         box.need(SI_BOX)
         return si_drive(motor, box.numbers(SI_BOX))
@@ -207,9 +213,9 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
 
 
 def si_drive(motor: Section, box: dict[str, float]) -> Drive:
-    """The drive of a motor in SI, by its constants or as its datasheet has it."""
+    """Read the drive of a motor in SI, by its constants or as its datasheet has it."""
     values = {**motor.numbers(SI_MOTOR), **box}
-    if not motor.either(LINE, SHEET):
+    if not motor.uses_second_form(TORQUE_LINE_KEYS, DATASHEET_KEYS):
         motor.need([name for name in SI_MOTOR if name != "armature_inductance"])
         return motor.make(lambda: Drive(**values))
     motor.need(("rated_voltage", "stall_torque", "unbalance_mass", "unbalance_radius"))

@@ -9,7 +9,14 @@ from os import PathLike
 from typing import Any
 
 from ..errors import InputError
-from .ranges import NUMBERS, STRUCTURE, check_flag, made_of, one_of, recover
+from .ranges import (
+    RATIO_QUANTITIES,
+    STRUCTURE,
+    check_flag,
+    construct_or_explain,
+    exact_inverse,
+    expected_one_of,
+)
 
 SI = tuple(STRUCTURE)
 RATIOS = ("mu", "kappa", "D", "D1", "D2", "omega")
@@ -30,31 +37,31 @@ ALTERNATIVES = {  # names that set the same value
 
 
 def stiffness(f: float, mass: float) -> float:
-    """The spring of a mass whose natural frequency is ``f``, Hz: k = m (2 pi f)^2."""
+    """Return the stiffness for a mass with natural frequency ``f``, Hz: k = m (2 pi f)^2."""
     omega = 2.0 * math.pi * f
     return mass * (omega * omega)
 
 
 def damping(ratio: float, omega: float, mass: float) -> float:
-    """The damper of a damping ratio, d = 2 D omega m (8)."""
+    """Return the damper of a damping ratio, d = 2 D omega m (8)."""
     return 2.0 * ratio * omega * mass
 
 
 def natural_frequency(spring: float, mass: float) -> float:
-    """The frequency that :func:`stiffness` turns into ``spring``, Hz."""
+    """Return the frequency that :func:`stiffness` turns into ``spring``, Hz."""
     guess = math.sqrt(spring / mass) / (2.0 * math.pi)
-    return recover(guess, lambda f: stiffness(f, mass), spring)
+    return exact_inverse(guess, lambda f: stiffness(f, mass), spring)
 
 
 def damping_ratio(damper: float, f: float, mass: float) -> float:
-    """The ratio of a damper, N s/m, to critical damping at a frequency ``f``, Hz."""
+    """Return the ratio of a damper, N s/m, to critical damping at a frequency ``f``, Hz."""
     omega = 2.0 * math.pi * f
     ratio = damper / (2.0 * omega * mass)
-    return recover(ratio, lambda guess: damping(guess, omega, mass), damper)
+    return exact_inverse(ratio, lambda guess: damping(guess, omega, mass), damper)
 
 
 def check_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:
-    """Give two thicknesses as floats.
+    """Return two thicknesses as floats; raise if they are none.
 
     Raises
     ------
@@ -73,7 +80,7 @@ def check_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:
 
 
 def short(value: float) -> str:
-    """A number for a name, to the last digit."""
+    """Format a number for a name, to the last digit."""
     return repr(value).removesuffix(".0")
 
 
@@ -149,7 +156,7 @@ class Structure:
         m1: float = 1.0,
         omega: float = 1.0,
     ) -> Structure:
-        """A structure by the paper's numbers, (2) and (8).
+        """Make a structure from the paper's numbers, (2) and (8).
 
         Parameters
         ----------
@@ -169,11 +176,11 @@ class Structure:
         >>> Structure.nondimensional(D=0.02, mu=0.5).parameters()["d2"]
         0.02
         """
-        given = {"mu": mu, "kappa": kappa, "D": D, "D1": D1, "D2": D2, "omega": omega}
-        v = {name: NUMBERS[name].check(x) for name, x in given.items() if x is not None}
+        numbers = {"mu": mu, "kappa": kappa, "D": D, "D1": D1, "D2": D2, "omega": omega}
+        v = {name: RATIO_QUANTITIES[name].check(x) for name, x in numbers.items() if x is not None}
         m1 = STRUCTURE["m1"].check(m1)
         k1 = m1 * v["omega"] ** 2
-        return made_of(
+        return construct_or_explain(
             {"m1": m1, **v},
             lambda: cls(
                 m1=m1,
@@ -228,10 +235,10 @@ class Structure:
         >>> beam.f2, beam.zeta2, round(beam.D2, 6)
         (55.0, 0.007, 0.009167)
         """
-        given = {"f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
-        v = {name: NUMBERS[name].check(value) for name, value in given.items()}
+        halves = {"f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
+        v = {name: RATIO_QUANTITIES[name].check(value) for name, value in halves.items()}
         m1, m2 = STRUCTURE["m1"].check(m1), STRUCTURE["m2"].check(m2)
-        return made_of(
+        return construct_or_explain(
             {"m1": m1, "m2": m2, **v},
             lambda: cls(
                 m1=m1,
@@ -296,13 +303,13 @@ class Structure:
         >>> round(beam.m1, 12), round(beam.f2 / beam.f1, 12), round(beam.omega_3 * beam.f1, 12)
         (1.2, 0.666666666667, 50.0)
         """
-        mass, f = STRUCTURE["m1"].check(mass), NUMBERS["f1"].check(f)
-        zeta = NUMBERS["zeta1"].check(zeta)
+        mass, f = STRUCTURE["m1"].check(mass), RATIO_QUANTITIES["f1"].check(f)
+        zeta = RATIO_QUANTITIES["zeta1"].check(zeta)
         h1, h2 = check_thicknesses(thicknesses)
         heavy, light = h1 / (h1 + h2), h2 / (h1 + h2)
         stiff, soft = heavy**3 / (heavy**3 + light**3), light**3 / (heavy**3 + light**3)
         k, d = stiffness(f, mass), damping(zeta, 2.0 * math.pi * f, mass)
-        return made_of(
+        return construct_or_explain(
             {"mass": mass, "f": f, "zeta": zeta},
             lambda: cls(
                 m1=heavy * mass,
@@ -319,7 +326,7 @@ class Structure:
 
     @classmethod
     def from_file(cls, path: str | PathLike[str]) -> Structure:
-        """The ``[structure]`` of a TOML file or of a set that comes with the package.
+        """Read the ``[structure]`` of a TOML file or of a set that comes with the package.
 
         Examples
         --------
@@ -328,38 +335,38 @@ class Structure:
         """
         from .files import read_section
 
-        found = read_section(path, "structure")
-        assert isinstance(found, cls)
-        return found
+        structure = read_section(path, "structure")
+        assert isinstance(structure, cls)
+        return structure
 
     @property
     def omega(self) -> float:
-        """The unit of frequency sqrt(k1/m1), rad/s (2)."""
+        """Unit of frequency sqrt(k1/m1), rad/s (2)."""
         return math.sqrt(self.k1 / self.m1)
 
     @property
     def mu(self) -> float:
-        """The mass ratio m2/m1 (2)."""
-        return recover(self.m2 / self.m1, lambda mu: mu * self.m1, self.m2)
+        """Mass ratio m2/m1 (2)."""
+        return exact_inverse(self.m2 / self.m1, lambda mu: mu * self.m1, self.m2)
 
     @property
     def kappa(self) -> float:
-        """The stiffness ratio k2/k1 (2)."""
-        return recover(self.k2 / self.k1, lambda kappa: kappa * self.k1, self.k2)
+        """Stiffness ratio k2/k1 (2)."""
+        return exact_inverse(self.k2 / self.k1, lambda kappa: kappa * self.k1, self.k2)
 
     @property
     def D1(self) -> float:
-        """The damping ratio d1/(2 omega m1) of mass 1 (8)."""
+        """Damping ratio d1/(2 omega m1) of mass 1 (8)."""
         omega, m1 = self.omega, self.m1
-        return recover(
+        return exact_inverse(
             self.d1 / (2.0 * omega * m1), lambda ratio: damping(ratio, omega, m1), self.d1
         )
 
     @property
     def D2(self) -> float:
-        """The damping ratio d2/(2 omega m2) of mass 2 (8)."""
+        """Damping ratio d2/(2 omega m2) of mass 2 (8)."""
         omega, m1, mu = self.omega, self.m1, self.mu
-        return recover(
+        return exact_inverse(
             self.d2 / (2.0 * omega * self.m2),
             lambda ratio: damping(ratio, omega, m1) * mu,
             self.d2,
@@ -367,59 +374,61 @@ class Structure:
 
     @property
     def f1(self) -> float:
-        """The natural frequency of mass 1 alone, Hz."""
+        """Natural frequency of mass 1 alone, Hz."""
         return natural_frequency(self.k1, self.m1)
 
     @property
     def f2(self) -> float:
-        """The natural frequency of mass 2 alone, Hz."""
+        """Natural frequency of mass 2 alone, Hz."""
         return natural_frequency(self.k2, self.m2)
 
     @property
     def zeta1(self) -> float:
-        """The damping ratio of mass 1 alone at its own frequency, d1/(2 sqrt(k1 m1))."""
+        """Damping ratio of mass 1 alone at its own frequency, d1/(2 sqrt(k1 m1))."""
         return damping_ratio(self.d1, self.f1, self.m1)
 
     @property
     def zeta2(self) -> float:
-        """The damping ratio of mass 2 alone at its own frequency, d2/(2 sqrt(k2 m2))."""
+        """Damping ratio of mass 2 alone at its own frequency, d2/(2 sqrt(k2 m2))."""
         return damping_ratio(self.d2, self.f2, self.m2)
 
     @property
     def D3(self) -> float:
-        """The damping ratio of both masses together, in contact (8)."""
+        """Damping ratio of both masses together, in contact (8)."""
         return (self.d1 + self.d2) / (2.0 * self.omega * (self.m1 + self.m2))
 
     @property
     def omega_1(self) -> float:
-        """The natural frequency of mass 1 over omega: 1 (7)."""
+        """Natural frequency of mass 1 over omega: 1 (7)."""
         return 1.0
 
     @property
     def omega_2(self) -> float:
-        """The natural frequency of mass 2 over omega, sqrt(kappa/mu) (7)."""
+        """Natural frequency of mass 2 over omega, sqrt(kappa/mu) (7)."""
         return math.sqrt(self.kappa / self.mu)
 
     @property
     def omega_3(self) -> float:
-        """The natural frequency of both masses together over omega, in contact (7)."""
+        """Natural frequency of both masses together over omega, in contact (7)."""
         return math.sqrt((1.0 + self.kappa) / (1.0 + self.mu))
 
     @property
     def alike(self) -> bool:
-        """Whether both oscillators move alike, so that masses that start together never part."""
+        """Whether both oscillators move alike, so that masses that start together never
+        separate.
+        """
         return self.kappa == self.mu and self.D1 == self.D2
 
     def as_bonded(self) -> Structure:
-        """The undamaged structure, both masses glued."""
+        """Return the undamaged structure, both masses glued."""
         return dataclasses.replace(self, bonded=True)
 
     def as_delaminated(self) -> Structure:
-        """The damaged structure, whose masses knock."""
+        """Return the damaged structure, whose masses can separate and impact."""
         return dataclasses.replace(self, bonded=False)
 
     def get(self, name: str) -> float:
-        """A parameter by its name, any of ``PARAMETERS``.
+        """Return a parameter by its name, any of ``PARAMETERS``.
 
         Raises
         ------
@@ -427,7 +436,9 @@ class Structure:
             Where there is none of that name; for ``D`` too where D1 and D2 differ.
         """
         if name not in PARAMETERS:
-            raise InputError(f"{name}: no parameter of a structure; {one_of(name, PARAMETERS)}")
+            raise InputError(
+                f"{name}: no parameter of a structure; {expected_one_of(name, PARAMETERS)}"
+            )
         if name != "D":
             return float(getattr(self, name))
         if self.D1 != self.D2:
@@ -435,7 +446,7 @@ class Structure:
         return self.D1
 
     def replace(self, **changes: Any) -> Structure:
-        """A structure that differs in some parameters.
+        """Return a structure that differs in some parameters.
 
         Parameters
         ----------
@@ -453,74 +464,84 @@ class Structure:
         known = (*PARAMETERS, "bonded")
         for name in changes:
             if name not in known:
-                raise InputError(f"{name}: no parameter of a structure; {one_of(name, known)}")
-            for other in ALTERNATIVES.get(name, ()):
-                if other in changes:
-                    raise InputError(f"{name} and {other}: expected one of them")
+                raise InputError(
+                    f"{name}: no parameter of a structure; {expected_one_of(name, known)}"
+                )
+            for alternative in ALTERNATIVES.get(name, ()):
+                if alternative in changes:
+                    raise InputError(f"{name} and {alternative}: expected one of them")
         ratios = {
-            name: NUMBERS[name].check(changes.pop(name)) for name in RATIOS if name in changes
+            name: RATIO_QUANTITIES[name].check(changes.pop(name))
+            for name in RATIOS
+            if name in changes
         }
         halves = {
-            name: NUMBERS[name].check(changes.pop(name)) for name in HALVES if name in changes
+            name: RATIO_QUANTITIES[name].check(changes.pop(name))
+            for name in HALVES
+            if name in changes
         }
         fixed = dataclasses.replace(self, **changes)
         if ratios:
             new = {k: v for k, v in fixed._by_ratios(ratios).items() if k not in changes}
-            fixed = made_of(ratios, lambda: dataclasses.replace(fixed, **new))
+            fixed = construct_or_explain(ratios, lambda: dataclasses.replace(fixed, **new))
         if halves:
             by_halves = fixed._by_halves(halves)
             new = {k: v for k, v in by_halves.items() if k not in changes}
-            fixed = made_of(halves, lambda: dataclasses.replace(fixed, **new))
+            fixed = construct_or_explain(halves, lambda: dataclasses.replace(fixed, **new))
         return fixed
 
-    def _by_halves(self, given: dict[str, float]) -> dict[str, float]:
-        """The SI values that change where frequencies and damping ratios of halves are set."""
+    def _by_halves(self, changes: dict[str, float]) -> dict[str, float]:
+        """Return the SI values that change where frequencies and damping ratios of halves are
+        set.
+        """
         new = {}
         for half, mass in (("1", self.m1), ("2", self.m2)):
             f, zeta = f"f{half}", f"zeta{half}"
-            if f in given:
-                new[f"k{half}"] = stiffness(given[f], mass)
-            if f in given or zeta in given:
-                ratio = given.get(zeta, getattr(self, zeta))
-                omega = 2.0 * math.pi * given.get(f, getattr(self, f))
+            if f in changes:
+                new[f"k{half}"] = stiffness(changes[f], mass)
+            if f in changes or zeta in changes:
+                ratio = changes.get(zeta, getattr(self, zeta))
+                omega = 2.0 * math.pi * changes.get(f, getattr(self, f))
                 new[f"d{half}"] = damping(ratio, omega, mass)
         return new
 
     def _by_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
-        """The SI values that change where the paper's numbers ``ratios`` are set."""
+        """Return the SI values that change where the paper's numbers ``ratios`` are set."""
         both = {"D1": ratios["D"], "D2": ratios["D"]} if "D" in ratios else {}
-        given = {**ratios, **both}
-        omega, mu = given.get("omega", self.omega), given.get("mu", self.mu)
-        k1 = self.m1 * omega**2 if "omega" in given else self.k1
+        all_ratios = {**ratios, **both}
+        omega, mu = all_ratios.get("omega", self.omega), all_ratios.get("mu", self.mu)
+        k1 = self.m1 * omega**2 if "omega" in all_ratios else self.k1
         new = {}
-        if "omega" in given:
+        if "omega" in all_ratios:
             new["k1"] = k1
-        if "mu" in given:
+        if "mu" in all_ratios:
             new["m2"] = mu * self.m1
-        if given.keys() & {"kappa", "omega"}:
-            new["k2"] = given.get("kappa", self.kappa) * k1
-        if given.keys() & {"D1", "omega"}:
-            new["d1"] = damping(given.get("D1", self.D1), omega, self.m1)
-        if given.keys() & {"D2", "mu", "omega"}:
-            new["d2"] = damping(given.get("D2", self.D2), omega, self.m1) * mu
+        if all_ratios.keys() & {"kappa", "omega"}:
+            new["k2"] = all_ratios.get("kappa", self.kappa) * k1
+        if all_ratios.keys() & {"D1", "omega"}:
+            new["d1"] = damping(all_ratios.get("D1", self.D1), omega, self.m1)
+        if all_ratios.keys() & {"D2", "mu", "omega"}:
+            new["d2"] = damping(all_ratios.get("D2", self.D2), omega, self.m1) * mu
         return new
 
     def parameters(self) -> dict[str, float | bool]:
-        """The FMU's start values."""
+        """Return the FMU's start values."""
         return dict(vars(self))
 
     def _pair(self, letter: str) -> str:
-        """A parameter of both halves, for a name."""
-        one, two = (short(self.get(f"{letter}{half}")) for half in (1, 2))
-        return f"{letter}{one}-{two}"
+        """Format a parameter of both halves, for a name."""
+        first, second = (short(self.get(f"{letter}{half}")) for half in (1, 2))
+        return f"{letter}{first}-{second}"
 
     def _is_by_halves(self) -> bool:
-        """Whether frequencies and damping ratios of the halves give it to the last bit."""
+        """Return whether frequencies and damping ratios of the halves give the structure to the
+        last bit.
+        """
         numbers = {name: self.get(name) for name in HALVES}
         return all(getattr(self, name) == value for name, value in self._by_halves(numbers).items())
 
     def label(self) -> str:
-        """A short name for files and titles; structures that differ have different ones."""
+        """Return a short name for files and titles; structures that differ have different ones."""
         default = type(self)()
         if (self.m1, self.k1) == (1.0, 1.0):
             damping_ratios = dict.fromkeys((short(self.D1), short(self.D2)))

@@ -1,4 +1,4 @@
-"""The averaged theory of the weak drive, bonded structure: motor against mean torque of vibration.
+"""Averaged theory of the weak drive, bonded structure: motor against mean torque of vibration.
 
 At a speed Omega the box answers the unbalance as a linear system does, y = Omega^2 H(i Omega)
 S/M_t; the vibration's mean torque is T_v(Omega) = -epsilon Omega^4 Im H(i Omega) / 2, and the motor
@@ -30,7 +30,7 @@ FOLD, TORUS = bifurcations.FOLD.label, bifurcations.TORUS.label
 
 
 class Place(NamedTuple):
-    """A point of the branch of stationary motions: a fold, or a Neimark-Sacker point.
+    """Point of the branch of stationary motions: a fold, or a Neimark-Sacker point.
 
     Attributes
     ----------
@@ -46,7 +46,9 @@ class Place(NamedTuple):
 
 
 def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial, Polynomial]:
-    """Springs and dampers of the masses, their inertia, and the box alone: polynomials in s."""
+    """Return springs and dampers of the masses, their inertia, and the box alone: polynomials in
+    s.
+    """
     beta, mu = drive.beta(structure), structure.mu
     damping = 2.0 * beta * (structure.D1 + mu * structure.D2)
     pull = Polynomial([beta * (1.0 + structure.kappa), damping])
@@ -57,7 +59,8 @@ def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomia
 
 
 def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """H of the box with the bonded masses, and their displacement from the box over the box's.
+    """Return the transfer function from a force on the box to its position, bonded masses included,
+    and the masses' relative displacement over the box's.
 
     Parameters
     ----------
@@ -77,7 +80,7 @@ def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.n
 
 
 def no_load_speed(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
-    """The voltage eta0 that holds a speed, eta0 = Omega + T_v/b."""
+    """Return the voltage eta0 that holds a speed, eta0 = Omega + T_v/b."""
     Omega = np.asarray(Omega, dtype=float)
     H, _ = transfer(structure, drive, Omega)
     torque = drive.epsilon * Omega**4 * H.imag / (2.0 * drive.b(structure))
@@ -85,20 +88,22 @@ def no_load_speed(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.nd
 
 
 def amplitude(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
-    """Amplitude of the masses relative to the box, in S/M_t."""
+    """Return the amplitude of the masses relative to the box, in S/M_t."""
     H, ratio = transfer(structure, drive, Omega)
     return np.asarray(np.abs(np.asarray(Omega) ** 2 * H * ratio))
 
 
 def resonance(structure: Structure, drive: Drive) -> float:
-    """Speed over omega at which the bonded masses resonate in the box: its faster frequency."""
+    """Return the speed over omega at which the bonded masses resonate in the box: its faster
+    frequency.
+    """
     pull, masses, box = mechanics(structure, drive)
     roots = (box * (pull + masses) + pull * masses).roots()
     return float(np.abs(roots).max())
 
 
 def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0) -> list[Place]:
-    """Where the speed jumps: zeros of d eta0 / d Omega.
+    """Return where the speed jumps: zeros of d eta0 / d Omega.
 
     Parameters
     ----------
@@ -116,12 +121,12 @@ def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.
     numerator, denominator = slope(structure, drive)
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
-    speeds = [polished(numerator, root) for root in real if low <= root <= high]
+    speeds = [polish_root(numerator, root) for root in real if low <= root <= high]
     return [Place(float(no_load_speed(structure, drive, Omega)), Omega, FOLD) for Omega in speeds]
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
-    """Speed over omega between stationary motions below and beyond the resonance.
+    """Return the speed over omega between stationary motions below and beyond the resonance.
 
     Half way between the speeds of the outer folds, where all motions are unstable; the resonance's
     speed where there are none.
@@ -133,7 +138,7 @@ def dividing_speed(structure: Structure, drive: Drive) -> float:
 
 
 def slope(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
-    """The derivative d eta0 / d Omega as numerator and denominator, polynomials in Omega."""
+    """Return the derivative d eta0 / d Omega as numerator and denominator, polynomials in Omega."""
     pull, masses, box = (on_the_axis(part) for part in mechanics(structure, drive))
     above, below = pull + masses, box * (pull + masses) + pull * masses
     torque = imaginary(above * conjugate(below)) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
@@ -145,7 +150,7 @@ def slope(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
 def least_slope(
     structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 10_001
 ) -> float:
-    """The least slope d eta0 / d Omega of the branch: negative between folds.
+    """Return the least slope d eta0 / d Omega of the branch: negative between folds.
 
     Parameters
     ----------
@@ -162,7 +167,7 @@ def least_slope(
 
 
 def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
-    """Growth rates of slow disturbances: the roots s, but the 0 of a shifted angle.
+    """Return growth rates of slow disturbances: the roots s, without the 0 of a shifted angle.
 
     Parameters
     ----------
@@ -185,16 +190,16 @@ def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
     late = Polynomial([1.0, lag])
     still = 0.5 * complex(above(at) / below(at)).real
     free = Polynomial([0.0, 0.0, 1.0]) * late + Polynomial([0.0, drive.b(structure)])
-    whole = (free + drive.epsilon * still * late) * bottom * other_bottom
+    polynomial = (free + drive.epsilon * still * late) * bottom * other_bottom
     driven = 0.25 * drive.epsilon * late * (top * other_bottom + other_top * bottom)
-    roots = Polynomial((whole - driven).coef.real[1:]).roots()
+    roots = Polynomial((polynomial - driven).coef.real[1:]).roots()
     return np.asarray(roots[np.argsort(-roots.real)])
 
 
 def torus_points(
     structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 401
 ) -> list[Place]:
-    """Neimark-Sacker points: where a pair of :func:`growth` passes the imaginary axis.
+    """Return the Neimark-Sacker points: where a pair of :func:`growth` passes the imaginary axis.
 
     Parameters
     ----------
@@ -208,25 +213,25 @@ def torus_points(
     from scipy.optimize import brentq
 
     def test(Omega: float) -> float:
-        """Product of all sums of two roots: 0 where a pair is imaginary, as Hurwitz has it."""
+        """Return the product of all sums of two roots: 0 where a pair is imaginary (Hurwitz)."""
         roots = growth(structure, drive, Omega)
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)
 
     speeds = np.linspace(low, high, count)
     signs = np.sign([test(Omega) for Omega in speeds])
-    found = []
+    points = []
     for i in np.flatnonzero(signs[1:] != signs[:-1]):
         Omega = float(brentq(test, speeds[i], speeds[i + 1], xtol=1e-12))
         roots = growth(structure, drive, Omega)
         pairs = roots[np.abs(roots.imag) > 1e-9]
         if np.abs(pairs.real).min() < 1e-6:  # no two real ones of opposite signs
-            found.append(Place(float(no_load_speed(structure, drive, Omega)), Omega, TORUS))
-    return found
+            points.append(Place(float(no_load_speed(structure, drive, Omega)), Omega, TORUS))
+    return points
 
 
 def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | None]:
-    """Where a slow ramp up and one down lose their stable motion: by a fold, or before it.
+    """Return where a slow ramp up and one down lose their stable motion: by a fold, or before it.
 
     Returns
     -------
@@ -236,37 +241,37 @@ def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | No
     """
     ends, at = folds(structure, drive), resonance(structure, drive)
     torus = torus_points(structure, drive, 0.8 * at, 1.5 * at, count=151)
-    places = sorted([*ends, *torus], key=lambda place: place.Omega)
-    if not places:
+    points = sorted([*ends, *torus], key=lambda point: point.Omega)
+    if not points:
         return None, None
-    speeds = [place.Omega for place in places]
+    speeds = [point.Omega for point in points]
     between = [0.5 * (low + high) for low, high in pairwise(speeds)]
     middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]]
     stable = [growth(structure, drive, Omega)[0].real < 0.0 for Omega in middles]
-    first, last = (ends[0], ends[-1]) if ends else (places[-1], places[0])
-    below = [i for i in range(places.index(first) + 1) if stable[i]]
-    beyond = [i for i in range(places.index(last) + 1, len(stable)) if stable[i]]
-    return (places[below[-1]] if below else None, places[beyond[0] - 1] if beyond else None)
+    first, last = (ends[0], ends[-1]) if ends else (points[-1], points[0])
+    below = [i for i in range(points.index(first) + 1) if stable[i]]
+    beyond = [i for i in range(points.index(last) + 1, len(stable)) if stable[i]]
+    return (points[below[-1]] if below else None, points[beyond[0] - 1] if beyond else None)
 
 
 def on_the_axis(polynomial: Polynomial) -> Polynomial:
-    """A polynomial in s as one in Omega, with s = i Omega."""
+    """Return a polynomial in s as one in Omega, with s = i Omega."""
     powers = 1j ** np.arange(len(polynomial.coef))
     return Polynomial(np.asarray(polynomial.coef, dtype=complex) * powers)
 
 
 def conjugate(polynomial: Polynomial) -> Polynomial:
-    """Conjugate of a polynomial for real arguments."""
+    """Return the conjugate of a polynomial for real arguments."""
     return Polynomial(polynomial.coef.conj())
 
 
 def imaginary(polynomial: Polynomial) -> Polynomial:
-    """Imaginary part of a polynomial for real arguments."""
+    """Return the imaginary part of a polynomial for real arguments."""
     return Polynomial(polynomial.coef.imag)
 
 
-def polished(polynomial: Polynomial, root: float) -> float:
-    """A root, better by Newton's method."""
+def polish_root(polynomial: Polynomial, root: float) -> float:
+    """Improve a root by Newton's method."""
     derivative = polynomial.deriv()
     for _ in range(3):
         root -= polynomial(root) / derivative(root)

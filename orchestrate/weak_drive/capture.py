@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from ..access.exported import finder
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
+from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, parameter, variable, yes_or_no
 from ..running.job import Inputs, Job, Table
@@ -30,7 +31,7 @@ from ..structures.ranges import DRIVE
 from ..structures.structure import Structure
 from . import averaged
 from .controllers import Controller
-from .couple import Run, checked_motor, couple_job, scheme_of
+from .couple import Run, couple_job, require_motor, scheme_of
 from .master import Scheme
 from .schedule import Constant, check
 from .settling import (
@@ -53,7 +54,7 @@ THEORY = 2e-4  # over K omega: the averaged theory's own error of a fold, with r
 
 
 class System(NamedTuple):
-    """A structure and what shakes it."""
+    """Structure and drive."""
 
     structure: Structure
     drive: Drive
@@ -97,27 +98,27 @@ class CaptureJob(Job):
     item: ClassVar[str] = "value"
 
     def count(self) -> int:
-        """Values of the parameter."""
+        """Return the number of values of the parameter."""
         return max(1, len(self.values))
 
     def items(self, inputs: Inputs) -> Sequence[System]:
-        """Structure and drive of each value."""
+        """Return structure and drive of each value."""
         system = System(self.structure, self.drive)
         return [with_value(system, self.over, value) for value in self.values] or [system]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[System], carry: Any) -> Table:
-        """Outcomes at all voltages, and the border, of some values."""
+    def work(self, fmus: Mapping[str, Path], items: Sequence[System], previous: Any) -> Table:
+        """Compute the outcomes at all voltages, and the border, of some values."""
         rows, borders = [], []
         for system in items:
             start = partial(self.start, fmus, system)
             outcomes = [start(voltage) for voltage in self.voltages]
             rows.append(outcomes)
-            low, high = border_between(self.voltages, outcomes, start, self.tolerance)
+            low, high = threshold_voltage(self.voltages, outcomes, start, self.tolerance)
             borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
     def start(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
-        """Where a start from rest settles."""
+        """Run a start from rest until the speed settles."""
         test = settling_test(*system, self.stay)
         if voltage <= system.drive.motor_constant * test.threshold:
             return Outcome(NO_LOAD)
@@ -131,12 +132,12 @@ class CaptureJob(Job):
                 run.master.close()
 
     def limit(self, system: System) -> float:
-        """After which a start that has not settled is undecided, s."""
+        """Return the time after which a start that has not settled is undecided, s."""
         distance = self.tolerance / system.drive.volts(system.structure)
         return self.time or usual_limit(*system, distance)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Passed, captured or undecided over voltage and parameter, and the border."""
+        """Return passed, captured or undecided over voltage and parameter, and the border."""
         import xarray as xr
 
         kept = (slice(None),) if self.over else (0,)
@@ -173,7 +174,7 @@ class CaptureJob(Job):
         return xr.Dataset(variables, coordinates, {"title": title})
 
     def fold(self, system: System) -> float:
-        """The averaged theory's highest fold, V; NaN where it has none, or does not hold."""
+        """Return the averaged theory's highest fold, V; NaN where it has none, or does not hold."""
         structure, drive = system
         if not structure.bonded or self.control is not None:
             return math.nan
@@ -184,7 +185,7 @@ class CaptureJob(Job):
 def run_until_settled(
     run: Run, steps: range, outcome: Callable[[np.ndarray, np.ndarray], Outcome]
 ) -> Outcome:
-    """Go on until ``outcome`` of times and speeds of the revolutions is decided, or to the end.
+    """Run until ``outcome`` of times and speeds of the revolutions is decided, or to the end.
 
     It is asked each time the run has become a fifth longer.
     """
@@ -194,27 +195,27 @@ def run_until_settled(
         piece = steps[first : first + max(500, first // 5)]
         rows = run.revolve(piece)
         times, speeds = np.append(times, rows["time"]), np.append(speeds, rows["speed"])
-        found = outcome(times, speeds)
-        if found.decision != UNDECIDED:
-            return found
+        decision = outcome(times, speeds)
+        if decision.decision != UNDECIDED:
+            return decision
         first += len(piece)
     return Outcome(UNDECIDED)
 
 
 class End(NamedTuple):
-    """An end of the border's interval: a voltage, V, and the speed at which it settles, rad/s."""
+    """End of the border's interval: a voltage, V, and the speed at which it settles, rad/s."""
 
     voltage: float = math.nan
     speed: float = math.nan
 
 
-def border_between(
+def threshold_voltage(
     voltages: Sequence[float],
     outcomes: Sequence[Outcome],
     start: Callable[[float], Outcome],
     tolerance: float,
 ) -> tuple[End, End]:
-    """The highest voltage that captures, and the lowest above it from which all tried pass.
+    """Return the highest voltage that captures, and the lowest above it from which all tried pass.
 
     Bisection brings them together to ``tolerance``. An undecided start is neither: the interval
     that is left then is wider than that, and both its sides are brought close to it.
@@ -250,7 +251,7 @@ def border_between(
 
 
 def with_value(system: System, over: str, value: float) -> System:
-    """A system with another value of one parameter, of its drive or its structure.
+    """Return a system with another value of one parameter, of its drive or its structure.
 
     Raises
     ------
@@ -263,7 +264,7 @@ def with_value(system: System, over: str, value: float) -> System:
 
 
 def axis(over: str, values: ArrayLike) -> Variable:
-    """The coordinate along a parameter."""
+    """Return the coordinate along a parameter."""
     if over in DRIVE:
         numbers = np.asarray(values, dtype=float)
         return variable(over, numbers, DRIVE[over].unit, DRIVE[over].description)
@@ -271,7 +272,7 @@ def axis(over: str, values: ArrayLike) -> Variable:
 
 
 def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
-    """Voltages at equal distances.
+    """Return voltages at equal distances.
 
     Raises
     ------
@@ -285,13 +286,11 @@ def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
     check("voltage", high, "V", low=0.0)
     if not low < high:
         raise InputError(f"voltage = ({low:g}, {high:g}) V: expected (lowest, highest)")
-    if not isinstance(count, int) or isinstance(count, bool) or count < 2:
-        raise InputError(f"count = {count!r}: expected a whole number >= 2")
-    return tuple(np.linspace(low, high, count).tolist())
+    return tuple(np.linspace(low, high, checked_integer("count", count, 2)).tolist())
 
 
 def values_of(over: str | None, values: ArrayLike | None, system: System) -> tuple[float, ...]:
-    """The parameter's values, each tried on the system.
+    """Return the parameter's values, each tried on the system.
 
     Raises
     ------
@@ -302,14 +301,14 @@ def values_of(over: str | None, values: ArrayLike | None, system: System) -> tup
     if over is None:
         return ()
     try:
-        found = tuple(np.asarray(values, dtype=float).ravel().tolist())
+        numbers = tuple(np.asarray(values, dtype=float).ravel().tolist())
     except (TypeError, ValueError):
         raise InputError(f"values = {values!r}: expected numbers, such as [1.0, 2.0]") from None
-    if not found or len(set(found)) != len(found):
+    if not numbers or len(set(numbers)) != len(numbers):
         raise InputError(f"values = {values!r}: expected one number or more, each once")
-    for value in found:
+    for value in numbers:
         with_value(system, over, value)
-    return found
+    return numbers
 
 
 def capture(
@@ -327,7 +326,7 @@ def capture(
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Whether a motor switched on from rest passes the resonance, and the voltage it takes.
+    """Find whether a motor switched on from rest passes the resonance, and the voltage it takes.
 
     Parameters
     ----------
@@ -396,19 +395,18 @@ def capture(
     >>> found.passes.values.tolist(), 1.5 < float(found.border) < 1.6
     ([0, 1], True)
     """
-    checked_motor(drive)
+    require_motor(drive)
     system = System(structure, drive)
-    found = values_of(over, values, system)
+    parameter_values = values_of(over, values, system)
     voltages = voltages_of(voltage, count)
     check("tolerance", tolerance, "V", low=0.0, exclusive=True)
     if time is not None:
         check("time", time, "s", low=0.0, exclusive=True)
-    if not isinstance(stay, int) or isinstance(stay, bool) or stay < 1:
-        raise InputError(f"stay = {stay!r}: expected a whole number >= 1")
+    stay = checked_integer("stay", stay, 1)
     scheme = scheme_of(structure, step, sampled=control is not None)
     job = CaptureJob(
         "capture",
-        *(structure, drive, over or "", found, voltages),
+        *(structure, drive, over or "", parameter_values, voltages),
         *(float(tolerance), float(time or 0.0), stay, scheme, control),
     )
     for each in job.items({}):  # refused now, not amid the work

@@ -166,9 +166,9 @@ static void enter(const Pair *p, Memory *now, const Step *done, double defect, d
 
 /* -- extremes.py -- */
 
-typedef struct { double low, high; } Reach;
+typedef struct { double low, high; } Range;
 
-static void reach(Reach *r, double position) {
+static void reach(Range *r, double position) {
     if (position < r->low) r->low = position;
     if (position > r->high) r->high = position;
 }
@@ -179,7 +179,7 @@ static double value(const double *series, int count, double time, int order) {
     return total;
 }
 
-static void series_of(double series[TERMS + 1], const Pair *p, const Motion *m, const Cubic told) {
+static void taylor_coefficients(double series[TERMS + 1], const Pair *p, const Motion *m, const Cubic told) {
     double mass = p->m1, stiffness = p->k1, damping = p->d1;
     if (m->x1 == m->x2 && m->v1 == m->v2) mass = mass + p->m2, stiffness = stiffness + p->k2, damping += p->d2;
     series[0] = m->x1, series[1] = m->v1;
@@ -189,7 +189,7 @@ static void series_of(double series[TERMS + 1], const Pair *p, const Motion *m, 
     }
 }
 
-static void turning(Reach *r, const double *series, int count, double first, double last) {
+static void extrema(Range *r, const double *series, int count, double first, double last) {
     double begin = value(series, count, first, 1), end = value(series, count, last, 1);
     reach(r, value(series, count, first, 0));
     reach(r, value(series, count, last, 0));
@@ -202,38 +202,38 @@ static void turning(Reach *r, const double *series, int count, double first, dou
     if (first <= time && time <= last) reach(r, value(series, count, time, 0));
 }
 
-static Reach reach_of_mass(const Pair *p, const Memory *now, const Step *done, double h) {
+static Range range_of_mass(const Pair *p, const Memory *now, const Step *done, double h) {
     const Motion *before = &now->motion, *after = &done->motion;
-    Reach r = {before->x1, before->x1};
+    Range r = {before->x1, before->x1};
     reach(&r, after->x1);
     double hit = after->impact_time - now->time, series[TERMS + 1];
     bool impact = after->impact_time != before->impact_time && 0.0 <= hit && hit <= h;
     if (!impact && !(before->v1 * after->v1 < 0.0)) return r;
-    series_of(series, p, before, done->acceleration);
-    turning(&r, series, TERMS + 1, 0.0, impact ? hit : h);
+    taylor_coefficients(series, p, before, done->acceleration);
+    extrema(&r, series, TERMS + 1, 0.0, impact ? hit : h);
     if (impact) {
         const double *told = done->acceleration;
         Cubic end = {end_value(told, h), end_slope(told, h), told[2] + h * told[3], told[3]};
-        series_of(series, p, after, end);
-        turning(&r, series, TERMS + 1, hit - h, 0.0);
+        taylor_coefficients(series, p, after, end);
+        extrema(&r, series, TERMS + 1, hit - h, 0.0);
     }
     return r;
 }
 
-static Reach reach_of_box(const Memory *now, const Step *done, double h) {
+static Range range_of_box(const Memory *now, const Step *done, double h) {
     const Shaking *before = &now->shaking, *after = &done->shaking;
     const double *told = done->acceleration;
-    Reach r = {before->box_position, before->box_position};
+    Range r = {before->box_position, before->box_position};
     reach(&r, after->box_position);
     if (before->box_velocity * after->box_velocity < 0.0) {
         double series[6] = {before->box_position, before->box_velocity, told[0], told[1], told[2], told[3]};
-        turning(&r, series, 6, 0.0, h);
+        extrema(&r, series, 6, 0.0, h);
     }
     return r;
 }
 
 static void look_back(const Pair *p, Revolution *r, const Memory *now, const Step *done, double h) {
-    Reach x = reach_of_mass(p, now, done, h), y = reach_of_box(now, done, h);
+    Range x = range_of_mass(p, now, done, h), y = range_of_box(now, done, h);
     double acceleration = size_of(done->shaking.box_acceleration);
     if (x.high > r->x1_high) r->x1_high = x.high;
     if (x.low < r->x1_low) r->x1_low = x.low;

@@ -1,4 +1,4 @@
-"""The master's communication steps in compiled code: the same calls of the FMUs, the same bits.
+"""Communication steps of the master in compiled code: the same calls of the FMUs, the same bits.
 
 ``compiled.c`` calls the FMUs' functions itself, past Python: where two FMI 3.0 instances are native
 and the library can be had, :func:`master_of` makes a master that steps so. Structures are those of
@@ -32,7 +32,7 @@ PLACES = tuple(Revolution.__dataclass_fields__)
 
 
 class Side(ctypes.Structure):
-    """An instance as the library calls it."""
+    """Instance as the library calls it."""
 
     _fields_ = [
         *((name, c_void_p) for name in ("instance", "set", "get", "step", "save", "restore")),
@@ -45,7 +45,7 @@ class Side(ctypes.Structure):
 
 
 class Pair(ctypes.Structure):
-    """Both sides, the structure, and the scheme."""
+    """Both instances, the structure, and the scheme."""
 
     _fields_ = [
         ("oscillator", Side),
@@ -59,8 +59,8 @@ class Pair(ctypes.Structure):
 
 
 @functools.cache
-def loaded() -> Any:
-    """The library's function, once a process; None where there is no library."""
+def step_function() -> Any:
+    """Load the library's function, once per process; return None where there is no library."""
     path = library(SOURCE)
     if path is None:
         return None
@@ -80,14 +80,16 @@ def master_of(
     scheme: Scheme,
     start_time: float = 0.0,
 ) -> Master:
-    """The fastest master that there is for two instances; see :class:`.master.Master`."""
-    native = all(one.is_fmi3 and not one.description.needs_tool for one in (oscillator, shaker))
-    kind = CompiledMaster if native and loaded() else Master
+    """Return the fastest master that there is for two instances; see :class:`.master.Master`."""
+    native = all(
+        channel.is_fmi3 and not channel.description.needs_tool for channel in (oscillator, shaker)
+    )
+    kind = CompiledMaster if native and step_function() else Master
     return kind(oscillator, shaker, structure, scheme, start_time)
 
 
 class CompiledMaster(Master):
-    """A master whose steps are compiled."""
+    """Master whose steps are compiled."""
 
     def __init__(
         self,
@@ -98,13 +100,13 @@ class CompiledMaster(Master):
         start_time: float = 0.0,
     ) -> None:
         super().__init__(oscillator, shaker, structure, scheme, start_time)
-        self._run = loaded()
+        self._run = step_function()
         self._pair = pair_of(self.oscillator, self.shaker, structure, scheme)
-        self._memory = array("d", self.memory())
+        self._memory = array("d", self.get_state())
         self._seen = array("d", bytes(8 * len(PLACES)))
 
     def step(self, voltage: float, h: float | None = None) -> None:
-        """As :meth:`.master.Master.step`."""
+        """Do one communication interval, as :meth:`.master.Master.step`."""
         self.run(array("d", (voltage,)), 0, h)
 
     def run(
@@ -114,10 +116,12 @@ class CompiledMaster(Master):
         h: float | None = None,
         kept: np.ndarray | None = None,
     ) -> int:
-        """As :meth:`.master.Master.run`; an ``array`` of voltages is taken as it is."""
-        given = voltages if isinstance(voltages, array) else array("d", voltages)
+        """Do intervals, as :meth:`.master.Master.run`; an ``array`` of voltages is used without a
+        copy.
+        """
+        buffer = voltages if isinstance(voltages, array) else array("d", voltages)
         if kept is not None:
-            rows = len(given), len(self._memory)
+            rows = len(buffer), len(self._memory)
             assert kept.shape == rows and kept.flags.c_contiguous and kept.dtype == np.float64
         revolution = self.revolution
         if revolution:
@@ -126,39 +130,39 @@ class CompiledMaster(Master):
         self.shaker.begin()
         done = self._run(
             *(byref(self._pair), address(self._memory)),
-            *(address(self._seen) if revolution else None, address(given)),
-            *(first, len(given), h or self.scheme.h),
+            *(address(self._seen) if revolution else None, address(buffer)),
+            *(first, len(buffer), h or self.scheme.h),
             None if kept is None else kept.ctypes.data,
         )
         if done < 0:
             raise self._failure()
-        super().remember(self._memory.tolist())
+        super().set_state(self._memory.tolist())
         if revolution:
             for name, value in zip(PLACES, self._seen, strict=True):
                 setattr(revolution, name, value)
         return int(done)
 
     def _failure(self) -> FmuError:
-        """What the side says that failed."""
+        """Return the error of the instance that failed."""
         pair = self._pair
         for channel, side in ((self.oscillator, pair.oscillator), (self.shaker, pair.shaker)):
             if side.status:
                 return channel.failure(side.failed.decode(), side.status)
         raise AssertionError("a step failed, and none of both sides")
 
-    def remember(self, numbers: Sequence[float]) -> None:
-        """As :meth:`.master.Master.remember`."""
-        super().remember(numbers)
+    def set_state(self, numbers: Sequence[float]) -> None:
+        """Return to a state, as :meth:`.master.Master.set_state`."""
+        super().set_state(numbers)
         self._memory[:] = array("d", numbers)
 
 
 def address(numbers: array[float]) -> int:
-    """Where numbers lie."""
+    """Return the address of an array of numbers."""
     return numbers.buffer_info()[0]
 
 
 def pair_of(oscillator: Channel, shaker: Channel, structure: Structure, scheme: Scheme) -> Pair:
-    """Both sides as the library takes them."""
+    """Return both instances as the library takes them."""
     pair = Pair(side_of(oscillator), side_of(shaker))
     for name in ("m1", "m2", "k1", "k2", "d1", "d2"):
         setattr(pair, name, getattr(structure, name))
@@ -172,11 +176,11 @@ def pair_of(oscillator: Channel, shaker: Channel, structure: Structure, scheme: 
 
 
 def side_of(channel: Channel) -> Side:
-    """One side; the channel has to live as long."""
-    found = channel.pointers()
-    counts = len(found.inputs), len(found.outputs)
+    """Return one instance; its channel has to live as long."""
+    pointers = channel.pointers()
+    counts = len(pointers.inputs), len(pointers.outputs)
     return Side(
-        *(found.instance, *found.functions),
-        *(found.inputs, found.outputs),
-        *(*counts, pointer(found.kept)),
+        *(pointers.instance, *pointers.functions),
+        *(pointers.inputs, pointers.outputs),
+        *(*counts, pointer(pointers.saved_state)),
     )

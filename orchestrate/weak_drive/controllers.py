@@ -8,17 +8,18 @@ one does.
 from __future__ import annotations
 
 import math
+import warnings
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from .schedule import check
 
-Memory = tuple[float, ...]
+ControllerState = tuple[float, ...]
 
 
-class Seen(NamedTuple):
-    """What a controller sees at the beginning of a communication step.
+class Measurement(NamedTuple):
+    """Measurements that a controller gets at the beginning of a communication step.
 
     Attributes
     ----------
@@ -40,19 +41,27 @@ class Seen(NamedTuple):
 
 @dataclass(frozen=True)
 class Controller(ABC):
-    """A law for the voltage; subclasses say which."""
+    """Law for the voltage; subclasses define it."""
 
     @abstractmethod
-    def begin(self, speed: float) -> Memory:
-        """What it remembers at the start, the motor turning with ``speed``, rad/s."""
+    def begin(self, speed: float) -> ControllerState:
+        """Return the controller's initial state, the motor turning with ``speed``, rad/s."""
 
     @abstractmethod
-    def act(self, seen: Seen, memory: Memory) -> tuple[float, Memory]:
-        """The voltage over a step, V, and what it remembers at its end."""
+    def update(
+        self, measured: Measurement, state: ControllerState
+    ) -> tuple[float, ControllerState]:
+        """Return the voltage over a step, V, and the controller's state at its end."""
+
+    def act(self, measured: Measurement, state: ControllerState) -> tuple[float, ControllerState]:
+        """Call :meth:`update`; the old name, deprecated."""
+        text = "Controller.act is called update now; the old name goes with the next release"
+        warnings.warn(text, DeprecationWarning, stacklevel=2)
+        return self.update(measured, state)
 
 
 def within(voltage: float, available: float) -> float:
-    """A voltage between 0 and the one that is available, which may be negative."""
+    """Limit a voltage to between 0 and the one that is available, which may be negative."""
     low, high = min(0.0, available), max(0.0, available)
     return min(max(voltage, low), high)
 
@@ -83,7 +92,7 @@ class SpeedControl(Controller):
     Examples
     --------
     >>> control = SpeedControl(speed=100.0, gain=0.3, reset_time=0.5)
-    >>> voltage, memory = control.act(Seen(0.0, 90.0, 12.0, 0.001), control.begin(90.0))
+    >>> voltage, state = control.update(Measurement(0.0, 90.0, 12.0, 0.001), control.begin(90.0))
     >>> round(voltage, 6)  # 0.3 (10 + 10 * 0.001/0.5)
     3.006
     """
@@ -100,21 +109,27 @@ class SpeedControl(Controller):
             if getattr(self, name) != math.inf:
                 check(name, getattr(self, name), unit, low=0.0, exclusive=True)
 
-    def begin(self, speed: float) -> Memory:
-        """The speed wanted at first, and the integral of the deviation over the reset time."""
+    def begin(self, speed: float) -> ControllerState:
+        """Return the speed wanted at first, and the integral of the deviation over the reset
+        time.
+        """
         return (self.speed if self.rise == math.inf else speed), 0.0
 
-    def act(self, seen: Seen, memory: Memory) -> tuple[float, Memory]:
-        """Proportional and integral part, limited."""
-        wanted, integral = memory
-        deviation = wanted - seen.speed
-        grown = integral + deviation * seen.h / self.reset_time
-        asked = self.gain * (deviation + grown)
-        voltage = within(asked, seen.available)
-        if voltage == asked or (asked - voltage) * deviation < 0.0:  # not limited, or leaving that
+    def update(
+        self, measured: Measurement, state: ControllerState
+    ) -> tuple[float, ControllerState]:
+        """Return proportional and integral part, limited."""
+        setpoint, integral = state
+        deviation = setpoint - measured.speed
+        grown = integral + deviation * measured.h / self.reset_time
+        demand = self.gain * (deviation + grown)
+        voltage = within(demand, measured.available)
+        if (
+            voltage == demand or (demand - voltage) * deviation < 0.0
+        ):  # not limited, or leaving that
             integral = grown
-        step = self.rise * seen.h
-        return voltage, (wanted + min(max(self.speed - wanted, -step), step), integral)
+        step = self.rise * measured.h
+        return voltage, (setpoint + min(max(self.speed - setpoint, -step), step), integral)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,8 +163,8 @@ class SpeedGradient(Controller):
     Examples
     --------
     >>> control = SpeedGradient(filter_time=0.2, passed=120.0)
-    >>> fast, slow = (Seen(1.0, speed, 6.0, 0.001) for speed in (91.0, 89.0))
-    >>> control.act(fast, (90.0,))[0], control.act(slow, (90.0,))[0]
+    >>> fast, slow = (Measurement(1.0, speed, 6.0, 0.001) for speed in (91.0, 89.0))
+    >>> control.update(fast, (90.0,))[0], control.update(slow, (90.0,))[0]
     (6.0, 0.0)
     """
 
@@ -162,14 +177,18 @@ class SpeedGradient(Controller):
         check("passed", self.passed, "rad/s", low=0.0, exclusive=True)
         check("low", self.low, "of the voltage", low=0.0, high=1.0)
 
-    def begin(self, speed: float) -> Memory:
-        """The running mean of the speed."""
+    def begin(self, speed: float) -> ControllerState:
+        """Return the running mean of the speed."""
         return (speed,)
 
-    def act(self, seen: Seen, memory: Memory) -> tuple[float, Memory]:
-        """All of the voltage, or the lower part of it."""
-        (mean,) = memory
-        mean -= (seen.speed - mean) * math.expm1(-seen.h / self.filter_time)
-        way = math.copysign(1.0, seen.available)
-        on = way * mean > self.passed or way * (seen.speed - mean) >= 0.0
-        return seen.available * (1.0 if on else self.low), (mean,)
+    def update(
+        self, measured: Measurement, state: ControllerState
+    ) -> tuple[float, ControllerState]:
+        """Return the full voltage while the rotor is faster than its running mean, else the lower
+        part.
+        """
+        (mean,) = state
+        mean -= (measured.speed - mean) * math.expm1(-measured.h / self.filter_time)
+        direction = math.copysign(1.0, measured.available)
+        on = direction * mean > self.passed or direction * (measured.speed - mean) >= 0.0
+        return measured.available * (1.0 if on else self.low), (mean,)

@@ -25,19 +25,19 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
 from .compiled import master_of
-from .controllers import Controller, Seen
-from .held import MEANINGS, NOT_ASKED, HeldVoltageTest, Verdict, with_a_last_one
-from .jumps import Passing, Way, find_passing, stays_beyond, why_none
+from .controllers import Controller, Measurement
+from .held import MEANINGS, NOT_ASKED, HeldVoltageTest, Verdict, with_final_chunk
+from .jumps import Passing, SweepLeg, find_passing, stays_beyond, why_none
 from .master import Scheme
 from .revolutions import COLUMNS, Revolutions
 from .schedule import Constant, Ramp, Schedule, check
-from .verdicts import agreed, how_decided, is_doubtful, is_jump, reason, theories
+from .verdicts import check_against_theory, how_decided, is_doubtful, is_jump, reason, theories
 
 if TYPE_CHECKING:
     import xarray as xr
     from typing_extensions import Unpack
 
-MOST_STEPS = 1e9
+MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 UPWARD = (True, False)  # ways: whether the voltage rises
@@ -45,14 +45,16 @@ HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in th
 
 
 def oscillator_start(structure: Structure) -> dict[str, float | bool]:
-    """The structure's start values in the coupled system: its own harmonic box motion is off."""
+    """Return the structure's start values in the coupled system: its own harmonic box motion is
+    off.
+    """
     off = {"box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
     return {**structure.parameters(), **off}
 
 
 @dataclass(frozen=True)
 class CoupleJob(Job):
-    """A run of the coupled system.
+    """Run of the coupled system.
 
     Attributes
     ----------
@@ -79,59 +81,62 @@ class CoupleJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
-    closing: ClassVar[bool] = True
+    has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
     def steps(self) -> int:
-        """Number of communication steps."""
+        """Return the number of communication steps."""
         return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
     def count(self) -> int:
-        """The steps, and a look at the jumps of them all."""
+        """Return the number of steps, and one for the verdicts on the jumps."""
         return self.steps() + 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """The steps, and one more."""
+        """Return the steps, and one more for the verdicts."""
         return range(self.count())
 
     def chunks(self) -> list[Chunk]:
-        """Steps; the look at them is a chunk of its own."""
-        return with_a_last_one(super().chunks())
+        """Return chunks of steps; the verdicts are a chunk of their own."""
+        return with_final_chunk(super().chunks())
 
-    def whole(self, fmus: Mapping[str, Path]) -> Table:
-        """All of it, here and now."""
-        parts: list[Table] = []
+    def run_here(self, fmus: Mapping[str, Path]) -> Table:
+        """Compute the whole run in this process."""
+        chunks: list[Table] = []
         for chunk in self.chunks():
-            carry = parts[-1] if parts else None
+            previous = chunks[-1] if chunks else None
             if chunk.first == self.steps():
-                carry = together(parts)
-            parts.append(self.work(fmus, range(chunk.first, chunk.last), carry))
-        return together(parts)
+                previous = concatenate_tables(chunks)
+            chunks.append(self.work(fmus, range(chunk.first, chunk.last), previous))
+        return concatenate_tables(chunks)
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
-        """Some steps: their complete revolutions, and all to go on from; at last the verdicts."""
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+        """Compute a chunk of steps, with all that the next one needs; or the verdicts at the
+        end.
+        """
         if items[0] == self.steps():
-            assert carry is not None
-            nothing = {name: values[:0] for name, values in carry.items()}
-            return {**nothing, "verdicts": self.verdicts(fmus, carry, self.chunk)[np.newaxis]}
+            assert previous is not None
+            nothing = {name: values[:0] for name, values in previous.items()}
+            return {**nothing, "verdicts": self.verdicts(fmus, previous, self.chunk)[np.newaxis]}
         with (
             Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
             Instance(fmus[SHAKER], "shaker") as shaker,
         ):
             run = Run(self, oscillator, shaker)
             try:
-                if carry is not None:
-                    run.remember(carry)
-                return {**run.revolve(items), **run.memory(), **no_verdicts()}
+                if previous is not None:
+                    run.set_state(previous)
+                return {**run.revolve(items), **run.get_state(), **no_verdicts()}
             finally:
                 run.master.close()
 
-    def aside(self, first: int) -> str:
-        """The look at the jumps is no step, and may take as long as many."""
+    def progress_note(self, first: int) -> str:
+        """Return a note for the verdicts: they are no step, and may take as long as many."""
         return "voltages held where a jump is in doubt" if first == self.steps() else ""
 
     def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> np.ndarray:
-        """What held voltages tell of both ways, shape (2, 3); asked where the record does not tell.
+        """Return the results of the held-voltage test in both directions, shape (2, 3), where the
+        record does not decide.
 
         Parameters
         ----------
@@ -161,34 +166,34 @@ class CoupleJob(Job):
                     verdicts[i] = test.classify(*doubt, threshold, UPWARD[i])
         return np.array(verdicts)
 
-    def way(self, table: Table, up: bool) -> tuple[Way, np.ndarray]:
-        """Revolutions on which the voltage goes up or down, and their rows."""
+    def sweep_leg(self, table: Table, up: bool) -> tuple[SweepLeg, np.ndarray]:
+        """Return the revolutions on which the voltage goes up or down, and their rows."""
         eta0 = np.abs(table["voltage"]) / self.drive.volts(self.structure)
         Omega = np.abs(table["speed"]) / self.structure.omega
         trend = self.schedule.trend(table["time"])
         rows = np.flatnonzero(trend > 0 if up else trend < 0)
-        return Way(table["time"][rows] * self.structure.omega, eta0[rows], Omega[rows]), rows
+        return SweepLeg(table["time"][rows] * self.structure.omega, eta0[rows], Omega[rows]), rows
 
     def passing(self, table: Table, up: bool) -> Passing | None:
-        """How the speed passes the resonance, by rows of the table; None where it does not."""
-        way, rows = self.way(table, up)
+        """Return how the speed passes the resonance, by rows of the table; None if it does not."""
+        leg, rows = self.sweep_leg(table, up)
         divide = averaged.dividing_speed(self.structure, self.drive)
-        found = find_passing(way, self.drive.b(self.structure), up, divide)
-        if found is None:
+        rows_in_leg = find_passing(leg, self.drive.b(self.structure), up, divide)
+        if rows_in_leg is None:
             return None
-        row, before, after = (int(rows[place]) for place in found[:3])
-        half = float(np.interp(found.half, np.arange(len(rows)), rows))
-        return Passing(row, before, after, found.look, half)
+        row, before, after = (int(rows[index]) for index in rows_in_leg[:3])
+        half = float(np.interp(rows_in_leg.half, np.arange(len(rows)), rows))
+        return Passing(row, before, after, rows_in_leg.look, half)
 
     def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
-        """A passing that the record alone does not tell from a steep branch, by steps of the run,
+        """Return a passing that the record does not tell from a steep branch, by steps of the run,
         and the steps between which the voltage goes that way.
         """
         passing = None if self.control else self.passing(table, up)
         theory = theories(self.structure, self.drive)[UPWARD.index(up)]
         if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
             return None
-        rows = self.way(table, up)[1]
+        rows = self.sweep_leg(table, up)[1]
         times = table["time"][[*passing[:3], rows[0], rows[-1]]]
         row, before, after, first, last = (
             min(math.ceil(time / self.scheme.h), self.steps() - 1) for time in times
@@ -196,7 +201,7 @@ class CoupleJob(Job):
         return Passing(row, before, after, passing.look, float(row)), (first, last)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """All revolutions, and the jumps.
+        """Return all revolutions, and the jumps.
 
         Raises
         ------
@@ -210,7 +215,7 @@ class CoupleJob(Job):
                 f"not one revolution of the motor in {self.schedule.duration:g} s: "
                 "expected a voltage that turns it, and time"
             )
-        found: dict[str, Any] = {
+        variables: dict[str, Any] = {
             name: ("revolution", table[name], {"units": unit, "long_name": text})
             for name, (unit, text) in COLUMNS.items()
         }
@@ -229,18 +234,22 @@ class CoupleJob(Job):
         divide = averaged.dividing_speed(self.structure, self.drive)
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
         passed = stays_beyond(table["time"], np.abs(Omega), divide)
-        found["passage_time"] = ((), passed, {"units": "s", "long_name": text})
-        dataset = xr.Dataset({**found, **self.jumps(table)}, coordinates, self.attributes(table))
+        variables["passage_time"] = ((), passed, {"units": "s", "long_name": text})
+        dataset = xr.Dataset(
+            {**variables, **self.jumps(table)}, coordinates, self.attributes(table)
+        )
         names = {"long_name": "direction in which the speed jumps"}
         return dataset.assign_coords(jump=("jump", ["up", "down"], names))
 
     def jumps(self, table: Table) -> dict[str, Variable]:
-        """The jumps up and down, or why there is none; where bonded, the averaged theory's too."""
+        """Return the jumps up and down, or why there is none; if bonded, the averaged theory's
+        too.
+        """
         held = [Verdict(*row) for row in table["verdicts"][-1]]
         theory, volts = theories(self.structure, self.drive), self.drive.volts(self.structure)
         final = list(held)
         if self.structure.bonded:
-            final = [agreed(*pair, volts) for pair in zip(held, theory, strict=True)]
+            final = [check_against_theory(*pair, volts) for pair in zip(held, theory, strict=True)]
         passings = [None if self.control else self.passing(table, up) for up in UPWARD]
         pairs = list(zip(passings, final, strict=True))
         jumps = [passing if is_jump(passing, verdict) else None for passing, verdict in pairs]
@@ -260,15 +269,17 @@ class CoupleJob(Job):
         return columns | held_columns(final)
 
     def theory(self, jumps: np.ndarray) -> dict[str, Variable]:
-        """Where the averaged theory loses the motion of the bonded structure, and by what."""
+        """Return where the averaged theory loses the motion of the bonded structure, and by
+        what.
+        """
         structure, volts = self.structure, self.drive.volts(self.structure)
         text = "how late the jump comes on the ramp, by the averaged theory (bonded only)"
         late = {"units": "V", "long_name": text}
         if not structure.bonded:
             return {"jump_lag": ("jump", [math.nan, math.nan], late)}
-        places = averaged.losses(structure, self.drive)
-        ends = [volts * place.eta0 if place else math.nan for place in places]
-        kinds = [place.kind if place else "" for place in places]
+        points = averaged.losses(structure, self.drive)
+        ends = [volts * point.eta0 if point else math.nan for point in points]
+        kinds = [point.kind if point else "" for point in points]
         text = "voltage at which the motion is lost, by the averaged theory"
         return {
             "averaged_jumps": ("jump", ends, {"units": "V", "long_name": text}),
@@ -277,14 +288,14 @@ class CoupleJob(Job):
         }
 
     def why_none(self, table: Table, up: bool) -> str:
-        """Why the speed does not pass the resonance for good in a direction."""
+        """Return why the speed does not pass the resonance for good in a direction."""
         if self.control:
             return "a controller sets the voltage"
         resonance = averaged.resonance(self.structure, self.drive)
-        return why_none(self.way(table, up)[0], up, resonance)
+        return why_none(self.sweep_leg(table, up)[0], up, resonance)
 
     def attributes(self, table: Table) -> dict[str, str | float]:
-        """Title, and what the coupling has lost of the motor's work."""
+        """Return the title, and what the coupling has lost of the motor's work."""
         state = "bonded" if self.structure.bonded else "delaminated"
         motor = float(table["motor"][-1])
         return {
@@ -295,17 +306,17 @@ class CoupleJob(Job):
 
 
 def no_verdicts() -> Table:
-    """Of steps: they come at the end."""
+    """Return an empty array: chunks of steps have no held-voltage results."""
     return {"verdicts": np.empty((0, len(UPWARD), len(Verdict._fields)))}
 
 
-def together(parts: Sequence[Table]) -> Table:
-    """Tables of chunks put together."""
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+def concatenate_tables(tables: Sequence[Table]) -> Table:
+    """Concatenate the tables of chunks."""
+    return {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
 
 
 def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
-    """What held voltages say, and between which voltages."""
+    """Return the results of the held-voltage test, and between which voltages."""
     codes = [int(verdict.what) for verdict in verdicts]
     middles = [0.5 * (verdict.low + verdict.high) for verdict in verdicts]
     errors = [0.5 * abs(verdict.high - verdict.low) for verdict in verdicts]
@@ -319,14 +330,14 @@ def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
 
 
 def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
-    """Voltage, speed, amplitude and rate at jumps; NaN where there is none."""
+    """Return voltage, speed, amplitude and rate at jumps; NaN where there is none."""
 
-    def at(name: str, place: str) -> list[float]:
+    def at(name: str, row_name: str) -> list[float]:
         values = table[name]
         return [
             math.nan
             if jump is None
-            else float(np.interp(getattr(jump, place), np.arange(len(values)), values))
+            else float(np.interp(getattr(jump, row_name), np.arange(len(values)), values))
             for jump in jumps
         ]
 
@@ -346,8 +357,8 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
         "jump_amplitude_after": ("amplitude", "after", "m", "amplitude after the jump"),
     }
     columns: dict[str, Variable] = {
-        key: ("jump", at(name, place), {"units": unit, "long_name": text})
-        for key, (name, place, unit, text) in wanted.items()
+        key: ("jump", at(name, row_name), {"units": unit, "long_name": text})
+        for key, (name, row_name, unit, text) in wanted.items()
     }
     text = "change of the voltage per time during the jump"
     rates = [rate(jump) for jump in jumps]
@@ -355,7 +366,7 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
 
 
 class Run:
-    """A run under way: both instances, their master, and the revolution under way.
+    """Run under way: both instances, their master, and the present revolution.
 
     Parameters
     ----------
@@ -374,21 +385,23 @@ class Run:
         self.control_memory = job.control.begin(job.speed_start) if job.control else ()
 
     def impact_count(self) -> float:
-        """Impacts so far."""
+        """Return the number of impacts so far."""
         return float(self.oscillator.get("impact_count")[0])
 
     def voltage(self, i: int) -> float:
-        """The voltage over a step, constant: the mean of a ramp, or a controller's part of it."""
+        """Return the voltage over a step, constant: the mean of a ramp, or a controller's part of
+        it.
+        """
         h, control = self.job.scheme.h, self.job.control
         available = self.job.schedule.voltage((i + 0.5) * h)
         if control is None:
             return available
-        seen = Seen(self.master.time, self.master.shaking.speed, available, h)
-        voltage, self.control_memory = control.act(seen, self.control_memory)
+        seen = Measurement(self.master.time, self.master.shaking.speed, available, h)
+        voltage, self.control_memory = control.update(seen, self.control_memory)
         return voltage
 
     def revolve(self, steps: Sequence[int], kept: np.ndarray | None = None) -> Table:
-        """Do some steps; columns of their complete revolutions.
+        """Do some steps; return the columns of their complete revolutions.
 
         Parameters
         ----------
@@ -416,28 +429,28 @@ class Run:
         else:
             yield from (array("d", (self.voltage(i),)) for i in steps)
 
-    def memory(self) -> Table:
-        """All that a run goes on from, one row."""
+    def get_state(self) -> Table:
+        """Return everything that a run goes on from, one row."""
         states = {
             "oscillator_state": np.frombuffer(self.oscillator.save_state(), dtype=np.uint8),
             "shaker_state": np.frombuffer(self.shaker.save_state(), dtype=np.uint8),
-            "master_memory": np.array(self.master.memory()),
-            "revolution_memory": np.array(self.revolutions.memory()),
+            "master_memory": np.array(self.master.get_state()),
+            "revolution_memory": np.array(self.revolutions.get_state()),
             "control_memory": np.array(self.control_memory),
         }
         return {name: state[np.newaxis] for name, state in states.items()}
 
-    def remember(self, table: Table) -> None:
-        """Go on from what :meth:`memory` gave."""
+    def set_state(self, table: Table) -> None:
+        """Return to a state that :meth:`get_state` gave."""
         self.oscillator.restore_state(table["oscillator_state"][-1].tobytes())
         self.shaker.restore_state(table["shaker_state"][-1].tobytes())
-        self.master.remember(table["master_memory"][-1].tolist())
-        self.revolutions.remember(table["revolution_memory"][-1].tolist())
+        self.master.set_state(table["master_memory"][-1].tolist())
+        self.revolutions.set_state(table["revolution_memory"][-1].tolist())
         self.control_memory = tuple(table["control_memory"][-1].tolist())
 
 
-def checked_motor(drive: Drive) -> None:
-    """See that a voltage turns the motor.
+def require_motor(drive: Drive) -> None:
+    """Check that a voltage turns the motor.
 
     Raises
     ------
@@ -458,7 +471,7 @@ def schedule_of(
     back: bool = True,
     spin_up: float | None = None,
 ) -> Schedule:
-    """A schedule from the arguments of :func:`couple`.
+    """Return a schedule from the arguments of :func:`couple`.
 
     Raises
     ------
@@ -497,7 +510,8 @@ def scheme_of(
     tolerance: float | None = None,
     sampled: bool = False,
 ) -> Scheme:
-    """A scheme from the arguments of :func:`couple`; ``sampled`` where each step is a sample.
+    """Return a scheme from the arguments of :func:`couple`; ``sampled`` where each step is a
+    sample.
 
     Raises
     ------
@@ -524,7 +538,7 @@ def couple_job(
     control: Controller | None = None,
     hold: float | None = None,
 ) -> CoupleJob:
-    """The run with this schedule.
+    """Return the job of a run with this schedule.
 
     Raises
     ------
@@ -544,15 +558,15 @@ def couple_job(
     hold = float(hold)
     job = CoupleJob(f"couple_{name}", structure, drive, schedule, scheme, start, hold, control)
     steps = schedule.duration / scheme.h
-    if steps <= MOST_STEPS and job.steps() < 1:
+    if steps <= MAX_STEPS and job.steps() < 1:
         raise InputError(
             f"duration = {schedule.duration:g} s: expected one communication step or more, "
             f"duration >= {scheme.h:g}"
         )
-    if not steps <= MOST_STEPS:
+    if not steps <= MAX_STEPS:
         raise InputError(
             f"{steps:.2g} steps of {scheme.h:g} s in {schedule.duration:g} s: "
-            f"expected at most {MOST_STEPS:g}"
+            f"expected at most {MAX_STEPS:g}"
         )
     return job
 
@@ -672,11 +686,11 @@ def couple(
     from ..access.exported import finder
     from ..running.runner import answer
 
-    checked_motor(drive)
+    require_motor(drive)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
-    given = (duration, rate, settle, increment, back, spin_up)
-    schedule = schedule_of(structure, drive, voltage, *given)
+    settings = (duration, rate, settle, increment, back, spin_up)
+    schedule = schedule_of(structure, drive, voltage, *settings)
     scheme = scheme_of(structure, step, algorithm, tolerance, control is not None)
     job = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     return answer(job, running, finder(running))

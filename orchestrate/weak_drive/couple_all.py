@@ -20,7 +20,7 @@ from ..running.runner import gather
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import CoupleJob, checked_motor, couple_job, schedule_of, scheme_of
+from .couple import CoupleJob, couple_job, require_motor, schedule_of, scheme_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +34,9 @@ System = tuple[Structure, Drive]
 
 
 def ends_of(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Voltages over K omega below the resonance and past the jump up, by the averaged theory."""
+    """Return voltages over K omega below the resonance and past the jump up, by the averaged
+    theory.
+    """
     resonance = averaged.resonance(structure, drive)
     first, last = (
         float(averaged.no_load_speed(structure, drive, share * resonance))
@@ -53,10 +55,10 @@ def job_of(
     back: bool,
     step: float | None,
 ) -> CoupleJob:
-    """One of the runs, by non-dimensional numbers."""
+    """Return the coupled run of one system, kind and rate, from non-dimensional numbers."""
     structure, drive = system
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
-    checked_motor(drive)
+    require_motor(drive)
     volts, omega = drive.volts(structure), structure.omega
     first, last = ends_of(structure.as_bonded(), drive) if eta0 is None else eta0
     schedule = schedule_of(
@@ -136,15 +138,15 @@ def couple_all(
         run.assign_coords(eta0=run.eta0.reset_coords(drop=True), Omega=run.Omega)
         for run in gather(jobs, running, finder(running))
     ]
-    whole = xr.concat(found, "run", join="outer", combine_attrs="drop_conflicts", data_vars="all")
+    result = xr.concat(found, "run", join="outer", combine_attrs="drop_conflicts", data_vars="all")
     texts = ("name of the set", "structure", "change of the no-load speed over omega per 1/omega")
     units = (None, None, "1")
-    for place, name in enumerate(("system", "structure", "rate")):
-        values = np.array([run[place] for run in runs])
-        attributes = {"long_name": texts[place]}
-        unit = units[place]
+    for position, name in enumerate(("system", "structure", "rate")):
+        values = np.array([run[position] for run in runs])
+        attributes = {"long_name": texts[position]}
+        unit = units[position]
         if unit:
             attributes["units"] = unit
-        whole = whole.assign_coords({name: ("run", values, attributes)})
-    whole.attrs["title"] = "Weak drive: many runs"
-    return whole
+        result = result.assign_coords({name: ("run", values, attributes)})
+    result.attrs["title"] = "Weak drive: many runs"
+    return result

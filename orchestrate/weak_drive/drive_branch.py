@@ -19,17 +19,17 @@ import numpy as np
 from ..access.exported import finder
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
+from ..checks import checked_integer
 from ..dynamics.bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
 from ..dynamics.continuation import NoConvergenceError
 from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError
-from ..response.questions import whole
 from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import checked_motor
+from .couple import require_motor
 from .drive_tracer import (
     ENDS,
     HALVED,
@@ -110,7 +110,7 @@ class DriveBranchJob(Job):
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Structure], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
         """Trace the branches of some structures: each a row of legs, NaN beyond a leg's end."""
         rows = []
@@ -341,7 +341,7 @@ def drive_branch(
     >>> found.bifurcation_voltage[bonded].values.round(4).tolist()
     [1.5831]
     """
-    checked_motor(drive)
+    require_motor(drive)
     omega = structure.omega
     resonance = averaged.resonance(structure, drive) * omega
     first, last = (0.95 * resonance, 1.25 * resonance) if speed is None else map(float, speed)
@@ -356,9 +356,9 @@ def drive_branch(
         drive,
         (first, last),
         float(longest),
-        whole("most", most, 2),
-        whole("period", period, 1),
-        whole("steps", steps, 16),
+        checked_integer("most", most, 2),
+        checked_integer("period", period, 1),
+        checked_integer("steps", steps, 16),
         settle,
     )
     return answer(job, running, finder(running))

@@ -18,6 +18,8 @@ import numpy as np
 from ..access.exported import finder
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
+from ..checks import checked_integer
+from ..constants import TURN
 from ..errors import InputError
 from ..response.spectra import amplitude_spectrum
 from ..running.job import Inputs, Job, Table
@@ -26,7 +28,7 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
 from .couple import Run, couple_job, scheme_of
-from .master import TURN, parts_of
+from .master import parts_of
 from .schedule import Ramp, check
 
 if TYPE_CHECKING:
@@ -71,33 +73,33 @@ class DriveSpectraJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
 
     def count(self) -> int:
-        """Bonded and delaminated."""
+        """Return two: bonded and delaminated."""
         return len(KINDS)
 
     def items(self, inputs: Inputs) -> Sequence[Structure]:
-        """Both structures."""
+        """Return both structures."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def orders(self) -> np.ndarray:
-        """Lines as multiples of the motor's speed."""
+        """Return the lines as multiples of the motor's speed."""
         orders = np.arange(self.revolutions * self.points // 2 + 1) / self.revolutions
         return np.asarray(orders[orders <= self.highest])
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Structure], carry: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
-        """Spectra of both masses and the motor's speed."""
-        found = [self.record(fmus, structure) for structure in items]
+        """Compute spectra of both masses and the motor's speed."""
+        records = [self.record(fmus, structure) for structure in items]
         lines = len(self.orders())
         spectra, speeds = [], []
-        for displacement, speed in found:
+        for displacement, speed in records:
             frequency, amplitude = amplitude_spectrum(displacement, TURN / speed / self.points)
             spectra.append((frequency**2 * amplitude)[:, :lines])
             speeds.append(speed)
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
     def record(self, fmus: Mapping[str, Path], structure: Structure) -> tuple[np.ndarray, float]:
-        """Displacements of both masses in space, shape (2, samples), and the mean speed."""
+        """Return displacements of both masses in space, shape (2, samples), and the mean speed."""
         scheme = scheme_of(structure, self.step, "rollback", 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
@@ -117,22 +119,24 @@ class DriveSpectraJob(Job):
                 run.master.close()
 
     def sample(self, run: Run, interval: float) -> np.ndarray:
-        """Displacements of both masses in space at equal times."""
+        """Return displacements of both masses in space at equal times."""
         count = self.revolutions * self.points
-        kept = np.empty((count, len(run.master.memory())))
+        kept = np.empty((count, len(run.master.get_state())))
         run.master.revolution = None
         run.master.run([self.approach.last] * count, h=interval, kept=kept)
         _, motion, shaking, _ = parts_of(kept.T)
         return np.array([motion.x1 + shaking.box_position, motion.x2 + shaking.box_position])
 
     def hangs(self, fmus: Mapping[str, Path]) -> bool:
-        """Whether the delaminated structure, which jumps earlier, is still at the resonance."""
+        """Return whether the delaminated structure, which jumps earlier, is still at the
+        resonance.
+        """
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         divide = averaged.dividing_speed(structure, self.drive) * structure.omega
         return short.record(fmus, structure)[1] < divide
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Amplitudes over the lines."""
+        """Return amplitudes over the lines."""
         import xarray as xr
 
         orders, speeds = self.orders(), table["speed"]
@@ -159,7 +163,7 @@ class DriveSpectraJob(Job):
 
 
 def voltage_at_resonance(structure: Structure, drive: Drive, share: float = 0.6) -> float:
-    """A voltage at which the motor hangs at the resonance, V.
+    """Return a voltage at which the motor hangs at the resonance, V.
 
     Parameters
     ----------
@@ -195,7 +199,8 @@ def drive_spectra(
     highest: float = 12.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Amplitude spectra of the masses' accelerations in space, shaken by a motor of limited power.
+    """Compute amplitude spectra of the masses' accelerations in space, shaken by a motor of limited
+    power.
 
     Parameters
     ----------
@@ -250,9 +255,8 @@ def drive_spectra(
     speed = 1e-4 * volts * omega if rate is None else float(rate)
     hold = 800.0 / omega if hold is None else float(hold)
     check("hold", hold, "s", low=0.0)
-    for name, number, least in (("revolutions", revolutions, 1), ("points", points, 4)):
-        if not isinstance(number, int) or number < least:
-            raise InputError(f"{name} = {number}: expected a whole number >= {least}")
+    revolutions = checked_integer("revolutions", revolutions, 1)
+    points = checked_integer("points", points, 4)
     if not 0.0 < highest <= points / 2:
         raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
     step = scheme_of(structure, step, "rollback", 0.0).h
@@ -269,8 +273,8 @@ def drive_spectra(
         jobs.append(
             DriveSpectraJob("drive_spectra", structure, drive, approach, hold, step, *record)
         )
-    found = finder(running)
+    find_fmu = finder(running)
     if voltage is None:
-        fmus = {model: found(model).path for model in DriveSpectraJob.models}
+        fmus = {model: find_fmu(model).path for model in DriveSpectraJob.models}
         jobs = [next((job for job in jobs if job.hangs(fmus)), jobs[-1])]
-    return answer(jobs[0], running, found)
+    return answer(jobs[0], running, find_fmu)

@@ -20,7 +20,7 @@ from .polynomials import coefficients, end_value, product, quartic
 
 
 class Energies(NamedTuple):
-    """Where the motor's work has gone since the start, J.
+    """Energies since the start, J: the motor's work and where it has gone.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Energies(NamedTuple):
 
 
 class EnergyBalance:
-    """The accounts of a run.
+    """Energy accounts of a run.
 
     Parameters
     ----------
@@ -74,13 +74,13 @@ class EnergyBalance:
         self.start = self._accounts(motion, shaking)
 
     def relative_energy(self, motion: OscillatorOutputs) -> float:
-        """Energy of the structure, seen from the box."""
+        """Return the energy of the structure, seen from the box."""
         (m1, m2), (k1, k2) = self._masses, self._stiffnesses
         x1, x2, v1, v2 = motion[:4]
         return 0.5 * (m1 * v1 * v1 + m2 * v2 * v2 + k1 * x1 * x1 + k2 * x2 * x2)
 
     def energy(self, motion: OscillatorOutputs, velocity: float) -> float:
-        """Energy of the structure in space, the box moving with ``velocity``."""
+        """Return the energy of the structure in space, the box moving with ``velocity``."""
         m1, m2 = self._masses
         momentum = m1 * motion.v1 + m2 * motion.v2
         return self.relative_energy(motion) + velocity * (momentum + 0.5 * (m1 + m2) * velocity)
@@ -89,42 +89,44 @@ class EnergyBalance:
         self,
         before: OscillatorOutputs,
         after: OscillatorOutputs,
-        told: Cubic,
+        acceleration: Cubic,
         defect: float,
         h: float,
     ) -> None:
-        """Enter a step.
+        """Add a step.
 
         Parameters
         ----------
         before, after : OscillatorOutputs
             The structure at its ends.
-        told : tuple of float
+        acceleration : tuple of float
             The box's acceleration, as the structure was told it.
         defect : float
             J.
         h : float
             Length of the step, s.
         """
-        work = h * product(self._momentum(before, after, told, h), coefficients(told, h))
+        work = h * product(
+            self._momentum(before, after, acceleration, h), coefficients(acceleration, h)
+        )
         self.lost += self.relative_energy(before) - self.relative_energy(after) - work
         self.defect += defect
         self.defect_sizes += abs(defect)
 
     def _momentum(
-        self, before: OscillatorOutputs, after: OscillatorOutputs, told: Cubic, h: float
+        self, before: OscillatorOutputs, after: OscillatorOutputs, acceleration: Cubic, h: float
     ) -> tuple[float, ...]:
-        """The masses' momentum over a step, relative to the box: coefficients in t/h."""
+        """Return the masses' momentum over a step, relative to the box: coefficients in t/h."""
         m1, m2 = self._masses
         mass = m1 + m2
         ends = (m1 * before.v1 + m2 * before.v2, m1 * after.v1 + m2 * after.v2)
-        first = -h * (before.box_force + mass * told[0])
-        last = -h * (after.box_force + mass * end_value(told, h))
+        first = -h * (before.box_force + mass * acceleration[0])
+        last = -h * (after.box_force + mass * end_value(acceleration, h))
         mean = (m1 * (after.x1 - before.x1) + m2 * (after.x2 - before.x2)) / h
         return quartic(ends, (first, last), mean)
 
     def _accounts(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> tuple[float, ...]:
-        """Motor, damper of the box, impacts, stored, dampers: since the instances' start."""
+        """Return motor, damper of the box, impacts, stored, dampers: since the instances' start."""
         return (
             shaking.motor_energy,
             shaking.box_damper_energy,
@@ -134,17 +136,17 @@ class EnergyBalance:
         )
 
     def energies(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> Energies:
-        """The balance at a communication point, since it was opened."""
+        """Return the balance at a communication point, since it was opened."""
         now = self._accounts(motion, shaking)
         motor, *others = (value - start for value, start in zip(now, self.start, strict=True))
-        found = (motor, *others, motor - sum(others), self.defect, self.defect_sizes)
-        return Energies._make(found)
+        accounts = (motor, *others, motor - sum(others), self.defect, self.defect_sizes)
+        return Energies._make(accounts)
 
-    def memory(self) -> list[float]:
-        """The accounts, as a list of floats."""
+    def get_state(self) -> list[float]:
+        """Return the accounts as a list of floats."""
         return [self.lost, self.defect, self.defect_sizes, *self.start]
 
-    def remember(self, numbers: Sequence[float]) -> None:
-        """The inverse of :meth:`memory`."""
+    def set_state(self, numbers: Sequence[float]) -> None:
+        """Return to a state that :meth:`get_state` gave."""
         self.lost, self.defect, self.defect_sizes = numbers[:3]
         self.start = tuple(numbers[3:])

@@ -1,4 +1,4 @@
-"""What the master exchanges with the two FMUs: names and places follow from one declaration."""
+"""Exchange of the master with the two FMUs: names and positions follow from one declaration."""
 
 from __future__ import annotations
 

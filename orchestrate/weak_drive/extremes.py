@@ -1,4 +1,5 @@
-"""How far mass and box have been within a communication step, with an impact in it or without.
+"""Largest displacements of mass and box within a communication step, with an impact in it or
+without.
 
 Between impacts the first mass follows m x'' + d x' + k x = -m y'' with the cubic y'' that it was
 told: its Taylor series is known from a state at either end of the step. Before an impact the series
@@ -20,68 +21,74 @@ TERMS = 8  # derivatives of the series: a step of 0.2/omega leaves 1e-11 of the 
 Series = tuple[float, ...]
 
 
-class Reach(NamedTuple):
+class Range(NamedTuple):
     """Lowest and highest position over a step, m."""
 
     low: float
     high: float
 
 
-def value(series: Series, time: float, order: int = 0) -> float:
-    """A Taylor series, or its derivative of an order, at a time from its centre."""
+def taylor_value(series: Series, time: float, order: int = 0) -> float:
+    """Return the value of a Taylor series, or its derivative of an order, at a time from its
+    centre.
+    """
     total = 0.0
     for power in range(len(series) - 1 - order, -1, -1):
         total = series[power + order] + total * time / (power + 1)
     return total
 
 
-def series_of(structure: Structure, motion: OscillatorOutputs, told: Cubic) -> Series:
-    """Derivatives of x1 from a state, with the box's acceleration and its derivatives there."""
+def taylor_coefficients(
+    structure: Structure, motion: OscillatorOutputs, acceleration: Cubic
+) -> Series:
+    """Return derivatives of x1 from a state, with the box's acceleration and its derivatives
+    there.
+    """
     mass, stiffness, damping = structure.m1, structure.k1, structure.d1
     if motion.x1 == motion.x2 and motion.v1 == motion.v2:  # in contact
         mass, stiffness = mass + structure.m2, stiffness + structure.k2
         damping += structure.d2
-    found = [motion.x1, motion.v1]
+    derivatives = [motion.x1, motion.v1]
     for order in range(TERMS - 1):
-        pull = (damping * found[-1] + stiffness * found[-2]) / mass
-        found.append(-pull - (told[order] if order < len(told) else 0.0))
-    return tuple(found)
+        pull = (damping * derivatives[-1] + stiffness * derivatives[-2]) / mass
+        derivatives.append(-pull - (acceleration[order] if order < len(acceleration) else 0.0))
+    return tuple(derivatives)
 
 
-def at_the_end(told: Cubic, h: float) -> Cubic:
-    """A cubic's value and derivatives at the step's end."""
-    return end_value(told, h), end_slope(told, h), told[2] + h * told[3], told[3]
+def end_derivatives(cubic: Cubic, h: float) -> Cubic:
+    """Return a cubic's value and derivatives at the step's end."""
+    return end_value(cubic, h), end_slope(cubic, h), cubic[2] + h * cubic[3], cubic[3]
 
 
-def turning(series: Series, first: float, last: float) -> list[float]:
-    """Positions at both ends of a stretch, and where it turns round between them."""
-    begin, end = value(series, first, 1), value(series, last, 1)
-    found = [value(series, first), value(series, last)]
+def extrema(series: Series, first: float, last: float) -> list[float]:
+    """Return positions at both ends of a stretch, and at the turning points between them."""
+    begin, end = taylor_value(series, first, 1), taylor_value(series, last, 1)
+    positions = [taylor_value(series, first), taylor_value(series, last)]
     if begin * end < 0.0:
         time = first + (last - first) * begin / (begin - end)
         for _ in range(3):
-            slope = value(series, time, 2)
-            time -= value(series, time, 1) / slope if slope else 0.0
+            slope = taylor_value(series, time, 2)
+            time -= taylor_value(series, time, 1) / slope if slope else 0.0
         if first <= time <= last:
-            found.append(value(series, time))
-    return found
+            positions.append(taylor_value(series, time))
+    return positions
 
 
-def reach_of_mass(
+def range_of_mass(
     structure: Structure,
     ends: tuple[OscillatorOutputs, OscillatorOutputs],
-    told: Cubic,
+    acceleration: Cubic,
     begin: float,
     h: float,
-) -> Reach:
-    """Where x1 has been.
+) -> Range:
+    """Return the range of x1.
 
     Parameters
     ----------
     structure : Structure
     ends : tuple of OscillatorOutputs
         The structure at the step's beginning and end.
-    told : tuple of float
+    acceleration : tuple of float
         The box's acceleration, as the structure was told it.
     begin, h : float
         The step's beginning and length, s.
@@ -92,24 +99,26 @@ def reach_of_mass(
     impact = after.impact_time != before.impact_time and 0.0 <= hit <= h
     if impact or before.v1 * after.v1 < 0.0:
         last = hit if impact else h
-        positions += turning(series_of(structure, before, told), 0.0, last)
+        positions += extrema(taylor_coefficients(structure, before, acceleration), 0.0, last)
         if impact:
-            back = series_of(structure, after, at_the_end(told, h))
-            positions += turning(back, hit - h, 0.0)
-    return Reach(min(positions), max(positions))
+            back = taylor_coefficients(structure, after, end_derivatives(acceleration, h))
+            positions += extrema(back, hit - h, 0.0)
+    return Range(min(positions), max(positions))
 
 
-def reach_of_box(before: ShakerOutputs, after: ShakerOutputs, told: Cubic, h: float) -> Reach:
-    """Where the box has been, with its acceleration as the structure was told it."""
+def range_of_box(
+    before: ShakerOutputs, after: ShakerOutputs, acceleration: Cubic, h: float
+) -> Range:
+    """Return the range of the box, with its acceleration as it was passed to the structure."""
     positions = [before.box_position, after.box_position]
     if before.box_velocity * after.box_velocity < 0.0:
-        positions += turning((before.box_position, before.box_velocity, *told), 0.0, h)
-    return Reach(min(positions), max(positions))
+        positions += extrema((before.box_position, before.box_velocity, *acceleration), 0.0, h)
+    return Range(min(positions), max(positions))
 
 
 @dataclass
 class Revolution:
-    """What is seen of a revolution under way.
+    """Observed extremes of a revolution under way.
 
     Attributes
     ----------
@@ -141,7 +150,7 @@ class Revolution:
         time: float = 0.0,
         impacts: float = 0.0,
     ) -> Revolution:
-        """One that begins with these outputs."""
+        """Make the record of a revolution that begins with these outputs."""
         x, y = motion.x1, shaking.box_position
         return cls(turn, time, impacts, x, x, y, y)
 
@@ -153,14 +162,14 @@ class Revolution:
         begin: float,
         h: float,
     ) -> None:
-        """A step, from outputs at a time on, s, and its length, s."""
+        """Add a step, from outputs at a time on, s, and its length, s."""
         motion, shaking = before
-        x = reach_of_mass(structure, (motion, done.motion), done.acceleration, begin, h)
+        x = range_of_mass(structure, (motion, done.motion), done.acceleration, begin, h)
         self.x1_high, self.x1_low = max(self.x1_high, x.high), min(self.x1_low, x.low)
-        y = reach_of_box(shaking, done.shaking, done.acceleration, h)
+        y = range_of_box(shaking, done.shaking, done.acceleration, h)
         self.box_high, self.box_low = max(self.box_high, y.high), min(self.box_low, y.low)
         self.acceleration = max(self.acceleration, abs(done.shaking.box_acceleration))
 
     def complete(self, turns: float) -> bool:
-        """Whether the motor, after so many turns, has made one more, forward or backward."""
+        """Return whether the motor, after so many turns, has made one more, forward or backward."""
         return turns >= self.turn + 1.0 or turns <= self.turn - 1.0

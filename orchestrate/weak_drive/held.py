@@ -1,4 +1,4 @@
-"""Whether a motion is lost on the way through the resonance: the voltage is held, again and again.
+"""Held-voltage test: whether a motion is lost on the way through the resonance.
 
 Where the record of a ramp does not tell a jump from a steep branch, a state of the run is restored
 and its voltage is held until the speed has settled. From there the voltage goes on in short steps,
@@ -48,7 +48,7 @@ MEANINGS = {
 
 
 class Verdict(NamedTuple):
-    """What held voltages say of one direction.
+    """Result of the held-voltage test in one direction.
 
     Attributes
     ----------
@@ -140,7 +140,7 @@ class HoldSettings:
 
 
 class HeldVoltageTest:
-    """A run of the past, from whose states the voltage is held.
+    """Test of a past run, from whose states the voltage is held.
 
     Parameters
     ----------
@@ -173,21 +173,21 @@ class HeldVoltageTest:
         self.checkpoints: dict[int, Table] = {}
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
-        """Keep the states of a table, one after each ``every`` steps."""
+        """Store the states of a table, one after each ``every`` steps."""
         for i in range(len(table["master_memory"])):
             state = {name: table[name][[i]] for name in MEMORY}
             self.checkpoints[min((i + 1) * every, steps)] = state
 
     def state(self, step: int) -> Table | None:
-        """The state before a step; None for the start."""
+        """Return the state before a step; None for the start."""
         if step not in self.checkpoints and step:
             last = max((known for known in self.checkpoints if known < step), default=0)
             run = self.begin(self.schedule)
             try:
                 if last:
-                    run.remember(self.checkpoints[last])
+                    run.set_state(self.checkpoints[last])
                 run.revolve(range(last, step))
-                self.checkpoints[step] = run.memory()
+                self.checkpoints[step] = run.get_state()
             finally:
                 run.master.close()
         return self.checkpoints.get(step)
@@ -197,7 +197,7 @@ class HeldVoltageTest:
         return self.hold(self.state(step), self.voltage(step))
 
     def voltage(self, step: int) -> float:
-        """The run's voltage at a step, V."""
+        """Return the run's voltage at a step, V."""
         return self.schedule.voltage((step + 0.5) * self.step)
 
     def step_from(self, point: Settled, voltage: float) -> Settled:
@@ -212,7 +212,7 @@ class HeldVoltageTest:
         speed, error = math.nan, 0.0
         try:
             if state is not None:
-                run.remember(state)
+                run.set_state(state)
             for first in range(0, count, piece):
                 rows = run.revolve(range(first, min(first + piece, count)))
                 speeds = np.append(speeds, np.abs(rows["speed"]) / self.omega)
@@ -221,7 +221,7 @@ class HeldVoltageTest:
                 if math.isfinite(speed):
                     break
             begin = float(speeds[:FIRST].mean()) if speeds.size else math.nan
-            return Settled(voltage, speed, error, begin, run.memory(), math.nan)
+            return Settled(voltage, speed, error, begin, run.get_state(), math.nan)
         finally:
             run.master.close()
 
@@ -266,7 +266,9 @@ class HeldVoltageTest:
         return verdict
 
     def target(self, after: int, last: int, sign: float) -> float:
-        """The voltage to go to: well past the passing, but no further than the run goes, V."""
+        """Return the voltage to go to: well past the passing, but no further than the run goes,
+        V.
+        """
         past = self.voltage(after) + sign * self.settings.past * self.volts
         end = self.voltage(last)
         return min(past, end) if sign > 0.0 else max(past, end)
@@ -293,7 +295,9 @@ class HeldVoltageTest:
         return points
 
     def falls_back(self, low: Settled, sign: float) -> bool:
-        """Whether a held speed goes back from the ramp's, which lags: then to another motion."""
+        """Return whether a held speed goes back from the ramp's, which lags: then to another
+        motion.
+        """
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
         return sign * (low.speed - low.begin) < -allowed
 
@@ -312,7 +316,9 @@ class HeldVoltageTest:
                 what = self.there_and_back(low, high)
                 if what != FOLLOWS or self.is_within(low, high, self.settings.finest):
                     return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
-            middle = next((one for one in self.inside(low, high) if one.speed == one.speed), None)
+            middle = next(
+                (point for point in self.inside(low, high) if point.speed == point.speed), None
+            )
             if middle is None:
                 what = self.there_and_back(low, high)
                 return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
@@ -320,7 +326,7 @@ class HeldVoltageTest:
         return Verdict(UNDECIDED, low.voltage, high.voltage)
 
     def inside(self, low: Settled, high: Settled) -> Iterator[Settled]:
-        """Voltages between two, held: the middle first."""
+        """Yield voltages between two, held: the middle first."""
         for part in (0.5, 0.25, 0.75):
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
@@ -333,22 +339,22 @@ class HeldVoltageTest:
         return FOLLOWS if comes_back else UNDECIDED
 
     def is_within(self, low: Settled, high: Settled, width: float) -> bool:
-        """Whether two voltages are as close as is asked for, over K omega."""
+        """Return whether two voltages are as close as is asked for, over K omega."""
         return abs(high.voltage - low.voltage) <= width * self.volts
 
     def differ(self, point: Settled, other: Settled) -> bool:
-        """Whether both have settled, at different speeds."""
+        """Return whether both have settled, at different speeds."""
         return abs(point.speed - other.speed) > self.settings.distinct + noise(point, other)
 
 
 def noise(point: Settled, other: Settled) -> float:
-    """Three errors of the difference of two speeds."""
+    """Return three errors of the difference of two speeds."""
     return 3.0 * math.hypot(point.error, other.error)
 
 
 def largest_change(points: list[Settled], sign: float) -> tuple[int, Settled, Settled]:
-    """The two neighbours between which the speed rises (``sign`` -1: falls) most, and the place of
-    the first one.
+    """Return the two neighbours between which the speed rises (``sign`` -1: falls) most, and the
+    index of the first one.
     """
     pairs = list(pairwise(points))
     i = int(np.argmax([sign * (high.speed - low.speed) for low, high in pairs]))
@@ -356,15 +362,15 @@ def largest_change(points: list[Settled], sign: float) -> tuple[int, Settled, Se
 
 
 def block_means(speeds: np.ndarray, settings: HoldSettings) -> np.ndarray:
-    """Mean speeds of blocks of revolutions; the first block, a transient, is left out."""
+    """Return mean speeds of blocks of revolutions; the first block, a transient, is left out."""
     count = len(speeds) // settings.block
     blocks = speeds[: count * settings.block].reshape(count, settings.block)
     return np.asarray(blocks.mean(axis=1)[1:])
 
 
 def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, float]:
-    """The speed that a motion settles at, by its mean speeds, and the error of an irregular one;
-    NaN where they do not say.
+    """Return the speed that a motion settles at, by its mean speeds, and the error of an irregular
+    one; NaN where they do not say.
 
     Means that approach a limit as an exponential say it before they are there (Aitken's process):
     three such limits in turn must agree. By a fold the approach is slower than any exponential, and
@@ -396,8 +402,8 @@ def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, flo
     return math.nan, 0.0
 
 
-def with_a_last_one(chunks: list[Chunk]) -> list[Chunk]:
-    """Chunks with the last item, which is not a step, as one of its own."""
+def with_final_chunk(chunks: list[Chunk]) -> list[Chunk]:
+    """Return chunks with the last item, which is not a step, as one of its own."""
     last = chunks[-1]
     if last.last - last.first == 1:
         return chunks

@@ -23,7 +23,7 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import checked_motor, couple_job, schedule_of, scheme_of
+from .couple import couple_job, require_motor, schedule_of, scheme_of
 from .master import Scheme
 from .schedule import Ramp, Schedule
 
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
-WAYS = ("up", "down")
+DIRECTIONS = ("up", "down")
 USUAL_RATES = (1e-4, 5e-5, 2.5e-5)  # of eta0 in a time 1/omega
 EXPONENT = 2.0 / 3.0
 
 
 def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
-    """The voltage at rate 0, and its standard error.
+    """Extrapolate jump voltages to rate 0; return the voltage and its standard error.
 
     Parameters
     ----------
@@ -79,7 +79,9 @@ def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
 def at_zero(
     rates: np.ndarray, voltages: np.ndarray, exponents: tuple[float, ...]
 ) -> tuple[float, float]:
-    """The constant of a fit with powers of the rate, and its error by the scatter around it."""
+    """Return the constant of a fit with powers of the rate, and its error by the scatter around
+    it.
+    """
     design = np.stack([np.ones(len(rates)), *(rates**power for power in exponents)], axis=1)
     design /= design.max(axis=0)
     solution = np.linalg.lstsq(design, voltages, rcond=None)[0]
@@ -113,35 +115,38 @@ class JumpVoltagesJob(Job):
     item: ClassVar[str] = "ramp"
 
     def count(self) -> int:
-        """Ramps."""
+        """Return the number of ramps."""
         return len(KINDS) * len(self.schedules)
 
     def items(self, inputs: Inputs) -> Sequence[tuple[Structure, Ramp]]:
-        """Structure and ramp of each, slowest first."""
+        """Return structure and ramp of each, slowest first."""
         both = (self.structure.as_bonded(), self.structure.as_delaminated())
         return [(structure, schedule) for schedule in self.schedules for structure in both]
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[tuple[Structure, Ramp]], carry: Any
+        self, fmus: Mapping[str, Path], items: Sequence[tuple[Structure, Ramp]], previous: Any
     ) -> Table:
-        """Jumps of some ramps."""
+        """Compute the jumps of some ramps."""
         rows = []
         for structure, schedule in items:
             job = couple_job(structure, self.drive, schedule, self.scheme)
-            found = job.dataset(job.whole(fmus), {})
-            rows.append([found.jumps.values, found.jump_speed_before.values])
-        return {"jumps": np.array(rows).reshape(-1, 2, len(WAYS))}
+            data = job.dataset(job.run_here(fmus), {})
+            rows.append([data.jumps.values, data.jump_speed_before.values])
+        return {"jumps": np.array(rows).reshape(-1, 2, len(DIRECTIONS))}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Voltages over the rates, and at rate 0."""
+        """Return voltages over the rates, and at rate 0."""
         import xarray as xr
 
         rates = np.array([schedule.rate for schedule in self.schedules])
-        shaped = table["jumps"].reshape(len(rates), len(KINDS), 2, len(WAYS))
+        shaped = table["jumps"].reshape(len(rates), len(KINDS), 2, len(DIRECTIONS))
         at_rates, speeds = shaped[:, :, 0], shaped[:, :, 1]
         ends = np.array(
             [
-                [extrapolate(rates, at_rates[:, kind, way]) for way in range(len(WAYS))]
+                [
+                    extrapolate(rates, at_rates[:, kind, direction])
+                    for direction in range(len(DIRECTIONS))
+                ]
                 for kind in range(len(KINDS))
             ]
         )
@@ -162,18 +167,19 @@ class JumpVoltagesJob(Job):
         coordinates = {
             "rate": ("rate", rates, {"units": "V/s", "long_name": "change of the voltage"}),
             "structure": ("structure", list(KINDS), {"long_name": "structure"}),
-            "jump": ("jump", list(WAYS), {"long_name": "direction in which the speed jumps"}),
+            "jump": ("jump", list(DIRECTIONS), {"long_name": "direction in which the speed jumps"}),
         }
         return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
 
     def missed(self, bonded: np.ndarray) -> np.ndarray:
-        """How far jumps of the bonded structure at rate 0, up and down, are from their folds, V.
+        """Return how far jumps of the bonded structure at rate 0, up and down, are from their
+        folds, V.
 
         0 where there is no jump, or the averaged theory has no folds.
         """
         folds = averaged.folds(self.structure.as_bonded(), self.drive)
         if not folds:
-            return np.zeros(len(WAYS))
+            return np.zeros(len(DIRECTIONS))
         volts = self.drive.volts(self.structure)
         known = [volts * fold.eta0 for fold in (folds[0], folds[-1])]
         return np.nan_to_num(np.abs(np.abs(bonded) - known))
@@ -190,7 +196,8 @@ def jump_voltages(
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Voltages at which the speed jumps, bonded against delaminated, at no rate.
+    """Find the voltages at which the speed jumps, bonded against delaminated, extrapolated to rate
+    0.
 
     Parameters
     ----------
@@ -238,14 +245,14 @@ def jump_voltages(
     >>> bool(found.jumps.sel(structure="bonded", jump="up") > 1.57)
     True
     """
-    checked_motor(drive)
+    require_motor(drive)
     unit = drive.volts(structure) * structure.omega
-    given = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
-    if len(set(given)) < 2:
+    volt_rates = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
+    if len(set(volt_rates)) < 2:
         raise InputError(f"rates = {rates}: expected two different ones or more, in V/s")
     schedules = tuple(
         ramp(schedule_of(structure, drive, voltage, None, rate, settle, 0.0, back))
-        for rate in sorted(given)
+        for rate in sorted(volt_rates)
     )
     scheme = scheme_of(structure, step)
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme)
@@ -253,7 +260,7 @@ def jump_voltages(
 
 
 def ramp(schedule: Schedule) -> Ramp:
-    """A schedule that is to be a ramp.
+    """Return the schedule as a ramp; raise if it is none.
 
     Raises
     ------

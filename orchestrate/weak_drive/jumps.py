@@ -1,4 +1,4 @@
-"""Where the speed jumps, as the voltage comes and goes.
+"""Jumps of the speed as the voltage comes and goes.
 
 A slow ramp takes the motor along a branch of stationary motions. Where the branch ends the speed
 leaves it and passes the resonance: it changes many times as much as the voltage does meanwhile, and
@@ -21,8 +21,8 @@ import numpy as np
 JUMP, DOUBTFUL, SMOOTH, UNFINISHED = "jump", "doubtful", "smooth", "unfinished"
 
 
-class Way(NamedTuple):
-    """Revolutions on which the voltage goes one way, each shape (n,).
+class SweepLeg(NamedTuple):
+    """Revolutions on which the voltage goes in one direction, each shape (n,).
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Passing(NamedTuple):
 
 
 class Criterion(NamedTuple):
-    """What counts as a jump by the record alone.
+    """Settings for what counts as a jump by the record alone.
 
     Attributes
     ----------
@@ -85,30 +85,30 @@ class Criterion(NamedTuple):
 
 
 def find_passing(
-    way: Way, b: float, up: bool, divide: float, criterion: Criterion | None = None
+    leg: SweepLeg, b: float, up: bool, threshold: float, criterion: Criterion | None = None
 ) -> Passing | None:
     """Find where the speed passes the resonance for good; None where it does not.
 
     Parameters
     ----------
-    way : Way
+    leg : SweepLeg
     b : float
         Slope of the torque line, the inverse of the time in which a rotor without load settles.
     up : bool
         Whether the voltage rises; the speed has to pass the same way.
-    divide : float
+    threshold : float
         Speed between the motions below and beyond the resonance.
     criterion : Criterion, optional
     """
     limits, sign = criterion or Criterion(), 1.0 if up else -1.0
-    if len(way.time) < 2:
+    if len(leg.time) < 2:
         return None
-    width = max(4, math.ceil(0.5 / (b * float(np.median(np.diff(way.time))))))
-    if len(way.time) < 4 * width:
+    width = max(4, math.ceil(0.5 / (b * float(np.median(np.diff(leg.time))))))
+    if len(leg.time) < 4 * width:
         return None
-    time, eta0, speed = (running_mean(values, width) for values in way)
-    rise, change = sign * apart(speed, width), np.abs(apart(eta0, width))
-    early = np.flatnonzero(sign * (speed - divide) <= 0.0)
+    time, eta0, speed = (running_mean(values, width) for values in leg)
+    rise, change = sign * lag_difference(speed, width), np.abs(lag_difference(eta0, width))
+    early = np.flatnonzero(sign * (speed - threshold) <= 0.0)
     if not early.size or early[-1] == len(speed) - 1:
         return None
     cross = min(max(0, int(early[-1]) - width // 2), len(rise) - 1)
@@ -117,18 +117,20 @@ def find_passing(
     if near.size:
         cross = max(0, cross - 2 * width) + int(near[np.argmin(np.abs(near - 2 * width))])
     before, after = extent(fast, cross) if fast[cross] else (cross, cross + width)
-    last = min(after + 2 * width, len(way.time) - 1)
-    half = half_slip(np.abs(way.eta0 - way.Omega), before, up)
+    last = min(after + 2 * width, len(leg.time) - 1)
+    half = half_slip_row(np.abs(leg.eta0 - leg.Omega), before, up)
     half = float(cross + width) if half is None else half
     row = math.ceil(half)
     if not fast[cross]:
         return Passing(row, before, last, SMOOTH, half)
-    top = before + int(np.argmax(rise[before : after + 1] / apart(time, width)[before : after + 1]))
+    top = before + int(
+        np.argmax(rise[before : after + 1] / lag_difference(time, width)[before : after + 1])
+    )
     if after == len(rise) - 1 and rise[-1] > 0.5 * rise[top]:
         return Passing(row, before, last, UNFINISHED, half)
-    slip = sign * (way.eta0 - way.Omega)
+    slip = sign * (leg.eta0 - leg.Omega)
     inertia = rise[top] / (b * (time[top + width] - time[top]))
-    growth = abs(way.Omega[last] - way.Omega[before]) / np.ptp(way.eta0[before : last + 1])
+    growth = abs(leg.Omega[last] - leg.Omega[before]) / np.ptp(leg.eta0[before : last + 1])
     if growth < limits.growth:
         return Passing(row, before, last, SMOOTH, half)
     free = slip[before] - slip[last]
@@ -136,23 +138,25 @@ def find_passing(
     far = limits.around * width
     around = rise[max(0, before - far) : max(0, before - width)], rise[last + width : last + far]
     noise = max((float(np.std(part)) for part in around if len(part)), default=0.0)
-    clear = strong and abs(way.Omega[last] - way.Omega[before]) >= limits.clearness * noise
+    clear = strong and abs(leg.Omega[last] - leg.Omega[before]) >= limits.clearness * noise
     sure = before > width and inertia >= limits.share * free and clear
     return Passing(row, before, last, JUMP if sure else DOUBTFUL, half)
 
 
 def running_mean(values: np.ndarray, width: int) -> np.ndarray:
-    """Means of ``width`` values each: motions that repeat after some revolutions look steady."""
+    """Return means of ``width`` values each: motions that repeat after some revolutions look
+    steady.
+    """
     return np.convolve(values, np.full(width, 1.0 / width), "valid")
 
 
-def apart(values: np.ndarray, width: int) -> np.ndarray:
-    """Differences of values ``width`` places apart."""
+def lag_difference(values: np.ndarray, width: int) -> np.ndarray:
+    """Return differences of values ``width`` rows apart."""
     return np.asarray(values[width:] - values[:-width])
 
 
 def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
-    """First and last place of the stretch of true values around ``top``."""
+    """Return first and last index of the stretch of true values around ``top``."""
     breaks = np.flatnonzero(~runs)
     before, after = breaks[breaks < top], breaks[breaks > top]
     return (
@@ -161,42 +165,44 @@ def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
     )
 
 
-def half_slip(slip: np.ndarray, before: int, up: bool) -> float | None:
-    """Where the slip falls below (down: rises above) half of its largest value, between rows."""
+def half_slip_row(slip: np.ndarray, before: int, up: bool) -> float | None:
+    """Return where the slip falls below (down: rises above) half of its largest value, between
+    rows.
+    """
     level = slip[before:]
     highest, half = int(np.argmax(level)), 0.5 * float(level.max())
     first = highest + 1 if up else 0
-    found = first + np.flatnonzero((level[first:] < half) == up)
-    if not found.size:
+    rows = first + np.flatnonzero((level[first:] < half) == up)
+    if not rows.size:
         return None
-    row = int(found[0])
+    row = int(rows[0])
     if row == 0:
         return float(before)
     ahead = (half - level[row]) / (level[row - 1] - level[row])
     return before + row - float(min(max(ahead, 0.0), 1.0))
 
 
-def stays_beyond(time: np.ndarray, Omega: np.ndarray, divide: float) -> float:
-    """Time from which a speed stays above ``divide``; NaN where it ends below."""
-    below = np.flatnonzero(Omega <= divide)
-    if not len(Omega) or Omega[-1] <= divide:
+def stays_beyond(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float:
+    """Return the time from which a speed stays above a threshold; NaN where it ends below."""
+    below = np.flatnonzero(Omega <= threshold)
+    if not len(Omega) or Omega[-1] <= threshold:
         return math.nan
     return float(time[below[-1] + 1]) if below.size else float(time[0])
 
 
-def why_none(way: Way, up: bool, resonance: float) -> str:
-    """Why the speed does not pass the resonance for good.
+def why_none(leg: SweepLeg, up: bool, resonance: float) -> str:
+    """Return why the speed does not pass the resonance for good.
 
     Parameters
     ----------
-    way : Way
+    leg : SweepLeg
     up : bool
     resonance : float
         Speed of the resonance over omega.
     """
-    if not len(way.time):
+    if not len(leg.time):
         return f"the voltage does not {'rise' if up else 'fall'}"
-    speed = np.abs(way.Omega)
+    speed = np.abs(leg.Omega)
     first, last = float(speed[: 1 + len(speed) // 50].mean()), float(speed[-1])
     beyond = first > resonance
     if beyond == up and (last > resonance) == up:

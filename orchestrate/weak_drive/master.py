@@ -1,4 +1,4 @@
-"""A co-simulation master for two FMUs: the structure in its box, and the motor that shakes the box.
+"""Co-simulation master for two FMUs: the structure in its box, and the motor that shakes the box.
 
 The structure's ``box_force`` depends on its states only, the box's acceleration on the force: there
 is no algebraic loop, but what each side assumes of the other over a step decides everything.
@@ -21,6 +21,7 @@ import numpy as np
 
 from ..access.channel import Channel
 from ..access.instance import Instance
+from ..constants import TURN
 from ..errors import InputError
 from ..structures.structure import Structure
 from .energy_balance import EnergyBalance
@@ -35,29 +36,35 @@ from .exchange import (
 from .extremes import Revolution
 from .polynomials import end_slope, matched_cubic, parabola, work
 
-TURN = 2.0 * math.pi
-OWN = (
+MASTER_STATE = (
     *("time", "voltage", "slope", "force_before", "h_before"),
     *("acceleration_before", "jerk_before", "level"),
 )
-PLACES = {  # of what is remembered
+STATE_INDEX = {  # of what is remembered
     name: place
-    for place, name in enumerate((*OWN, *OscillatorOutputs._fields, *ShakerOutputs._fields))
+    for place, name in enumerate(
+        (*MASTER_STATE, *OscillatorOutputs._fields, *ShakerOutputs._fields)
+    )
 }
 
 
 def parts_of(
     numbers: Any,
 ) -> tuple[Any, OscillatorOutputs, ShakerOutputs, Any]:
-    """The master's own part of its memory, both outputs, the balance's; of columns of many too."""
-    motion, shaking = PLACES[OscillatorOutputs._fields[0]], PLACES[ShakerOutputs._fields[0]]
-    rest = len(PLACES)
+    """Return the master's own part of its state, both outputs, the balance's; of columns of many
+    too.
+    """
+    motion, shaking = (
+        STATE_INDEX[OscillatorOutputs._fields[0]],
+        STATE_INDEX[ShakerOutputs._fields[0]],
+    )
+    rest = len(STATE_INDEX)
     ends = OscillatorOutputs(*numbers[motion:shaking]), ShakerOutputs(*numbers[shaking:rest])
     return numbers[:motion], *ends, numbers[rest:]
 
 
 class Algorithm(NamedTuple):
-    """A way to do a communication step.
+    """Way to do a communication step.
 
     Attributes
     ----------
@@ -90,7 +97,7 @@ ALGORITHMS = {
 
 @dataclass(frozen=True)
 class Scheme:
-    """How a step is done.
+    """Settings of a communication step.
 
     Attributes
     ----------
@@ -204,19 +211,19 @@ class Master:
         self.force_before = self.h_before = 0.0
         self.acceleration_before = self.jerk_before = 0.0
         self.balance = EnergyBalance(structure, self.motion, self.shaking)
-        self._do = self._one_after_the_other if scheme.passes else self._both_at_once
+        self._do = self._gauss_seidel_step if scheme.passes else self._jacobi_step
 
     def step(self, voltage: float, h: float | None = None) -> None:
-        """One communication interval at a constant voltage, V; of length ``h``, s, where given."""
+        """Do one communication interval at a constant voltage, V; of length ``h``, s, if given."""
         h = h or self.scheme.h
         begin = self.time
         if self.scheme.tolerance:
-            self._parts_by_defect(voltage, h)
+            self._substeps_by_defect(voltage, h)
         else:
             known = self.h_before or self.scheme.goes_back
-            parts = (1,) if known else self.scheme.beginning
-            for part in parts:
-                self._step(voltage, h * part / sum(parts))
+            beginning = (1,) if known else self.scheme.beginning
+            for part in beginning:
+                self._step(voltage, h * part / sum(beginning))
         self.time = begin + h
 
     def run(
@@ -226,7 +233,7 @@ class Master:
         h: float | None = None,
         kept: np.ndarray | None = None,
     ) -> int:
-        """Intervals one after the other, up to the first that completes the revolution.
+        """Do intervals one after the other, up to the first that completes the revolution.
 
         Parameters
         ----------
@@ -247,22 +254,23 @@ class Master:
         for i in range(first, len(voltages)):
             self.step(voltages[i], h)
             if kept is not None:
-                kept[i] = self.memory()
+                kept[i] = self.get_state()
             if self.revolution and self.revolution.complete(self.shaking.angle / TURN):
                 return i + 1
         return len(voltages)
 
-    def _parts_by_defect(self, voltage: float, h: float) -> None:
-        """An interval in steps of h, h/2, h/4 ... as their defects ask for.
+    def _substeps_by_defect(self, voltage: float, h: float) -> None:
+        """Do an interval in halved steps h, h/2, h/4 ... until the energy defect of each is small
+        enough.
 
         A step is halved where its defect is too large. After one with a defect that twice the
         length would still do with, the next is twice as long, where that ends on its own grid: so
         the interval's end is met without a rest, and all lengths are exact.
         """
-        most = 1 << self.scheme.halvings
+        max_parts = 1 << self.scheme.halvings
         done = 0
-        while done < most:
-            size, last_impact = most >> self.level, self.motion.impact_time
+        while done < max_parts:
+            size, last_impact = max_parts >> self.level, self.motion.impact_time
             defect = self._step(voltage, h / (1 << self.level), self.level < self.scheme.halvings)
             if defect > self.scheme.tolerance and self.level < self.scheme.halvings:
                 self.level += 1
@@ -272,18 +280,20 @@ class Master:
             if defect < self.scheme.tolerance * self.scheme.easy and even and self.level:
                 self.level -= 1
             if self.motion.impact_time != last_impact:
-                self._begin_anew()
+                self._restart_extrapolation()
 
-    def _begin_anew(self) -> None:
-        """Nothing is extrapolated over an impact: the force has a corner there, or jumps."""
+    def _restart_extrapolation(self) -> None:
+        """Restart the extrapolation after an impact: the force has a corner there, or jumps."""
         self.slope = self.h_before = 0.0
-        self.shaking = self._look(self.motion)
+        self.shaking = self._outputs_with_force(self.motion)
 
     def _step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
-        """A step, unless it is refused for its defect; the defect over the work exchanged in it."""
+        """Do a step, unless it is refused for its defect; return the defect over the work exchanged
+        in it.
+        """
         if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
             self.voltage = voltage
-            self.shaking = self._look(self.motion)
+            self.shaking = self._outputs_with_force(self.motion)
         done = self._do(h)
         force = self.force_of(done.motion, h)
         taken = done.shaking.box_force_work - self.shaking.box_force_work
@@ -295,17 +305,17 @@ class Master:
             return size
         self.slope = end_slope(force, h)
         self.balance.add(self.motion, done.motion, done.acceleration, defect, h)
-        self._go_on(done, h)
+        self._advance(done, h)
         return size
 
     def _over_exchanged(self, done: Step, taken: float, defect: float) -> float:
-        """A defect over the work that motor, box and masses exchange in the step."""
-        given = done.shaking.motor_energy - self.shaking.motor_energy
-        exchanged = abs(taken) + abs(given)
+        """Return a defect over the work that motor, box and masses exchange in the step."""
+        work = done.shaking.motor_energy - self.shaking.motor_energy
+        exchanged = abs(taken) + abs(work)
         return abs(defect) / exchanged if exchanged else 0.0
 
-    def _go_on(self, done: Step, h: float) -> None:
-        """To the step's end."""
+    def _advance(self, done: Step, h: float) -> None:
+        """Go to the step's end."""
         if self.revolution:
             ends = self.motion, self.shaking
             self.revolution.add(self.structure, ends, done, self.time, h)
@@ -314,7 +324,7 @@ class Master:
         self.acceleration_before = self.shaking.box_acceleration
         self.force_before, self.h_before = self.motion.box_force, h
         self.time += h
-        self.motion, self.shaking = done.motion, self._look(done.motion)
+        self.motion, self.shaking = done.motion, self._outputs_with_force(done.motion)
 
     def _motion(self) -> OscillatorOutputs:
         return tuple.__new__(OscillatorOutputs, self.oscillator.get())  # as _make, in half its time
@@ -322,28 +332,32 @@ class Master:
     def _shaking(self) -> ShakerOutputs:
         return tuple.__new__(ShakerOutputs, self.shaker.get())
 
-    def _look(self, motion: OscillatorOutputs) -> ShakerOutputs:
-        """The shaker's outputs with the force at the present point, and its slope, as inputs."""
+    def _outputs_with_force(self, motion: OscillatorOutputs) -> ShakerOutputs:
+        """Return the shaker's outputs with the force at the present point, and its slope, as
+        inputs.
+        """
         self.shaker.put(motion.box_force, self.slope, 0.0, 0.0, self.voltage)
         return self._shaking()
 
     # -- what each side assumes of the other --
 
     def force_of(self, motion: OscillatorOutputs, h: float) -> Cubic:
-        """The force over a step to ``motion``: with its ends, mean and moment."""
+        """Return the force over a step to ``motion``: with its ends, mean and moment."""
         mean, moment = motion.box_impulse / h, motion.box_impulse_moment / (h * h)
         return matched_cubic(self.motion.box_force, motion.box_force, mean, moment, h)
 
-    def _told_force(self, motion: OscillatorOutputs, h: float) -> Cubic:
-        """The force over that step as the shaker is told it."""
+    def _force_for_shaker(self, motion: OscillatorOutputs, h: float) -> Cubic:
+        """Return the force over that step as it is passed to the shaker."""
         if self.scheme.matched:
             return self.force_of(motion, h)
         return parabola(
             self.force_before, self.motion.box_force, motion.box_force, self.h_before, h
         )
 
-    def _told_acceleration(self, after: ShakerOutputs, h: float) -> Cubic:
-        """The acceleration over a step that the shaker has done, as the structure is told it."""
+    def _acceleration_for_structure(self, after: ShakerOutputs, h: float) -> Cubic:
+        """Return the acceleration over a step that the shaker has done, as it is passed to the
+        structure.
+        """
         now = self.shaking
         first, last = now.box_acceleration, after.box_acceleration
         if not self.scheme.matched:
@@ -353,7 +367,7 @@ class Master:
         return matched_cubic(first, last, mean, moment, h)
 
     def _extrapolated_acceleration(self) -> Cubic:
-        """From what is known at this point and the one before."""
+        """Extrapolate the acceleration from this point and the one before."""
         value, jerk, h = self.shaking.box_acceleration, self.shaking.box_jerk, self.h_before
         terms = self._algorithm.terms
         if terms == 1:
@@ -367,15 +381,15 @@ class Master:
         return value, jerk, 2.0 * (bend + twist * h), 6.0 * twist
 
     def _extrapolated_force(self) -> Cubic:
-        """The force where both sides go at once: held constant, or a line."""
+        """Extrapolate the force where both instances go at once: held constant, or a line."""
         force, h = self.motion.box_force, self.h_before
         line = self._algorithm.terms > 1 and h
         return force, (force - self.force_before) / h if line else 0.0, 0.0, 0.0
 
     # -- the schemes --
 
-    def _both_at_once(self, h: float) -> Step:
-        """Each with what is known of the other before the step."""
+    def _jacobi_step(self, h: float) -> Step:
+        """Step each with what is known of the other before the step (Jacobi)."""
         acceleration = self._extrapolated_acceleration()
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
@@ -383,8 +397,10 @@ class Master:
         self.shaker.step(self.time, h)
         return Step(acceleration, self._motion(), self._shaking())
 
-    def _one_after_the_other(self, h: float) -> Step:
-        """Structure, then shaker; once, twice, or until the force does not change."""
+    def _gauss_seidel_step(self, h: float) -> Step:
+        """Step structure, then shaker (Gauss-Seidel); once, twice, or until the force does not
+        change.
+        """
         passes = self._algorithm.passes
         if self.scheme.goes_back:
             self.oscillator.save()
@@ -397,48 +413,48 @@ class Master:
                 self.oscillator.restore()
                 self.shaker.restore()
             motion, force = self._pass(acceleration, h)
-            if i + 1 == passes or (last and self._settled(motion, last)):
+            if i + 1 == passes or (last and self._converged(motion, last)):
                 break
             last = motion
             self.shaker.put(motion.box_force, end_slope(force, h), 0.0, 0.0, self.voltage)
-            acceleration = self._told_acceleration(self._shaking(), h)
+            acceleration = self._acceleration_for_structure(self._shaking(), h)
         return Step(acceleration, motion, self._shaking())
 
     def _pass(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
-        """Both sides once over the step; the structure's end, and the force told to the shaker."""
+        """Step both once; return the structure's end, and the force passed to the shaker."""
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
         motion = self._motion()
-        force = self._told_force(motion, h)
+        force = self._force_for_shaker(motion, h)
         self.shaker.put(*force, self.voltage)
         self.shaker.step(self.time, h)
         return motion, force
 
-    def _settled(self, motion: OscillatorOutputs, last: OscillatorOutputs) -> bool:
-        """Whether an iteration has changed nothing but roundings."""
+    def _converged(self, motion: OscillatorOutputs, last: OscillatorOutputs) -> bool:
+        """Return whether an iteration has changed nothing but roundings."""
         now, then = (
-            (found.box_force, found.box_impulse, found.box_impulse_moment)
-            for found in (motion, last)
+            (state.box_force, state.box_impulse, state.box_impulse_moment)
+            for state in (motion, last)
         )
         limit = self.scheme.converged
         return all(abs(a - b) <= limit * (abs(a) + abs(b)) for a, b in zip(now, then, strict=True))
 
     # -- to go on elsewhere --
 
-    def memory(self) -> list[float]:
-        """What the master itself remembers: with both FMUs' states, all that a run goes on from."""
-        own = [float(getattr(self, name)) for name in OWN]
-        return [*own, *self.motion, *self.shaking, *self.balance.memory()]
+    def get_state(self) -> list[float]:
+        """Return the master's own state: with those of both FMUs, all that a run goes on from."""
+        own_state = [float(getattr(self, name)) for name in MASTER_STATE]
+        return [*own_state, *self.motion, *self.shaking, *self.balance.get_state()]
 
-    def remember(self, numbers: Sequence[float]) -> None:
-        """The inverse of :meth:`memory`."""
-        own, self.motion, self.shaking, balance = parts_of(numbers)
-        for name, value in zip(OWN, own, strict=True):
+    def set_state(self, numbers: Sequence[float]) -> None:
+        """Return to a state that :meth:`get_state` gave."""
+        own_state, self.motion, self.shaking, balance = parts_of(numbers)
+        for name, value in zip(MASTER_STATE, own_state, strict=True):
             setattr(self, name, value)
         self.level = int(self.level)
-        self.balance.remember(balance)
+        self.balance.set_state(balance)
 
     def close(self) -> None:
-        """Free the states kept in the FMUs."""
+        """Free the states saved in the FMUs."""
         self.oscillator.close()
         self.shaker.close()

@@ -18,6 +18,8 @@ import numpy as np
 from ..access.exported import finder
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
+from ..checks import checked_integer
+from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import variable
 from ..running.job import Chunk, Inputs, Job, Table
@@ -25,9 +27,9 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from .controllers import Controller
-from .couple import CoupleJob, Run, checked_motor, couple_job, no_verdicts, schedule_of, scheme_of
-from .held import with_a_last_one
-from .master import PLACES, TURN, Master, parts_of
+from .couple import CoupleJob, Run, couple_job, no_verdicts, require_motor, schedule_of, scheme_of
+from .held import with_final_chunk
+from .master import STATE_INDEX, Master, parts_of
 from .revolutions import COLUMNS
 from .schedule import Schedule, check
 
@@ -60,7 +62,7 @@ KEPT = "sampled "  # before the names of samples in a table that has revolutions
 
 @dataclass(frozen=True)
 class PassageJob(Job):
-    """A run of the coupled system with all its communication points.
+    """Run of the coupled system with all its communication points.
 
     Attributes
     ----------
@@ -75,43 +77,46 @@ class PassageJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
-    closing: ClassVar[bool] = True
+    has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
-        """The steps, and a look at the jumps of them all."""
+        """Return the number of steps, and one for the verdicts on the jumps."""
         return self.run.count()
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """The steps, and one more."""
+        """Return the steps, and one more for the verdicts."""
         return range(self.count())
 
     def chunks(self) -> list[Chunk]:
-        """Steps; the look at them is a chunk of its own."""
-        return with_a_last_one(super().chunks())
+        """Return chunks of steps; the verdicts are a chunk of their own."""
+        return with_final_chunk(super().chunks())
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
-        """Some steps: revolutions, ends, and all to go on from; at last the verdicts."""
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+        """Compute some steps, with all that the next chunk needs; or the verdicts at the end."""
         if items[0] == self.run.steps():
-            assert carry is not None
-            nothing = {name: values[:0] for name, values in carry.items()}
-            return {**nothing, "verdicts": self.run.verdicts(fmus, carry, self.chunk)[np.newaxis]}
+            assert previous is not None
+            nothing = {name: values[:0] for name, values in previous.items()}
+            return {
+                **nothing,
+                "verdicts": self.run.verdicts(fmus, previous, self.chunk)[np.newaxis],
+            }
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
             run = Run(self.run, oscillator, shaker)
             try:
-                if carry is not None:
-                    run.remember(carry)
-                kept = np.empty((len(items), len(run.master.memory())))
+                if previous is not None:
+                    run.set_state(previous)
+                kept = np.empty((len(items), len(run.master.get_state())))
                 revolutions = run.revolve(items, kept)
                 columns = samples(run.master, kept)
                 names = (KEPT + name for name in SAMPLES)
-                found = dict(zip(names, columns, strict=True))
-                return {**revolutions, **found, **run.memory(), **no_verdicts()}
+                samples_table = dict(zip(names, columns, strict=True))
+                return {**revolutions, **samples_table, **run.get_state(), **no_verdicts()}
             finally:
                 run.master.close()
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Samples over time, and the jumps."""
+        """Return samples over time, and the jumps."""
         import xarray as xr
 
         of_run = {name: table[name] for name in (*COLUMNS, "verdicts")}
@@ -131,7 +136,7 @@ class PassageJob(Job):
         return xr.Dataset(variables, time, {**revolutions.attrs, **title}).merge(of_jumps)
 
     def centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
-        """Times around which samples are kept, and what they are."""
+        """Return times around which samples are stored, and what they are."""
         jumps = revolutions.jump_time.values
         passed = float(revolutions.passage_time)
         if self.around is None:
@@ -144,13 +149,18 @@ class PassageJob(Job):
 
 
 def samples(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
-    """Communication points of a master's memories, in the order of ``SAMPLES``."""
-    own, motion, shaking, balance = parts_of(kept.T)
+    """Return the communication points of a master's states, in the order of ``SAMPLES``."""
+    own_state, motion, shaking, balance = parts_of(kept.T)
     accounts = copy(master.balance)
-    accounts.remember(balance)
+    accounts.set_state(balance)
     energies = accounts.energies(motion, shaking)
     return (
-        *(own[PLACES["time"]], own[PLACES["voltage"]], shaking.speed, shaking.angle),
+        *(
+            own_state[STATE_INDEX["time"]],
+            own_state[STATE_INDEX["voltage"]],
+            shaking.speed,
+            shaking.angle,
+        ),
         *(motion.x1, motion.x2, motion.v1, motion.v2),
         *(shaking.box_position, shaking.box_velocity, shaking.box_acceleration),
         *(energies.motor, energies.box_damper, energies.impact_loss),
@@ -175,7 +185,7 @@ def passage(
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """A run through the resonance at full resolution: time histories, speed, energies.
+    """Run through the resonance at full resolution: time histories, speed, energies.
 
     Parameters
     ----------
@@ -213,13 +223,13 @@ def passage(
     >>> found.x1.dims, found.sizes["time"], found.speed.attrs["units"]
     (('time',), 1000, 'rad/s')
     """
-    checked_motor(drive)
+    require_motor(drive)
     if around is not None:
         check("around", around, "s", low=0.0, exclusive=True)
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
-    given = (duration, rate, settle, 0.0, back, spin_up)
-    schedule = schedule_of(structure, drive, voltage, *given)
+    settings = (duration, rate, settle, 0.0, back, spin_up)
+    schedule = schedule_of(structure, drive, voltage, *settings)
     scheme = scheme_of(structure, step, sampled=True)
     run = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     name = run.name.replace("couple", "passage")
@@ -229,7 +239,8 @@ def passage(
 def waterfall(
     found: xr.Dataset, *, mass: int = 1, revolutions: int = 16, highest: float = 6.0
 ) -> xr.Dataset:
-    """Spectra of a mass's acceleration in space over the motor's revolutions, one after the other.
+    """Compute spectra of a mass's acceleration in space over the motor's revolutions, one after the
+    other.
 
     Parameters
     ----------
@@ -280,13 +291,13 @@ def waterfall(
         raise InputError(f"revolutions = {revolutions}: expected at most the {turns} there are")
     lines = hann_lines(moved[begins[:, np.newaxis] + np.arange(length)])
     order = np.arange(lines.shape[1]) / revolutions
-    wanted = order <= highest
+    shown = order <= highest
     ends = begins + length - 1
     speed = TURN * (length - 1) / points / (at[ends] - at[begins])
     middle = at[begins + length // 2]
     volts = np.interp(middle, found.time, found.voltage)
     text = f"amplitude of the acceleration of mass {mass} in space"
-    amplitude = lines[:, wanted] * np.outer(speed, order[wanted]) ** 2
+    amplitude = lines[:, shown] * np.outer(speed, order[shown]) ** 2
     variables = {
         "acceleration": variable(("time", "order"), amplitude, "m/s2", text),
         "speed": variable("time", speed, "rad/s", "mean speed of the motor"),
@@ -294,36 +305,36 @@ def waterfall(
     }
     coordinates = {
         "time": variable("time", middle, "s", "middle of the revolutions"),
-        "order": variable("order", order[wanted], "1", "multiple of the motor's speed"),
+        "order": variable("order", order[shown], "1", "multiple of the motor's speed"),
     }
     return xr.Dataset(variables, coordinates, {"title": "Spectra over the motor's revolutions"})
 
 
-def over_angle(found: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Times and displacements in space at equal angles, ``points`` a revolution.
+def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return times and displacements in space at equal angles, ``points`` per revolution.
 
     Where the motor turns back for a moment, samples are left out until it has come as far again.
     """
     from scipy.interpolate import CubicHermiteSpline
 
-    angle, time = np.abs(found.angle.values - found.angle.values[0]), found.time.values
+    angle, time = np.abs(data.angle.values - data.angle.values[0]), data.time.values
     forward = np.concatenate([[True], np.diff(np.maximum.accumulate(angle)) > 0.0])
     last = math.floor(angle[forward][-1] * points / TURN)
     at = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
-    position = (found[f"x{mass}"] + found.box_position).values
-    velocity = (found[f"v{mass}"] + found.box_velocity).values
+    position = (data[f"x{mass}"] + data.box_position).values
+    velocity = (data[f"v{mass}"] + data.box_velocity).values
     return at, CubicHermiteSpline(time, position, velocity)(at)
 
 
 def hann_lines(pieces: np.ndarray) -> np.ndarray:
-    """Amplitudes of the lines of each piece, with a Hann window."""
+    """Return amplitudes of the lines of each piece, with a Hann window."""
     window = np.hanning(pieces.shape[1] + 1)[:-1]
     centred = (pieces - pieces.mean(axis=1, keepdims=True)) * window
     return np.asarray(np.abs(np.fft.rfft(centred, axis=1)) * 2.0 / window.sum())
 
 
-def check_spectra(found: Any, mass: int, revolutions: int, highest: float) -> None:
-    """See that spectra over revolutions can be made.
+def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:
+    """Check that spectra over revolutions can be made.
 
     Raises
     ------
@@ -331,13 +342,12 @@ def check_spectra(found: Any, mass: int, revolutions: int, highest: float) -> No
     """
     if mass not in (1, 2):
         raise InputError(f"mass = {mass!r}: expected 1 or 2")
-    if not isinstance(revolutions, int) or isinstance(revolutions, bool) or revolutions < 1:
-        raise InputError(f"revolutions = {revolutions!r}: expected a whole number >= 1")
+    checked_integer("revolutions", revolutions, 1)
     check("highest", highest, "times the speed", low=0.0, exclusive=True)
-    missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(map(str, found))
+    missing = {"angle", "x1", "v1", "box_position", "box_velocity"} - set(map(str, data))
     if missing:
         raise InputError(f"no {sorted(missing)[0]} in the dataset: expected one of passage()")
-    gaps = np.diff(found.time.values)
+    gaps = np.diff(data.time.values)
     if not gaps.size or gaps.max() > 1.5 * gaps.min():
         raise InputError(
             "time: samples of several jumps, or too few; expected some without a gap, such as "

@@ -101,16 +101,16 @@ class Branches:
     def nearest(self, motions: Motions, i: int, kind: str) -> int | None:
         """Return the bifurcation of a kind between a motion and the next one; None without any."""
         ends = np.stack([motions.voltage[i : i + 2], motions.speed[i : i + 2]], 1) / self.spans
-        own = [
+        of_kind = [
             k
             for k in self.own
             if self.kinds[k] == kind and self.revolutions[k] == motions.revolutions[i]
         ]
-        if not own:
+        if not of_kind:
             return None
-        away = np.linalg.norm(self.places[own] / self.spans - ends.mean(axis=0), axis=1)
+        away = np.linalg.norm(self.places[of_kind] / self.spans - ends.mean(axis=0), axis=1)
         step = float(np.linalg.norm(ends[1] - ends[0]))
-        return int(own[int(away.argmin())]) if away.min() <= max(step, 1e-3) else None
+        return int(of_kind[int(away.argmin())]) if away.min() <= max(step, 1e-3) else None
 
     def path(self, up: bool) -> Path:
         """Return what a slow ramp meets, up from the lowest speed or down from the highest."""
@@ -178,14 +178,14 @@ class Branches:
 
     def stable_at(self, voltage: float, speed: float, sign: float) -> list[tuple[Motions, int]]:
         """Return legs with a stable motion at a voltage beyond a speed, and the index before."""
-        found = []
+        legs = []
         for motions in self.legs.values():
             for i in range(len(motions.speed) - 1):
                 ends = motions.voltage[i : i + 2] - voltage
                 beyond = (sign * (motions.speed[i : i + 2] - speed) > 0.0).all()
                 if beyond and motions.stable[i : i + 2].all() and ends[0] * ends[1] <= 0.0:
-                    found.append((motions, i))
-        return found
+                    legs.append((motions, i))
+        return legs
 
     @staticmethod
     def landing_speed(motions: Motions, i: int, voltage: float) -> float:

@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import astuple
 
+from ..constants import TURN
 from .extremes import Revolution
-from .master import TURN, Master
+from .master import Master
 
 COLUMNS = {
     "time": ("s", "time at the revolution's end"),
@@ -35,7 +36,7 @@ COLUMNS = {
 
 
 class Revolutions:
-    """Turns a run into rows, one a revolution.
+    """Converts a run into rows, one per revolution.
 
     Parameters
     ----------
@@ -50,7 +51,7 @@ class Revolutions:
         self._now = master.revolution = Revolution.begin(master.motion, master.shaking)
 
     def add(self) -> tuple[float, ...] | None:
-        """Look at the state after a step.
+        """Take the state after a step into account.
 
         Returns
         -------
@@ -70,16 +71,16 @@ class Revolutions:
         return row
 
     def _row(self, time: float, speed: float, impacts: float) -> tuple[float, ...]:
-        """What is kept of a revolution that ends at ``time``."""
+        """Return the row of a revolution that ends at ``time``."""
         master, now = self._master, self._now
         ranges = 0.5 * (now.x1_high - now.x1_low), 0.5 * (now.box_high - now.box_low)
         energies = master.balance.energies(master.motion, master.shaking)
         return (time, master.voltage, speed, *ranges, impacts, now.acceleration, *energies)
 
-    def memory(self) -> list[float]:
-        """The revolution under way, as a list of floats."""
+    def get_state(self) -> list[float]:
+        """Return the revolution under way as a list of floats."""
         return list(astuple(self._now))
 
-    def remember(self, numbers: Sequence[float]) -> None:
-        """The inverse of :meth:`memory`."""
+    def set_state(self, numbers: Sequence[float]) -> None:
+        """Return to a state that :meth:`get_state` gave."""
         self._now = self._master.revolution = Revolution(*numbers)

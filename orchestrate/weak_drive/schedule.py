@@ -15,7 +15,7 @@ import numpy as np
 from ..errors import InputError
 from ..files import read_text
 
-MOST_BYTES = 1 << 22  # of a file: some hundred thousand rows
+MAX_BYTES = 1 << 22  # of a file: some hundred thousand rows
 
 
 def check(
@@ -44,7 +44,7 @@ def check(
 
 @dataclass(frozen=True)
 class Schedule(ABC):
-    """A voltage over time; subclasses say which."""
+    """Voltage over time; subclasses define it."""
 
     @property
     @abstractmethod
@@ -53,16 +53,18 @@ class Schedule(ABC):
 
     @abstractmethod
     def voltage(self, time: float) -> float:
-        """Voltage at a time, V."""
+        """Return the voltage at a time, V."""
 
     @abstractmethod
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Whether the voltage rises: 1 where it does, -1 where it falls, 0 where it holds."""
+        """Return the direction of the voltage: 1 where it rises, -1 where it falls, 0 where it
+        holds.
+        """
 
 
 @dataclass(frozen=True)
 class Constant(Schedule):
-    """The same voltage all the time.
+    """Constant voltage.
 
     Attributes
     ----------
@@ -89,11 +91,11 @@ class Constant(Schedule):
         return self.time
 
     def voltage(self, time: float) -> float:
-        """Voltage at a time, V."""
+        """Return the voltage at a time, V."""
         return self.value
 
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Nowhere up, nowhere down."""
+        """Return zeros: the voltage holds."""
         return np.zeros(np.shape(times), dtype=int)
 
 
@@ -155,7 +157,7 @@ class Ramp(Schedule):
 
     @property
     def begin(self) -> float:
-        """Time at which it leaves the first voltage, s."""
+        """Time at which the first voltage is left, s."""
         return self.spin_up + self.settle
 
     @property
@@ -165,7 +167,7 @@ class Ramp(Schedule):
 
     @property
     def turn(self) -> float:
-        """Time at which it is at the last voltage, s."""
+        """Time at which the last voltage is reached, s."""
         return self.begin + self.rise
 
     @property
@@ -174,7 +176,7 @@ class Ramp(Schedule):
         return self.begin + self.rise * (2 if self.back else 1)
 
     def voltage(self, time: float) -> float:
-        """Voltage at a time, V."""
+        """Return the voltage at a time, V."""
         if time < self.spin_up:
             return self.low + (self.first - self.low) * time / self.spin_up
         ramp = min(max(time - self.begin, 0.0), self.duration - self.begin)
@@ -189,7 +191,7 @@ class Ramp(Schedule):
         return self.first + math.copysign(change, self.last - self.first)
 
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Up or down on the way there, the other way round on the way back."""
+        """Return the direction on the way there, and the opposite one on the way back."""
         times, there = np.asarray(times), 1 if self.last > self.first else -1
         return np.where(times > self.turn, -there, np.where(times > self.begin, there, 0))
 
@@ -234,7 +236,7 @@ class Course(Schedule):
 
     @classmethod
     def from_csv(cls, path: str | PathLike[str]) -> Course:
-        """A file with time in s and voltage in V, separated by a comma, a row each.
+        """Read a file with time in s and voltage in V, separated by a comma, one row each.
 
         Rows that begin with ``#``, and one with names, are passed over.
 
@@ -243,7 +245,7 @@ class Course(Schedule):
         InputError
         """
         try:
-            lines = read_text(path, MOST_BYTES).splitlines()
+            lines = read_text(path, MAX_BYTES).splitlines()
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
             raise InputError(f"{path}: cannot be read ({reason}); expected a CSV file") from None
@@ -270,7 +272,7 @@ class Course(Schedule):
         return self.times[-1]
 
     def voltage(self, time: float) -> float:
-        """Voltage at a time, V; just after a step at the time of it."""
+        """Return the voltage at a time, V; just after a step at the time of it."""
         last = bisect_right(self.times, time)
         if last == len(self.times):
             return self.voltages[-1]
@@ -279,6 +281,6 @@ class Course(Schedule):
         return low + (high - low) * (time - begin) / (end - begin)
 
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """By the line that each time is on."""
+        """Return the direction of the line that each time is on."""
         places = np.clip(np.searchsorted(self.times, times) - 1, 0, len(self.times) - 2)
         return np.sign(np.diff(self.voltages))[places].astype(int)

@@ -1,4 +1,5 @@
-"""Whether a motor at a constant voltage has settled, and on which side of the resonance.
+"""Settling test: whether a motor at a constant voltage has settled, and on which side of the
+resonance.
 
 A speed that is beyond the resonance may swing back, and one that hardly changes may be creeping
 past a fold: neither the place nor the rate alone decides. The speed has settled where it converges
@@ -83,7 +84,7 @@ class Settled(NamedTuple):
 
 @dataclass(frozen=True)
 class SettlingTest:
-    """What counts as settled.
+    """Settings of what counts as settled.
 
     Attributes
     ----------
@@ -106,7 +107,7 @@ class SettlingTest:
     stay: int
 
     def outcome(self, time: np.ndarray, speed: np.ndarray) -> Outcome:
-        """What a record tells.
+        """Classify a record of the speed.
 
         Parameters
         ----------
@@ -133,7 +134,7 @@ class SettlingTest:
         return Outcome(settled.decision, True, float(time[since + last_crossing(near)]), last)
 
     def converged(self, means: np.ndarray, turn: float) -> Settled | None:
-        """The end of a speed that converges exponentially; None where it does not.
+        """Return the end of a speed that converges exponentially; None if it does not.
 
         The ranges of four stretches that follow each other shrink by ``QUOTIENT`` or more each
         time, or are noise. No approach to a fold, and no passage by one, does: there
@@ -153,7 +154,8 @@ class SettlingTest:
         return None
 
     def bounded(self, means: np.ndarray, turn: float) -> Settled | None:
-        """The end of a speed that has long stayed within bounds, neither drifting nor calming down.
+        """Return the end of a speed that has long stayed within bounds, neither drifting nor
+        calming down.
 
         The last quarter of the record is compared with the one before: its extremes, its mean and
         its range. An irregular or a swinging motion is told so. None where it has not.
@@ -171,13 +173,13 @@ class SettlingTest:
 
 
 def last_crossing(beyond: np.ndarray) -> int:
-    """The first place of the last stretch of equal values."""
+    """Return the first index of the last stretch of equal values."""
     changes = np.flatnonzero(beyond[1:] != beyond[:-1])
     return int(changes[-1]) + 1 if changes.size else 0
 
 
 def settling_test(structure: Structure, drive: Drive, stay: int) -> SettlingTest:
-    """The test for a system."""
+    """Return the test for a system."""
     omega = structure.omega
     return SettlingTest(
         threshold=averaged.dividing_speed(structure, drive) * omega,
@@ -189,12 +191,12 @@ def settling_test(structure: Structure, drive: Drive, stay: int) -> SettlingTest
 
 
 def motor_time(structure: Structure, drive: Drive) -> float:
-    """The time in which the motor without a load settles, 1/b, or ``LONGEST_MEMORY``, s."""
+    """Return the time in which the motor without a load settles, 1/b, or ``LONGEST_MEMORY``, s."""
     return min(1.0 / drive.b(structure), LONGEST_MEMORY) / structure.omega
 
 
 def slowest_time(structure: Structure, drive: Drive) -> float:
-    """The longest of the system's time constants, s; at most ``LONGEST_MEMORY``.
+    """Return the longest of the system's time constants, s; at most ``LONGEST_MEMORY``.
 
     The motor's is 1/b, those of vibrations are 1/D of each damper.
     """
@@ -205,7 +207,7 @@ def slowest_time(structure: Structure, drive: Drive) -> float:
 
 
 def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> float:
-    """The time that the speed takes to creep past the fold up, s, by the averaged theory.
+    """Return the time that the speed takes to creep past the fold up, s, by the averaged theory.
 
     Near the fold the speed obeys x' = r (distance + q x^2 / 2): it takes pi/(r sqrt(q distance/2)).
 
@@ -237,7 +239,7 @@ def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> f
 
 
 def usual_limit(structure: Structure, drive: Drive, distance: float) -> float:
-    """The time after which a motor that has not settled is undecided, s.
+    """Return the time after which a motor that has not settled is undecided, s.
 
     Parameters
     ----------

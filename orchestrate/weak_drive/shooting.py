@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..access.instance import Instance
+from ..constants import TURN
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import NoConvergenceError, fix_sign
 from ..errors import FmuError
@@ -22,7 +23,7 @@ from ..structures.structure import Structure
 from .compiled import master_of
 from .couple import oscillator_start
 from .extremes import Revolution
-from .master import PLACES, TURN, Master, Scheme
+from .master import STATE_INDEX, Master, Scheme
 
 STARTS = {  # start values of the shaker and of the structure by the outputs that they are
     **{"box_position": "position_start", "box_velocity": "velocity_start", "speed": "speed_start"},
@@ -173,8 +174,10 @@ class Shooter:
         if self.structure.bonded:
             values |= {"x2": values["x1"], "v2": values["v1"]}
         starts = {STARTS[name]: value for name, value in values.items()}
-        own = {name: starts.pop(name) for name in ("x1_start", "v1_start", "x2_start", "v2_start")}
-        oscillator.initialize(**oscillator_start(self.structure), **own)
+        structure_starts = {
+            name: starts.pop(name) for name in ("x1_start", "v1_start", "x2_start", "v2_start")
+        }
+        oscillator.initialize(**oscillator_start(self.structure), **structure_starts)
         more = {"angle_start": self.angle, "voltage": voltage}
         shaker.initialize(**self.drive.parameters(), **starts, **more)
         return master_of(oscillator, shaker, self.structure, Scheme("rollback", h))
@@ -197,19 +200,19 @@ class Shooter:
 
         The speed is held by a heavy rotor: so motions are found that a motor would not stay on.
         """
-        own = self.drive
-        self.drive = own.replace(rotor_inertia=HEAVY * own.rotor_inertia)
+        own_drive = self.drive
+        self.drive = own_drive.replace(rotor_inertia=HEAVY * own_drive.rotor_inertia)
         state = np.zeros(self.size)
         state[self.names.index("speed")] = speed / self.structure.omega
         if "motor_current" in self.names:
-            current = (voltage - own.motor_constant * speed) / own.armature_resistance
+            current = (voltage - own_drive.motor_constant * speed) / own_drive.armature_resistance
             state[-1] = current / self.units[-1]
         try:
             master = self.start_master(state, voltage, 0.1 / self.structure.omega)
             while master.time < time or self._touching(master):
                 master.step(voltage)
         finally:
-            self.drive = own
+            self.drive = own_drive
         self.angle = master.shaking.angle % TURN
         found = self.state(master)
         master.close()
@@ -228,39 +231,41 @@ class Shooter:
         """
         try:
             master, voltage = self.begin_period(unknowns)
-            kept = np.empty((self.count, len(master.memory())))
+            kept = np.empty((self.count, len(master.get_state())))
             master.run([voltage] * self.count, kept=kept)
         except FmuError as error:
             raise NoConvergenceError(str(error)) from None
         turned = master.shaking.angle - self.angle - self.turns * TURN
         end = np.append(self.state(master), turned)
         master.close()
-        contact = bool((kept[:, PLACES["x1"]] == kept[:, PLACES["x2"]]).any())
+        contact = bool((kept[:, STATE_INDEX["x1"]] == kept[:, STATE_INDEX["x2"]]).any())
         return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
 
     def observe_period(self, unknowns: Floats) -> Period:
         """Run a motion over a period, and return what is seen of it."""
         master, voltage = self.begin_period(unknowns)
         ends = master.motion, master.shaking
-        seen = master.revolution = Revolution.begin(*ends, turn=math.nan)  # never complete
-        kept = np.empty((self.count + 1, len(master.memory())))
-        kept[0] = master.memory()
+        revolution = master.revolution = Revolution.begin(*ends, turn=math.nan)  # never complete
+        kept = np.empty((self.count + 1, len(master.get_state())))
+        kept[0] = master.get_state()
         master.run([voltage] * self.count, kept=kept[1:])
-        gaps = kept[:, PLACES["x2"]] - kept[:, PLACES["x1"]]
+        gaps = kept[:, STATE_INDEX["x2"]] - kept[:, STATE_INDEX["x1"]]
         master.close()
         impacts = int(self.fmus[0].get("impact_count")[0])
         clear = int(np.argmax(gaps))
         share = gaps[0] / gaps[clear] if gaps[clear] > 0.0 else 1.0
-        return Period(0.5 * (seen.x1_high - seen.x1_low), impacts, self.turns, clear, share)
+        return Period(
+            0.5 * (revolution.x1_high - revolution.x1_low), impacts, self.turns, clear, share
+        )
 
     def begin_later(self, unknowns: Floats, steps: int) -> Floats:
         """Begin periods some steps later from now on; the unknowns of the same motion there."""
         master, voltage = self.begin_period(unknowns)
         master.run([voltage] * steps)
         self.angle = master.shaking.angle % TURN
-        found = np.append(self.state(master), unknowns[-2:])
+        shifted = np.append(self.state(master), unknowns[-2:])
         master.close()
-        return found
+        return shifted
 
     # -- the equations --
 
@@ -268,9 +273,9 @@ class Shooter:
         """Return the change in a period: of the state, and of the angle beyond full turns."""
         if self._last is not None and np.array_equal(self._last[0], unknowns):
             return self._last[1]
-        found = self.shoot(unknowns).end
-        found[: self.size] -= unknowns[: self.size]
-        return found
+        end_state = self.shoot(unknowns).end
+        end_state[: self.size] -= unknowns[: self.size]
+        return end_state
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
         """Return the residual's derivative: by differences, or updated by a secant (Broyden).
@@ -361,21 +366,23 @@ class Shooter:
     def flip_direction(self) -> Floats:
         """Return the direction of length 1 of the state that the map reverses: multiplier -1."""
         values, vectors = np.linalg.eig(self.map_derivative())
-        found = vectors[:, np.argmin(np.abs(values + 1.0))].real
-        return fix_sign(np.asarray(found / np.linalg.norm(found)))
+        direction = vectors[:, np.argmin(np.abs(values + 1.0))].real
+        return fix_sign(np.asarray(direction / np.linalg.norm(direction)))
 
 
 Ends = Callable[[float], "Floats | None"]  # of a period, by a change of an unknown
 
 
 def central(end: Ends, change: float) -> Floats | None:
-    """Return a derivative by the ends on both sides; None where one of them is of another kind."""
+    """Return a derivative by central differences; None if an end is of another kind."""
     after, before = end(change), end(-change)
     return None if after is None or before is None else (after - before) / (2.0 * change)
 
 
 def one_sided(end: Ends, change: float) -> Floats | None:
-    """Return the same by one side alone, of the same order."""
+    """Return a derivative by one-sided differences of the same order; None if an end is of another
+    kind.
+    """
     here, near, far = end(0.0), end(change), end(2.0 * change)
     if here is None or near is None or far is None:
         return None

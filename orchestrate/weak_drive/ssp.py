@@ -46,12 +46,12 @@ Values = Mapping[str, float | bool]
 
 
 def tag(prefix: str, name: str) -> str:
-    """A qualified name."""
+    """Return a qualified name."""
     return f"{{{NAMESPACES[prefix]}}}{name}"
 
 
 def document(root: ET.Element) -> bytes:
-    """An XML document."""
+    """Serialize an XML document."""
     for prefix, address in NAMESPACES.items():
         ET.register_namespace(prefix, address)
     ET.indent(root)
@@ -60,18 +60,18 @@ def document(root: ET.Element) -> bytes:
 
 
 def ssv(component: str) -> str:
-    """Where the parameters of a component are."""
+    """Return where the parameters of a component are."""
     return f"resources/{component}.ssv"
 
 
 def units_of(fmus: Mapping[str, Description], name: str) -> list[str]:
-    """Units of a component's connectors: of its inputs, then of its outputs."""
+    """Return units of a component's connectors: of its inputs, then of its outputs."""
     ports = (*INPUTS[name], *OUTPUTS[name])
     return [str(fmus[name].variable(port).unit) for port in ports]
 
 
 def add_units(root: ET.Element, fmus: Mapping[str, Description]) -> None:
-    """What the connectors' units are in SI, each once."""
+    """Add the connectors' units in SI, each once."""
     parent = ET.SubElement(root, tag("ssd", "Units"))
     used = {unit: fmus[name].units[unit] for name in MODELS for unit in units_of(fmus, name)}
     for unit, powers in sorted(used.items()):
@@ -80,7 +80,7 @@ def add_units(root: ET.Element, fmus: Mapping[str, Description]) -> None:
 
 
 def add_component(elements: ET.Element, name: str, units: Sequence[str]) -> None:
-    """A component with its connectors, in their units, and its parameters."""
+    """Add a component with its connectors, in their units, and its parameters."""
     source, kind = f"resources/{MODELS[name]}.fmu", "application/x-fmu-sharedlibrary"
     component = ET.SubElement(
         elements, tag("ssd", "Component"), name=name, type=kind, source=source
@@ -99,7 +99,7 @@ def add_component(elements: ET.Element, name: str, units: Sequence[str]) -> None
 def system_description(
     description: str, stop_time: float, fmus: Mapping[str, Description]
 ) -> bytes:
-    """``SystemStructure.ssd``."""
+    """Return ``SystemStructure.ssd``."""
     root = ET.Element(tag("ssd", "SystemStructureDescription"), name="WeakDrive", version="1.0")
     system = ET.SubElement(root, tag("ssd", "System"), name="WeakDrive", description=description)
     elements = ET.SubElement(system, tag("ssd", "Elements"))
@@ -120,7 +120,7 @@ def system_description(
 
 
 def parameter_values(values: Values) -> bytes:
-    """Parameters of a component; what is false is left to its default."""
+    """Return parameters of a component; what is false is left to its default."""
     root = ET.Element(tag("ssv", "ParameterSet"), version="1.0", name=SET)
     group = ET.SubElement(root, tag("ssv", "Parameters"))
     for variable, value in values.items():
@@ -135,7 +135,7 @@ def parameter_values(values: Values) -> bytes:
 
 
 def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
-    """A zip file, the same bytes at any time."""
+    """Write a zip file that has the same bytes whenever it is written."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
@@ -213,7 +213,7 @@ def write_ssp(
 
 
 def exported() -> list[Path]:
-    """The FMUs of FMI 2.0."""
+    """Return the FMUs of FMI 2.0."""
     from ..access.exported import find
 
     return [find(model, form="fmi2").path for model in MODELS.values()]

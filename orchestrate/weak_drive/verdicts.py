@@ -1,4 +1,4 @@
-"""What is said of each direction: jump, none or undecided, and why; agreed with averaged theory.
+"""Verdict on each direction: jump, none or undecided, and why; checked against the averaged theory.
 
 For a bonded structure the averaged theory knows where the motion is lost. A verdict that it
 contradicts by more than its own error is not given: the direction is undecided.
@@ -27,7 +27,7 @@ NO_FOLD_TEXT = "no fold: the speed follows the voltage through the resonance"
 
 
 class Theory(NamedTuple):
-    """What the averaged theory says of the bonded structure, in one direction of the voltage.
+    """Prediction of the averaged theory for the bonded structure, in one direction of the voltage.
 
     Attributes
     ----------
@@ -47,13 +47,13 @@ class Theory(NamedTuple):
 
 @lru_cache(maxsize=64)
 def theories(structure: Structure, drive: Drive) -> tuple[Theory, Theory]:
-    """What the averaged theory says of both directions, up and down."""
+    """Return the averaged theory's predictions for both directions, up and down."""
     folds = averaged.folds(structure, drive)
     narrow = bool(folds) and abs(folds[0].eta0 - folds[-1].eta0) < NARROW
     slope = averaged.least_slope(structure, drive)
     up, down = (
-        Theory(tuple(one.eta0 for one in (place, *fold) if one), narrow, slope)
-        for place, fold in zip(
+        Theory(tuple(candidate.eta0 for candidate in (point, *fold) if candidate), narrow, slope)
+        for point, fold in zip(
             averaged.losses(structure, drive), (folds[:1], folds[-1:]), strict=True
         )
     )
@@ -61,7 +61,9 @@ def theories(structure: Structure, drive: Drive) -> tuple[Theory, Theory]:
 
 
 def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
-    """Whether held voltages are needed: where the record does not tell, or the theory objects."""
+    """Return whether the held-voltage test is needed: where the record does not decide, or the
+    theory objects.
+    """
     if passing.look == JUMP:
         return bonded and not theory.losses
     if passing.look == SMOOTH:
@@ -69,8 +71,10 @@ def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
     return passing.look == DOUBTFUL
 
 
-def agreed(verdict: Verdict, theory: Theory, volts: float) -> Verdict:
-    """The verdict on a bonded structure, undecided where the averaged theory contradicts it."""
+def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verdict:
+    """Return the verdict on a bonded structure, undecided where the averaged theory contradicts
+    it.
+    """
     if theory.narrow or verdict.what not in (LOST, FOLLOWS):
         return verdict
     if verdict.what == FOLLOWS:
@@ -84,7 +88,7 @@ def agreed(verdict: Verdict, theory: Theory, volts: float) -> Verdict:
 
 
 def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold: float) -> str:
-    """Why there is no jump, or none is told, though the speed passes the resonance.
+    """Return why there is no jump, or none is reported, though the speed passes the resonance.
 
     Parameters
     ----------
@@ -104,7 +108,7 @@ def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold
 
 
 def undecided(held: Verdict, theory: Theory, hold: float) -> str:
-    """Why nothing is told, and what helps."""
+    """Return why nothing is reported, and what helps."""
     if held.what == UNDECIDED:
         known = math.isfinite(held.low) and math.isfinite(held.high)
         between = f" between {held.low:.5g} and {held.high:.5g} V" if known else ""
@@ -120,7 +124,7 @@ def undecided(held: Verdict, theory: Theory, hold: float) -> str:
 
 
 def how_decided(passing: Passing | None, final: Verdict) -> str:
-    """How jump or none was told; empty where the speed does not pass the resonance."""
+    """Return how jump or none was decided; empty where the speed does not pass the resonance."""
     if passing is None:
         return ""
     if final.what == UNDECIDED:
@@ -129,7 +133,7 @@ def how_decided(passing: Passing | None, final: Verdict) -> str:
 
 
 def is_jump(passing: Passing | None, final: Verdict) -> bool:
-    """Whether the speed jumps."""
+    """Return whether the speed jumps."""
     if passing is None:
         return False
     return final.what == LOST or (final.what == NOT_ASKED and passing.look == JUMP)

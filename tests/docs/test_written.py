@@ -37,7 +37,7 @@ def test_python_runs(page, folder, small):
 def test_commands_run(page, words, folder, small, capsys):
     if not words or words[0] in LONG or words[-1] in ("--help", "--version"):
         try:
-            cli.make_parser().parse_args(cli.with_negative_values(words))
+            cli.make_parser().parse_args(cli.join_negative_values(words))
         except SystemExit as ended:
             assert ended.code == 0 or not words, capsys.readouterr().err
         return

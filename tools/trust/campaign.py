@@ -128,7 +128,7 @@ class CampaignJob(Job):
         left = [self.budget - i * self.size for i in range(self.count())]
         return [(batch_seed(self.seed, i), min(self.size, n)) for i, n in enumerate(left)]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], carry: Table | None) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
         """Run batches."""
         from .registry import CAMPAIGNS
 

@@ -102,8 +102,8 @@ async def work(address: str, folder: str, version: str) -> None:
     if version:
         from orchestrate.running import executors
 
-        original = executors.code_of
-        executors.code_of = lambda module: {**original(module), "orchestrate.version": version}
+        original = executors.code_digests
+        executors.code_digests = lambda module: {**original(module), "orchestrate.version": version}
     options: dict[str, Any] = {"nthreads": 1, "local_directory": folder, "dashboard": False}
     async with Worker(address, **options) as worker:
         await worker.finished()

@@ -145,7 +145,7 @@ def test_a_build_folder_given_is_the_only_place(maker, places, real, tmp_path):
 
 
 def test_without_a_compiler_the_python_form_serves(maker, places, caplog):
-    exported.say_once.cache_clear()
+    exported.warn_once.cache_clear()
     maker.without.update({"fmi2", "fmi3"})
     for _ in range(2):
         assert find(OSCILLATOR).path == places[0] / "fmi2-python" / f"{OSCILLATOR}.fmu"
@@ -210,12 +210,6 @@ def test_build_leaves_out_what_cannot_be_made(maker, places, tmp_path, caplog):
     maker.without.update(FORMS)
     with pytest.raises(InputError, match="cannot be made: ziglang"):
         build(tmp_path / "out")
-
-
-def test_refresh_makes_what_is_out_of_date(maker, places, real, tmp_path):
-    put(real["fmi3"], tmp_path)
-    written = exported.refresh(tmp_path, ("fmi3",))
-    assert written == [tmp_path / "fmi3" / f"{SHAKER}.fmu"]
 
 
 def test_build_into_a_file(maker, tmp_path):

@@ -374,14 +374,14 @@ def test_debug_shows_where_an_error_came_from(tmp_path):
 
 
 def test_no_scheduler(ask, tmp_path, monkeypatch):
-    monkeypatch.setattr("orchestrate.running.cluster.CONNECT", "1s")
+    monkeypatch.setattr("orchestrate.running.cluster.CONNECT_TIMEOUT", "1s")
     address = "tcp://127.0.0.1:1"
     ask("sweep", "--eta", "1", "--cluster", address).complaint(f"cluster {address}", "no scheduler")
     assert list((tmp_path / "results").glob("*.nc")) == []
 
 
 def test_no_scheduler_but_something_that_takes_calls_and_is_silent(ask, monkeypatch):
-    monkeypatch.setattr("orchestrate.running.cluster.CONNECT", "1s")
+    monkeypatch.setattr("orchestrate.running.cluster.CONNECT_TIMEOUT", "1s")
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
         asked = ask("sweep", "--eta", "1", "--cluster", address)

@@ -104,13 +104,13 @@ def made_jump(voltage, fold=None):
 def test_a_jump_far_from_the_bonded_one_is_not_corrected_by_its_lag():
     """As of a drive drawn at random, whose bonded one is at 1.4843 V, 0.0133 V late."""
     bonded = made_jump(1.4843, fold=1.4710)
-    far = couple_command.told_jump(made_jump(1.3998), 1.0, bonded)
+    far = couple_command.format_jump(made_jump(1.3998), 1.0, bonded)
     assert "late at this rate if as the bonded one, about 1.3865 +- 0.0066 V" in far  # at 1.3829
-    lost = couple_command.told_jump(made_jump(1.3800), 1.0, bonded)
+    lost = couple_command.format_jump(made_jump(1.3800), 1.0, bonded)
     assert "about" not in lost and "late by what jump-voltages tells" in lost
-    known = couple_command.told_jump(made_jump(1.3998), 1.0, bonded, fold=1.3829)
+    known = couple_command.format_jump(made_jump(1.3998), 1.0, bonded, fold=1.3829)
     assert known.endswith("0.0169 V late at this rate, 1.3829 V at rate 0 by its branch")
-    alone = couple_command.told_jump(made_jump(1.3998), 1.0, None)
+    alone = couple_command.format_jump(made_jump(1.3998), 1.0, None)
     assert alone.endswith("late by what jump-voltages tells")
 
 
@@ -121,13 +121,13 @@ def test_the_fold_of_a_jump_is_the_one_that_crosses_the_resonance():
     motions += [(1.6, 1.3, 1), (1.5, 1.34, 0), (1.4, 1.38, 0), (1.5, 1.45, 1), (1.7, 1.69, 1)]
     folds = [("fold", 1.36, 1.12), ("fold", 1.19, 1.21), ("fold", 1.61, 1.31), ("fold", 1.39, 1.39)]
     made = made_branch(motions, folds)
-    assert couple_command.folds_met(made, *system) == {
+    assert couple_command.folds_crossed(made, *system) == {
         ("bonded", "up"): 1.61,
         ("bonded", "down"): 1.39,
     }
     low = made.isel(point=slice(6)).isel(bifurcation=slice(2))
-    assert couple_command.folds_met(low, *system) == {}
-    assert couple_command.folds_met(None, *system) == {}
+    assert couple_command.folds_crossed(low, *system) == {}
+    assert couple_command.folds_crossed(None, *system) == {}
 
 
 def test_what_is_undecided_is_told_and_drawn(ask, folder):
@@ -254,11 +254,11 @@ def test_a_jump_that_no_ramp_has_is_said_to_be_none(capsys):
     each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
     jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[np.nan] * 2] * 2
     made = {"jumps": (tuple(each), jumps), "standard_error": (tuple(each), errors)}
-    jump_voltages.report(xr.Dataset(made, each), ways=("up", "down"))
+    jump_voltages.report(xr.Dataset(made, each), directions=("up", "down"))
     _, up, down, hint, more = capsys.readouterr().out.splitlines()
     assert up.split() == ["up", "1.5000", "none"] and down.split() == ["down", "none", "none"]
     assert "--rate" in hint and "drive-branch" in more
-    jump_voltages.report(xr.Dataset(made, each).isel(structure=[0, 0]), ways=("up",))
+    jump_voltages.report(xr.Dataset(made, each).isel(structure=[0, 0]), directions=("up",))
     assert "none" not in capsys.readouterr().out
 
 
@@ -401,7 +401,7 @@ CASES = {
         (["--over", "D"], ["--over and --values", "both"]),
         (["--over", "colour", "--values", "1,2"], ["colour", "no parameter"]),
         (["--over", "D", "--values", "a"], ["--values a", "not numbers"]),
-        (["--count", "1"], ["count = 1", ">= 2"]),
+        (["--count", "1"], ["count = 1", "from 2"]),
         (["--tolerance", "0"], ["tolerance = 0.0 V", "0 < tolerance"]),
         (["--time", "-1"], ["time = -1.0 s", "0 < time"]),
         (["--eta0", "1.5"], ["--eta0 1.5", "FIRST:LAST"]),

@@ -58,7 +58,7 @@ def test_examples_can_be_typed_as_they_stand(capsys, monkeypatch, command, calle
     assert examples
     for example in examples:
         words = example.removeprefix(program).split("   ")[0].split()
-        arguments = cli.make_parser().parse_args(cli.with_negative_values(words))
+        arguments = cli.make_parser().parse_args(cli.join_negative_values(words))
         assert callable(arguments.run)
 
 

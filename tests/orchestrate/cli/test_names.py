@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from orchestrate.cli.output import name_of
-from orchestrate.cli.question import ranges
+from orchestrate.cli.question import format_ranges
 from orchestrate.structures import Structure
 
 ASKED = {"eta": (0.1, 0.5, 8.0), "direction": "up", "transient": 500, "start": None}
@@ -40,5 +40,7 @@ def test_a_name_can_be_read():
 def test_ranges_are_told_in_the_unit_of_people():
     values = [6.283185307179586 * number for number in range(10)]
     flags = [number in (1, 2, 3, 7) for number in range(10)]
-    assert ranges("frequency", values, flags) == "1 to 3, 7 Hz"
-    assert ranges("frequency", values, flags, most=1) == "1 to 3 Hz and 1 shorter ranges"
+    assert format_ranges("frequency", values, flags) == "1 to 3, 7 Hz"
+    assert (
+        format_ranges("frequency", values, flags, max_ranges=1) == "1 to 3 Hz and 1 shorter ranges"
+    )

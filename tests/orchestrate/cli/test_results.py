@@ -90,7 +90,7 @@ def test_a_file_of_ones_own_is_not_replaced_by_another_question(ask, folder):
     assert ask(*SWEEP, "--store", own).code == 0
     before = fingerprint(folder)
     assert sorted(before) == ["mine.nc", "mine.png"]
-    ask(*SWEEP, "--samples", "13", "--store", own).complaint(own, "another question", "force")
+    ask(*SWEEP, "--samples", "13", "--store", own).complaint(own, "different calculation", "force")
     own.unlink()
     for force in ([], ["--force"]):
         ask(*SWEEP, "--store", own, *force).complaint("mine.png", "another --store, or remove it")

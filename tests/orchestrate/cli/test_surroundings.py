@@ -18,7 +18,7 @@ from orchestrate import cli
 from orchestrate.__main__ import run
 from orchestrate.cli import main, process
 from orchestrate.cli.options import plain_float, plain_int
-from orchestrate.cli.process import Unfailing
+from orchestrate.cli.process import SafeStream
 from tests.faults import Surroundings
 
 from .commands import ROOT, all_end, below, end, wait_for
@@ -89,14 +89,14 @@ def test_an_output_that_nobody_reads_ends_nothing(monkeypatch):
 
 
 def test_what_is_lost_is_known():
-    stream = Unfailing(Broken())
+    stream = SafeStream(Broken())
     stream.write("told")
-    assert stream.complaint() == ""
+    assert stream.failure() == ""
     closed = io.StringIO()
     closed.close()
-    stream = Unfailing(closed)
+    stream = SafeStream(closed)
     assert stream.write("told") == 4
-    assert "closed file" in stream.complaint()
+    assert "closed file" in stream.failure()
 
 
 @pytest.mark.parametrize("error", [MemoryError, ImportError("libx.so: cannot map\nmore")])

@@ -79,7 +79,7 @@ def test_any_number_of_workers_gives_the_same_bytes(monkeypatch, tmp_path):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     asked = {"eta": [1.3, 1.32, 1.34], "starts": 120, "transient": 200}
     attractors(PAPER, **asked, jobs=1, store=tmp_path / "one.nc")
-    monkeypatch.setattr(runner, "WORTH", 0.0)
+    monkeypatch.setattr(runner, "MIN_PARALLEL_SECONDS", 0.0)
     attractors(PAPER, **asked, jobs=2, store=tmp_path / "two.nc")
     assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()
 

@@ -88,7 +88,10 @@ def test_the_passage(exported):
     figure = passage.draw(found, spectra, "quick: 1.45 V")
     panels = figure.axes[:10]
     assert [panel.get_ylabel() for panel in panels[::2]][1:3] == ["voltage in V", "$x_1$ in m"]
-    assert panels[1].get_title(loc="left") == f"delaminated: {passage.told(found['delaminated'])}"
+    assert (
+        panels[1].get_title(loc="left")
+        == f"delaminated: {passage.format_jumps(found['delaminated'])}"
+    )
     assert all(panel.collections for panel in panels[8:])
     power = drawn(panels[6])[0][:, 1]
     revolution = (found["bonded"].motor[-1] - found["bonded"].motor[-300]) / 29.9
@@ -150,7 +153,7 @@ def test_a_run_that_is_no_ramp(exported):
 
 def test_a_constant_voltage_has_no_way_back(exported):
     data = orchestrate.couple(*QUICK, voltage=1.4, duration=60.0, **HERE)
-    assert [name for _, _, name in weak_drive.ways(data)] == ["there"]
+    assert [name for _, _, name in weak_drive.split_directions(data)] == ["there"]
     weak_drive.draw({"delaminated": data})
 
 

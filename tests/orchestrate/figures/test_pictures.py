@@ -141,7 +141,7 @@ def test_names():
     assert labels.kind_of(0) == "not periodic"
     assert [labels.kind_of(n) for n in (1, 3)] == ["$T$", "$3T$"]
     assert labels.symbol("kappa") == r"$\kappa$" and labels.symbol("a_thing") == "a thing"
-    assert labels.parameters_text({"e": 0.7, "omega": 75.0}) == r"$e$ = 0.7, $\omega$ = 75 rad/s"
+    assert labels.format_parameters({"e": 0.7, "omega": 75.0}) == r"$e$ = 0.7, $\omega$ = 75 rad/s"
 
 
 def test_an_attractor_is_drawn_as_far_as_it_exists():

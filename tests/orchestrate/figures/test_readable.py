@@ -272,7 +272,7 @@ def test_down_does_not_hide_up(count):
         [line for line in top.lines if line.get_color() == c] for c in (style.BLUE, style.RED)
     )
     assert up and down and top.lines.index(up[0]) < top.lines.index(down[0])
-    if count < marks.FEW:
+    if count < marks.MAX_DISTINCT:
         assert up[0].get_markersize() > down[0].get_markersize()
         assert up[0].get_markerfacecolor() == "none"
     else:
@@ -377,17 +377,17 @@ def test_a_basin_names_all_that_is_in_it():
 
 def test_titles_tell_what_is_not_usual():
     data = xr.Dataset(attrs={**PAPER, "e": 0.3, "gamma": 1e-4, "bonded": 1})
-    assert labels.about(data) == "$e$ = 0.3, $D$ = 0.005, bonded"
+    assert labels.title_from_attributes(data) == "$e$ = 0.3, $D$ = 0.005, bonded"
     data.attrs |= {"d2": 0.1, "gamma": 1e-3, "k2": 2.0}
     told = r"$e$ = 0.3, $D_1$ = 0.005, $D_2$ = 0.05, $\kappa$ = 2, $\gamma$ = 0.001"
-    assert labels.about(data.assign_attrs(bonded=0)) == told
+    assert labels.title_from_attributes(data.assign_attrs(bonded=0)) == told
     swept = data.assign_attrs(bonded=0).assign_coords(D=[0.1, 0.2])
-    assert labels.about(swept) == r"$e$ = 0.3, $\kappa$ = 2, $\gamma$ = 0.001"
-    assert labels.about(xr.Dataset()) == ""
+    assert labels.title_from_attributes(swept) == r"$e$ = 0.3, $\kappa$ = 2, $\gamma$ = 0.001"
+    assert labels.title_from_attributes(xr.Dataset()) == ""
     shaken = data.assign_attrs(frequency=20.0 * np.pi, amplitude=2.5e-5)
-    assert labels.about(shaken).endswith(r"$\Omega/2\pi$ = 10 Hz, $a$ = 25 µm")
+    assert labels.title_from_attributes(shaken).endswith(r"$\Omega/2\pi$ = 10 Hz, $a$ = 25 µm")
     held = sweep(si=True).assign_coords(amplitude=lambda data: 3.0 / data.frequency**2)
-    assert labels.about(held).endswith(r"$a\,\Omega^2$ = 3 m/s$^2$ (0.306 g)")
+    assert labels.title_from_attributes(held).endswith(r"$a\,\Omega^2$ = 3 m/s$^2$ (0.306 g)")
 
 
 def test_titles_of_a_real_beam_tell_hertz_and_per_cent():
@@ -395,9 +395,11 @@ def test_titles_of_a_real_beam_tell_hertz_and_per_cent():
     beam = Structure.from_halves(m1=1.5, m2=1.2, **halves)
     data = xr.Dataset(attrs=beam.parameters())
     told = r"$f_1$ = 42 Hz, $f_2$ = 55 Hz, $\zeta_1$ = 0.7 %, $\zeta_2$ = 0.7 %, $\mu$ = 0.8"
-    assert labels.about(data) == f"{told}, $e$ = 0.7"
+    assert labels.title_from_attributes(data) == f"{told}, $e$ = 0.7"
     swept = data.assign_coords(kappa=[1.0, 2.0])  # what varies is no half's
-    assert r"\zeta" not in labels.about(swept) and "$D_1$ = 0.007" in labels.about(swept)
+    assert r"\zeta" not in labels.title_from_attributes(
+        swept
+    ) and "$D_1$ = 0.007" in labels.title_from_attributes(swept)
 
 
 DEUTERAN = np.array([[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]])

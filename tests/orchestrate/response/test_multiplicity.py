@@ -13,13 +13,13 @@ from orchestrate.dynamics.orbit_search import least_periods, solve_orbit, why_no
 from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.response.multiplicity import (
     IRREGULAR,
-    LEAST_GAP,
+    MIN_RELATIVE_GAP,
     REPEATED,
     UNDECIDED,
     decide,
     multiplicity,
-    over_size,
     repetition,
+    scale_states,
     spread_of,
 )
 from orchestrate.response.questions import Point
@@ -154,15 +154,15 @@ def test_a_gap_much_smaller_than_the_motion_has_a_size_of_its_own(coordinate, de
 def test_a_gap_of_rounding_errors_is_none(seed):
     noise = np.random.default_rng(seed).uniform(0.0, 1e-12, (40, 4))
     assert multiplicity(np.ones((40, 4)) + noise, TOLERANCE, 1.0, 1e-12) == 1
-    assert LEAST_GAP * TOLERANCE > 1e-12
+    assert MIN_RELATIVE_GAP * TOLERANCE > 1e-12
 
 
 @given(st.integers(0, 1000), st.integers(-200, 200))
 def test_nothing_depends_on_the_amplitude(seed, power):
     samples = np.random.default_rng(seed).normal(size=(40, 4))
     scale = 2.0**power
-    once = over_size(samples, 1.7, 0.3)
-    np.testing.assert_array_equal(over_size(scale * samples, 1.7, scale * 0.3), once)
+    once = scale_states(samples, 1.7, 0.3)
+    np.testing.assert_array_equal(scale_states(scale * samples, 1.7, scale * 0.3), once)
     assert repetition(once, 1e3).deviation == np.abs(np.diff(once[20:], axis=0)).max()
 
 
@@ -201,7 +201,7 @@ def states_of(deviation, count=200):
     n = np.arange(count)
     samples = np.tile([0.2, 0.8, 2.0, -1.0], (count, 1))
     samples[:, 0] += deviation(n)
-    return over_size(samples, 1.0, 1.0)
+    return scale_states(samples, 1.0, 1.0)
 
 
 def doubling(multiplier, count=200, width=0.0):
@@ -213,7 +213,7 @@ def doubling(multiplier, count=200, width=0.0):
 def test_what_has_died_or_dies_fast_has_repeated(orbit, more, multiplier):
     samples = repeat(orbit, 8 * len(orbit) + more + 40)
     rest = 1e-3 * np.abs(orbit).max() * multiplier ** np.arange(len(samples))
-    n, decided = decide(over_size(samples + rest[:, None]), TOLERANCE)
+    n, decided = decide(scale_states(samples + rest[:, None]), TOLERANCE)
     assert n == len(orbit)
     assert decided == REPEATED
 

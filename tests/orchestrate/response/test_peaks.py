@@ -7,7 +7,14 @@ import pytest
 
 from orchestrate.access import OSCILLATOR, EventInstance, Instance, begin, find, sampled
 from orchestrate.response.equations import absolute_accelerations
-from orchestrate.response.peaks import PEAKS, Motion, crests, orbit, peaks, periods_of
+from orchestrate.response.peaks import (
+    PEAKS,
+    Motion,
+    cubic_extrema,
+    peaks,
+    periods_to_sample,
+    sample_periods,
+)
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import respond
 from orchestrate.structures import Excitation, Structure
@@ -44,8 +51,8 @@ def test_against_dense_communication_points(structure, eta):
     point = Point(structure, Excitation.nondimensional(eta, structure))
     with Instance(find(OSCILLATOR).path) as instance:
         response = respond(instance, *point, (0.0, 0.0, 0.0, 0.0), 600, 48, 1e-2)
-        periods = periods_of(response.multiplicity, PERIODS)
-        states = orbit(instance, point, response, 648, periods)
+        periods = periods_to_sample(response.multiplicity, PERIODS)
+        states = sample_periods(instance, point, response, 648, periods)
     found = peaks([point], [periods], states[None])
     expected = largest(point, response.samples[-1], periods)
     errors = [abs(found[name][0] / size - 1.0) for name, size in zip(PEAKS, expected, strict=True)]
@@ -74,12 +81,12 @@ def test_crests_of_cubics_are_exact():
             continue
         inside = [t.real for t in slope.roots() if abs(t.imag) < 1e-12 and 0.0 < t.real < width]
         expected = np.polynomial.Polynomial(c)(inside[0])
-        assert crests(*ends, width)[0] == pytest.approx(expected, abs=1e-10)
+        assert cubic_extrema(*ends, width)[0] == pytest.approx(expected, abs=1e-10)
 
 
 @pytest.mark.parametrize(("multiplicity", "periods"), [(0, 4), (1, 1), (3, 3), (20, 8)])
 def test_periods_looked_at(multiplicity, periods):
-    assert periods_of(multiplicity, 8) == periods
+    assert periods_to_sample(multiplicity, 8) == periods
 
 
 @pytest.mark.usefixtures("exported")
@@ -89,8 +96,8 @@ def test_structures_of_a_chunk_do_not_mix():
         for structure, eta in CASES[3:8] + CASES[11:]:
             point = Point(structure, Excitation.nondimensional(eta, structure))
             response = respond(instance, *point, (0.0, 0.0, 0.0, 0.0), 50, 20, 1e-2)
-            spans.append(periods_of(response.multiplicity, 8))
-            orbits.append(orbit(instance, point, response, 70, spans[-1]))
+            spans.append(periods_to_sample(response.multiplicity, 8))
+            orbits.append(sample_periods(instance, point, response, 70, spans[-1]))
             points.append(point)
             alone.append(peaks([point], spans[-1:], orbits[-1][None]))
     together = peaks(points, spans, np.array(orbits))

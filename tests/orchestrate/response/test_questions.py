@@ -10,15 +10,16 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
+from orchestrate.checks import checked_integer
 from orchestrate.errors import InputError
-from orchestrate.response.questions import asked_along, numbers, one_point, series, states, whole
+from orchestrate.response.questions import numbers, one_point, series, series_arguments, states
 from orchestrate.structures import Structure
 
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
 
 
 def along(structure=OWN, eta=None, frequency=None, amplitude=None, over=None, values=None):
-    return series(**asked_along(structure, eta, frequency, amplitude, over, values))
+    return series(**series_arguments(structure, eta, frequency, amplitude, over, values))
 
 
 def test_eta_is_a_frequency_and_an_amplitude():
@@ -139,8 +140,8 @@ def test_a_dataset_is_no_state():
 @pytest.mark.parametrize("given", [0, 1.0, True, None, "7", 10**7])
 def test_whole_numbers(given):
     with pytest.raises(InputError, match="periods = .*expected a whole number from 1 to"):
-        whole("periods", given, 1)
-    assert whole("periods", np.int64(3), 1) == 3
+        checked_integer("periods", given, 1)
+    assert checked_integer("periods", np.int64(3), 1) == 3
 
 
 def test_numbers_of_any_kind():

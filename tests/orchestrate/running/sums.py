@@ -28,7 +28,7 @@ class Squares(Job):
     def items(self, inputs: Inputs) -> range:
         return range(self.size)
 
-    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+    def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
         time.sleep(self.pause)
         assert self.fail_at not in items, "as it was told to"
         return {"square": np.array([float(item * item) for item in items])}
@@ -43,12 +43,12 @@ class Sums(Squares):
 
     sequential: ClassVar[bool] = True
 
-    def lanes(self) -> int:
+    def independent_series(self) -> int:
         return 2
 
-    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+    def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
         squares = super().work(fmus, items, None)["square"]
-        return {"sum": np.cumsum(squares) + (carry["sum"][-1] if carry else 0.0)}
+        return {"sum": np.cumsum(squares) + (previous["sum"][-1] if previous else 0.0)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         return xr.Dataset({"sum": ("number", table["sum"])})
@@ -66,10 +66,10 @@ class Gathered(Squares):
     def items(self, inputs: Inputs) -> range:
         return range(self.size + 1)
 
-    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
-        if carry is None:
+    def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
+        if previous is None:
             return super().work(fmus, items, None)
-        return {"whole": carry["square"].sum(keepdims=True)}
+        return {"whole": previous["square"].sum(keepdims=True)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         return xr.Dataset({"square": ("number", table["square"]), "whole": table["whole"][0]})
@@ -90,7 +90,7 @@ class Roots(Job):
     def items(self, inputs: Inputs) -> list[float]:
         return [float(value) for value in inputs[self.source].square.values]
 
-    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+    def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
         return {"root": np.sqrt(np.array(items))}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
@@ -116,7 +116,7 @@ class Forgetful(Job):
     pause: float = 0.0
     chunk: ClassVar[int] = 10
     sequential: ClassVar[bool] = True
-    lead: ClassVar[int] = 8
+    warmup_items: ClassVar[int] = 8
 
     def count(self) -> int:
         return self.size
@@ -124,12 +124,12 @@ class Forgetful(Job):
     def items(self, inputs: Inputs) -> range:
         return range(self.size)
 
-    def seam(self, table: Table) -> bytes:
+    def boundary_state(self, table: Table) -> bytes:
         return table["value"][-1].tobytes()
 
-    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+    def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
         time.sleep(self.pause * len(items))
-        value, values = float(carry["value"][-1]) if carry else 0.3, []
+        value, values = float(previous["value"][-1]) if previous else 0.3, []
         for item in items:
             chaotic = self.stubborn[0] <= item < self.stubborn[1]
             value = 3.9 * value * (1.0 - value) if chaotic else 1.0 / (item + 2.0) + 1e-9 * value
@@ -146,7 +146,7 @@ class Noise(Squares):
 
     size: int = 30
 
-    def work(self, fmus: Any, items: Any, carry: Table | None) -> Table:
+    def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
         rows = [np.random.default_rng(item).uniform(size=1000) for item in items]
         return {"noise": np.array(rows)}
 

@@ -12,7 +12,7 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StoreError
 from orchestrate.running.checksum import ATTRIBUTE, checksum
-from orchestrate.running.journal import Journal, journal_path, seal
+from orchestrate.running.journal import Journal, checksum_of_parts, journal_path
 from orchestrate.running.runner import answer
 from orchestrate.running.store import load, write_netcdf
 from tests.faults import FILE_DAMAGE, ROW_DAMAGE, a_shorter_row, arrays, rows, too_many_rows
@@ -90,7 +90,7 @@ def test_sealed_rows_that_are_not_this_jobs_are_computed_anew(
     journal = Journal(path, {}, "")
     for index, data in rows(path):
         journal._query(
-            "UPDATE chunks SET sha256 = ? WHERE i = ?", journal._seal(index, data), index
+            "UPDATE chunks SET sha256 = ? WHERE i = ?", journal._row_checksum(index, data), index
         )
     journal.close()
     assert answer(JOB, {"store": interrupted}, find).square.values.tolist() == SQUARES
@@ -115,7 +115,7 @@ def test_a_row_damaged_while_the_job_runs_makes_no_shorter_result(interrupted, f
 
 
 def test_a_seal_covers_where_parts_end():
-    assert seal(b"ab", b"c") != seal(b"a", b"bc")
+    assert checksum_of_parts(b"ab", b"c") != checksum_of_parts(b"a", b"bc")
 
 
 @pytest.mark.parametrize("stop", range(4))
@@ -146,7 +146,7 @@ def test_rows_of_an_earlier_version_are_not_taken(interrupted, find):
     journal = Journal(journal_path(interrupted), {}, "")
     journal._query("DELETE FROM about WHERE name = 'sha256'")
     journal.close()
-    with pytest.raises(StoreError, match=r"earlier version.*remove it to begin anew"):
+    with pytest.raises(StoreError, match=r"earlier version.*remove it to start again"):
         answer(JOB, {"store": interrupted}, find)
 
 

@@ -76,7 +76,7 @@ def test_mat(data, tmp_path):
 
 
 def test_what_does_not_fit_or_is_unknown(data, tmp_path, monkeypatch):
-    monkeypatch.setattr(formats, "MOST_ROWS", 2)
+    monkeypatch.setattr(formats, "MAX_SHEET_ROWS", 2)
     with pytest.raises(InputError, match="has 3 rows, a sheet at most 2; expected csv"):
         formats.write(data, tmp_path / "a.xlsx")
     with pytest.raises(InputError, match="format 'doc'; expected one of csv"):

@@ -59,7 +59,7 @@ def test_processes_give_equal_files(find, tmp_path, monkeypatch, stubborn):
     job = Forgetful("job", stubborn=stubborn, pause=1e-4)
     one, many = tmp_path / "one.nc", tmp_path / "many.nc"
     answer(job, {"jobs": 1, "store": one}, find)
-    monkeypatch.setattr(runner, "WORTH", 0.0)
+    monkeypatch.setattr(runner, "MIN_PARALLEL_SECONDS", 0.0)
     answer(job, {"jobs": 3, "store": many}, find)
     assert one.read_bytes() == many.read_bytes()
 
@@ -75,7 +75,9 @@ def test_what_is_on_disk_is_certain(find, tmp_path, models):
     guess = progress.next_task()
     assert (certain.guess, guess.guess) == (False, True)
     progress.under_way.add(guess.chunk.index)
-    progress.enter(guess, *compute(progress.job, {}, guess.items, guess.carry, guess.lead))
+    progress.add_result(
+        guess, *compute(progress.job, {}, guess.items, guess.previous, guess.warmup_items)
+    )
     store.close()
     journal = Journal(journal_path(path), {}, "")
     assert journal.indices() == set()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from orchestrate.running import identity
-from orchestrate.running.identity import code_of, difference, imported_names
+from orchestrate.running.identity import code_digests, difference, imported_names
 from orchestrate.running.job import brief, plain
 
 from .sums import Squares
@@ -51,36 +51,36 @@ def ours(tmp_path, monkeypatch):
 
 
 def test_code_is_the_closure_of_imports(ours):
-    assert list(code_of("small.sweep")) == ["small.deep", "small.sweep", "small.tools"]
+    assert list(code_digests("small.sweep")) == ["small.deep", "small.sweep", "small.tools"]
 
 
 @pytest.mark.parametrize(
     ("file", "old", "new"), [("tools.py", "LIMIT = 1", "LIMIT = 2"), ("deep.py", "1", "2")]
 )
 def test_an_edit_of_a_constant_or_a_function_is_seen(ours, file, old, new):
-    before = code_of("small.sweep")
+    before = code_digests("small.sweep")
     (ours / file).write_text((ours / file).read_text().replace(old, new))
     identity.read_source.cache_clear()
-    line = difference({"code": before}, {"code": code_of("small.sweep")})
+    line = difference({"code": before}, {"code": code_digests("small.sweep")})
     assert line == f"small/{file} changed since"
 
 
 def test_an_edit_of_what_a_module_has_compiled_is_seen(ours):
     (ours / "tools.c").write_text("int limit = 1;")
     identity.read_source.cache_clear()
-    before = code_of("small.sweep")
+    before = code_digests("small.sweep")
     (ours / "tools.c").write_text("int limit = 2;")
     identity.read_source.cache_clear()
-    line = difference({"code": before}, {"code": code_of("small.sweep")})
+    line = difference({"code": before}, {"code": code_digests("small.sweep")})
     assert line == "small/tools.py changed since"
 
 
 def test_an_edit_elsewhere_is_not(ours):
-    before = code_of("small.sweep")
+    before = code_digests("small.sweep")
     (ours / "other.py").write_text("x = 1")
     (ours / "running" / "pool.py").write_text("x = 1")
     identity.read_source.cache_clear()
-    assert code_of("small.sweep") == before
+    assert code_digests("small.sweep") == before
 
 
 def test_a_long_list_is_told_by_its_ends_and_a_digest():

@@ -15,8 +15,8 @@ import xarray as xr
 
 from orchestrate.errors import InputError, StaleError, StoreError, WorkerError
 from orchestrate.running import runner
-from orchestrate.running.cluster import Cluster, is_no_lost_connection
-from orchestrate.running.executors import at_work, compute
+from orchestrate.running.cluster import Cluster, is_worth_logging
+from orchestrate.running.executors import compute, running_workers
 from orchestrate.running.journal import Journal, Lock, journal_path
 from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
@@ -62,7 +62,7 @@ def test_what_gathers_starts_when_all_others_are_there(find, size):
 def test_processes_give_what_this_process_gives(find, monkeypatch, job):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     alone = answer(job, {"jobs": 1}, find)
-    monkeypatch.setattr(runner, "WORTH", 0.0)
+    monkeypatch.setattr(runner, "MIN_PARALLEL_SECONDS", 0.0)
     assert answer(job, {"jobs": 2}, find).identical(alone)
 
 
@@ -85,8 +85,10 @@ def test_jobs_side_by_side_come_in_their_order(find):
 
 def test_the_bar_says_what_is_done_aside(find, monkeypatch, capfd):
     """While its last chunk is at work the bar stands still: what it does is said before."""
-    monkeypatch.setattr(runner, "SEEN", 0.0)
-    monkeypatch.setattr(Sums, "aside", lambda self, first: "counting again" if first == 8 else "")
+    monkeypatch.setattr(runner, "BAR_DELAY", 0.0)
+    monkeypatch.setattr(
+        Sums, "progress_note", lambda self, first: "counting again" if first == 8 else ""
+    )
     answer(Sums("sums"), {"jobs": 1}, find)
     shown = capfd.readouterr().err
     assert "sums, counting again:" in shown and "sums:" in shown
@@ -203,7 +205,7 @@ def test_a_file_of_others_is_never_replaced(find, tmp_path, kind):
         path.write_text("notes" * (kind == "text"))
     before = path.read_bytes()
     for force in (False, True):
-        with pytest.raises(StoreError, match=r"squares\.nc: .*remove it to begin anew"):
+        with pytest.raises(StoreError, match=r"squares\.nc: .*remove it to start again"):
             answer(Squares("squares"), {"store": path, "force": force}, find)
         assert path.read_bytes() == before
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
@@ -248,7 +250,7 @@ def test_a_flipped_bit_of_the_journal(find, tmp_path, monkeypatch, place):
 def test_a_journal_that_is_none(find, tmp_path):
     path = tmp_path / "squares.nc"
     journal_path(path).write_bytes(b"not a database" * 1000)
-    with pytest.raises(StoreError, match="remove it to begin anew"):
+    with pytest.raises(StoreError, match="remove it to start again"):
         answer(Squares("squares"), {"store": path}, find)
 
 
@@ -287,12 +289,12 @@ def test_of_dasks_log_only_a_lost_connection_is_left_out():
         told = (type(error), error, None) if error else None
         return logging.LogRecord("tornado", logging.ERROR, "", 1, text, (), told)
 
-    assert is_no_lost_connection(record("slow"))
-    assert is_no_lost_connection(record("wrong", ValueError("5")))
-    assert not is_no_lost_connection(record("", ConnectionRefusedError(111, "refused")))
-    assert not is_no_lost_connection(record("exception=CommClosedError('in <TCP>')"))
-    assert not is_no_lost_connection(record("", asyncio.CancelledError()))
-    assert not is_no_lost_connection(record("Failed to reconnect to scheduler after 5 seconds"))
+    assert is_worth_logging(record("slow"))
+    assert is_worth_logging(record("wrong", ValueError("5")))
+    assert not is_worth_logging(record("", ConnectionRefusedError(111, "refused")))
+    assert not is_worth_logging(record("exception=CommClosedError('in <TCP>')"))
+    assert not is_worth_logging(record("", asyncio.CancelledError()))
+    assert not is_worth_logging(record("Failed to reconnect to scheduler after 5 seconds"))
 
 
 class Lost:
@@ -335,7 +337,7 @@ def false_client(monkeypatch, client):
     async def greet(address):
         pass
 
-    monkeypatch.setattr("orchestrate.running.cluster.greet", greet)
+    monkeypatch.setattr("orchestrate.running.cluster.check_scheduler", greet)
     return distributed
 
 
@@ -348,8 +350,8 @@ def test_a_scheduler_that_ends_is_told(find, tmp_path, monkeypatch, when):
 
 def test_what_has_been_computed_needs_no_scheduler_for_the_end(monkeypatch):
     false_client(monkeypatch, functools.partial(Lost, when="shutdown"))
-    with at_work(Cluster("tcp://127.0.0.1:1")) as workers:
-        assert workers.room() == 2
+    with running_workers(Cluster("tcp://127.0.0.1:1")) as workers:
+        assert workers.max_in_flight() == 2
 
 
 def test_workers_of_a_cluster_that_die_are_told(find, monkeypatch):
@@ -383,15 +385,15 @@ def test_a_bar_that_is_shown_early_ends_its_line(find, monkeypatch, capsys):
 def shown_early(describe):
     """Describe a job that began long before its bar."""
 
-    def described(self, bar, aside):
-        self.clock -= 10.0
-        describe(self, bar, aside)
+    def described(self, bar, note):
+        self.start_time -= 10.0
+        describe(self, bar, note)
 
     return described
 
 
 def test_a_worker_that_dies_is_told(find, monkeypatch):
-    monkeypatch.setattr(runner, "WORTH", 0.0)
+    monkeypatch.setattr(runner, "MIN_PARALLEL_SECONDS", 0.0)
     with pytest.raises(WorkerError, match="a worker process ended without a word"):
         answer(Dying("dying", size=30), {"jobs": 2}, find)
 
@@ -399,10 +401,10 @@ def test_a_worker_that_dies_is_told(find, monkeypatch):
 class Dying(Squares):
     """Kills the process that computes its last chunks."""
 
-    def work(self, fmus, items, carry):
+    def work(self, fmus, items, previous):
         if items[0] > 6:
             os.kill(os.getpid(), 9)
-        return super().work(fmus, items, carry)
+        return super().work(fmus, items, previous)
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from orchestrate.access import OSCILLATOR, find
-from orchestrate.response.questions import asked_along
+from orchestrate.response.questions import series_arguments
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.journal import journal_path
 from orchestrate.running.options import RunOptions
@@ -39,7 +39,7 @@ def job(figure: str, direction: str, low: float = 0.1, high: float = 8.0, step: 
     e, D = FIGURES[figure]
     etas = np.round(np.arange(low, high + 0.5 * step, step), 3)
     structure = Structure.nondimensional(e=e, D=D)
-    asked = asked_along(structure, etas, None, None)
+    asked = series_arguments(structure, etas, None, None)
     return SweepJob(**asked, name="sweep", direction=direction, transient=40, samples=40)
 
 

@@ -18,6 +18,6 @@ def play(progress: Progress, workers: int, seed: int, stop: int = -1) -> None:
             progress.under_way.add(task.chunk.index)
             busy.append(task)
         task = busy.pop(draw.randrange(len(busy)))
-        answered = compute(progress.job, fmus, task.items, task.carry, task.lead)
-        progress.enter(task, *answered)
+        answered = compute(progress.job, fmus, task.items, task.previous, task.warmup_items)
+        progress.add_result(task, *answered)
         stop -= 1

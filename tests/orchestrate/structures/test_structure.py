@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
 from orchestrate.structures import PARAMETERS, Structure
-from orchestrate.structures.ranges import NUMBERS as RANGES
+from orchestrate.structures.ranges import RATIO_QUANTITIES as RANGES
 from orchestrate.structures.ranges import STRUCTURE
 
 from .strategies import NUMBERS, RATIO, SCALE, SMALL, STRUCTURES

@@ -61,7 +61,7 @@ class ImpactPoints(Counting):
         """A step up to an impact: its defect, and its length, 0 where it was refused."""
         if voltage != self.voltage:
             self.voltage = voltage
-            self.shaking = self._look(self.motion)
+            self.shaking = self._outputs_with_force(self.motion)
         done, h, event = self.both(h)
         force = self.force_of(done.motion, h)
         taken = done.shaking.box_force_work - self.shaking.box_force_work
@@ -73,10 +73,10 @@ class ImpactPoints(Counting):
             return size, 0.0
         self.slope = end_slope(force, h)
         self.balance.add(self.motion, done.motion, done.acceleration, defect, h)
-        self._go_on(done, h)
+        self._advance(done, h)
         if event:
             self.handle()
-            self._begin_anew()
+            self._restart_extrapolation()
         return size, h
 
     def both(self, h):
@@ -90,15 +90,15 @@ class ImpactPoints(Counting):
                 self.oscillator.restore()
                 self.shaker.restore()
             motion, length, event = self.flight(acceleration, h)
-            force = self._told_force(motion, length)
+            force = self._force_for_shaker(motion, length)
             self.shaker.put(*force, self.voltage)
             self.shaker.step(self.time, length)
             self.passes += 1
-            if i + 1 == passes or (last and self._settled(motion, last)):
+            if i + 1 == passes or (last and self._converged(motion, last)):
                 break
             last = motion
             self.shaker.put(motion.box_force, end_slope(force, length), 0.0, 0.0, self.voltage)
-            acceleration = self._told_acceleration(self._shaking(), length)
+            acceleration = self._acceleration_for_structure(self._shaking(), length)
         return Step(acceleration, motion, self._shaking()), length, event
 
     def flight(self, told, h):

@@ -5,7 +5,7 @@ import pytest
 
 from orchestrate import InputError, capture
 from orchestrate.weak_drive.averaged import dividing_speed, folds
-from orchestrate.weak_drive.capture import CaptureJob, border_between
+from orchestrate.weak_drive.capture import CaptureJob, threshold_voltage
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.settling import CONVERGED, UNDECIDED, Outcome
 
@@ -98,7 +98,7 @@ def test_undecided_starts_widen_the_border(known):
             return Outcome(CONVERGED)
         return Outcome(CONVERGED, True, 1.0) if voltage > 1.47 else Outcome(UNDECIDED)
 
-    ends = border_between(known, [start(voltage) for voltage in known], start, 0.01)
+    ends = threshold_voltage(known, [start(voltage) for voltage in known], start, 0.01)
     low, high = (end.voltage for end in ends)
     assert 1.27 <= low < 1.28 and 1.47 < high <= 1.48
     assert len(asked) < 30
@@ -112,7 +112,7 @@ def test_of_several_borders_the_highest():
         return Outcome(CONVERGED) if captured else Outcome(CONVERGED, True, 1.0)
 
     known = (1.0, 1.15, 1.3, 1.5)
-    ends = border_between(known, [start(voltage) for voltage in known], start, 0.01)
+    ends = threshold_voltage(known, [start(voltage) for voltage in known], start, 0.01)
     low, high = (end.voltage for end in ends)
     assert low < 1.4 <= high and high - low <= 0.01
 
@@ -169,10 +169,10 @@ def test_no_more_voltage_than_the_speed_beyond_takes_is_not_simulated():
         ({"voltage": 1.5}, ["voltage = 1.5", "(lowest, highest)"]),
         ({"voltage": (1.6, 1.5)}, ["voltage = (1.6, 1.5)", "(lowest, highest)"]),
         ({"voltage": (-1.0, 1.5)}, ["voltage = -1.0", "0 <= voltage"]),
-        ({"count": 1}, ["count = 1", ">= 2"]),
+        ({"count": 1}, ["count = 1", "from 2"]),
         ({"tolerance": 0.0}, ["tolerance = 0.0", "0 < tolerance"]),
         ({"time": -1.0}, ["time = -1.0", "0 < time"]),
-        ({"stay": 0}, ["stay = 0", ">= 1"]),
+        ({"stay": 0}, ["stay = 0", "from 1"]),
         ({"over": "D"}, ["over = 'D'", "both"]),
         ({"over": "colour", "values": [1.0]}, ["colour", "no parameter"]),
         ({"over": "rotor_inertia", "values": [-1.0]}, ["rotor_inertia = -1.0", "<="]),

@@ -30,7 +30,7 @@ def done(kind, system, scheme, speed=1.2):
     voltages = [1.4 + 0.3 * math.sin(0.02 * i // 7) for i in range(COUNT)]
     with master(system, scheme, rest(speed), kind=kind) as m:
         assert type(m) is kind
-        kept, seen, at = np.full((COUNT, len(m.memory())), math.nan), [], 0
+        kept, seen, at = np.full((COUNT, len(m.get_state())), math.nan), [], 0
         m.revolution = Revolution.begin(m.motion, m.shaking)
         while at < COUNT:
             at = m.run(voltages, at, kept=kept)
@@ -40,7 +40,7 @@ def done(kind, system, scheme, speed=1.2):
         m.revolution = None
         m.run(voltages[:2], h=0.03)
         states = [one.instance.save_state() for one in (m.oscillator, m.shaker)]
-        return kept, seen, m.memory(), states
+        return kept, seen, m.get_state(), states
 
 
 @pytest.mark.parametrize("scheme", SCHEMES, ids=str)
@@ -88,11 +88,11 @@ def test_fmus_of_other_forms_step_in_python():
 def test_a_library_that_cannot_be_loaded_is_no_failure(tmp_path, monkeypatch):
     (tmp_path / "compiled.so").write_bytes(b"nothing")
     monkeypatch.setattr(compiled, "library", lambda source: tmp_path / "compiled.so")
-    assert compiled.loaded.__wrapped__() is None
+    assert compiled.step_function.__wrapped__() is None
 
 
 def test_without_a_library_python_does_it(monkeypatch):
-    monkeypatch.setattr(compiled, "loaded", lambda: None)
+    monkeypatch.setattr(compiled, "step_function", lambda: None)
     with master(QUICK, Scheme(), rest(), kind=master_of) as m:
         assert type(m) is Master
 
@@ -117,6 +117,6 @@ def test_no_compiler_is_no_failure(tmp_path, monkeypatch):
 def test_structures_have_the_sizes_of_the_source():
     """A field forgotten on one side would shift all that follow."""
     with master(QUICK, Scheme(), rest()) as m:
-        numbers = [8 * len(m.memory()), 8 * len(compiled.PLACES)]
+        numbers = [8 * len(m.get_state()), 8 * len(compiled.PLACES)]
     sizes = (ctypes.c_uint * 3).in_dll(ctypes.CDLL(str(libraries.library(SOURCE))), "sizes")
     assert list(sizes) == [ctypes.sizeof(Pair), *numbers]

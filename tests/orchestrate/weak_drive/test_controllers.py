@@ -7,7 +7,7 @@ import pytest
 
 from orchestrate import Course, InputError, SpeedControl, SpeedGradient, couple, passage
 from orchestrate.access import OSCILLATOR, SHAKER, find
-from orchestrate.weak_drive.controllers import Seen
+from orchestrate.weak_drive.controllers import Measurement
 from orchestrate.weak_drive.couple import couple_job
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.schedule import Constant
@@ -106,17 +106,17 @@ def test_proportional_control_and_a_wanted_speed_that_rises():
     memory = control.begin(5.0)
     for expected in (5.0, 7.0, 9.0, 10.0, 10.0):
         assert memory[0] == expected
-        voltage, memory = control.act(Seen(0.0, expected - 1.0, 12.0, 0.5), memory)
+        voltage, memory = control.update(Measurement(0.0, expected - 1.0, 12.0, 0.5), memory)
         assert voltage == 2.0
-    assert control.act(Seen(0.0, 0.0, -3.0, 0.5), memory)[0] == 0.0  # only what there is
+    assert control.update(Measurement(0.0, 0.0, -3.0, 0.5), memory)[0] == 0.0  # only what there is
     backward = SpeedControl(speed=-10.0, gain=2.0)
-    assert backward.act(Seen(0.0, -9.0, -3.0, 0.5), backward.begin(0.0))[0] == -2.0
+    assert backward.update(Measurement(0.0, -9.0, -3.0, 0.5), backward.begin(0.0))[0] == -2.0
 
 
 def test_backward_too():
     control = SpeedGradient(filter_time=1.0, passed=5.0)
-    assert control.act(Seen(0.0, -3.0, -8.0, 0.01), (-2.0,))[0] == -8.0
-    assert abs(control.act(Seen(0.0, -1.0, -8.0, 0.01), (-2.0,))[0]) == 0.0
+    assert control.update(Measurement(0.0, -3.0, -8.0, 0.01), (-2.0,))[0] == -8.0
+    assert abs(control.update(Measurement(0.0, -1.0, -8.0, 0.01), (-2.0,))[0]) == 0.0
 
 
 def test_it_goes_on_with_the_same_bits():
@@ -153,3 +153,10 @@ def test_mistakes(make, parts):
     with pytest.raises(InputError) as caught:
         make()
     assert all(part in str(caught.value) for part in parts), str(caught.value)
+
+
+def test_the_old_name_of_update_warns_and_answers_the_same():
+    control = SpeedControl(speed=10.0, gain=0.1, reset_time=1.0)
+    measured, state = Measurement(0.0, 9.0, 12.0, 0.5), control.begin(0.0)
+    with pytest.warns(DeprecationWarning, match="update"):
+        assert control.act(measured, state) == control.update(measured, state)

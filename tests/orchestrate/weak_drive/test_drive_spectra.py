@@ -133,8 +133,10 @@ def test_mistakes():
     strong = QUICK.drive.replace(armature_resistance=1e-3 * QUICK.drive.armature_resistance)
     with pytest.raises(InputError, match="voltage: expected one"):
         voltage_at_resonance(QUICK.structure, strong)
-    with pytest.raises(InputError, match="points = 3: expected a whole number >= 4"):
+    with pytest.raises(InputError, match="points = 3: expected a whole number from 4"):
         drive_spectra(*QUICK, points=3)
+    with pytest.raises(InputError, match="revolutions = True: expected a whole number from 1"):
+        drive_spectra(*QUICK, revolutions=True)
     with pytest.raises(InputError, match="highest = 99: expected 0 < highest <= points/2 = 32"):
         drive_spectra(*QUICK, points=64, highest=99)
     with pytest.raises(InputError, match="not two revolutions"):

@@ -39,10 +39,10 @@ class Rotor:
             speeds.append(self.speed)
         return {"speed": np.array(speeds)}
 
-    def memory(self):
+    def get_state(self):
         return {"speed": np.array([self.speed])}
 
-    def remember(self, table):
+    def set_state(self, table):
         self.speed = float(table["speed"][0])
 
 

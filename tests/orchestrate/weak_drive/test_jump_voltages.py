@@ -6,8 +6,8 @@ import pytest
 from orchestrate import InputError, jump_voltages
 from orchestrate.weak_drive.averaged import folds
 from orchestrate.weak_drive.jump_voltages import (
+    DIRECTIONS,
     KINDS,
-    WAYS,
     JumpVoltagesJob,
     at_zero,
     extrapolate,
@@ -55,8 +55,8 @@ RAMPS = {  # voltages of jumps through both FMUs at 1e-5, 3e-5 and 1e-4, and the
 def test_an_error_that_the_fit_alone_does_not_tell():
     """Down, terms of the lag cancel: the last one of the fit changes a tenth of what is missed."""
     rates = (1e-5, 3e-5, 1e-4)
-    table = [[[RAMPS[kind, way][1][i] for way in WAYS] for kind in KINDS] for i in range(3)]
-    rows = np.stack([table, np.full_like(table, 1.3)], axis=2).reshape(-1, 2, len(WAYS))
+    table = [[[RAMPS[kind, way][1][i] for way in DIRECTIONS] for kind in KINDS] for i in range(3)]
+    rows = np.stack([table, np.full_like(table, 1.3)], axis=2).reshape(-1, 2, len(DIRECTIONS))
     ramps = tuple(Ramp(1.4, 1.62, rate) for rate in rates)
     job = JumpVoltagesJob("jump_voltages", *QUICK, ramps, Scheme("rollback", 0.4))
     found = job.dataset({"jumps": rows}, {})

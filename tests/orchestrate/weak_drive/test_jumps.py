@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, SMOOTH, Criterion, Way, find_passing
+from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, SMOOTH, Criterion, SweepLeg, find_passing
 
 from .coupled import BEAM, QUICK
 from .test_couple import run
@@ -94,7 +94,7 @@ def way(speed, rate):
     """A ramp from 1.2 to 1.6 and the speed over its voltage, a revolution each 5/omega."""
     time = np.arange(0.0, 0.4 / rate, 5.0)
     eta0 = 1.2 + rate * time
-    return Way(time, eta0, speed(eta0, time))
+    return SweepLeg(time, eta0, speed(eta0, time))
 
 
 @pytest.mark.parametrize("rate", [1e-4, 1e-5])
@@ -105,7 +105,7 @@ def test_a_fast_change_is_a_jump_at_every_rate(rate):
         free = np.maximum(time - 0.3 / rate, 0.0)
         return eta0 - 0.6 * (eta0 - 1.2) * np.exp(-0.02 * free)
 
-    jump = find_passing(way(speed, rate), 0.02, up=True, divide=1.4)
+    jump = find_passing(way(speed, rate), 0.02, up=True, threshold=1.4)
     assert jump.look == JUMP
     assert way(speed, rate).eta0[jump.row] == pytest.approx(1.5 + 35.0 * rate, abs=10 * rate)
 
@@ -119,9 +119,9 @@ def test_the_comings_and_goings_of_an_irregular_motion_make_no_jump():
         return regular + 0.05 * np.sin(2.0 * np.pi * time / 55.0) * (np.abs(free - 150.0) > 150.0)
 
     irregular = way(speed, 1e-4)
-    assert find_passing(irregular, 0.02, up=True, divide=1.4).look == DOUBTFUL
+    assert find_passing(irregular, 0.02, up=True, threshold=1.4).look == DOUBTFUL
     unclear = Criterion(clearness=0.0)
-    assert find_passing(irregular, 0.02, up=True, divide=1.4, criterion=unclear).look == JUMP
+    assert find_passing(irregular, 0.02, up=True, threshold=1.4, criterion=unclear).look == JUMP
 
 
 @pytest.mark.parametrize("rate", [3e-5, 1e-5])
@@ -131,7 +131,7 @@ def test_a_steep_branch_is_no_jump(rate):
     def speed(eta0, time):
         return eta0 - 0.6 * np.clip(eta0 - 1.2, 0.0, 0.3) + np.clip(4.0 * (eta0 - 1.5), 0.0, 0.18)
 
-    assert find_passing(way(speed, rate), 0.02, up=True, divide=1.4).look == DOUBTFUL
+    assert find_passing(way(speed, rate), 0.02, up=True, threshold=1.4).look == DOUBTFUL
 
 
 def test_steps_of_the_voltage_are_no_jumps():
@@ -139,5 +139,5 @@ def test_steps_of_the_voltage_are_no_jumps():
     time = np.arange(0.0, 4000.0, 5.0)
     count, since = np.floor(time / 200.0), time % 200.0
     speed = 1.2 + 0.02 * (count - np.exp(-0.02 * since))
-    steps = Way(time, 1.2 + 0.02 * count, speed)
-    assert find_passing(steps, 0.02, up=True, divide=1.4).look == SMOOTH
+    steps = SweepLeg(time, 1.2 + 0.02 * count, speed)
+    assert find_passing(steps, 0.02, up=True, threshold=1.4).look == SMOOTH

@@ -112,9 +112,9 @@ class Recording(Master):
         super().__init__(*arguments)
         self.lengths = []
 
-    def _go_on(self, done, h):
+    def _advance(self, done, h):
         self.lengths.append(h)
-        super()._go_on(done, h)
+        super()._advance(done, h)
 
 
 def controlled(case, tolerance):
@@ -149,7 +149,7 @@ def test_the_control_goes_on_with_the_same_bits():
     with master(QUICK, scheme, rest(1.2)) as m:
         for _ in range(41):
             m.step(1.5)
-        kept = m.memory(), m.oscillator.instance.save_state(), m.shaker.instance.save_state()
+        kept = m.get_state(), m.oscillator.instance.save_state(), m.shaker.instance.save_state()
         assert m.level > 0
         for _ in range(41):
             m.step(1.5)
@@ -157,7 +157,7 @@ def test_the_control_goes_on_with_the_same_bits():
     with master(QUICK, scheme, rest(1.2)) as m:
         m.oscillator.instance.restore_state(kept[1])
         m.shaker.instance.restore_state(kept[2])
-        m.remember(kept[0])
+        m.set_state(kept[0])
         for _ in range(41):
             m.step(1.5)
         assert state_of(m) == expected

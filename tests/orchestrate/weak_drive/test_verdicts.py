@@ -17,12 +17,18 @@ from orchestrate.weak_drive.jumps import (
     UNFINISHED,
     Criterion,
     Passing,
-    Way,
+    SweepLeg,
     find_passing,
 )
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.schedule import Ramp
-from orchestrate.weak_drive.verdicts import Theory, agreed, is_doubtful, reason, theories
+from orchestrate.weak_drive.verdicts import (
+    Theory,
+    check_against_theory,
+    is_doubtful,
+    reason,
+    theories,
+)
 from tools.trust.verdicts import draw, with_slope
 
 from .coupled import BEAM, QUICK, System
@@ -75,11 +81,11 @@ def test_no_record_makes_a_jump_of_a_vertical_branch():
     assert "without a gap" in str(found.no_jump.item())
     falls = np.flatnonzero(found.eta0.diff("revolution").values < -1e-9)
     time = found.time.values[falls] * edge.structure.omega
-    way = Way(time, found.eta0.values[falls], found.Omega.values[falls])
+    way = SweepLeg(time, found.eta0.values[falls], found.Omega.values[falls])
     b, threshold = edge.drive.b(edge.structure), averaged.dividing_speed(*edge)
-    assert find_passing(way, b, up=False, divide=threshold).look == DOUBTFUL
+    assert find_passing(way, b, up=False, threshold=threshold).look == DOUBTFUL
     weaker = Criterion(strength=0.0)
-    assert find_passing(way, b, up=False, divide=threshold, criterion=weaker).look == JUMP
+    assert find_passing(way, b, up=False, threshold=threshold, criterion=weaker).look == JUMP
 
 
 def test_what_has_not_settled_is_undecided():
@@ -105,7 +111,7 @@ def test_a_verdict_is_the_same_from_other_checkpoints_and_at_full_resolution():
     scheme = Scheme("rollback", 0.4 / omega)
     job = couple_job(*CLOSE, ramp, scheme)
     fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
-    expected = job.whole(fmus)["verdicts"]
+    expected = job.run_here(fmus)["verdicts"]
     assert expected[0, 1, 0] == LOST
     found = passage(*CLOSE, voltage=ramp, step=0.4 / omega, progress=False)
     middle = expected[0, 1, 1:].mean()
@@ -135,7 +141,7 @@ NONE = Theory((), False, 0.1)
 )
 def test_a_verdict_that_the_averaged_theory_contradicts_is_not_given(verdict, theory, what):
     """Volts are 2: the theory loses the motion at 2.26 V."""
-    final = agreed(verdict, theory, 2.0)
+    final = check_against_theory(verdict, theory, 2.0)
     assert final.what == what
     if what == UNDECIDED:
         text = reason(Passing(1, 0, 2, DOUBTFUL, 1.0), verdict, final, theory, 5.0)

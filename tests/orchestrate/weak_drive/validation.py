@@ -16,7 +16,7 @@ from orchestrate.dynamics.bifurcations import FLIP, FOLD, TORUS
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_of
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
-from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, Way, find_passing
+from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, SweepLeg, find_passing
 
 from .coupled import BEAM, QUICK, System, master, rest, state_of
 from .monolithic import Monolith
@@ -238,7 +238,7 @@ def jump_of(system, times, angles, eta0):
     turns = 2.0 * np.pi * np.arange(np.ceil(angles[0] / (2.0 * np.pi)), angles[-1] // (2.0 * np.pi))
     ends = CubicSpline(angles, times)(turns)
     speed = 2.0 * np.pi / np.diff(ends) / system.structure.omega
-    way = Way(ends[1:] * system.structure.omega, eta0(ends[1:]), speed)
+    way = SweepLeg(ends[1:] * system.structure.omega, eta0(ends[1:]), speed)
     divide = averaged.dividing_speed(*system.as_bonded())
     found = find_passing(way, system.drive.b(system.structure), True, divide)
     fast = found is not None and found.look in (JUMP, DOUBTFUL)

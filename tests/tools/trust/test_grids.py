@@ -8,8 +8,9 @@ import sys
 import pytest
 
 from fmu_src.kernels.oscillator import memory as at
-from tools.trust import grids
 from tools.trust.parameter_sets import KINDS, draw
+
+from . import grids
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="a library for Linux")
 

@@ -17,8 +17,7 @@ import numpy as np
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.models.oscillator.variables import VARIABLES
 from fmu_src.runtime.compiled import load_compiled
-
-from .parameter_sets import ParameterSet
+from tools.trust.parameter_sets import ParameterSet
 
 Entry = Callable[[int, float], int]
 MANY = 1e6  # impacts in a step, from which on it may give up

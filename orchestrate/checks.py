@@ -1,0 +1,25 @@
+"""Checks of a user's arguments that every package shares."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .errors import InputError
+
+MAX_COUNT = 1_000_000  # periods, samples, values: more is a typing error
+
+
+def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUNT) -> int:
+    """Return an integer in a range, both ends included; NumPy's integers count, Booleans do not.
+
+    Raises
+    ------
+    InputError
+        Where it is none, or out of the range.
+    """
+    is_integer = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not is_integer or not minimum <= value <= maximum:
+        raise InputError(f"{name} = {value!r}: expected a whole number from {minimum} to {maximum}")
+    return int(value)

@@ -1,0 +1,26 @@
+"""Words of CF's flag variables: numbers in a dataset that stand for words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+
+def flag_words(attributes: Mapping[Any, Any]) -> dict[int, str]:
+    """Return the words of a flag variable by their numbers.
+
+    Parameters
+    ----------
+    attributes : mapping
+        Of the variable, with CF's ``flag_values`` and ``flag_meanings``.
+
+    Examples
+    --------
+    >>> flag_words({"flag_values": [0, 1], "flag_meanings": "irregular period_doubling"})
+    {0: 'irregular', 1: 'period doubling'}
+    """
+    words = str(attributes["flag_meanings"]).split()
+    numbers = np.atleast_1d(attributes["flag_values"]).tolist()
+    return {int(n): word.replace("_", " ") for n, word in zip(numbers, words, strict=True)}
