@@ -1,0 +1,3 @@
+"""Stub."""
+
+read_record = write_record = None
