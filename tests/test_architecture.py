@@ -63,6 +63,7 @@ ONLY_IN = {  # packages of others, and the one place of ours that may know them
     "platformdirs": "orchestrate/access/",
     "pythonfmu": ("fmu_src/export/", "fmu_src/runtime/"),
     "ziglang": "fmu_src/export/",
+    "pyuff": "orchestrate/laboratory/",
 }
 
 

@@ -219,13 +219,13 @@ def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
     given = [motion.times, motion.impact_times, releases, motion.pieces.nodes]
     nodes = np.unique(np.concatenate([*given, grid]))
     nodes = nodes[(nodes >= 0.0) & (nodes <= times[-1])]
-    starts, lengths = nodes[:-1], np.diff(nodes)
+    starts = nodes[:-1]
     states, touching, error = propagate(motion, nodes, releases)
     box = Cells(starts, nodes[1:], motion.pieces.taylor(starts))
     series = motion.derivatives(states, touching, starts)
     felt = np.stack([motion.pull(x, v, touching) for x, v in zip(series, series[1:], strict=False)])
-    masses = [Cells(starts, starts + lengths, felt[:, i].T) for i in (0, 1)]
-    return SmoothParts(times, box, *masses, error)
+    one, two = (Cells(starts, nodes[1:], felt[:, i].T) for i in (0, 1))
+    return SmoothParts(times, box, one, two, error)
 
 
 def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, Flags, float]:

@@ -77,36 +77,49 @@ def record(
     >>> made.time.values[-1], made.attrs["sample_rate"]
     (np.float64(0.003), 1000.0)
     """
+    channels = dict(zip(CHANNELS, (box_acceleration, acceleration1, acceleration2), strict=True))
+    given = {name: one for name, one in channels.items() if one is not None}
+    words = sensors
+    if isinstance(sensors, Mapping):
+        words = "; ".join(f"{name}: {text}" for name, text in sensors.items())
+    return checked_record(time, given, sample_rate, {"title": title, "source": source}, str(words))
+
+
+def checked_record(
+    time: ArrayLike | None,
+    channels: Mapping[str, ArrayLike],
+    sample_rate: float | None,
+    attributes: Mapping[str, str],
+    sensors: str = "",
+    first_row: int = 0,
+) -> xr.Dataset:
+    """A record, its rows counted from ``first_row`` in messages; see :func:`record`."""
     import xarray as xr
 
-    given = dict(zip(CHANNELS, (box_acceleration, acceleration1, acceleration2), strict=True))
-    values = {name: numbers(name, one) for name, one in given.items() if one is not None}
+    values = {name: numbers(name, one, first_row) for name, one in channels.items()}
     if not values:
         raise InputError(f"record: no channel given; expected one of {', '.join(CHANNELS)}")
-    if time is None and sample_rate is None:
-        raise InputError("record: neither time nor sample_rate given; expected one of them")
     rate = None if sample_rate is None else checked(HERTZ, "sample_rate", sample_rate)
-    count = len(next(iter(values.values())))
-    times = np.arange(count) / rate if time is None else numbers("time", time)  # type: ignore[operator]
+    if time is not None:
+        times = numbers("time", time, first_row)
+    elif rate is not None:
+        times = np.arange(len(next(iter(values.values())))) / rate
+    else:
+        raise InputError("record: neither time nor sample_rate given; expected one of them")
     for name, one in values.items():
         if len(one) != len(times):
             raise InputError(f"{name}: {len(one)} values; expected {len(times)}, as the times")
-    rate = checked_rate(times, rate)
+    rate = checked_rate(times, rate, first_row)
     for name, one in values.items():
         warn_if_implausible(name, one)
-    words = (
-        "; ".join(f"{k}: {v}" for k, v in sensors.items())
-        if isinstance(sensors, Mapping)
-        else sensors
-    )
     return xr.Dataset(
         {name: variable("time", one, "m/s2", CHANNELS[name]) for name, one in values.items()},
         {"time": variable("time", times, "s", "time")},
-        {"title": title, "sample_rate": rate, "source": source, "sensors": words},
+        {**attributes, "sample_rate": rate, "sensors": sensors},
     )
 
 
-def numbers(name: str, given: Any) -> Floats:
+def numbers(name: str, given: Any, first_row: int = 0) -> Floats:
     """A column of finite numbers.
 
     Raises
@@ -123,12 +136,12 @@ def numbers(name: str, given: Any) -> Floats:
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):
         more = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
-        text = f"{name}, row {wrong[0]}: {values[wrong[0]]}{more}"
+        text = f"{name}, row {wrong[0] + first_row}: {values[wrong[0]]}{more}"
         raise InputError(f"{text}; expected finite numbers")
     return values
 
 
-def checked_rate(times: Floats, rate: float | None) -> float:
+def checked_rate(times: Floats, rate: float | None, first_row: int = 0) -> float:
     """The sample rate of times in equal steps, Hz.
 
     Raises
@@ -140,7 +153,7 @@ def checked_rate(times: Floats, rate: float | None) -> float:
     if len(falling):
         row = int(falling[0]) + 1
         text = f"{times[row]:.9g} s after {times[row - 1]:.9g} s"
-        raise InputError(f"time, row {row}: {text}; expected ascending times")
+        raise InputError(f"time, row {row + first_row}: {text}; expected ascending times")
     span = float(times[-1] - times[0])
     steps = len(times) - 1
     usual = float(np.median(np.diff(times))) if rate is None else 1.0 / rate
@@ -149,7 +162,7 @@ def checked_rate(times: Floats, rate: float | None) -> float:
     if away.any() or not even.all():
         row = int(np.flatnonzero(away)[0]) + 1 if away.any() else int(np.flatnonzero(~even)[0])
         text = f"a step of {times[row] - times[row - 1]:.6g} s where others are {usual:.6g} s"
-        raise InputError(f"time, row {row}: {text}; expected equal steps")
+        raise InputError(f"time, row {row + first_row}: {text}; expected equal steps")
     own = steps / span
     if rate is None:
         return float(f"{own:.10g}")  # the digits of the times are not those of the rate
@@ -170,4 +183,4 @@ def warn_if_implausible(name: str, values: Floats) -> None:
         text = f"a mean of {mean:.3g} m/s2, as gravity has in g: are these numbers in g"
     else:
         return
-    warnings.warn(f"{name}: {text}? expected m/s2", UserWarning, stacklevel=4)
+    warnings.warn(f"{name}: {text}? expected m/s2", UserWarning, stacklevel=5)
