@@ -32,7 +32,7 @@ TIMES = {  # in s
     "min": 60.0,
 }
 NAMES = {  # as files call them; letters and digits alone, small
-    "time": ("time", "t", "zeit", "x", "xaxis", "abscissa"),
+    "time": ("time", "t", "zeit"),
     "box_acceleration": ("boxacceleration", "box", "base", "table", "shaker", "abox", "abase"),
     "acceleration1": ("acceleration1", "mass1", "a1", "acc1", "accel1"),
     "acceleration2": ("acceleration2", "mass2", "a2", "acc2", "accel2"),
@@ -168,8 +168,7 @@ def scaled(table: Columns, column: Column, factor: float) -> Floats:
     if len(wrong):
         row, value = wrong[0] + table.first_row, column.values[wrong[0]]
         more = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
-        text = "nothing, or nan" if np.isnan(value) else str(value)
-        raise InputError(f"{label_of(table, column)}, row {row}: {text}{more}; expected numbers")
+        raise InputError(f"{label_of(table, column)}, row {row}: {value}{more}; expected numbers")
     return column.values if factor == 1.0 else factor * column.values
 
 
@@ -204,7 +203,11 @@ def chosen(
     if unknown:
         names = ", ".join(("time", *CHANNELS))
         raise InputError(f"columns: {sorted(unknown)[0]!r}; expected names of {names}")
-    return {name: place_of(table, wish) for name, wish in columns.items()}
+    places = {name: place_of(table, wish) for name, wish in columns.items()}
+    if "time" in wanted and "time" not in places:
+        named = [i for i, one in enumerate(table.columns) if one.name.lower() in NAMES["time"]]
+        places["time"] = (named or [0])[0]
+    return places
 
 
 def place_of(table: Columns, wish: str | int) -> int:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import re
 from dataclasses import dataclass
-from io import BytesIO
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -134,27 +134,20 @@ def parsed(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray
     InputError
         Where something is no number; it names line and column.
     """
-    import pandas as pd
-
     body = text.split("\n", dialect.first)[dialect.first]
-    separator = r"\s+" if dialect.separator == " " else dialect.separator
-    count = len(names)
+    numbers = body.replace(",", ".") if dialect.decimal == "," else body
+    separator = None if dialect.separator == " " else dialect.separator
+    if separator is not None and body.partition("\n")[0].rstrip(" ").endswith(separator):
+        numbers = re.sub(f"{re.escape(separator)} *$", "", numbers, flags=re.MULTILINE)
     try:
-        frame = pd.read_csv(
-            BytesIO(body.encode()),
-            **{"sep": separator, "decimal": dialect.decimal, "header": None},
-            **{"float_precision": "round_trip", "skip_blank_lines": True, "index_col": False},
-            **{"names": range(count + 1), "low_memory": False},  # one more for what is too much
+        found = np.loadtxt(
+            StringIO(numbers), delimiter=separator, comments=None, quotechar='"', ndmin=2
         )
-    except (pd.errors.ParserError, ValueError):
-        frame = None
-    if (
-        frame is None
-        or any(dtype.kind not in "iuf" for dtype in frame.dtypes)
-        or frame[count].notna().any()
-    ):
+    except ValueError:
+        found = np.empty((0, 0))
+    if found.shape[1] != len(names):
         refuse_first(path, body, dialect, names)
-    return np.asarray(frame, dtype=float)[:, :count]
+    return found
 
 
 def refuse_first(path: Path, body: str, dialect: Dialect, names: list[str]) -> None:
@@ -171,8 +164,9 @@ def refuse_first(path: Path, body: str, dialect: Dialect, names: list[str]) -> N
             text = f"{len(fields)} columns; expected {len(names)}"
             raise InputError(f"{path}, row {number}: {text}")
         for name, field in zip(names, fields, strict=False):
-            if field and not pattern.fullmatch(field):
-                text = f"{field[:40]!r}; expected a number"
+            if not pattern.fullmatch(field):
+                text = f"{field[:40]!r}" if field else "nothing"
+                text += "; expected a number"
                 raise InputError(f'{path}, column "{name}", row {number}: {text}')
     raise InputError(f"{path}: cannot be read; expected columns of numbers")
 

@@ -50,7 +50,8 @@ def read_record(
     columns : mapping or sequence, optional
         Which column ``time``, ``box_acceleration``, ``acceleration1`` and ``acceleration2`` are
         in, by name or by number from 0; a sequence has them in that order. By default columns
-        with these names or others that are usual, else the first ones in that order.
+        with these names or others that are usual, else the first ones in that order. A time that
+        is not named is in the column of that name, else in the first.
     unit : str, optional
         Of the accelerations: ``"m/s2"``, ``"g"``, ``"mg"``, ``"mm/s2"`` and others; by default
         what stands in the file, which must be there.

@@ -229,6 +229,8 @@ def test_columns_are_named_or_numbered(tmp_path):
     assert np.allclose(one.acceleration1, G * np.arange(1, 6))
     other = read_record(path, columns=["t", 4, "left"])
     same(one, other)
+    without_time = {"box_acceleration": "top", "acceleration1": 2}
+    same(read_record(path, columns=without_time), one)
     without = read_record(path, columns={"acceleration1": 2}, sample_rate=10.0)
     assert without.attrs["sample_rate"] == 10.0 and set(without.data_vars) == {"acceleration1"}
 
@@ -247,10 +249,10 @@ def lines(**changes):
         ("\n\n", "empty; expected columns of numbers"),
         ("words alone\nand more\n", "no line of numbers in the first"),
         (lines(r10="0.010,abc,3"), "column \"base\", row 12: 'abc'; expected a number"),
-        (lines(r10="0.010,,3"), 'column "base", row 12: nothing, or nan; expected numbers'),
-        (lines(r10="0.010,nan,3"), 'column "base", row 12: nothing, or nan; expected numbers'),
+        (lines(r10="0.010,,3"), 'column "base", row 12: nothing; expected a number'),
+        (lines(r10="0.010,nan,3"), 'column "base", row 12: nan; expected numbers'),
         (lines(r10="0.010,1,inf"), 'column "mass 1", row 12: inf; expected numbers'),
-        (lines(r10="0.010,1"), "row 12"),
+        (lines(r10="0.010,1"), "row 12: 2 columns; expected 3"),
         (lines(r10="0.010,1,2,3"), "row 12: 4 columns; expected 3"),
         (lines(r10="0.0105,1,2"), "time, row 12: a step of 0.0015 s where others are 0.001 s"),
         (lines(r10="0.005,1,2"), "time, row 12: 0.005 s after 0.009 s; expected ascending"),
