@@ -39,7 +39,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "__init__": BELOW_ANSWERS | {"response", "dynamics", "laboratory", "weak_drive"},
     "explorer": BELOW_ANSWERS,
     "cli": BELOW_ANSWERS
-    | {"__init__", "weak_drive", "figures", "paper", "explorer"}
+    | {"__init__", "laboratory", "weak_drive", "figures", "paper", "explorer"}
     | {"supervisor", "temporary"},
     "__main__": {"cli", "supervisor"},
 }
@@ -284,7 +284,8 @@ def taken(node: ast.AST) -> list[str]:
         own = [part for part in node.body if isinstance(part, FUNCTIONS)]
         made = next((part for part in own if part.name == "__init__"), None)
         if made is None:
-            fields = (part for part in node.body if isinstance(part, ast.AnnAssign))
+            every = (part for part in node.body if isinstance(part, ast.AnnAssign))
+            fields = (part for part in every if "init=False" not in ast.unparse(part))
             return [part.target.id for part in fields if isinstance(part.target, ast.Name)]
         node = made
     given = node.args  # type: ignore[attr-defined]
