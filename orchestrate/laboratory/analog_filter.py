@@ -120,10 +120,11 @@ class AnalogFilter:
             lengths, left = ends - starts, times[steps + 1] - ends
             count = cells.derivatives.shape[1]
             moments = cells.derivatives[part] * lengths[:, None] ** np.arange(1, count + 1)
+            few, which = alike(lengths, (times[-1] - times[0]) / (len(times) - 1))
             for row, pole in zip(found, self.poles, strict=True):
-                weights = phi_functions(pole * lengths, count)
+                weights = phi_functions(pole * few, count)[:, which]
                 gained = np.einsum("nk,kn->n", moments, weights) * np.exp(pole * left)
-                row += sums(steps, gained, len(row))
+                row[steps[0] : steps[-1] + 1] += sums(steps - steps[0], gained)
         return found
 
 
@@ -133,13 +134,19 @@ def blocks(count: int) -> Iterator[slice]:
         yield slice(begin, min(begin + BLOCK, count))
 
 
+def alike(lengths: Floats, step: float) -> tuple[Floats, NDArray[np.int_]]:
+    """The different ones of lengths, but for 1e-12 of a step, and which of them each is."""
+    whole, which = np.unique(np.round(lengths / (1e-12 * step)), return_inverse=True)
+    return whole * (1e-12 * step), which
+
+
 def steps_of(moments: Floats, times: Floats) -> NDArray[np.int_]:
     """The steps between times that moments lie in, their ends included."""
     found: NDArray[np.int_] = np.searchsorted(times, moments, side="left") - 1
     return np.clip(found, 0, len(times) - 2)
 
 
-def sums(steps: NDArray[np.int_], values: Complexes, count: int) -> Complexes:
+def sums(steps: NDArray[np.int_], values: Complexes, count: int = 0) -> Complexes:
     """Values added up by step."""
     real = np.bincount(steps, values.real, count)
     found: Complexes = real + 1j * np.bincount(steps, values.imag, count)

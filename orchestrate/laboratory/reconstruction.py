@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 SHORT = 0.1  # of a cell times the highest natural frequency, rad
+LOOKS = 16  # at the contact force in a cell: it bends little there
+ROUNDING = 1e-13
 ORDER = 7  # derivatives of an acceleration kept: the next is below SHORT^7/7! = 2e-11 of it
 
 
@@ -127,7 +129,7 @@ class Motion:
         mesh = np.linspace(begin, end, 1 + self.parts_of(end - begin))
         for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
             series = self.derivatives(state, touching, np.array([start]))[:, :, 0]
-            root = first_root(self._contact_force(series), stop - start)
+            root = first_fall(*self._contact_force(series), stop - start)
             if root is not None:
                 return float(start + root)
             state = self.advance(state, touching, np.array([start]), np.array([stop - start]))
@@ -154,12 +156,13 @@ class Motion:
         after[:, 3] += impulses / self.structure.m2
         return after
 
-    def _contact_force(self, series: Floats) -> Floats:
-        """The contact force's derivatives (18), from those of the displacements."""
+    def _contact_force(self, series: Floats) -> tuple[Floats, float]:
+        """The contact force's derivatives (18), from those of the displacements, and its scale."""
         s = self.structure
         own = s.k1 * series[:-1, 0] + s.d1 * series[1:, 0]
         other = s.k2 * series[:-1, 1] + s.d2 * series[1:, 1]
-        return (s.m1 * other - s.m2 * own) / (s.m1 + s.m2)
+        force: Floats = (s.m1 * other - s.m2 * own) / (s.m1 + s.m2)
+        return force, abs(float(own[0])) + abs(float(other[0]))
 
 
 def taylor(series: Floats, lengths: Floats) -> Floats:
@@ -170,15 +173,23 @@ def taylor(series: Floats, lengths: Floats) -> Floats:
     return found
 
 
-def first_root(derivatives: Floats, length: float) -> float | None:
-    """The first time in (0, length] at which a Taylor series falls through 0."""
-    scale = np.array([length**n / math.factorial(n) for n in range(len(derivatives))])
-    roots = np.polynomial.Polynomial(derivatives * scale).roots()
-    slope = np.polynomial.Polynomial(derivatives * scale).deriv()
-    real = roots[np.abs(roots.imag) < 1e-9].real
-    inside = real[(real > 0.0) & (real <= 1.0 + 1e-12)]
-    falling = inside[slope(inside) < 0.0]
-    return float(falling.min() * length) if len(falling) else None
+def first_fall(derivatives: Floats, scale: float, length: float) -> float | None:
+    """The first time in [0, length] from which on a Taylor series is below 0.
+
+    Rounding errors of numbers of the size ``scale`` are not below 0.
+    """
+    from scipy.optimize import brentq
+
+    factors = derivatives / np.array([math.factorial(n) for n in range(len(derivatives))])
+    series = np.polynomial.Polynomial(factors)
+    mesh = np.linspace(0.0, length, 1 + LOOKS)
+    below = np.flatnonzero(series(mesh) < -ROUNDING * scale)
+    if not len(below):
+        return None
+    last = int(below[0])
+    if last == 0 or series(mesh[last - 1]) <= 0.0:
+        return float(mesh[max(last - 1, 0)])
+    return float(brentq(series, mesh[last - 1], mesh[last], xtol=1e-15 * length, rtol=1e-14))
 
 
 @dataclass(frozen=True)

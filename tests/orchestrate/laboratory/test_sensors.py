@@ -12,7 +12,17 @@ import pytest
 from scipy import signal
 from scipy.linalg import expm
 
-from orchestrate import InputError, Sampled, Sensor, Shock, Structure, SweptSine, measure, shake
+from orchestrate import (
+    InputError,
+    Sampled,
+    Sensor,
+    Shock,
+    Structure,
+    SweptSine,
+    measure,
+    shake,
+    simulate,
+)
 from orchestrate.laboratory.analog_filter import anti_aliasing, phi_functions
 
 BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007, e=0.6)
@@ -296,3 +306,24 @@ def test_mistaken_measurements_are_one_line(given, words):
     with pytest.raises(InputError) as error:
         measure(**{"history": shaken(True), "sensor": SENSOR, **given})
     assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_steady_harmonic_motion_is_read_with_the_filters_gain_and_delay():
+    bonded, turn = BEAM.as_bonded(), 2.0 * math.pi * 45.0
+    history = simulate(bonded, frequency=turn, amplitude=1e-4, transient=1000, periods=20)
+    sensor = Sensor(bandwidth=150.0, order=3, sample_rate=2000.0)
+    felt = measure(history, sensor)
+    assert float(felt.time[0]) == float(history.time[0]) > 20.0
+    gain = complex(sensor.analog_filter().frequency_response(np.array([45.0]))[0])
+    late = felt.isel(time=slice(-200, None))
+    for channel, own in (("box_acceleration", "box_acceleration"), ("acceleration1", "a1_abs")):
+        lines = []
+        for times, values in (
+            (history.time.values, history[own].values),
+            (late.time.values, late[channel].values),
+        ):
+            basis = np.exp(1j * turn * times)
+            matrix = np.stack([basis.real, -basis.imag], axis=1)
+            (real, imaginary), *_ = np.linalg.lstsq(matrix, values, rcond=None)
+            lines.append(real + 1j * imaginary)
+        assert abs(lines[1] / lines[0] - gain) < 1e-5
