@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,12 +70,15 @@ class Columns:
         Hz, where the file says it.
     first_row : int
         Number of the first values in the file's own count.
+    attributes : dict
+        What a record written by this package says of itself.
     """
 
     path: str
     columns: list[Column]
     sample_rate: float | None = None
     first_row: int = 0
+    attributes: dict[str, Any] = field(default_factory=dict)
 
 
 def split_heading(heading: str) -> tuple[str, str]:

@@ -60,16 +60,18 @@ class Motion:
     @classmethod
     def from_history(cls, history: xr.Dataset, structure: Structure, pieces: Pieces) -> Motion:
         """Of what :func:`.shake.shake` answers."""
-        begin = float(history.time[0])
+        begin, end = float(history.time[0]), float(history.time[-1])
+        struck = history.impact_time.values
+        kept = (struck > begin) & (struck <= end)  # of a part of a history others too are there
         return cls(
             structure,
             pieces,
             history.time.values - begin,
             np.stack([history[name].values for name in ("x1", "x2", "v1", "v2")], axis=1),
             history.in_contact.values.astype(bool),
-            history.impact_time.values - begin,
-            history.impulse.values,
-            history.sticks.values.astype(bool),
+            struck[kept] - begin,
+            history.impulse.values[kept],
+            history.sticks.values.astype(bool)[kept],
         )
 
     def derivatives(self, states: Floats, touching: Flags, times: Floats) -> Floats:

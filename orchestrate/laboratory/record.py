@@ -82,15 +82,15 @@ def record(
     words = sensors
     if isinstance(sensors, Mapping):
         words = "; ".join(f"{name}: {text}" for name, text in sensors.items())
-    return checked_record(time, given, sample_rate, {"title": title, "source": source}, str(words))
+    attributes = {"title": title, "source": source, "sensors": words}
+    return checked_record(time, given, sample_rate, attributes)
 
 
 def checked_record(
     time: ArrayLike | None,
     channels: Mapping[str, ArrayLike],
     sample_rate: float | None,
-    attributes: Mapping[str, str],
-    sensors: str = "",
+    attributes: Mapping[str, Any],
     first_row: int = 0,
 ) -> xr.Dataset:
     """A record, its rows counted from ``first_row`` in messages; see :func:`record`."""
@@ -115,7 +115,7 @@ def checked_record(
     return xr.Dataset(
         {name: variable("time", one, "m/s2", CHANNELS[name]) for name, one in values.items()},
         {"time": variable("time", times, "s", "time")},
-        {**attributes, "sample_rate": rate, "sensors": sensors},
+        {"sensors": "", **attributes, "sample_rate": rate},
     )
 
 

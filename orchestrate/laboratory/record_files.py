@@ -6,6 +6,7 @@ import os
 import stat
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -92,11 +93,11 @@ def read_record(
         readers = {"csv": read_csv, "uff": read_uff, "mat": read_mat, "netcdf": read_netcdf}
         table = readers[kind](path)
     if sample_rate is not None:
-        table = Columns(table.path, table.columns, sample_rate, table.first_row)
+        table = replace(table, sample_rate=sample_rate)
     time, values = channels_of(table, columns, unit)
     if time is None and table.sample_rate is None:
         raise InputError(f"{path}: no column of times; expected one, or sample_rate=")
-    words = {"title": f"Record {path.name}", "source": path.name}
+    words = {"title": f"Record {path.name}", "source": path.name, **table.attributes}
     try:
         return checked_record(time, values, table.sample_rate, words, first_row=table.first_row)
     except InputError as error:
@@ -242,7 +243,9 @@ def read_netcdf(path: Path) -> Columns:
         for name in over_time
     ]
     rate = data.attrs.get("sample_rate")
-    return Columns(str(path), columns, None if rate is None else float(rate))
+    attributes = dict(data.attrs) if {"sensors", "source"} <= set(data.attrs) else {}
+    rate = None if rate is None else float(rate)
+    return Columns(str(path), columns, rate, attributes=attributes)
 
 
 def read_wav(path: Path, scale: float) -> Columns:

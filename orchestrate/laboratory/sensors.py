@@ -241,7 +241,9 @@ def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Piec
         if excitation.label != history.attrs.get("excitation"):
             text = f"expected {history.attrs.get('excitation', 'none')}, which made the history"
             raise InputError(f"excitation = {excitation.label}: {text}")
-        return excitation.pieces(float(history.attrs["accuracy"]))
+        whole = excitation.pieces(float(history.attrs["accuracy"]))
+        begin = float(history.time[0])
+        return Pieces(whole.nodes - begin, whole.derivatives, whole.error)
     steps = len(history.time) - 1
     rate = steps / float(history.time[-1] - history.time[0])
     box = history.box_acceleration.values

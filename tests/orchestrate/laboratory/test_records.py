@@ -120,6 +120,9 @@ def test_there_and_back_to_the_last_digit(tmp_path, ending, start):
     path = write_record(data, tmp_path / f"test{ending}")
     assert path == tmp_path / f"test{ending}" and list(tmp_path.iterdir()) == [path]
     same(read_record(path), data)
+    if ending == ".nc":
+        named = data.assign_attrs(sensors="of a kind", title="test 1")
+        assert read_record(write_record(named, path)).identical(named)
     alone = data[["acceleration2"]].assign_attrs(data.attrs)
     same(read_record(write_record(alone, path)), alone)
 

@@ -24,6 +24,7 @@ from orchestrate import (
     simulate,
 )
 from orchestrate.laboratory.analog_filter import anti_aliasing, phi_functions
+from orchestrate.laboratory.reconstruction import Motion
 
 BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007, e=0.6)
 BOX = Sampled(
@@ -327,3 +328,34 @@ def test_a_steady_harmonic_motion_is_read_with_the_filters_gain_and_delay():
             (real, imaginary), *_ = np.linalg.lstsq(matrix, values, rcond=None)
             lines.append(real + 1j * imaginary)
         assert abs(lines[1] / lines[0] - gain) < 1e-5
+
+
+def test_releases_are_found_between_the_samples():
+    beam = dataclasses.replace(BEAM, e=0.3)
+    sweep = SweptSine(first=15.0, last=75.0, duration=2.0, acceleration=5.0)
+    found = []
+    for rate in (8000.0, 1000.0):
+        history = shake(beam, sweep, sample_rate=rate, progress=False)
+        motion = Motion.from_history(history, beam, sweep.pieces(1e-6))
+        found.append(motion.releases())
+        for release in found[-1][1:]:  # the first is the start's
+            after = history.in_contact.sel(time=slice(release, release + 1.5 / rate))
+            struck = (motion.impact_times > release) & (motion.impact_times < release + 1.5 / rate)
+            assert not after.values[0] or struck.any()
+    assert found[0][0] == found[1][0] == 0.0 and len(found[0]) == len(found[1]) > 5
+    assert np.abs(found[0] - found[1]).max() < 1e-9
+
+
+@pytest.mark.parametrize("excitation", [BOX, None])
+def test_a_part_of_a_history_is_read_as_the_whole(excitation):
+    whole = shaken(False)
+    part = whole.isel(time=slice(100, 201))
+    all_of_it, felt = (measure(h, SENSOR, excitation=excitation) for h in (whole, part))
+    assert felt.time.values[[0, -1]] == pytest.approx([0.1, 0.2])
+    both = all_of_it.sel(
+        time=felt.time.values[60:], method="nearest"
+    )  # the filter's own start over
+    for channel in CHANNELS:
+        peak = float(np.abs(both[channel]).max())
+        difference = np.abs(felt[channel].values[60:] - both[channel].values).max()
+        assert difference <= (1e-6 if excitation is not None else 1e-3) * peak, channel
