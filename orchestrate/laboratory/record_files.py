@@ -72,6 +72,11 @@ def read_record(
         Where the file is damaged, empty, too large, or its numbers are no record; in one line
         with column and row.
 
+    Notes
+    -----
+    MAT and NetCDF files are read by libraries in C (of SciPy and HDF5) that a damaged or forged
+    file may end together with the process: read those that you trust.
+
     Examples
     --------
     >>> import tempfile, pathlib
@@ -260,6 +265,8 @@ def read_wav(path: Path, scale: float) -> Columns:
         text = (str(error).splitlines() or [type(error).__name__])[0][:120]
         raise InputError(f"{path}: {text}; expected a WAV file that is whole") from None
     values = np.asarray(data, float)
+    if not values.size:
+        raise InputError(f"{path}: no samples; expected some")
     if data.dtype.kind == "u":  # of 8 bits: 128 is zero
         values = (values - 128.0) / 128.0
     elif data.dtype.kind == "i":

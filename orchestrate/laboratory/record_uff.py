@@ -14,6 +14,7 @@ import numpy as np
 from ..errors import InputError
 from .columns import Column, Columns, Floats
 
+Dataset = dict[str, Any]  # as pyuff gives it
 log = logging.getLogger(__name__)
 TIME_RESPONSE, TIME, ACCELERATION = 1, 17, 12  # of dataset 58
 NO_LABELS = ("", "none")
@@ -46,36 +47,50 @@ def read_uff(path: Path) -> Columns:
     """
     if not path.read_bytes().rstrip().endswith(b"    -1"):
         raise InputError(f"{path}: no '    -1' at its end; expected a universal file that is whole")
+    pyuff = library()
     try:
-        file = library().UFF(str(path))
+        file = pyuff.UFF(str(path))
         kinds = [int(kind) for kind in file.get_set_types()]
         functions = [(i, file.read_sets(i)) for i, kind in enumerate(kinds) if kind == 58]
+        return columns_of(path, kinds, functions)
     except InputError:
         raise
-    except Exception as error:  # pyuff raises nothing narrower
+    except Exception as error:  # pyuff raises nothing narrower, and fields may be anything
         text = f"{error}".splitlines()[0][:120] if str(error) else type(error).__name__
         raise InputError(f"{path}: {text}; expected a universal file that is whole") from None
+
+
+def columns_of(path: Path, kinds: list[int], functions: list[tuple[int, Dataset]]) -> Columns:
+    """The columns of those datasets that are functions of the same times.
+
+    Parameters
+    ----------
+    path : Path
+    kinds : list of int
+        Of all datasets of the file.
+    functions : list of (int, dict)
+        Datasets 58 with their numbers in the file.
+    """
     for i, kind in enumerate(kinds):
         if kind != 58:
             log.info("%s: dataset %d, number %d of the file, is skipped", path, kind, i)
     used = [(i, one) for i, one in functions if of_time(path, i, one)]
     if not used:
-        found = ", ".join(map(str, kinds[:8])) or "none"
+        kinds_there = ", ".join(map(str, kinds[:8])) or "none"
         text = "expected a dataset 58 of time response"
-        raise InputError(f"{path}: datasets {found}; {text}")
+        raise InputError(f"{path}: datasets {kinds_there}; {text}")
     number, first = used[0]
     for i, one in used:
         check_whole(path, i, one)
-        same = len(one["x"]) == len(first["x"]) and np.array_equal(one["x"], first["x"])
-        if not same:
+        if not np.array_equal(one["x"], first["x"]):
             text = f"other times than number {number}; expected the same"
             raise InputError(f"{path}: dataset 58, number {i}: {text}")
-    label = str(first.get("abscissa_axis_units_lab", ""))
-    time = Column("time", "s" if label.strip().lower() in NO_LABELS else label, times_of(first))
+    label = str(first.get("abscissa_axis_units_lab", "")).strip()
+    time = Column("time", "s" if label.lower() in NO_LABELS else label, times_of(first))
     return Columns(str(path), [time, *(column_of(i, one) for i, one in used)])
 
 
-def of_time(path: Path, number: int, one: dict[str, Any]) -> bool:
+def of_time(path: Path, number: int, one: Dataset) -> bool:
     """Whether a dataset is a real function of the time."""
     kind = int(one.get("abscissa_spec_data_type", TIME))
     over_time = kind == TIME or (kind == 0 and int(one.get("func_type", 0)) == TIME_RESPONSE)
@@ -85,7 +100,7 @@ def of_time(path: Path, number: int, one: dict[str, Any]) -> bool:
     return False
 
 
-def times_of(one: dict[str, Any]) -> Floats:
+def times_of(one: Dataset) -> Floats:
     """The abscissa; where its step has six digits alone, the roundest rate that has them."""
     if int(one["abscissa_spacing"]) != 1:
         return np.asarray(one["x"], float)
@@ -116,7 +131,7 @@ def rounded_rate(step: float) -> float:
     return 1.0 / step
 
 
-def check_whole(path: Path, number: int, one: dict[str, Any]) -> None:
+def check_whole(path: Path, number: int, one: Dataset) -> None:
     """See that all values are there that the heading announces.
 
     Raises
@@ -129,7 +144,7 @@ def check_whole(path: Path, number: int, one: dict[str, Any]) -> None:
         raise InputError(f"{path}: dataset 58, number {number}: {text}")
 
 
-def column_of(number: int, one: dict[str, Any]) -> Column:
+def column_of(number: int, one: Dataset) -> Column:
     """A dataset as a column, named by its first line, else by its node and direction."""
     name = str(one.get("id1", "")).strip()
     if name.lower() in NO_LABELS:
