@@ -14,7 +14,8 @@ What is asked
     :func:`simulate`, :func:`resonance`, :func:`sweep`, :func:`spectra`; :func:`map`,
     :func:`lyapunov`, :func:`attractors`, :func:`basin`, :func:`impact_statistics`;
     :func:`shake` as in the laboratory, by a :class:`SweptSine`, :class:`Random` vibration, a
-    :class:`Shock` or :class:`Sampled` acceleration;
+    :class:`Shock` or :class:`Sampled` acceleration; :func:`measure` what a :class:`Sensor` reads
+    of it, :func:`record`, :func:`read_record` and :func:`write_record` what was measured;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
     :func:`couple_all`,
     :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
@@ -48,7 +49,10 @@ if TYPE_CHECKING:
     from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
     from .figures.plot import plot
     from .laboratory.random_vibration import Random
+    from .laboratory.record import record
+    from .laboratory.record_files import read_record, write_record
     from .laboratory.sampled import Sampled
+    from .laboratory.sensors import Sensor, measure
     from .laboratory.shake import shake
     from .laboratory.shock import Shock
     from .laboratory.swept_sine import SweptSine
@@ -76,6 +80,7 @@ __all__ = [
     "InputError",
     "Random",
     "Sampled",
+    "Sensor",
     "Shock",
     "SpeedControl",
     "SpeedGradient",
@@ -99,15 +104,19 @@ __all__ = [
     "jump_voltages",
     "lyapunov",
     "map",
+    "measure",
     "orbit",
     "passage",
     "plot",
+    "read_record",
+    "record",
     "resonance",
     "shake",
     "simulate",
     "spectra",
     "sweep",
     "waterfall",
+    "write_record",
     "write_ssp",
 ]
 PLACES = {  # where each name lives: it is imported when it is used, so that `import` takes no time
@@ -118,7 +127,10 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     ),
     "figures.plot": ("plot",),
     "laboratory.random_vibration": ("Random",),
+    "laboratory.record": ("record",),
+    "laboratory.record_files": ("read_record", "write_record"),
     "laboratory.sampled": ("Sampled",),
+    "laboratory.sensors": ("Sensor", "measure"),
     "laboratory.shock": ("Shock",),
     "laboratory.swept_sine": ("SweptSine",),
     "laboratory.shake": ("shake",),

@@ -43,7 +43,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "__init__": BELOW_ANSWERS | {"response", "dynamics", "laboratory", "weak_drive", "figures"},
     "explorer": BELOW_ANSWERS,
     "cli": BELOW_ANSWERS
-    | {"__init__", "weak_drive", "figures", "paper", "explorer"}
+    | {"__init__", "laboratory", "weak_drive", "figures", "paper", "explorer"}
     | {"supervisor", "temporary"},
     "__main__": {"cli", "supervisor"},
 }
@@ -67,6 +67,7 @@ ONLY_IN = {  # packages of others, and the one place of ours that may know them
     "platformdirs": "orchestrate/access/",
     "pythonfmu": ("fmu_src/export/", "fmu_src/runtime/"),
     "ziglang": "fmu_src/export/",
+    "pyuff": "orchestrate/laboratory/",
 }
 
 

@@ -1,4 +1,4 @@
-"""``shake``: time histories and impacts under a swept sine, random vibration or a shock."""
+"""``shake``: time histories and impacts under a swept sine, random vibration, a shock, a record."""
 
 from __future__ import annotations
 
@@ -31,20 +31,23 @@ if TYPE_CHECKING:
 EXAMPLES = """  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
   {program} shake --structure beam --random 5:0.1,100:0.1 --duration 30 --seed 1
-  {program} shake --structure beam --shock half-sine --length 0.011 --g 5"""
-KINDS = ("swept_sine", "random", "shock")
+  {program} shake --structure beam --shock half-sine --length 0.011 --g 5
+  {program} shake --structure beam --record base.csv --unit g"""
+KINDS = ("swept_sine", "random", "shock", "record")
 OF_KINDS = {  # options that only one kind knows
     "rate": "swept_sine",
     "spacing": "swept_sine",
     "seed": "random",
     "length": "shock",
     "delay": "shock",
+    "unit": "record",
+    "column": "record",
 }
 
 
 def add_parser(commands: Commands) -> None:
     """Declare the command."""
-    text = "as in the laboratory: motion and impacts under swept sine, random vibration or a shock"
+    text = "as in the laboratory: motion and impacts under swept sine, random, shock or a record"
     parser = commands.add("shake", run, text, EXAMPLES)
     add_structure(parser)
     add_signals(parser)
@@ -59,11 +62,12 @@ def add_parser(commands: Commands) -> None:
 
 def add_signals(parser: argparse.ArgumentParser) -> None:
     """The excitation."""
-    group = parser.add_argument_group("the box's acceleration", "one of the first three")
+    group = parser.add_argument_group("the box's acceleration", "one of the first four")
     option = group.add_argument
     option("--swept-sine", metavar="FIRST:LAST", help="frequencies, Hz; downwards too")
     option("--random", metavar="PSD", help="density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz")
     option("--shock", metavar="SHAPE", help="half-sine, sawtooth or trapezoid")
+    option("--record", metavar="FILE", help="measured: .csv, .txt, .uff, .unv, .mat, .nc")
     level = "peak acceleration, {}; of a swept sine a profile HZ:VALUE,HZ:VALUE,... too"
     option("--g", metavar="LEVEL", help=level.format("in 9.80665 m/s2"))
     option("--acceleration", metavar="LEVEL", help=level.format("m/s2"))
@@ -75,6 +79,9 @@ def add_signals(parser: argparse.ArgumentParser) -> None:
     option("--seed", metavar="N", help="of random vibration (default: 0)")
     option("--length", metavar="S", help="of a shock's pulse, s")
     option("--delay", metavar="S", help="quiet before a shock, s (default: 0)")
+    option("--unit", metavar="UNIT", help="of a record: m/s2, g ... (default: what the file says)")
+    text = "of a record: the box's, by name or number from 0 (default: by usual names, or 1)"
+    option("--column", metavar="NAME", help=text)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -110,6 +117,8 @@ def signal_of(arguments: argparse.Namespace) -> Random | Shock | SweptSine:
     from .. import Random, Shock, SweptSine
 
     kind = kind_of(arguments)
+    if kind == "record":
+        return recorded(arguments)
     numbers = {
         name: number_of(f"--{name}", getattr(arguments, name))
         for name in ("duration", "rate", "length", "delay")
@@ -131,6 +140,18 @@ def signal_of(arguments: argparse.Namespace) -> Random | Shock | SweptSine:
     )
 
 
+def recorded(arguments: argparse.Namespace) -> ExcitationSignal:
+    """The box's acceleration of a file, played again."""
+    from ..laboratory.record_files import read_record
+    from ..laboratory.sampled import Sampled
+
+    column = arguments.column
+    columns = None
+    if column is not None:
+        columns = {"box_acceleration": int(column) if column.isdecimal() else column}
+    return Sampled.from_record(read_record(arguments.record, unit=arguments.unit, columns=columns))
+
+
 def kind_of(arguments: argparse.Namespace) -> str:
     """Which excitation is asked for; options of others are refused."""
     given = [name for name in KINDS if getattr(arguments, name) is not None]
@@ -142,8 +163,12 @@ def kind_of(arguments: argparse.Namespace) -> str:
     for name, owner in OF_KINDS.items():
         if getattr(arguments, name) is not None and owner != kind:
             raise InputError(f"--{name}: expected with --{owner.replace('_', '-')} alone")
-    if kind == "random" and (arguments.g is not None or arguments.acceleration is not None):
+    levelled = arguments.g is not None or arguments.acceleration is not None
+    if kind == "random" and levelled:
         raise InputError("--random: its density has the level; expected no --g, --acceleration")
+    if kind == "record" and (levelled or arguments.duration is not None):
+        text = "the file has level and time; expected no --g, --acceleration, --duration"
+        raise InputError(f"--record: {text}")
     needed = {"random": "duration", "shock": "length"}.get(kind)
     if needed and getattr(arguments, needed) is None:
         raise InputError(f"--{kind}: expected --{needed} with it, in s")

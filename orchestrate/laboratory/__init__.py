@@ -10,5 +10,13 @@ module                    idea
 :mod:`.shock`             a classical pulse
 :mod:`.sampled`           a record played again
 :mod:`.shake`             time histories and impacts under any of these
+:mod:`.reconstruction`    what the masses do between the samples of a history
+:mod:`.analog_filter`     the exact response of an analogue filter
+:mod:`.sensors`           what accelerometers read of a history
+:mod:`.record`            the one dataset of channels, measured or simulated
+:mod:`.columns`           which columns of a file are its channels, and their units
+:mod:`.record_csv`        columns of numbers as text
+:mod:`.record_uff`        universal files
+:mod:`.record_files`      records read and written, of any kind of file
 ========================  =========================================================================
 """

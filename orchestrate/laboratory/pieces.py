@@ -72,8 +72,11 @@ class Pieces:
         return float(self.nodes[-1])
 
     def __call__(self, times: Floats) -> Floats:
-        """The acceleration at times, m/s2; zero after the end."""
-        return self.taylor(times)[:, 0]
+        """The acceleration at times, m/s2; zero after the end, at it the last piece's."""
+        values = self.taylor(times)[:, 0]
+        length = self.nodes[-1] - self.nodes[-2]
+        last = self.derivatives[-1] * length ** np.arange(4) / FACTORIALS
+        return np.where(times == self.nodes[-1], last.sum(), values)
 
     def taylor(self, times: Floats) -> Floats:
         """Value and derivatives at times, of the piece that begins there or before.

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import InputError
 from .pieces import Pieces
 from .signals import HERTZ, MOST_PIECES, ExcitationSignal, checked
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,6 +56,27 @@ class Sampled(ExcitationSignal):
         put(self, "acceleration", tuple(values.tolist()))
         put(self, "sample_rate", checked(HERTZ, "sample_rate", self.sample_rate))
         put(self, "duration", (len(values) - 1) / self.sample_rate)
+
+    @classmethod
+    def from_record(cls, record: xr.Dataset) -> Sampled:
+        """The box's acceleration of a record, from its beginning on.
+
+        Parameters
+        ----------
+        record : xarray.Dataset
+            As :func:`.record.record` makes it.
+
+        Raises
+        ------
+        InputError
+            Where it has none.
+        """
+        known = "box_acceleration" in getattr(record, "variables", {})
+        if not known or "sample_rate" not in record.attrs:
+            text = "expected one with box_acceleration and the attribute sample_rate"
+            raise InputError(f"record: {text}")
+        rate = float(record.attrs["sample_rate"])
+        return cls(acceleration=record.box_acceleration.values, sample_rate=rate)
 
     @property
     def label(self) -> str:

@@ -6,7 +6,7 @@ import pytest
 
 from orchestrate import cli
 
-from .written import PAGES, commands, python_blocks, toml_files
+from .written import PAGES, commands, files, python_blocks
 
 LONG = {"build", "capture", "couple", "explore", "jump-voltages", "paper", "passage"}  # read only
 EVERY = [
@@ -17,9 +17,9 @@ EVERY = [
 
 
 def write_files(folder):
-    """The TOML files that pages show."""
+    """The files that pages show."""
     for page in PAGES:
-        for name, text in toml_files(page).items():
+        for name, text in files(page).items():
             (folder / name).write_text(text, encoding="utf-8")
 
 

@@ -50,11 +50,11 @@ def cells(page: Path) -> list[str]:
     return [block.text for block in blocks(page) if block.kind == "{code-cell}"]
 
 
-def toml_files(page: Path) -> dict[str, str]:
-    """TOML blocks by the name of the file that they show."""
+def files(page: Path) -> dict[str, str]:
+    """Blocks of TOML and of numbers, by the name of the file that they show."""
     found = {}
     for block in blocks(page):
-        if block.kind in ("toml", "{code-block} toml"):
+        if block.kind in ("toml", "{code-block} toml", "{code-block} text"):
             name = block.options.get("caption") or re.match(r"# ([\w.]+\.toml)", block.text)
             if name:
                 found[name if isinstance(name, str) else name[1]] = block.text

@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FUNCTIONS = (
     *("simulate", "resonance", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
     *("impact_statistics", "orbit", "branch", "border", "couple"),
+    *("shake", "measure", "record", "read_record", "write_record"),
 )
 HEAVY = ("xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "pandas", "loky", "tqdm")
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)  # 79 rad/s

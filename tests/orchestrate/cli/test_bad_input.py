@@ -214,7 +214,7 @@ PAPER = [
 ]
 SWEPT = ["--swept-sine", "8:20", "--g", "1"]
 LABORATORY = [
-    ([], ["nothing given", "--swept-sine, --random, --shock"]),
+    ([], ["nothing given", "--swept-sine, --random, --shock, --record"]),
     ([*SWEPT, "--shock", "trapezoid"], ["--swept-sine and --shock given", "one of"]),
     (SWEPT, ["nothing given", "one of duration and rate"]),
     (["--swept-sine", "8:20", "--duration", "2"], ["level", "--g and --acceleration"]),
@@ -229,6 +229,9 @@ LABORATORY = [
     (["--random", "5:1,9:1", "--duration", "2", "--seed", "x"], ["--seed x", "whole number"]),
     (["--shock", "sine", "--length", "1", "--g", "1"], ["shape = 'sine'", "half-sine"]),
     (["--shock", "sawtooth", "--g", "1"], ["--shock", "--length"]),
+    (["--record", "no.csv"], ["no.csv", "a file to read"]),
+    (["--record", "a.csv", "--g", "1"], ["--record", "expected no --g"]),
+    ([*SWEPT, "--unit", "g"], ["--unit", "with --record alone"]),
 ]
 MISTAKES = [
     (command, options, words)

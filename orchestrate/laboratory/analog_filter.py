@@ -1,0 +1,239 @@
+"""The exact response of an analogue low-pass filter, by its poles and residues.
+
+With partial fractions ``H(s) = sum r/(s - p)`` the response is ``sum r z`` where each
+``z' = p z + a(t)``. Over a cell of length h on which ``a`` is a polynomial the solution is in
+closed form (the phi functions of exponential integrators, Hochbruck and Ostermann, Acta Numerica
+19, 2010), and an impulse of strength S, a Dirac in ``a``, adds S to z. So the response of a signal
+of polynomials and impulses has no error but rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+TURN = 2.0 * math.pi
+BLOCK = 1 << 16  # cells at once, for the memory
+FAR = 3.0  # |z| from which the recurrence upwards loses no digits of the first seven
+NEAR = 1.0
+
+
+@dataclass(frozen=True)
+class Cells:
+    """A signal as polynomials, each over its own part of the time, in order and without holes.
+
+    Attributes
+    ----------
+    starts, ends : ndarray, shape (n,)
+        s.
+    derivatives : ndarray, shape (n, k)
+        Value and derivatives at the start of each, m/s2, m/s3, ...
+    """
+
+    starts: Floats
+    ends: Floats
+    derivatives: Floats
+
+
+@dataclass(frozen=True)
+class AnalogFilter:
+    """A filter whose output follows no step at once: more poles than zeros, no pole twice.
+
+    Attributes
+    ----------
+    poles : ndarray
+        rad/s; of conjugate pairs the one above the real axis.
+    residues : ndarray
+        1/s; of pairs twice theirs, so that the response is the real part of the sum.
+    """
+
+    poles: Complexes
+    residues: Complexes
+
+    @classmethod
+    def from_zpk(cls, zeros: Complexes, poles: Complexes) -> AnalogFilter:
+        """By zeros and poles, rad/s; the gain at frequency 0 is 1."""
+        gain = np.prod(-poles) / np.prod(-zeros)
+        upper = poles[poles.imag > -1e-9 * np.abs(poles)]
+        residues = []
+        for pole in upper:
+            others = poles[poles != pole]
+            pair = 2.0 if pole.imag > 1e-9 * abs(pole) else 1.0
+            residues.append(pair * gain * np.prod(pole - zeros) / np.prod(pole - others))
+        return cls(upper, np.array(residues))
+
+    def frequency_response(self, frequency: Floats) -> Complexes:
+        """Its gain and phase at frequencies, Hz."""
+        s = 1j * TURN * np.asarray(frequency)[..., None]
+        there = self.residues / (s - self.poles)
+        mirrored = np.conj(self.residues) / (s - np.conj(self.poles))
+        response: Complexes = 0.5 * (there + mirrored).sum(axis=-1)
+        return response
+
+    def respond(
+        self, cells: Cells, impulse_times: Floats, impulses: Floats, times: Floats
+    ) -> Floats:
+        """The output at equally spaced times, from rest at the first.
+
+        Parameters
+        ----------
+        cells : Cells
+            From the first of the times to the last at least; ``times`` are among their ends.
+        impulse_times : ndarray, shape (n,)
+            s.
+        impulses : ndarray, shape (n,)
+            Changes of velocity, m/s.
+        times : ndarray, shape (m,)
+            s.
+
+        Returns
+        -------
+        ndarray, shape (m,)
+            m/s2.
+        """
+        from scipy.signal import lfilter
+
+        inside = (impulse_times >= times[0]) & (impulse_times <= times[-1])
+        hits, strengths = impulse_times[inside], impulses[inside]
+        hit_steps = steps_of(hits, times)
+        gains = self._gains(cells, times)
+        output = np.zeros(len(times))
+        for pole, residue, gain in zip(self.poles, self.residues, gains, strict=True):
+            felt = strengths * np.exp(pole * (times[hit_steps + 1] - hits))
+            gain += sums(hit_steps, felt, len(gain))
+            decay = np.exp(pole * (times[-1] - times[0]) / (len(times) - 1))
+            output[1:] += (residue * lfilter([1.0], [1.0, -decay], gain)).real
+        return output
+
+    def _gains(self, cells: Cells, times: Floats) -> Complexes:
+        """What each pole's z gains from the polynomials over each step, at the step's end."""
+        found = np.zeros((len(self.poles), len(times) - 1), dtype=complex)
+        for part in blocks(len(cells.starts)):
+            starts, ends = cells.starts[part], cells.ends[part]
+            steps = steps_of(ends, times)
+            lengths, left = ends - starts, times[steps + 1] - ends
+            count = cells.derivatives.shape[1]
+            moments = cells.derivatives[part] * lengths[:, None] ** np.arange(1, count + 1)
+            few, which = alike(lengths, (times[-1] - times[0]) / (len(times) - 1))
+            for row, pole in zip(found, self.poles, strict=True):
+                weights = phi_functions(pole * few, count)[:, which]
+                gained = np.einsum("nk,kn->n", moments, weights) * np.exp(pole * left)
+                row[steps[0] : steps[-1] + 1] += sums(steps - steps[0], gained)
+        return found
+
+
+def blocks(count: int) -> Iterator[slice]:
+    """Parts of a long array."""
+    for begin in range(0, count, BLOCK):
+        yield slice(begin, min(begin + BLOCK, count))
+
+
+def alike(lengths: Floats, step: float) -> tuple[Floats, NDArray[np.int_]]:
+    """The different ones of lengths, but for 1e-12 of a step, and which of them each is."""
+    whole, which = np.unique(np.round(lengths / (1e-12 * step)), return_inverse=True)
+    return whole * (1e-12 * step), which
+
+
+def steps_of(moments: Floats, times: Floats) -> NDArray[np.int_]:
+    """The steps between times that moments lie in, their ends included."""
+    found: NDArray[np.int_] = np.searchsorted(times, moments, side="left") - 1
+    return np.clip(found, 0, len(times) - 2)
+
+
+def sums(steps: NDArray[np.int_], values: Complexes, count: int = 0) -> Complexes:
+    """Values added up by step."""
+    real = np.bincount(steps, values.real, count)
+    found: Complexes = real + 1j * np.bincount(steps, values.imag, count)
+    return found
+
+
+def phi_functions(z: Complexes, count: int) -> Complexes:
+    """``phi_k(z)``, the integral of ``exp(z (1 - u)) u^(k-1)/(k-1)!`` over u in [0, 1].
+
+    Parameters
+    ----------
+    z : ndarray, shape (n,)
+        In the left half plane.
+    count : int
+        k is 1 to it.
+
+    Returns
+    -------
+    ndarray, shape (count, n)
+    """
+    found = np.empty((count, len(z)), dtype=complex)
+    size = np.abs(z)
+    far = size > FAR
+    found[:, far] = recurrence_up(z[far], count)
+    for low, high in ((-1.0, NEAR), (NEAR, FAR)):
+        part = (size > low) & (size <= high)
+        if part.any():
+            found[:, part] = recurrence_down(z[part], count, high)
+    return found
+
+
+def recurrence_up(z: Complexes, count: int) -> Complexes:
+    """By ``phi_k = (phi_(k-1) - 1/(k-1)!)/z``: for large z, where nothing cancels."""
+    found = np.empty((count, len(z)), dtype=complex)
+    last = np.exp(z)
+    for k in range(1, count + 1):
+        last = found[k - 1] = (last - 1.0 / math.factorial(k - 1)) / z
+    return found
+
+
+def recurrence_down(z: Complexes, count: int, largest: float) -> Complexes:
+    """From the Taylor series of the last one, by ``phi_(k-1) = z phi_k + 1/(k-1)!``.
+
+    The series begins so high that its terms fall from the first on.
+    """
+    top = max(count, math.ceil(largest))
+    terms = [1.0 / math.factorial(top)]
+    while terms[-1] * largest ** (len(terms) - 1) > 1e-18 * terms[0]:
+        terms.append(terms[-1] / (top + len(terms)))
+    last = np.full(len(z), terms[-1], dtype=complex)
+    for term in terms[-2::-1]:
+        last = last * z + term
+    found = np.empty((count, len(z)), dtype=complex)
+    for k in range(top, 0, -1):
+        if k <= count:
+            found[k - 1] = last
+        last = last * z + 1.0 / math.factorial(k - 1)
+    return found
+
+
+def low_pass(kind: str, order: int, bandwidth: float) -> tuple[Complexes, Complexes]:
+    """Zeros and poles of a low-pass filter that is 3 dB down at ``bandwidth``, Hz."""
+    from scipy.signal import bessel, butter
+
+    edge = TURN * bandwidth
+    if kind == "bessel":
+        zeros, poles, _ = bessel(order, edge, analog=True, output="zpk", norm="mag")
+    else:
+        zeros, poles, _ = butter(order, edge, analog=True, output="zpk")
+    return np.asarray(zeros, complex), np.asarray(poles, complex)
+
+
+def anti_aliasing(sample_rate: float) -> tuple[Complexes, Complexes]:
+    """Zeros and poles of an elliptic filter before a converter.
+
+    Flat to 0.01 dB up to ``sample_rate/2.56``; 80 dB down from where it would come back there.
+    """
+    from scipy.signal import ellip, ellipord
+
+    edge = TURN * sample_rate / 2.56
+    order, _ = ellipord(edge, TURN * sample_rate - edge, 0.01, 80.0, analog=True)
+    order += 1 - order % 2  # of odd order it has more poles than zeros
+    zeros, poles, _ = ellip(order, 0.01, 80.0, edge, analog=True, output="zpk")
+    return np.asarray(zeros, complex), np.asarray(poles, complex)
+
+
+def in_series(parts: Sequence[tuple[Complexes, Complexes]]) -> AnalogFilter:
+    """Filters one after the other."""
+    zeros, poles = (np.concatenate(found) for found in zip(*parts, strict=True))
+    return AnalogFilter.from_zpk(zeros, poles)

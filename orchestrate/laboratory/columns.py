@@ -1,0 +1,226 @@
+"""Columns of a file as they stand there, and which of them are a record's channels."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..structures.sections import GRAVITY
+from .record import CHANNELS
+
+Floats = NDArray[np.float64]
+INCH = 0.0254
+ACCELERATIONS = {  # in m/s2
+    **dict.fromkeys(("m/s2", "m/s/s", "ms-2", "m/sec2", "ms2"), 1.0),
+    **dict.fromkeys(("g", "gn", "g0", "gs", "gpk", "gpeak"), GRAVITY),
+    "mg": 1e-3 * GRAVITY,
+    "mm/s2": 1e-3,
+    "cm/s2": 1e-2,
+    "gal": 1e-2,
+    "in/s2": INCH,
+    "ft/s2": 12.0 * INCH,
+}
+TIMES = {  # in s
+    **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
+    **dict.fromkeys(("ms", "msec"), 1e-3),
+    **dict.fromkeys(("us", "\u00b5s", "\u03bcs"), 1e-6),
+    "min": 60.0,
+}
+NAMES = {  # as files call them; letters and digits alone, small
+    "time": ("time", "t", "zeit"),
+    "box_acceleration": ("boxacceleration", "box", "base", "table", "shaker", "abox", "abase"),
+    "acceleration1": ("acceleration1", "mass1", "a1", "acc1", "accel1"),
+    "acceleration2": ("acceleration2", "mass2", "a2", "acc2", "accel2"),
+}
+HEADING = re.compile(r"^(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a file.
+
+    Attributes
+    ----------
+    name : str
+    unit : str
+        As it stands there; empty where there is none.
+    values : ndarray
+    """
+
+    name: str
+    unit: str
+    values: Floats
+
+
+@dataclass(frozen=True)
+class Columns:
+    """All columns of a file.
+
+    Attributes
+    ----------
+    path : str
+    columns : list of Column
+    sample_rate : float or None
+        Hz, where the file says it.
+    first_row : int
+        Number of the first values in the file's own count.
+    attributes : dict
+        What a record written by this package says of itself.
+    """
+
+    path: str
+    columns: list[Column]
+    sample_rate: float | None = None
+    first_row: int = 0
+    attributes: dict[str, Any] = field(default_factory=dict)
+
+
+def split_heading(heading: str) -> tuple[str, str]:
+    """A column's name and unit.
+
+    Examples
+    --------
+    >>> split_heading("Acc 1 [g]"), split_heading("base (m/s^2)"), split_heading("time")
+    (('Acc 1', 'g'), ('base', 'm/s^2'), ('time', ''))
+    """
+    found = HEADING.match(heading.strip().strip('"').strip())
+    if found is None:
+        return heading.strip().strip('"').strip(), ""
+    return found["name"].strip(), found["unit"].strip()
+
+
+def plain_unit(text: str) -> str:
+    """A unit as the tables have it.
+
+    Examples
+    --------
+    >>> plain_unit("m/s\u00b2"), plain_unit("M/S^2"), plain_unit("m/s**2"), plain_unit(" G ")
+    ('m/s2', 'm/s2', 'm/s2', 'g')
+    """
+    plain = text.strip().lower().replace("\u00b2", "2").replace("\u207b", "-")
+    return plain.translate(str.maketrans("", "", "^*_. \u00b7[]()"))
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of accelerations or times."""
+    return plain_unit(text) in ACCELERATIONS or plain_unit(text) in TIMES
+
+
+def factor_of(label: str, unit: str, known: Mapping[str, float]) -> float:
+    """What a unit is in SI.
+
+    Raises
+    ------
+    InputError
+    """
+    if plain_unit(unit) not in known:
+        names = ", ".join(list(known)[:1] + [name for name in ("g", "mg", "ms") if name in known])
+        text = f"unit = {unit!r}" if unit else "no unit"
+        raise InputError(f"{label}: {text}; expected one such as {names}: say unit=")
+    return known[plain_unit(unit)]
+
+
+def channels_of(
+    table: Columns,
+    columns: Mapping[str, str | int] | Sequence[str | int] | None,
+    unit: str | None,
+) -> tuple[Floats | None, dict[str, Floats]]:
+    """The times in s, and channels in m/s2 by their names.
+
+    Parameters
+    ----------
+    table : Columns
+    columns : mapping, sequence or None
+        Which column, by name or number from 0, each channel and the time are in.
+    unit : str or None
+        Of accelerations without a unit, or with a wrong one.
+
+    Raises
+    ------
+    InputError
+    """
+    places = chosen(table, columns)
+    time = None
+    if "time" in places:
+        column = table.columns[places.pop("time")]
+        label = label_of(table, column)
+        time = scaled(table, column, factor_of(label, column.unit or "s", TIMES))
+    if not places:
+        raise InputError(f"{table.path}: no channel; expected one of {', '.join(CHANNELS)}")
+    values = {}
+    for name, place in places.items():
+        column = table.columns[place]
+        own = column.unit if unit is None else unit
+        values[name] = scaled(table, column, factor_of(label_of(table, column), own, ACCELERATIONS))
+    return time, values
+
+
+def label_of(table: Columns, column: Column) -> str:
+    """File and column."""
+    return f'{table.path}, column "{column.name}"'
+
+
+def scaled(table: Columns, column: Column, factor: float) -> Floats:
+    """A column in SI; what is no number is refused with its row."""
+    wrong = np.flatnonzero(~np.isfinite(column.values))
+    if len(wrong):
+        row, value = wrong[0] + table.first_row, column.values[wrong[0]]
+        more = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
+        raise InputError(f"{label_of(table, column)}, row {row}: {value}{more}; expected numbers")
+    return column.values if factor == 1.0 else factor * column.values
+
+
+def chosen(
+    table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
+) -> dict[str, int]:
+    """Which column each channel and the time are in.
+
+    By what is given, else by their names, else by their order: time, box, mass 1, mass 2.
+    """
+    wanted = (*(() if table.sample_rate else ("time",)), *CHANNELS)
+    if columns is None:
+        plain = [re.sub(r"[\W_]", "", column.name.lower()) for column in table.columns]
+        known = {
+            name: plain.index(one)
+            for name, all_names in NAMES.items()
+            for one in all_names
+            if one in plain
+        }
+        if set(known) & set(CHANNELS):
+            return known
+        if len(table.columns) > len(wanted):
+            names = ", ".join(column.name for column in table.columns[:8])
+            text = "expected columns=, which of them are time and channels"
+            raise InputError(f"{table.path}: {len(table.columns)} columns {names}; {text}")
+        return dict(zip(wanted, range(len(table.columns)), strict=False))
+    if not isinstance(columns, Mapping):
+        if isinstance(columns, str) or len(columns) > len(wanted):
+            raise InputError(f"columns = {columns!r}: expected {', '.join(wanted)} in that order")
+        columns = dict(zip(wanted, columns, strict=False))
+    unknown = set(columns) - {"time", *CHANNELS}
+    if unknown:
+        names = ", ".join(("time", *CHANNELS))
+        raise InputError(f"columns: {sorted(unknown)[0]!r}; expected names of {names}")
+    places = {name: place_of(table, wish) for name, wish in columns.items()}
+    if "time" in wanted and "time" not in places:
+        named = [i for i, one in enumerate(table.columns) if one.name.lower() in NAMES["time"]]
+        places["time"] = (named or [0])[0]
+    return places
+
+
+def place_of(table: Columns, wish: str | int) -> int:
+    """A column by its name or number."""
+    names = [column.name for column in table.columns]
+    if wish in names:
+        return names.index(str(wish))
+    number = isinstance(wish, int) and not isinstance(wish, bool)
+    if number and 0 <= int(wish) < len(names):
+        return int(wish)
+    text = f"expected one of {', '.join(names[:12])}, or 0 to {len(names) - 1}"
+    raise InputError(f"{table.path}: no column {wish!r}; {text}")

@@ -1,0 +1,284 @@
+"""What the masses do between the samples of a history: its smooth parts, exact by (6).
+
+From each sample on the equations of motion are solved by Taylor series, through impacts and
+releases, up to the next sample. All that is not known is the box's acceleration between the
+samples, unless its pieces are given. How far the solution is from the next sample shows the error.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..structures import Structure
+from .analog_filter import Cells
+from .pieces import Pieces
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+SHORT = 0.1  # of a cell times the highest natural frequency, rad
+LOOKS = 16  # at the contact force in a cell: it bends little there
+ROUNDING = 1e-13
+ORDER = 7  # derivatives of an acceleration kept: the next is below SHORT^7/7! = 2e-11 of it
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A history as arrays.
+
+    Attributes
+    ----------
+    structure : Structure
+    pieces : Pieces
+        Of the box's acceleration; their time begins at the first sample.
+    times : ndarray, shape (n,)
+        s from the first sample.
+    states : ndarray, shape (n, 4)
+        x1, x2, v1, v2.
+    touching : ndarray of bool, shape (n,)
+    impact_times, impulses : ndarray, shape (m,)
+        s, N s.
+    sticks : ndarray of bool, shape (m,)
+    """
+
+    structure: Structure
+    pieces: Pieces
+    times: Floats
+    states: Floats
+    touching: Flags
+    impact_times: Floats
+    impulses: Floats
+    sticks: Flags
+
+    @classmethod
+    def from_history(cls, history: xr.Dataset, structure: Structure, pieces: Pieces) -> Motion:
+        """Of what :func:`.shake.shake` answers."""
+        begin, end = float(history.time[0]), float(history.time[-1])
+        struck = history.impact_time.values
+        kept = (struck > begin) & (struck <= end)  # of a part of a history others too are there
+        return cls(
+            structure,
+            pieces,
+            history.time.values - begin,
+            np.stack([history[name].values for name in ("x1", "x2", "v1", "v2")], axis=1),
+            history.in_contact.values.astype(bool),
+            struck[kept] - begin,
+            history.impulse.values[kept],
+            history.sticks.values.astype(bool)[kept],
+        )
+
+    def derivatives(self, states: Floats, touching: Flags, times: Floats) -> Floats:
+        """Displacements and their derivatives, shape (ORDER + 2, 2, n), by (6).
+
+        Parameters
+        ----------
+        states : ndarray, shape (n, 4)
+        touching : ndarray of bool, shape (n,)
+        times : ndarray, shape (n,)
+            s, for the box.
+        """
+        found = np.empty((ORDER + 2, 2, len(times)))
+        found[:2] = states.T.reshape(2, 2, -1)
+        box = np.zeros((ORDER, len(times)))
+        box[:4] = self.pieces.taylor(times).T
+        for n in range(ORDER):
+            found[n + 2] = self.pull(found[n], found[n + 1], touching) - box[n]
+        return found
+
+    def pull(self, x: Floats, v: Floats, touching: Flags) -> Floats:
+        """Accelerations in space (6), or the same derivatives of them, shape (2, n)."""
+        s = self.structure
+        one, two = s.k1 * x[0] + s.d1 * v[0], s.k2 * x[1] + s.d2 * v[1]
+        both = (one + two) / (s.m1 + s.m2)
+        return -np.where(touching, both, np.stack([one / s.m1, two / s.m2]))
+
+    def advance(self, states: Floats, touching: Flags, times: Floats, lengths: Floats) -> Floats:
+        """States a short time later, shape (n, 4)."""
+        series = self.derivatives(states, touching, times)
+        return np.concatenate([taylor(series, lengths), taylor(series[1:], lengths)]).T
+
+    def parts_of(self, length: float) -> int:
+        """Into how many equal parts the series need a time to be cut."""
+        s = self.structure
+        alone = [(s.m1, s.k1, s.d1), (s.m2, s.k2, s.d2)]
+        fastest = max(max(math.sqrt(k / m), d / m) for m, k, d in alone)
+        return max(1, math.ceil(fastest * length / SHORT))
+
+    def releases(self) -> Floats:
+        """When permanent contact ends, s: the first root of the contact force (18)."""
+        if self.structure.bonded:
+            return np.empty(0)
+        times = np.concatenate([self.times, self.impact_times])
+        touch = np.concatenate([self.touching, self.sticks])
+        before = np.concatenate([self.touching, np.zeros(len(self.sticks), bool)])
+        hit = np.arange(len(times)) >= len(self.times)
+        order = np.lexsort([~hit, times])  # a sample at an impact is after it
+        ends = np.flatnonzero(touch[order[:-1]] & ~before[order[1:]])
+        found = [self._release(times[order[i]], times[order[i + 1]]) for i in ends]
+        return np.array(found)
+
+    def _release(self, begin: float, end: float) -> float:
+        """The release between two moments; the first one where the force falls from 0 there."""
+        state = self._state_at(begin)
+        touching = np.array([True])
+        mesh = np.linspace(begin, end, 1 + self.parts_of(end - begin))
+        for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
+            series = self.derivatives(state, touching, np.array([start]))[:, :, 0]
+            root = first_fall(*self._contact_force(series), stop - start)
+            if root is not None:
+                return float(start + root)
+            state = self.advance(state, touching, np.array([start]), np.array([stop - start]))
+        return float(begin)
+
+    def _state_at(self, time: float) -> Floats:
+        """The state at a sample, or after an impact; shape (1, 4)."""
+        index = int(np.searchsorted(self.times, time, side="right")) - 1
+        now, state = float(self.times[index]), self.states[index : index + 1]
+        touching = self.touching[index : index + 1]
+        inside = (self.impact_times > now) & (self.impact_times <= time)
+        for i in np.flatnonzero(inside):
+            mesh = np.linspace(now, self.impact_times[i], 1 + self.parts_of(float(self.times[1])))
+            for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
+                state = self.advance(state, touching, np.array([start]), np.array([stop - start]))
+            state, touching = self.strike(state, self.impulses[[i]]), self.sticks[[i]]
+            now = float(self.impact_times[i])
+        return state
+
+    def strike(self, states: Floats, impulses: Floats) -> Floats:
+        """States after impulses (15): mass 1 is pushed back, mass 2 on."""
+        after = states.copy()
+        after[:, 2] -= impulses / self.structure.m1
+        after[:, 3] += impulses / self.structure.m2
+        return after
+
+    def _contact_force(self, series: Floats) -> tuple[Floats, float]:
+        """The contact force's derivatives (18), from those of the displacements, and its scale."""
+        s = self.structure
+        own = s.k1 * series[:-1, 0] + s.d1 * series[1:, 0]
+        other = s.k2 * series[:-1, 1] + s.d2 * series[1:, 1]
+        force: Floats = (s.m1 * other - s.m2 * own) / (s.m1 + s.m2)
+        return force, abs(float(own[0])) + abs(float(other[0]))
+
+
+def taylor(series: Floats, lengths: Floats) -> Floats:
+    """A Taylor series a short time later, shape (2, n)."""
+    found = np.zeros(series.shape[1:])
+    for n in range(len(series) - 1, -1, -1):
+        found = series[n] + found * lengths / (n + 1)
+    return found
+
+
+def first_fall(derivatives: Floats, scale: float, length: float) -> float | None:
+    """The first time in [0, length] from which on a Taylor series is below 0.
+
+    Rounding errors of numbers of the size ``scale`` are not below 0.
+    """
+    from scipy.optimize import brentq
+
+    factors = derivatives / np.array([math.factorial(n) for n in range(len(derivatives))])
+    series = np.polynomial.Polynomial(factors)
+    mesh = np.linspace(0.0, length, 1 + LOOKS)
+    below = np.flatnonzero(series(mesh) < -ROUNDING * scale)
+    if not len(below):
+        return None
+    last = int(below[0])
+    if last == 0 or series(mesh[last - 1]) <= 0.0:
+        return float(mesh[max(last - 1, 0)])
+    return float(brentq(series, mesh[last - 1], mesh[last], xtol=1e-15 * length, rtol=1e-14))
+
+
+@dataclass(frozen=True)
+class SmoothParts:
+    """Accelerations in space without the impulses.
+
+    Attributes
+    ----------
+    times : ndarray
+        Of the record, s.
+    box, mass1, mass2 : Cells
+    error : float
+        Largest distance of a mass's acceleration from the history's next sample, m/s2.
+    """
+
+    times: Floats
+    box: Cells
+    mass1: Cells
+    mass2: Cells
+    error: float
+
+
+def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
+    """Solve the equations from sample to sample.
+
+    Parameters
+    ----------
+    motion : Motion
+    sample_rate : float
+        Of the record that is made of them, Hz.
+    """
+    steps = math.floor(float(motion.times[-1]) * sample_rate * (1.0 + 1e-14))
+    parts = motion.parts_of(1.0 / sample_rate)
+    grid = np.arange(steps * parts + 1) / (sample_rate * parts)
+    grid = grid[grid <= motion.times[-1]]
+    times = grid[::parts]
+    releases = motion.releases()
+    given = [motion.times, motion.impact_times, releases, motion.pieces.nodes]
+    nodes = np.unique(np.concatenate([*given, grid]))
+    nodes = nodes[(nodes >= 0.0) & (nodes <= times[-1])]
+    starts = nodes[:-1]
+    states, touching, error = propagate(motion, nodes, releases)
+    box = Cells(starts, nodes[1:], motion.pieces.taylor(starts))
+    series = motion.derivatives(states, touching, starts)
+    felt = np.stack([motion.pull(x, v, touching) for x, v in zip(series, series[1:], strict=False)])
+    one, two = (Cells(starts, nodes[1:], felt[:, i].T) for i in (0, 1))
+    return SmoothParts(times, box, one, two, error)
+
+
+def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, Flags, float]:
+    """States and contact where cells begin, and the distance to the samples.
+
+    All intervals between samples at once: first their first cells, then their second ones.
+    """
+    count = len(nodes) - 1
+    interval = np.searchsorted(motion.times, nodes[:-1], side="right") - 1
+    first = np.searchsorted(interval, np.arange(len(motion.times)))
+    rank = np.arange(count) - first[interval]
+    impulses = np.zeros(count + 1)
+    places = np.searchsorted(nodes, motion.impact_times)
+    known = places <= count
+    np.add.at(impulses, places[known], motion.impulses[known])
+    begins, ends = np.zeros(count + 1, bool), np.zeros(count + 1, bool)
+    begins[places[known & motion.sticks]] = True
+    ends[np.searchsorted(nodes, releases[releases <= nodes[-1]])] = True
+    states, touching = motion.states[interval], motion.touching[interval] & ~ends[:-1]
+    order = np.argsort(rank, kind="stable")
+    bounds = np.searchsorted(rank[order], np.arange(1, rank.max() + 2))
+    lengths = np.diff(nodes)
+    for low, high in zip(bounds[:-1], bounds[1:], strict=True):
+        now = order[low:high]
+        last = now - 1
+        moved = motion.advance(states[last], touching[last], nodes[last], lengths[last])
+        states[now] = motion.strike(moved, impulses[now])
+        touching[now] = (touching[last] | begins[now]) & ~ends[now]
+    last = np.append(np.flatnonzero(rank == 0)[1:] - 1, count - 1)
+    moved = motion.advance(states[last], touching[last], nodes[last], lengths[last])
+    moved = motion.strike(moved, impulses[last + 1])
+    target = np.searchsorted(motion.times, nodes[last + 1])
+    exact = (target < len(motion.times)) & (
+        motion.times[np.minimum(target, len(motion.times) - 1)] == nodes[last + 1]
+    )
+    return states, touching, mismatch(motion, moved[exact], target[exact])
+
+
+def mismatch(motion: Motion, states: Floats, samples: NDArray[np.int_]) -> float:
+    """Largest difference of accelerations by states and by samples, m/s2."""
+    difference = (states - motion.states[samples]).T.reshape(2, 2, -1)
+    touching = motion.touching[samples]
+    return float(np.abs(motion.pull(difference[0], difference[1], touching)).max(initial=0.0))

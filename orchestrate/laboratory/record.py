@@ -1,0 +1,186 @@
+"""The one dataset of channels over time, measured or simulated."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+from ..response.labels import variable
+from .signals import HERTZ, checked
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+CHANNELS = {  # long names
+    "box_acceleration": "acceleration of the box",
+    "acceleration1": "acceleration of mass 1 in space",
+    "acceleration2": "acceleration of mass 2 in space",
+}
+FEWEST = 4
+UNEVEN = 0.05  # largest distance of a time from equal steps, parts of a step
+PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
+
+
+def record(
+    *,
+    time: ArrayLike | None = None,
+    box_acceleration: ArrayLike | None = None,
+    acceleration1: ArrayLike | None = None,
+    acceleration2: ArrayLike | None = None,
+    sample_rate: float | None = None,
+    source: str = "measured",
+    sensors: Mapping[str, str] | str = "",
+    title: str = "Record",
+) -> xr.Dataset:
+    """Channels of one measurement, measured or simulated, checked.
+
+    Parameters
+    ----------
+    time : array_like, optional
+        s, in equal steps; or give ``sample_rate``, then it begins at 0.
+    box_acceleration, acceleration1, acceleration2 : array_like, optional
+        Accelerations in space of the box and the masses, m/s2; one of them at least.
+    sample_rate : float, optional
+        Hz; by default from ``time``.
+    source : str
+        Where it comes from: a file, ``"measured"``, ``"simulated"``.
+    sensors : str or mapping of str to str
+        What the channels were measured by.
+    title : str
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time`` in s the channels given, m/s2; attributes ``sample_rate`` in Hz, ``source``
+        and ``sensors``.
+
+    Raises
+    ------
+    InputError
+        Where something is no number, missing, or not in equal steps; it names the first such row,
+        counted from 0.
+
+    Warns
+    -----
+    UserWarning
+        Where the numbers look as if they had another unit.
+
+    Examples
+    --------
+    >>> made = record(box_acceleration=[0.0, 1.0, 0.0, -1.0], sample_rate=1000.0)
+    >>> made.time.values[-1], made.attrs["sample_rate"]
+    (np.float64(0.003), 1000.0)
+    """
+    channels = dict(zip(CHANNELS, (box_acceleration, acceleration1, acceleration2), strict=True))
+    given = {name: one for name, one in channels.items() if one is not None}
+    words = sensors
+    if isinstance(sensors, Mapping):
+        words = "; ".join(f"{name}: {text}" for name, text in sensors.items())
+    attributes = {"title": title, "source": source, "sensors": words}
+    return checked_record(time, given, sample_rate, attributes)
+
+
+def checked_record(
+    time: ArrayLike | None,
+    channels: Mapping[str, ArrayLike],
+    sample_rate: float | None,
+    attributes: Mapping[str, Any],
+    first_row: int = 0,
+) -> xr.Dataset:
+    """A record, its rows counted from ``first_row`` in messages; see :func:`record`."""
+    import xarray as xr
+
+    values = {name: numbers(name, one, first_row) for name, one in channels.items()}
+    if not values:
+        raise InputError(f"record: no channel given; expected one of {', '.join(CHANNELS)}")
+    rate = None if sample_rate is None else checked(HERTZ, "sample_rate", sample_rate)
+    if time is not None:
+        times = numbers("time", time, first_row)
+    elif rate is not None:
+        times = np.arange(len(next(iter(values.values())))) / rate
+    else:
+        raise InputError("record: neither time nor sample_rate given; expected one of them")
+    for name, one in values.items():
+        if len(one) != len(times):
+            raise InputError(f"{name}: {len(one)} values; expected {len(times)}, as the times")
+    rate = checked_rate(times, rate, first_row)
+    for name, one in values.items():
+        warn_if_implausible(name, one)
+    return xr.Dataset(
+        {name: variable("time", one, "m/s2", CHANNELS[name]) for name, one in values.items()},
+        {"time": variable("time", times, "s", "time")},
+        {"sensors": "", **attributes, "sample_rate": rate},
+    )
+
+
+def numbers(name: str, given: Any, first_row: int = 0) -> Floats:
+    """A column of finite numbers.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        values = np.array(given, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: expected a list of numbers") from None
+    if values.ndim != 1 or len(values) < FEWEST:
+        shape = "x".join(map(str, values.shape)) or "one"
+        raise InputError(f"{name}: {shape} values; expected a list of {FEWEST} numbers or more")
+    wrong = np.flatnonzero(~np.isfinite(values))
+    if len(wrong):
+        more = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
+        text = f"{name}, row {wrong[0] + first_row}: {values[wrong[0]]}{more}"
+        raise InputError(f"{text}; expected finite numbers")
+    return values
+
+
+def checked_rate(times: Floats, rate: float | None, first_row: int = 0) -> float:
+    """The sample rate of times in equal steps, Hz.
+
+    Raises
+    ------
+    InputError
+        Where they are not, or do not fit the rate that was given.
+    """
+    falling = np.flatnonzero(np.diff(times) <= 0.0)
+    if len(falling):
+        row = int(falling[0]) + 1
+        text = f"{times[row]:.9g} s after {times[row - 1]:.9g} s"
+        raise InputError(f"time, row {row + first_row}: {text}; expected ascending times")
+    span = float(times[-1] - times[0])
+    steps = len(times) - 1
+    usual = float(np.median(np.diff(times))) if rate is None else 1.0 / rate
+    away = np.abs(np.diff(times) - usual) > 2.0 * UNEVEN * usual
+    even = np.abs(times - times[0] - np.arange(steps + 1) * (span / steps)) <= UNEVEN * span / steps
+    if away.any() or not even.all():
+        row = int(np.flatnonzero(away)[0]) + 1 if away.any() else int(np.flatnonzero(~even)[0])
+        text = f"a step of {times[row] - times[row - 1]:.6g} s where others are {usual:.6g} s"
+        raise InputError(f"time, row {row + first_row}: {text}; expected equal steps")
+    own = steps / span
+    if rate is None:
+        return float(f"{own:.10g}")  # the digits of the times are not those of the rate
+    if abs(own - rate) > 0.01 * rate:
+        raise InputError(f"sample_rate = {rate!r} Hz: expected {own:.6g}, as the times have")
+    return rate
+
+
+def warn_if_implausible(name: str, values: Floats) -> None:
+    """Warn where a channel looks as if it were not in m/s2."""
+    peak, low, high = float(np.abs(values).max()), *PLAUSIBLE
+    mean, spread = abs(float(values.mean())), float(values.std())
+    if 0.0 < peak < low:
+        text = f"no more than {peak:.3g} m/s2: are these numbers in g, or in V"
+    elif peak > high:
+        text = f"up to {peak:.3g} m/s2: are these numbers in mV, or counts"
+    elif abs(mean - 1.0) < 0.03 and spread < 0.5 * mean:
+        text = f"a mean of {mean:.3g} m/s2, as gravity has in g: are these numbers in g"
+    else:
+        return
+    warnings.warn(f"{name}: {text}? expected m/s2", UserWarning, stacklevel=5)

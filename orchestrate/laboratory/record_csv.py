@@ -1,0 +1,179 @@
+"""Columns of numbers as text, as analysers and spreadsheets write them.
+
+Separators are semicolon, tab, comma or blanks; decimals have a point, or a comma where that is not
+the separator. What stands above the first line of numbers is the heading: its last line with as
+many fields has the names, or the units if a line above it has the names.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .columns import Column, Columns, is_unit, split_heading
+
+MOST_HEADING = 200  # lines
+SEPARATORS = (";", "\t", ",", " ")
+POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.I)
+COMMA = re.compile(r"[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.I)
+BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """How numbers are written in a file.
+
+    Attributes
+    ----------
+    separator, decimal : str
+    first : int
+        Line of the first numbers, counted from 0.
+    """
+
+    separator: str
+    decimal: str
+    first: int
+
+    def fields(self, line: str) -> list[str]:
+        """What stands in a line, a separator at its end dropped."""
+        line = line.strip() if self.separator == " " else line.strip("\r\n")
+        if self.separator == " ":
+            return line.split()
+        found = next(csv.reader([line], delimiter=self.separator), [])
+        return found[:-1] if len(found) > 1 and not found[-1].strip() else found
+
+
+def read_csv(path: Path) -> Columns:
+    """All columns of a text file.
+
+    Raises
+    ------
+    InputError
+    """
+    data = path.read_bytes()
+    text = decoded(path, data)
+    lines = text.split("\n", MOST_HEADING + 1)[: MOST_HEADING + 1]
+    if not text.strip():
+        raise InputError(f"{path}: empty; expected columns of numbers")
+    dialect = dialect_of(path, lines)
+    columns = len(dialect.fields(lines[dialect.first]))
+    names = headings(lines[: dialect.first], dialect, columns)
+    values = parsed(path, text, dialect, [name for name, _ in names])
+    made = [Column(*heading, column) for heading, column in zip(names, values.T, strict=True)]
+    return Columns(str(path), made, first_row=dialect.first + 1)
+
+
+def decoded(path: Path, data: bytes) -> str:
+    """A file's text: UTF-8, UTF-16 with its mark, or Windows' letters."""
+    if b"\0" in data[:4096] and data[:2] not in BYTE_ORDERS:
+        raise InputError(f"{path}: no text; expected columns of numbers")
+    try:
+        text = data.decode(BYTE_ORDERS.get(data[:2], "utf-8-sig"))
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", errors="replace")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def dialect_of(path: Path, lines: list[str]) -> Dialect:
+    """How a file is written, by its first line of numbers that the next one is like."""
+    for number, line in enumerate(lines):
+        for separator in SEPARATORS:
+            for decimal, pattern in ((".", POINT), (",", COMMA)):
+                if separator == decimal:
+                    continue
+                dialect = Dialect(separator, decimal, number)
+                if are_numbers(dialect.fields(line), pattern, separator):
+                    return unambiguous(dialect, lines[number : number + 50])
+    text = f"no line of numbers in the first {min(len(lines), MOST_HEADING)}"
+    raise InputError(f"{path}: {text}; expected columns of numbers")
+
+
+def are_numbers(fields: list[str], pattern: re.Pattern[str], separator: str) -> bool:
+    """Whether a line is one of data: numbers, two at least unless nothing separates them."""
+    texts = [field.strip() for field in fields]
+    full = [text for text in texts if text]
+    several = len(texts) > 1 or separator == " "
+    fits = all(pattern.fullmatch(text) for text in full)
+    return bool(full) and several and fits and len(full) >= 0.5 * len(texts)
+
+
+def unambiguous(dialect: Dialect, lines: list[str]) -> Dialect:
+    """With the decimal comma where whole numbers in the first line left both possible."""
+    if dialect.separator == "," or dialect.decimal == ",":
+        return dialect
+    comma = any("," in line for line in lines) and not any("." in line for line in lines)
+    return Dialect(dialect.separator, ",", dialect.first) if comma else dialect
+
+
+def headings(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, str]]:
+    """Names and units of columns."""
+    rows = [dialect.fields(line.lstrip("#%").strip(" ")) for line in lines]
+    fitting = [[field.strip() for field in row] for row in rows if len(row) == count]
+    if not fitting:
+        return [(f"column {number}", "") for number in range(count)]
+    units = [text.strip("[]() ") for text in fitting[-1]]
+    filled = [unit for unit in units if unit]
+    if len(fitting) > 1 and filled and all(map(is_unit, filled)):
+        names = [split_heading(text)[0] for text in fitting[-2]]
+        return list(zip(names, units, strict=True))
+    return [split_heading(text) for text in fitting[-1]]
+
+
+def parsed(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray[np.float64]:
+    """The numbers, shape (rows, columns).
+
+    Raises
+    ------
+    InputError
+        Where something is no number; it names line and column.
+    """
+    body = text.split("\n", dialect.first)[dialect.first]
+    numbers = body.replace(",", ".") if dialect.decimal == "," else body
+    separator = None if dialect.separator == " " else dialect.separator
+    if separator is not None and body.partition("\n")[0].rstrip(" ").endswith(separator):
+        numbers = re.sub(f"{re.escape(separator)} *$", "", numbers, flags=re.MULTILINE)
+    try:
+        found = np.loadtxt(
+            StringIO(numbers), delimiter=separator, comments=None, quotechar='"', ndmin=2
+        )
+    except ValueError:
+        found = np.empty((0, 0))
+    if found.shape[1] != len(names):
+        refuse_first(path, body, dialect, names)
+    return found
+
+
+def refuse_first(path: Path, body: str, dialect: Dialect, names: list[str]) -> None:
+    """Name what is no number.
+
+    Raises
+    ------
+    InputError
+    """
+    pattern = COMMA if dialect.decimal == "," else POINT
+    for number, line in enumerate(body.split("\n"), dialect.first + 1):
+        fields = [field.strip() for field in dialect.fields(line)]
+        if fields and len(fields) != len(names):
+            text = f"{len(fields)} columns; expected {len(names)}"
+            raise InputError(f"{path}, row {number}: {text}")
+        for name, field in zip(names, fields, strict=False):
+            if not pattern.fullmatch(field):
+                text = f"{field[:40]!r}" if field else "nothing"
+                text += "; expected a number"
+                raise InputError(f'{path}, column "{name}", row {number}: {text}')
+    raise InputError(f"{path}: cannot be read; expected columns of numbers")
+
+
+def write_csv(path: Path, columns: list[Column]) -> None:
+    """Write columns with a heading ``name [unit]``, all digits that the numbers have."""
+    with path.open("w", encoding="utf-8", newline="\n") as file:
+        file.write(",".join(f"{column.name} [{column.unit}]" for column in columns) + "\n")
+        rows = zip(*(column.values.tolist() for column in columns), strict=True)
+        file.writelines(",".join(map(repr, row)) + "\n" for row in rows)

@@ -1,0 +1,276 @@
+"""Records as files: CSV, universal files, MAT, NetCDF, WAV."""
+
+from __future__ import annotations
+
+import os
+import stat
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import InputError
+from ..files import check_name, write_whole
+from ..structures.ranges import Quantity
+from .columns import Column, Columns, channels_of
+from .record import CHANNELS, checked_record
+from .record_csv import read_csv, write_csv
+from .record_uff import read_uff, write_uff
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+MOST_BYTES = 1 << 30  # a file is read into the memory as a whole
+ENDINGS = {
+    **dict.fromkeys((".csv", ".txt", ".tsv", ".asc", ".dat"), "csv"),
+    **dict.fromkeys((".uff", ".unv", ".uf", ".58"), "uff"),
+    **{".mat": "mat", ".nc": "netcdf", ".wav": "wav"},
+}
+RATES = ("sample_rate", "samplerate", "fs")  # what a MAT file calls it
+
+
+def read_record(
+    path: str | os.PathLike[str],
+    *,
+    columns: Mapping[str, str | int] | Sequence[str | int] | None = None,
+    unit: str | None = None,
+    sample_rate: float | None = None,
+    scale: float | None = None,
+) -> xr.Dataset:
+    r"""Read a measurement from a file.
+
+    Parameters
+    ----------
+    path : path-like
+        Its ending says what it is: ``.csv``, ``.txt``, ``.tsv``, ``.asc``, ``.dat`` (text),
+        ``.uff``, ``.unv`` (universal files, datasets 58 and 58b), ``.mat`` (MATLAB's up to
+        version 7.2), ``.nc`` (NetCDF), ``.wav``.
+    columns : mapping or sequence, optional
+        Which column ``time``, ``box_acceleration``, ``acceleration1`` and ``acceleration2`` are
+        in, by name or by number from 0; a sequence has them in that order. By default columns
+        with these names or others that are usual, else the first ones in that order. A time that
+        is not named is in the column of that name, else in the first.
+    unit : str, optional
+        Of the accelerations: ``"m/s2"``, ``"g"``, ``"mg"``, ``"mm/s2"`` and others; by default
+        what stands in the file, which must be there.
+    sample_rate : float, optional
+        Hz; where there is no column of times.
+    scale : float, optional
+        m/s2 at the full scale of a WAV file, which must be given there.
+
+    Returns
+    -------
+    xarray.Dataset
+        As :func:`.record.record` makes it.
+
+    Raises
+    ------
+    InputError
+        Where the file is damaged, empty, too large, or its numbers are no record; in one line
+        with column and row.
+
+    Notes
+    -----
+    MAT and NetCDF files are read by libraries in C (of SciPy and HDF5) that a damaged or forged
+    file may end together with the process: read those that you trust.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "base.csv"
+    >>> _ = path.write_text("t [ms];base [g]\n0;0,1\n1;0,3\n2;-0,2\n3;0,0\n")
+    >>> read_record(path).box_acceleration.values.round(4).tolist()
+    [0.9807, 2.942, -1.9613, 0.0]
+    """
+    path = Path(path)
+    kind = kind_of(path)
+    check_file(path)
+    if (scale is not None) != (kind == "wav"):
+        text = "expected for a WAV file, and there always: m/s2 at its full scale"
+        raise InputError(f"{path}: scale = {scale!r}; {text}")
+    if kind == "wav":
+        bounds = Quantity("scale", "m/s2", "", 1e-9, 1e12)
+        table = read_wav(path, bounds.check(scale))
+    else:
+        readers = {"csv": read_csv, "uff": read_uff, "mat": read_mat, "netcdf": read_netcdf}
+        table = readers[kind](path)
+    if sample_rate is not None:
+        table = replace(table, sample_rate=sample_rate)
+    time, values = channels_of(table, columns, unit)
+    if time is None and table.sample_rate is None:
+        raise InputError(f"{path}: no column of times; expected one, or sample_rate=")
+    words = {"title": f"Record {path.name}", "source": path.name, **table.attributes}
+    try:
+        return checked_record(time, values, table.sample_rate, words, first_row=table.first_row)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool = True) -> Path:
+    """Write a record to a file, which appears whole or not at all.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        As :func:`.record.record` makes it.
+    path : path-like
+        Its ending says what it is to be, as for :func:`read_record`; WAV is not written. CSV, MAT,
+        NetCDF and universal files with ``binary`` have all digits; without, 13 of them.
+    binary : bool
+        Of universal files: datasets 58b.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    InputError, StoreError
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> from orchestrate import record
+    >>> data = record(box_acceleration=[0.0, 1.0, 0.1, -1.0], sample_rate=1000.0)
+    >>> path = write_record(data, pathlib.Path(tempfile.mkdtemp()) / "base.csv")
+    >>> read_record(path).box_acceleration.equals(data.box_acceleration)
+    True
+    """
+    path = Path(path)
+    kind = kind_of(path)
+    check_name(path)
+    channels = [name for name in CHANNELS if name in getattr(data, "variables", {})]
+    if not channels or "sample_rate" not in data.attrs:
+        raise InputError("data: expected a record, with a channel and the attribute sample_rate")
+    columns = [Column("time", "s", data.time.values)]
+    columns += [Column(name, "m/s2", data[name].values) for name in channels]
+    rate = float(data.attrs["sample_rate"])
+    if kind == "wav":
+        raise InputError(f"{path}: WAV is only read; expected .csv, .uff, .mat or .nc")
+    if kind == "csv":
+        return write_whole(path, lambda place: write_csv(place, columns))
+    if kind == "uff":
+        return write_whole(path, lambda place: write_uff(place, columns, rate, binary))
+    if kind == "mat":
+        return write_whole(path, lambda place: write_mat(place, columns, rate))
+    return write_whole(path, lambda place: data.to_netcdf(place, engine="netcdf4"))
+
+
+def kind_of(path: Path) -> str:
+    """What a file is by its ending."""
+    if path.suffix.lower() not in ENDINGS:
+        raise InputError(f"{path}: expected a file that ends in {', '.join(ENDINGS)}")
+    return ENDINGS[path.suffix.lower()]
+
+
+def check_file(path: Path) -> None:
+    """See that there is a file of a size that can be read.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        status = path.stat()
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}; expected a file to read") from None
+    if not stat.S_ISREG(status.st_mode):
+        raise InputError(f"{path}: no ordinary file; expected one")
+    if not 0 < status.st_size <= MOST_BYTES:
+        text = f"expected 1 to {MOST_BYTES}: cut it, or write it as .nc"
+        raise InputError(f"{path}: {status.st_size} bytes; {text}")
+
+
+def read_mat(path: Path) -> Columns:
+    """Vectors of a MAT file, and columns of matrices as ``name[0]``, ``name[1]`` ..."""
+    from scipy.io import loadmat
+
+    try:
+        found = loadmat(path)
+    except NotImplementedError:
+        text = "a MAT file of version 7.3; expected an earlier one: save with '-v7'"
+        raise InputError(f"{path}: {text}") from None
+    except Exception as error:  # what damaged files raise is not said
+        text = (str(error).splitlines() or [type(error).__name__])[0][:120]
+        raise InputError(f"{path}: {text}; expected a MAT file that is whole") from None
+    arrays = {name: np.asarray(one) for name, one in found.items() if not name.startswith("__")}
+    units = {name.lower(): one for name, one in arrays.items()}.get("units", np.array([""]))
+    unit = str(units.ravel()[0]) if units.dtype.kind == "U" and units.size else ""
+    rate, columns = None, []
+    for name, one in arrays.items():
+        if one.dtype.kind not in "iuf":
+            continue
+        if one.size == 1 and name.lower() in RATES:
+            rate = float(one.ravel()[0])
+        elif one.ndim == 2 and min(one.shape) == 1 and one.size > 1:
+            columns.append((name, one.ravel()))
+        elif one.ndim == 2 and one.shape[0] > one.shape[1]:
+            columns += [(f"{name}[{i}]", column) for i, column in enumerate(one.T)]
+    made = [
+        Column(name, "" if name in ("time", "t") else unit, np.asarray(values, float))
+        for name, values in columns
+    ]
+    if not made:
+        raise InputError(f"{path}: no vectors of numbers; expected some")
+    return Columns(str(path), made, rate)
+
+
+def write_mat(path: Path, columns: list[Column], sample_rate: float) -> None:
+    """Write vectors by name, ``sample_rate`` and ``units``."""
+    from scipy.io import savemat
+
+    vectors: dict[str, Any] = {column.name: column.values for column in columns}
+    with path.open("wb") as file:
+        savemat(file, {**vectors, "sample_rate": sample_rate, "units": columns[-1].unit})
+
+
+def read_netcdf(path: Path) -> Columns:
+    """Variables over ``time`` of a NetCDF file, with their units."""
+    import xarray as xr
+
+    try:
+        data = xr.load_dataset(path, engine="netcdf4", decode_times=False)
+    except Exception as error:  # of the HDF5 library too
+        text = (str(error).splitlines() or [type(error).__name__])[0][:120]
+        raise InputError(f"{path}: {text}; expected a NetCDF file that is whole") from None
+    if "time" not in data.variables or data.time.dims != ("time",):
+        raise InputError(f"{path}: no variable time over itself; expected a record")
+    over_time = [
+        str(name)
+        for name, one in data.variables.items()
+        if one.dims == ("time",) and one.dtype.kind in "iuf"
+    ]
+    columns = [
+        Column(name, str(data[name].attrs.get("units", "")), data[name].values.astype(float))
+        for name in over_time
+    ]
+    rate = data.attrs.get("sample_rate")
+    attributes = dict(data.attrs) if {"sensors", "source"} <= set(data.attrs) else {}
+    rate = None if rate is None else float(rate)
+    return Columns(str(path), columns, rate, attributes=attributes)
+
+
+def read_wav(path: Path, scale: float) -> Columns:
+    """Channels of a WAV file, whole numbers as parts of the full scale."""
+    from scipy.io import wavfile
+
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("error", message="Reached EOF prematurely")
+            rate, data = wavfile.read(path)
+    except Exception as error:
+        text = (str(error).splitlines() or [type(error).__name__])[0][:120]
+        raise InputError(f"{path}: {text}; expected a WAV file that is whole") from None
+    values = np.asarray(data, float)
+    if not values.size:
+        raise InputError(f"{path}: no samples; expected some")
+    if data.dtype.kind == "u":  # of 8 bits: 128 is zero
+        values = (values - 128.0) / 128.0
+    elif data.dtype.kind == "i":
+        values = values / -float(np.iinfo(data.dtype).min)
+    channels = values.reshape(len(values), -1).T
+    made = [Column(f"channel {i}", "m/s2", scale * one) for i, one in enumerate(channels)]
+    return Columns(str(path), made, float(rate))

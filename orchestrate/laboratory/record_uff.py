@@ -1,0 +1,173 @@
+"""Universal files, datasets 58 and 58b: functions over the time, by pyuff."""
+
+from __future__ import annotations
+
+import logging
+import math
+import re
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+from .columns import Column, Columns, Floats
+
+Dataset = dict[str, Any]  # as pyuff gives it
+log = logging.getLogger(__name__)
+TIME_RESPONSE, TIME, ACCELERATION = 1, 17, 12  # of dataset 58
+NO_LABELS = ("", "none")
+NOTE = "sample_rate = {!r}, start = {!r}"  # a heading has six digits of both
+NOTED = re.compile(r"sample_rate = (\S+), start = (\S+)")
+
+
+def library() -> ModuleType:
+    """The package pyuff.
+
+    Raises
+    ------
+    InputError
+        Where it is not installed.
+    """
+    try:
+        import pyuff
+    except ImportError:
+        text = "expected the package pyuff: pip install 'vibroimpact[laboratory]'"
+        raise InputError(f"universal files need a package that is not here; {text}") from None
+    return pyuff
+
+
+def read_uff(path: Path) -> Columns:
+    """Accelerations over the time; what else is there is skipped, with a line in the log.
+
+    Raises
+    ------
+    InputError
+    """
+    if not path.read_bytes().rstrip().endswith(b"    -1"):
+        raise InputError(f"{path}: no '    -1' at its end; expected a universal file that is whole")
+    pyuff = library()
+    try:
+        file = pyuff.UFF(str(path))
+        kinds = [int(kind) for kind in file.get_set_types()]
+        functions = [(i, file.read_sets(i)) for i, kind in enumerate(kinds) if kind == 58]
+        return columns_of(path, kinds, functions)
+    except InputError:
+        raise
+    except Exception as error:  # pyuff raises nothing narrower, and fields may be anything
+        text = f"{error}".splitlines()[0][:120] if str(error) else type(error).__name__
+        raise InputError(f"{path}: {text}; expected a universal file that is whole") from None
+
+
+def columns_of(path: Path, kinds: list[int], functions: list[tuple[int, Dataset]]) -> Columns:
+    """The columns of those datasets that are functions of the same times.
+
+    Parameters
+    ----------
+    path : Path
+    kinds : list of int
+        Of all datasets of the file.
+    functions : list of (int, dict)
+        Datasets 58 with their numbers in the file.
+    """
+    for i, kind in enumerate(kinds):
+        if kind != 58:
+            log.info("%s: dataset %d, number %d of the file, is skipped", path, kind, i)
+    used = [(i, one) for i, one in functions if of_time(path, i, one)]
+    if not used:
+        kinds_there = ", ".join(map(str, kinds[:8])) or "none"
+        text = "expected a dataset 58 of time response"
+        raise InputError(f"{path}: datasets {kinds_there}; {text}")
+    number, first = used[0]
+    for i, one in used:
+        check_whole(path, i, one)
+        if not np.array_equal(one["x"], first["x"]):
+            text = f"other times than number {number}; expected the same"
+            raise InputError(f"{path}: dataset 58, number {i}: {text}")
+    label = str(first.get("abscissa_axis_units_lab", "")).strip()
+    time = Column("time", "s" if label.lower() in NO_LABELS else label, times_of(first))
+    return Columns(str(path), [time, *(column_of(i, one) for i, one in used)])
+
+
+def of_time(path: Path, number: int, one: Dataset) -> bool:
+    """Whether a dataset is a real function of the time."""
+    kind = int(one.get("abscissa_spec_data_type", TIME))
+    over_time = kind == TIME or (kind == 0 and int(one.get("func_type", 0)) == TIME_RESPONSE)
+    if over_time and not np.iscomplexobj(one["data"]):
+        return True
+    log.info("%s: dataset 58, number %d of the file, is no function of time; skipped", path, number)
+    return False
+
+
+def times_of(one: Dataset) -> Floats:
+    """The abscissa; where its step has six digits alone, the roundest rate that has them."""
+    if int(one["abscissa_spacing"]) != 1:
+        return np.asarray(one["x"], float)
+    noted = NOTED.search(str(one.get("id5", "")))
+    start, step = float(one["abscissa_min"]), float(one["abscissa_inc"])
+    rate = rounded_rate(step)
+    if noted is not None and math.isclose(float(noted[1]), rate, rel_tol=1e-4):
+        rate, start = float(noted[1]), float(noted[2])
+    return start + np.arange(len(one["data"])) / rate
+
+
+def rounded_rate(step: float) -> float:
+    """The number with the fewest digits whose inverse is a step, to six digits.
+
+    Examples
+    --------
+    >>> rounded_rate(1.95312e-04), rounded_rate(2.26757e-05), rounded_rate(0.001)
+    (5120.0, 44100.0, 1000.0)
+    """
+    if not 0.0 < step < math.inf:
+        raise InputError(f"abscissa increment {step!r}; expected a number > 0")
+    half = 0.5001 * 10.0 ** (math.floor(math.log10(step)) - 5)
+    low, high = 1.0 / (step + half), 1.0 / (step - half)
+    for digits in range(1, 10):
+        rate = float(f"{1.0 / step:.{digits}g}")
+        if low <= rate <= high:
+            return rate
+    return 1.0 / step
+
+
+def check_whole(path: Path, number: int, one: Dataset) -> None:
+    """See that all values are there that the heading announces.
+
+    Raises
+    ------
+    InputError
+    """
+    announced = int(one["num_pts"])
+    if len(one["data"]) != announced:
+        text = f"{len(one['data'])} values; expected {announced}, as its heading says"
+        raise InputError(f"{path}: dataset 58, number {number}: {text}")
+
+
+def column_of(number: int, one: Dataset) -> Column:
+    """A dataset as a column, named by its first line, else by its node and direction."""
+    name = str(one.get("id1", "")).strip()
+    if name.lower() in NO_LABELS:
+        name = f"{one.get('rsp_node', number)}:{one.get('rsp_dir', 0)}"
+    unit = str(one.get("ordinate_axis_units_lab", "")).strip()
+    return Column(name, "" if unit.lower() in NO_LABELS else unit, np.asarray(one["data"], float))
+
+
+def write_uff(path: Path, columns: list[Column], sample_rate: float, binary: bool) -> None:
+    """Write columns after the first, which is the time, as datasets 58 or 58b."""
+    pyuff = library()
+    time, *channels = columns
+    datasets = [
+        pyuff.prepare_58(
+            **{"binary": int(binary), "func_type": TIME_RESPONSE, "id1": column.name},
+            **{"id5": NOTE.format(sample_rate, float(time.values[0]))},
+            **{"rsp_node": node, "rsp_dir": 3, "ref_node": 0, "ref_dir": 0},
+            **{"x": time.values, "data": column.values, "abscissa_spacing": 1},
+            **{"abscissa_min": float(time.values[0]), "abscissa_inc": 1.0 / sample_rate},
+            **{"abscissa_spec_data_type": TIME, "abscissa_axis_units_lab": time.unit},
+            **{"ordinate_spec_data_type": ACCELERATION, "ordinate_axis_units_lab": column.unit},
+            **{"orddenom_spec_data_type": 0},
+        )
+        for node, column in enumerate(channels)
+    ]
+    pyuff.UFF(str(path)).write_sets(datasets, mode="add")  # overwriting 58b it loses the heading

@@ -1,0 +1,282 @@
+"""What accelerometers read: impacts as their bandwidth shows them, noise, clipping, digits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import InputError
+from ..structures import Structure
+from ..structures.ranges import Quantity, plain
+from .analog_filter import AnalogFilter, Floats, anti_aliasing, in_series, low_pass
+from .pieces import Pieces
+from .reconstruction import Motion, SmoothParts, smooth_parts
+from .record import CHANNELS, record
+from .sampled import Sampled
+from .signals import HERTZ, ExcitationSignal, checked, one_of_words
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FILTERS = ("butterworth", "bessel")
+MOST_SAMPLES = 20_000_000
+NEEDED = ("x1", "x2", "v1", "v2", "in_contact", "box_acceleration", "impact_time", "impulse")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sensor:
+    """An accelerometer with its amplifier and its converter.
+
+    In this order: a low-pass filter, the filter against aliasing, noise, the limits of the range,
+    the digits.
+
+    Parameters
+    ----------
+    bandwidth : float
+        Frequency at which the sensor's low-pass filter is 3 dB down, Hz.
+    order : int
+        Of this filter, 1 to 10.
+    kind : str
+        ``"butterworth"`` or ``"bessel"``.
+    noise : float
+        One-sided density, (m/s2)/sqrt(Hz); white, so ``noise sqrt(sample_rate/2)`` rms.
+    range : float
+        Readings end at plus and minus this, m/s2.
+    sample_rate : float, optional
+        Of the record, Hz; 2.56 times the bandwidth by default.
+    resolution : float
+        Step of the readings, m/s2; 0 for none.
+    seed : int
+        Of the noise.
+    antialiasing : bool
+        Whether an elliptic filter stands before the converter: flat to 0.01 dB up to
+        ``sample_rate/2.56``, 80 dB down where frequencies would come back there.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> Sensor(bandwidth=10e3, noise=0.01, range=500.0).sample_rate
+    25600.0
+    """
+
+    bandwidth: float
+    order: int = 4
+    kind: str = "butterworth"
+    noise: float = 0.0
+    range: float = math.inf
+    sample_rate: float | None = None
+    resolution: float = 0.0
+    seed: int = 0
+    antialiasing: bool = True
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        put(self, "bandwidth", checked(HERTZ, "bandwidth", self.bandwidth))
+        rate = 2.56 * self.bandwidth if self.sample_rate is None else self.sample_rate
+        put(self, "sample_rate", checked(HERTZ, "sample_rate", rate))
+        one_of_words("kind", self.kind, FILTERS)
+        put(self, "order", checked_whole("order", self.order, 1, 10))
+        put(self, "seed", checked_whole("seed", self.seed, 0, 2**63))
+        smallest, largest = 5e-324, math.inf
+        density = Quantity("noise", "(m/s2)/sqrt(Hz)", "", 0.0, 1e12)
+        put(self, "noise", density.check(self.noise))
+        put(self, "range", Quantity("range", "m/s2", "", smallest, largest).check(self.range))
+        put(
+            self, "resolution", Quantity("resolution", "m/s2", "", 0.0, 1e12).check(self.resolution)
+        )
+        if not isinstance(plain(self.antialiasing), (bool, np.bool_)):
+            text = "expected true or false"
+            raise InputError(f"antialiasing = {self.antialiasing!r}: {text}")
+
+    @property
+    def rate(self) -> float:
+        """Of the record, Hz."""
+        assert self.sample_rate is not None  # set when it was made
+        return self.sample_rate
+
+    @property
+    def label(self) -> str:
+        """Its filter, and what else it does to the readings."""
+        parts = [f"{self.kind} of order {self.order}, {self.bandwidth:g} Hz"]
+        if self.noise:
+            parts.append(f"noise {self.noise:g} (m/s2)/sqrt(Hz) with seed {self.seed}")
+        if self.range < math.inf:
+            parts.append(f"range {self.range:g} m/s2")
+        if self.resolution:
+            parts.append(f"resolution {self.resolution:g} m/s2")
+        return ", ".join([*parts, *([] if self.antialiasing else ["no filter against aliasing"])])
+
+    def analog_filter(self) -> AnalogFilter:
+        """Of the sensor and against aliasing, in series."""
+        parts = [low_pass(self.kind, self.order, self.bandwidth)]
+        if self.antialiasing:
+            parts.append(anti_aliasing(self.rate))
+        return in_series(parts)
+
+    def digitised(self, values: Floats, channel: int) -> Floats:
+        """Filtered values with noise, limits and digits.
+
+        Parameters
+        ----------
+        values : ndarray
+            m/s2.
+        channel : int
+            Each has noise of its own.
+        """
+        if self.noise:
+            rms = self.noise * math.sqrt(0.5 * self.rate)
+            generator = np.random.default_rng([self.seed, channel])
+            values = values + rms * generator.standard_normal(len(values))
+        values = np.clip(values, -self.range, self.range)
+        if self.resolution:
+            values = np.round(values / self.resolution) * self.resolution
+        return values
+
+
+def checked_whole(name: str, value: object, minimum: int, maximum: int) -> int:
+    """A whole number in a range."""
+    number = plain(value)
+    whole = isinstance(number, (int, np.integer)) and not isinstance(number, bool)
+    if not whole or not minimum <= number <= maximum:
+        raise InputError(f"{name} = {value!r}: expected a whole number of {minimum} to {maximum}")
+    return int(number)
+
+
+def measure(
+    history: xr.Dataset,
+    sensor: Sensor | Mapping[str, Sensor],
+    *,
+    excitation: ExcitationSignal | None = None,
+) -> xr.Dataset:
+    """What accelerometers on the box and on both masses read.
+
+    Parameters
+    ----------
+    history : xarray.Dataset
+        Of :func:`orchestrate.shake` or :func:`orchestrate.simulate`.
+    sensor : Sensor or mapping of str to Sensor
+        On all three; or by channel (``box_acceleration``, ``acceleration1``, ``acceleration2``),
+        with one sample rate; channels left out are not recorded.
+    excitation : SweptSine, Random, Shock, Sampled or sum, optional
+        What the history was shaken by. Without it the box's acceleration between the history's
+        samples is taken from the cubic spline through them.
+
+    Returns
+    -------
+    xarray.Dataset
+        A record, see :func:`.record.record`. The attribute ``reconstruction_error`` in m/s2 is
+        the largest distance of a mass's acceleration, solved from one sample of the history to
+        the next, from that sample.
+
+    Raises
+    ------
+    InputError
+
+    Notes
+    -----
+    Between the history's samples the equations of motion are solved through all impacts, so the
+    history may be coarse; an impact of impulse J is a Dirac of area J/m, and the filters' response
+    to both is exact. The filters are at rest at the history's beginning. They delay all channels;
+    those with the same sensor by the same time. Where the box's spline is not the excitation, the
+    box's channel has the spline's error, about ``(w h)^4/100`` of its amplitude for a sine of w
+    rad/s sampled every h seconds, and the masses' channels less.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_file("beam")
+    >>> sweep = orchestrate.SweptSine(first=10.0, last=14.0, duration=2.0, acceleration=0.2)
+    >>> history = orchestrate.shake(beam, sweep)
+    >>> felt = orchestrate.measure(history, orchestrate.Sensor(bandwidth=1000.0), excitation=sweep)
+    >>> felt.sizes["time"], bool(abs(felt.acceleration1).max() > 5 * abs(history.a1_abs).max())
+    (5121, True)
+    """
+    structure = structure_of(history)
+    sensors = sensors_of(sensor)
+    rate = next(iter(sensors.values())).rate
+    length = float(history.time[-1] - history.time[0])
+    if not 1.0 <= length * rate <= MOST_SAMPLES:
+        low, high = 1.0 / length, MOST_SAMPLES / length
+        text = f"expected {low:.3g} to {high:.3g} for that history"
+        raise InputError(f"sample_rate = {rate!r} Hz: {text}")
+    motion = Motion.from_history(history, structure, pieces_for(history, excitation))
+    parts = smooth_parts(motion, rate)
+    readings = {
+        name: sensors[name].digitised(channel(parts, motion, name, sensors[name]), number)
+        for number, name in enumerate(CHANNELS)
+        if name in sensors
+    }
+    made = record(
+        time=parts.times + float(history.time[0]),
+        sample_rate=rate,
+        source="simulated",
+        sensors={name: own.label for name, own in sensors.items()},
+        title=f"{history.attrs.get('title', 'Motion')}, as sensors read it",
+        **readings,
+    )
+    return made.assign_attrs(reconstruction_error=parts.error)
+
+
+def channel(parts: SmoothParts, motion: Motion, name: str, sensor: Sensor) -> Floats:
+    """What a sensor's filter gives on the box or a mass, m/s2."""
+    structure = motion.structure
+    cells, jumps = {
+        "box_acceleration": (parts.box, 0.0 * motion.impulses),
+        "acceleration1": (parts.mass1, -motion.impulses / structure.m1),
+        "acceleration2": (parts.mass2, motion.impulses / structure.m2),
+    }[name]
+    return sensor.analog_filter().respond(cells, motion.impact_times, jumps, parts.times)
+
+
+def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Pieces:
+    """The box's acceleration as pieces, from the history's beginning on."""
+    if excitation is not None:
+        if excitation.label != history.attrs.get("excitation"):
+            text = f"expected {history.attrs.get('excitation', 'none')}, which made the history"
+            raise InputError(f"excitation = {excitation.label}: {text}")
+        whole = excitation.pieces(float(history.attrs["accuracy"]))
+        begin = float(history.time[0])
+        return Pieces(whole.nodes - begin, whole.derivatives, whole.error)
+    steps = len(history.time) - 1
+    rate = steps / float(history.time[-1] - history.time[0])
+    box = history.box_acceleration.values
+    return Sampled(acceleration=box, sample_rate=rate).pieces()
+
+
+def sensors_of(sensor: Sensor | Mapping[str, Sensor]) -> dict[str, Sensor]:
+    """Sensors by channel."""
+    if isinstance(sensor, Sensor):
+        return dict.fromkeys(CHANNELS, sensor)
+    fits = isinstance(sensor, Mapping) and all(isinstance(s, Sensor) for s in sensor.values())
+    if not fits or not sensor or not set(sensor) <= set(CHANNELS):
+        names = ", ".join(CHANNELS)
+        raise InputError(f"sensor = {sensor!r}: expected a Sensor, or one for each of {names}")
+    rates = sorted({own.rate for own in sensor.values()})
+    if len(rates) > 1:
+        text = "expected one sample rate for all channels"
+        raise InputError(f"sensor: {' and '.join(f'{rate:g}' for rate in rates)} Hz; {text}")
+    return dict(sensor)
+
+
+def structure_of(history: xr.Dataset) -> Structure:
+    """The structure that moves in a history.
+
+    Raises
+    ------
+    InputError
+        Where it is no history.
+    """
+    names = ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma")
+    attributes, variables = getattr(history, "attrs", {}), getattr(history, "variables", {})
+    known = all(name in attributes for name in names) and all(name in variables for name in NEEDED)
+    if not known or history.sizes.get("time", 0) < 4:
+        raise InputError("history: expected an answer of shake or simulate, of 4 samples or more")
+    numbers = {name: float(attributes[name]) for name in names}
+    return Structure(**numbers, bonded=bool(attributes.get("bonded", False)))

@@ -1,0 +1,377 @@
+"""Records: what is refused and where, and files of all kinds there and back."""
+
+from __future__ import annotations
+
+import logging
+import sys
+
+import numpy as np
+import pytest
+import scipy.io
+import xarray as xr
+from scipy.io import wavfile
+
+from orchestrate import InputError, Sampled, read_record, record, write_record
+from orchestrate.laboratory import record_files
+
+G = 9.80665
+RATE = 5120.0
+CHANNELS = ("box_acceleration", "acceleration1", "acceleration2")
+
+
+def drawn(count=300, start=0.0, rate=RATE):
+    values = np.random.default_rng(3).normal(0.0, 20.0, (3, count))
+    time = start + np.arange(count) / rate
+    return record(time=time, **dict(zip(CHANNELS, values, strict=True)))
+
+
+def same(one, other):
+    assert one.sizes == other.sizes and set(one.data_vars) == set(other.data_vars)
+    for name in one.variables:
+        assert (one[name].values == other[name].values).all(), name
+    assert one.attrs["sample_rate"] == other.attrs["sample_rate"]
+
+
+def test_a_record_has_units_names_and_its_rate():
+    data = drawn()
+    assert set(data.data_vars) == set(CHANNELS) and data.acceleration2.dims == ("time",)
+    assert data.attrs["sample_rate"] == RATE and data.attrs["source"] == "measured"
+    assert all(data[name].attrs["units"] == "m/s2" for name in CHANNELS)
+    assert all(data[name].attrs["long_name"] for name in data.variables)
+    assert data.time.attrs["units"] == "s"
+
+
+def test_times_with_few_digits_are_even():
+    time = np.round(np.arange(20_000) / 25_600.0, 6)
+    data = record(time=time, acceleration1=np.sin(time), sample_rate=25_600.0)
+    assert data.attrs["sample_rate"] == 25_600.0
+    alone = record(time=time, acceleration1=np.sin(time))
+    assert alone.attrs["sample_rate"] == pytest.approx(25_600.0, rel=1e-5)
+
+
+def changed(column, row, value):
+    data = drawn(50)
+    columns = {name: data[name].values.copy() for name in ("time", *CHANNELS)}
+    columns[column][row] = value
+    return columns
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (changed("acceleration1", 17, np.nan), "acceleration1, row 17: nan; expected finite"),
+        (changed("box_acceleration", 3, np.inf), "box_acceleration, row 3: inf; expected finite"),
+        (changed("time", 20, 19.5 / RATE), "time, row 20: a step of 9.7656"),
+        (changed("time", 20, 0.0), "time, row 20: 0 s after 0.00371093"),
+        ({"time": [0.0, 1.0]}, "record: no channel given; expected one of box_acceleration"),
+        ({"acceleration1": [1.0] * 5}, "record: neither time nor sample_rate given"),
+        (
+            {"acceleration1": [], "sample_rate": 9.0},
+            "acceleration1: 0 values; expected a list of 4",
+        ),
+        ({"acceleration1": "abc", "sample_rate": 9.0}, "acceleration1: expected a list of numbers"),
+        ({"time": [0.0, 1.0, 2.0, 3.0, 4.0], "acceleration1": [1.0] * 4}, "4 values; expected 5"),
+        ({"time": [0.0, 1.0, 2.0, 4.0], "acceleration1": [1.0] * 4}, "time, row 3: a step of 2 s"),
+        (
+            {"time": np.arange(99) / 2.05, "acceleration1": [1.0] * 99, "sample_rate": 2.0},
+            "sample_rate = 2.0 Hz: expected 2.05, as the times have",
+        ),
+    ],
+)
+def test_what_is_no_record_is_refused_in_one_line(given, words):
+    with pytest.raises(InputError) as error:
+        record(**given)
+    assert words in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_missing_sample_is_noticed():
+    data = drawn(4000)
+    keep = np.arange(4000) != 2500
+    with pytest.raises(InputError, match="time, row 2500: a step of 0.000390625 s where others"):
+        record(time=data.time.values[keep], acceleration1=data.acceleration1.values[keep])
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        (0.01 * np.sin(np.arange(99.0)), "in g, or in V"),
+        (1e6 * np.sin(np.arange(99.0)), "mV, or counts"),
+        (1.0 + 0.1 * np.sin(np.arange(99.0)), "as gravity has in g"),
+    ],
+)
+def test_implausible_units_warn(values, words):
+    with pytest.warns(UserWarning, match=words):
+        record(acceleration1=values, sample_rate=100.0)
+
+
+def test_plausible_units_do_not_warn(recwarn):
+    for peak in (0.2, 9.8, 5000.0):
+        record(acceleration1=peak * np.sin(np.arange(99.0)), sample_rate=100.0)
+    record(acceleration1=np.zeros(9), sample_rate=100.0)
+    record(acceleration1=G + 0.2 * np.sin(np.arange(99.0)), sample_rate=100.0)
+    assert not recwarn
+
+
+@pytest.mark.parametrize("ending", [".csv", ".txt", ".uff", ".unv", ".mat", ".nc"])
+@pytest.mark.parametrize("start", [0.0, 1.25])
+def test_there_and_back_to_the_last_digit(tmp_path, ending, start):
+    data = drawn(start=start)
+    path = write_record(data, tmp_path / f"test{ending}")
+    assert path == tmp_path / f"test{ending}" and list(tmp_path.iterdir()) == [path]
+    same(read_record(path), data)
+    if ending == ".nc":
+        named = data.assign_attrs(sensors="of a kind", title="test 1")
+        assert read_record(write_record(named, path)).identical(named)
+    alone = data[["acceleration2"]].assign_attrs(data.attrs)
+    same(read_record(write_record(alone, path)), alone)
+
+
+@pytest.mark.parametrize("rate", [25_600.0, 44_100.0, 3160.497, 1000.0 / 3.0])
+def test_rates_of_universal_files_are_exact(tmp_path, rate):
+    data = drawn(1000, rate=rate)
+    path = write_record(data, tmp_path / "test.uff")
+    back = read_record(path)
+    assert back.attrs["sample_rate"] == data.attrs["sample_rate"]
+    assert np.abs(back.time.values - data.time.values).max() <= 1e-6 / rate
+
+
+def test_universal_files_as_text_have_twelve_digits(tmp_path):
+    data = drawn()
+    path = write_record(data, tmp_path / "test.uff", binary=False)
+    back = read_record(path)
+    for name in CHANNELS:
+        assert np.allclose(back[name], data[name], rtol=1e-11, atol=0.0)
+    assert (back.time.values == data.time.values).all()
+
+
+def test_other_datasets_of_universal_files_are_skipped_with_a_line(tmp_path, caplog):
+    import pyuff
+
+    data, path = drawn(), tmp_path / "test.uff"
+    units = pyuff.prepare_164(
+        units_code=1, units_description="SI", temp_mode=1, length=1.0, force=1.0, temp=1.0,
+        temp_offset=273.15,
+    )  # fmt: skip
+    common = {"rsp_node": 1, "rsp_dir": 1, "ref_node": 1, "ref_dir": 1, "abscissa_spacing": 1}
+    frf = pyuff.prepare_58(
+        binary=0, func_type=4, id1="frf", x=np.arange(9.0), data=np.ones(9) * (1 + 2j),
+        abscissa_min=0.0, abscissa_inc=1.0, abscissa_spec_data_type=18,
+        ordinate_spec_data_type=12, orddenom_spec_data_type=13, **common,
+    )  # fmt: skip
+    base = pyuff.prepare_58(
+        binary=1, func_type=1, id1="Base", x=data.time.values, data=data.acceleration1.values,
+        abscissa_min=0.0, abscissa_inc=1.0 / RATE, abscissa_spec_data_type=17,
+        ordinate_spec_data_type=12, ordinate_axis_units_lab="g",
+        orddenom_spec_data_type=0, **common,
+    )  # fmt: skip
+    pyuff.UFF(str(path)).write_sets([units, frf, base], mode="add")
+    with caplog.at_level(logging.INFO):
+        back = read_record(path)
+    assert (back.box_acceleration.values == G * data.acceleration1.values).all()
+    assert back.attrs["sample_rate"] == RATE
+    assert "dataset 164, number 0 of the file, is skipped" in caplog.text
+    assert "dataset 58, number 1 of the file, is no function of time" in caplog.text
+
+
+def test_without_pyuff_a_line_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyuff", None)
+    (tmp_path / "a.uff").write_text("    -1\n    58\n    -1\n")
+    with pytest.raises(InputError, match=r"pip install 'vibroimpact\[laboratory\]'"):
+        read_record(tmp_path / "a.uff")
+
+
+TEXTS = {
+    "german": "Zeit [ms];Base [g];Mass 1 [g]\n0,0;0,1;-1e-1\n0,5;0,2;2\n1,0;-0,3;3,5\n1,5;0;4\n",
+    "tabs and a line of units": "t\tbox\ta1\ns\tg\tg\n0\t0.1\t-0.1\n5e-4\t0.2\t2\n0.001\t-.3\t3.5\n"
+    "0.0015\t0\t4.\n",
+    "heading of an analyser": 'Analyser 5\nDate;1.1.2026\n\n"Time [s]";"Base (g)";"a1 (g)";\n'
+    "0,0000;0,1;-0,1;\n0,0005;0,2;2,0;\n0,0010;-0,3;3,5;\n0,0015;0,0;4,0;\n",
+    "no heading, blanks": " 0.0  0.1 -0.1\n 5e-4 0.2  2\n 1e-3 -0.3 3.5\n 1.5e-3 0 4\n\n",
+    "comment, Windows": "# time [s], base [g], mass 1 [g]\r\n0,0.1,-0.1\r\n5e-4,0.2,2\r\n"
+    "1e-3,-0.3,3.5\r\n1.5e-3,0,4\r\n",
+    "whole numbers first": "t [ms];base [g];a1 [g]\n0;1e-1;-1e-1\n0,5;0,2;2\n1;-0,3;3,5\n1,5;0;4\n",
+    "other order": "a1 [g],base [g],time [s]\n-0.1,0.1,0\n2,0.2,5e-4\n3.5,-0.3,1e-3\n4,0,1.5e-3\n",
+}
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "cp1252", "utf-16"])
+@pytest.mark.parametrize("name", TEXTS)
+def test_text_as_analysers_write_it(tmp_path, name, encoding):
+    path = tmp_path / "test.csv"
+    path.write_bytes(TEXTS[name].encode(encoding))
+    data = read_record(path, unit="g")
+    assert np.allclose(data.time, [0.0, 5e-4, 1e-3, 1.5e-3], rtol=1e-15)
+    assert np.allclose(data.box_acceleration, G * np.array([0.1, 0.2, -0.3, 0.0]), rtol=1e-15)
+    assert np.allclose(data.acceleration1, G * np.array([-0.1, 2.0, 3.5, 4.0]), rtol=1e-15)
+    assert data.attrs["sample_rate"] == 2000.0 and data.attrs["source"] == "test.csv"
+    if "[g]" in TEXTS[name] or "(g)" in TEXTS[name]:
+        same(read_record(path), data)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"),
+    [("g", G), ("m/s\u00b2", 1.0), ("m/s^2", 1.0), ("mm/s2", 1e-3), ("mg", 1e-3 * G)],
+)
+def test_units_in_headings(tmp_path, unit, factor):
+    path = tmp_path / "a.csv"
+    path.write_bytes(f"t [s];base [{unit}]\n0;10\n1;20\n2;70\n3;90\n".encode("cp1252"))
+    data = read_record(path)
+    assert np.allclose(data.box_acceleration, factor * np.array([10.0, 20.0, 70.0, 90.0]), 1e-15)
+
+
+def test_columns_are_named_or_numbered(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("t [s],n,left [g],right [g],top [g]\n" + "".join(
+        f"{0.1 * i},{i},{i + 1},{i + 2},{i + 3}\n" for i in range(5)
+    ))  # fmt: skip
+    with pytest.raises(InputError, match="5 columns t, n, left, right, top; expected columns="):
+        read_record(path)
+    one = read_record(path, columns={"time": "t", "box_acceleration": "top", "acceleration1": 2})
+    assert np.allclose(one.box_acceleration, G * np.arange(3, 8))
+    assert np.allclose(one.acceleration1, G * np.arange(1, 6))
+    other = read_record(path, columns=["t", 4, "left"])
+    same(one, other)
+    without_time = {"box_acceleration": "top", "acceleration1": 2}
+    same(read_record(path, columns=without_time), one)
+    without = read_record(path, columns={"acceleration1": 2}, sample_rate=10.0)
+    assert without.attrs["sample_rate"] == 10.0 and set(without.data_vars) == {"acceleration1"}
+
+
+def lines(**changes):
+    rows = [f"{i / 1000.0},{i % 7},{i % 5}" for i in range(40)]
+    for row, text in changes.items():
+        rows[int(row[1:])] = text
+    return "time [s],base [m/s2],mass 1 [m/s2]\n" + "\n".join(rows) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "0 bytes; expected 1 to"),
+        ("\n\n", "empty; expected columns of numbers"),
+        ("words alone\nand more\n", "no line of numbers in the first"),
+        (lines(r10="0.010,abc,3"), "column \"base\", row 12: 'abc'; expected a number"),
+        (lines(r10="0.010,,3"), 'column "base", row 12: nothing; expected a number'),
+        (lines(r10="0.010,nan,3"), 'column "base", row 12: nan; expected numbers'),
+        (lines(r10="0.010,1,inf"), 'column "mass 1", row 12: inf; expected numbers'),
+        (lines(r10="0.010,1"), "row 12: 2 columns; expected 3"),
+        (lines(r10="0.010,1,2,3"), "row 12: 4 columns; expected 3"),
+        (lines(r10="0.0105,1,2"), "time, row 12: a step of 0.0015 s where others are 0.001 s"),
+        (lines(r10="0.005,1,2"), "time, row 12: 0.005 s after 0.009 s; expected ascending"),
+        ("t [s],base [V]\n0,1\n1,2\n2,3\n3,1\n", "column \"base\": unit = 'V'; expected one such"),
+        ("t,base\n0,1\n1,2\n2,3\n3,1\n", 'column "base": no unit; expected one such as m/s2, g'),
+        ("t [s],base [g]\n0,1\n1,2\n", "base_acceleration"),
+        ("\0\1\2", "no text; expected columns of numbers"),
+    ],
+)
+def test_damaged_text_is_refused_in_one_line(tmp_path, text, words):
+    path = tmp_path / "test.csv"
+    path.write_text(text)
+    with pytest.raises(InputError) as error:
+        read_record(path)
+    expected = "box_acceleration: 2 values" if words == "base_acceleration" else words
+    assert expected in str(error.value) and str(path) in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("ending", [".uff", ".mat", ".nc", ".wav"])
+@pytest.mark.parametrize("damage", ["cut", "noise"])
+def test_damaged_files_are_refused_in_one_line(tmp_path, ending, damage):
+    path = tmp_path / f"test{ending}"
+    if ending == ".wav":
+        wavfile.write(path, 1000, np.zeros(3000, np.int16))
+    else:
+        write_record(drawn(3000), path)
+    data = path.read_bytes()
+    noise = np.random.default_rng(0).bytes(len(data))
+    path.write_bytes(data[: len(data) // 2 - 1] if damage == "cut" else noise)
+    with pytest.raises(InputError) as error:
+        read_record(path, scale=1.0 if ending == ".wav" else None)
+    assert str(path) in str(error.value) and "\n" not in str(error.value)
+
+
+def test_huge_files_and_unknown_ones_are_refused(tmp_path, monkeypatch):
+    path = write_record(drawn(), tmp_path / "a.csv")
+    monkeypatch.setattr(record_files, "MOST_BYTES", 1000)
+    with pytest.raises(InputError, match="bytes; expected 1 to 1000"):
+        read_record(path)
+    with pytest.raises(InputError, match="expected a file that ends in .csv"):
+        read_record(tmp_path / "a.xyz")
+    with pytest.raises(InputError, match="No such file"):
+        read_record(tmp_path / "b.csv")
+    with pytest.raises(InputError, match="no ordinary file"):
+        (tmp_path / "folder.csv").mkdir()
+        read_record(tmp_path / "folder.csv")
+    with pytest.raises(InputError, match="WAV is only read"):
+        write_record(drawn(), tmp_path / "a.wav")
+    with pytest.raises(InputError, match="data: expected a record"):
+        write_record(xr.Dataset(), tmp_path / "a.csv")
+
+
+def test_matlabs_matrices_and_rates(tmp_path):
+    path, data = tmp_path / "a.mat", drawn()
+    matrix = np.stack([data[name].values for name in CHANNELS], axis=1)
+    scipy.io.savemat(path, {"data": matrix, "Fs": RATE, "remark": "x"})
+    with pytest.raises(InputError, match=r'column "data\[0\]": no unit'):
+        read_record(path)
+    same(read_record(path, unit="m/s2"), data)
+    named = read_record(path, unit="m/s2", columns={"acceleration1": "data[1]"})
+    assert (named.acceleration1.values == data.acceleration1.values).all()
+
+
+@pytest.mark.parametrize("kind", ["int16", "int32", "uint8", "float32"])
+def test_wav_needs_its_scale(tmp_path, kind):
+    parts = np.array([[0.0, 0.5], [0.25, -1.0], [-0.5, 0.75], [0.5, 0.0]])
+    stored = {
+        "int16": parts * 2**15, "int32": parts * 2**31, "uint8": parts * 128 + 128, "float32": parts
+    }[kind]  # fmt: skip
+    path = tmp_path / "a.wav"
+    wavfile.write(path, 8000, stored.astype(kind))
+    data = read_record(path, scale=40.0)
+    assert np.array_equal(np.stack([data.box_acceleration, data.acceleration1], 1), 40.0 * parts)
+    assert data.attrs["sample_rate"] == 8000.0
+    with pytest.raises(InputError, match="scale = None; expected for a WAV file"):
+        read_record(path)
+
+
+def test_a_record_is_played_again():
+    data = drawn()
+    again = Sampled.from_record(data)
+    assert again.sample_rate == RATE
+    assert (np.array(again.acceleration) == data.box_acceleration.values).all()
+    with pytest.raises(InputError, match="record: expected one with box_acceleration"):
+        Sampled.from_record(data[["acceleration1"]])
+
+
+def edited(data, rng):
+    """A file's bytes with some changed, removed or put in."""
+    some = bytearray(data)
+    for _ in range(rng.integers(1, 6)):
+        place = int(rng.integers(len(some)))
+        if rng.random() < 0.4:
+            some[place] = int(rng.integers(256))
+        elif rng.random() < 0.5:
+            del some[place : place + int(rng.integers(1, 30))]
+        else:
+            some[place:place] = bytes(rng.choice(list(b'0,.;-1e\n\t na"[g]'), 4).tolist())
+    return bytes(some)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.parametrize("ending", [".csv", ".uff", ".wav"])
+def test_edited_files_are_read_or_refused_in_one_line(tmp_path, ending):
+    path, rng, refused = tmp_path / f"test{ending}", np.random.default_rng(11), 0
+    if ending == ".wav":
+        wavfile.write(path, 1000, np.ones((60, 2), np.int16))
+    else:
+        write_record(drawn(60), path, binary=False)
+    whole = path.read_bytes()
+    for _ in range(150):
+        path.write_bytes(edited(whole, rng))
+        try:
+            read_record(path, scale=1.0 if ending == ".wav" else None)
+        except InputError as error:
+            refused += 1
+            assert "\n" not in str(error) and str(path) in str(error)
+    assert refused > 50

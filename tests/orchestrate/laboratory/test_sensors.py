@@ -1,0 +1,361 @@
+"""What sensors read against an independent solution of motion and filter together."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from scipy import signal
+from scipy.linalg import expm
+
+from orchestrate import (
+    InputError,
+    Sampled,
+    Sensor,
+    Shock,
+    Structure,
+    SweptSine,
+    measure,
+    shake,
+    simulate,
+)
+from orchestrate.laboratory.analog_filter import anti_aliasing, phi_functions
+from orchestrate.laboratory.reconstruction import Motion
+
+BEAM = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007, e=0.6)
+BOX = Sampled(
+    acceleration=20.0 * np.sin(2.0 * np.pi * 47.0 * np.arange(300) / 1000.0), sample_rate=1000.0
+)
+SENSOR = Sensor(bandwidth=2000.0, sample_rate=5120.0, antialiasing=False)
+CHANNELS = ("box_acceleration", "acceleration1", "acceleration2")
+
+
+def state_space(sensor):
+    """The sensor's filter as SciPy makes it, times in ms so that the matrices are well scaled."""
+    edge = 2.0 * np.pi * sensor.bandwidth / 1000.0
+    if sensor.kind == "bessel":
+        zpk = signal.bessel(sensor.order, edge, analog=True, output="zpk", norm="mag")
+    else:
+        zpk = signal.butter(sensor.order, edge, analog=True, output="zpk")
+    parts = [zpk]
+    if sensor.antialiasing:
+        zeros, poles = (x / 1000.0 for x in anti_aliasing(sensor.sample_rate))
+        parts.append((zeros, poles, (np.prod(-poles) / np.prod(-zeros)).real))
+    a, b, c, _ = (np.zeros((0, 0)), np.zeros((0, 1)), None, None)
+    for part in parts:  # in series, each by its own state-space form
+        a2, b2, c2, d2 = signal.zpk2ss(*part)
+        assert abs(d2).max() == 0.0
+        if c is None:
+            a, b, c = a2, b2, c2
+            continue
+        a = np.block([[a, np.zeros((len(a), len(a2)))], [b2 @ c, a2]])
+        b = np.vstack([b, np.zeros((len(a2), 1))])
+        c = np.hstack([np.zeros((1, len(a) - len(a2))), c2])
+    return a, b[:, 0], c[0]
+
+
+def system(structure, sensor, touching):
+    """Motion, three filters and the box's cubic as one linear system, times in ms."""
+    a, b, c = state_space(sensor)
+    n, s = len(a), structure
+    size = 4 + 3 * n + 4
+    whole, box = np.zeros((size, size)), size - 4
+    whole[0, 2] = whole[1, 3] = 1e-3
+    one, two = np.zeros(size), np.zeros(size)
+    one[[0, 2]], two[[1, 3]] = (-s.k1, -s.d1), (-s.k2, -s.d2)
+    both = (one + two) / (s.m1 + s.m2)
+    felt = (both, both) if touching else (one / s.m1, two / s.m2)
+    excited = np.eye(size)[box]
+    whole[2], whole[3] = 1e-3 * (felt[0] - excited), 1e-3 * (felt[1] - excited)
+    for i, source in enumerate((excited, *felt)):
+        rows = slice(4 + i * n, 4 + (i + 1) * n)
+        whole[rows, rows] += a
+        whole[rows] += np.outer(b, source)
+    for i in range(3):
+        whole[box + i, box + i + 1] = 1e-3
+    return whole, b, c
+
+
+def reference(structure, excitation, history, sensor, times):
+    """From node to node by matrix exponentials; impacts by (15) from their times alone."""
+    s, pieces = structure, excitation.pieces()
+    free, b, c = system(s, sensor, s.bonded)
+    hits = dict(zip(history.impact_time.values, history.sticks.values, strict=True))
+    assert not any(hits.values()) and not (history.in_contact.values[1:].any() and not s.bonded)
+    nodes = np.unique(np.concatenate([times, list(hits), pieces.nodes[:-1]]))
+    n, state, found = len(b), np.zeros(len(free)), []
+    state[:4] = [float(history[name][0]) for name in ("x1", "x2", "v1", "v2")]
+    exponential = functools.lru_cache(maxsize=None)(lambda length: expm(free * (1e3 * length)))
+    for now, after in zip(nodes, np.append(nodes[1:], nodes[-1] + 1e-3), strict=True):
+        if now in hits:
+            closing = state[2] - state[3]
+            share = (1.0 + s.e) * closing / (s.m1 + s.m2)
+            state[2] -= s.m2 * share
+            state[3] += s.m1 * share
+            state[4 + n : 4 + 2 * n] -= 1e3 * b * s.m2 * share
+            state[4 + 2 * n : 4 + 3 * n] += 1e3 * b * s.m1 * share
+        if now in times:
+            found.append([c @ state[4 + i * n : 4 + (i + 1) * n] for i in range(3)])
+        state[-4:] = pieces.taylor(np.array([now]))[0]
+        state = exponential(after - now) @ state
+    return np.array(found)
+
+
+START = (0.0, 2e-4, 0.0, 0.0)
+SENSORS = {
+    "butterworth": SENSOR,
+    "filter against aliasing": dataclasses.replace(SENSOR, antialiasing=True),
+    "bessel": dataclasses.replace(SENSOR, kind="bessel", order=3, bandwidth=500.0),
+}
+
+
+@functools.cache
+def shaken(bonded, sample_rate=1000.0):
+    if bonded:
+        return shake(BEAM.as_bonded(), BOX, sample_rate=sample_rate, progress=False)
+    return shake(BEAM, BOX, sample_rate=sample_rate, start=START, progress=False)
+
+
+@pytest.mark.parametrize("bonded", [False, True])
+@pytest.mark.parametrize("name", SENSORS)
+def test_readings_are_the_filters_exact_response(name, bonded):
+    history, structure = shaken(bonded), BEAM.as_bonded() if bonded else BEAM
+    assert (history.sizes["impact"] == 0) if bonded else (history.sizes["impact"] > 20)
+    felt = measure(history, SENSORS[name])
+    expected = reference(structure, BOX, history, SENSORS[name], felt.time.values)
+    for channel, column in zip(CHANNELS, expected.T, strict=True):
+        peak = np.abs(column).max()
+        assert np.abs(felt[channel].values - column).max() <= 1e-9 * peak, channel
+    assert felt.attrs["reconstruction_error"] <= 1e-9 * 500.0
+
+
+def test_a_dense_convolution_gives_the_same():
+    """The history at 1 MHz, and the filter's impulse response, without this package's filter."""
+    short = Sampled(acceleration=BOX.acceleration[:60], sample_rate=1000.0)
+    history = shake(BEAM, short, sample_rate=1e6, start=START, progress=False)
+    coarse = shake(BEAM, short, sample_rate=250.0, start=START, progress=False)
+    felt = measure(coarse, SENSOR, excitation=short)
+    dense = measure(history, SENSOR)  # what follows stands for both
+    zeros, poles, gain = signal.butter(4, 2.0 * np.pi * 2000.0, analog=True, output="zpk")
+    weights = [gain / np.prod([p - q for q in poles if q != p]) for p in poles]
+
+    def impulse_response(time):
+        powers = np.exp(np.multiply.outer(np.maximum(time, 0.0), poles))
+        return np.where(time >= 0.0, (powers @ weights).real, 0.0)
+
+    t, values = history.time.values, history.a2_abs.values
+    jumps, hits = history.impulse.values / BEAM.m2, history.impact_time.values
+    assert len(hits) >= 3 and len(zeros) == 0
+    for index in (60, 130, 200, 280):
+        now = felt.time.values[index]
+        grid = t[t <= now]
+        smooth = np.trapezoid(impulse_response(now - grid) * values[: len(grid)], grid)
+        expected = smooth + (jumps * impulse_response(now - hits)).sum()
+        peak = float(np.abs(felt.acceleration2).max())
+        # a trapezoid over a jump of the acceleration is wrong by half a step
+        assert abs(felt.acceleration2.values[index] - expected) <= 3e-5 * peak
+        assert abs(felt.acceleration2.values[index] - dense.acceleration2.values[index]) <= (
+            1e-6 * peak
+        )
+
+
+def test_the_historys_sampling_rate_does_not_matter_through_contact_and_release():
+    beam = dataclasses.replace(BEAM, e=0.3)
+    sweep = SweptSine(first=15.0, last=75.0, duration=4.0, acceleration=5.0)
+    sensor = Sensor(bandwidth=2000.0)
+    histories = [shake(beam, sweep, sample_rate=rate, progress=False) for rate in (8000.0, 1000.0)]
+    assert histories[1].sticks.sum() > 10 and 10 < histories[1].in_contact.sum() < 2000
+    fine, coarse = (measure(history, sensor, excitation=sweep) for history in histories)
+    for channel in CHANNELS:
+        peak = float(np.abs(fine[channel]).max())
+        assert float(np.abs(fine[channel] - coarse[channel]).max()) <= 2e-6 * peak
+    assert coarse.attrs["reconstruction_error"] < 1e-3
+    without = measure(histories[0], sensor)
+    for channel, bound in zip(CHANNELS, (1e-5, 1e-8, 1e-8), strict=True):
+        peak = float(np.abs(fine[channel]).max())
+        assert float(np.abs(fine[channel] - without[channel]).max()) <= bound * peak
+
+
+@pytest.mark.parametrize("antialiasing", [False, True])
+def test_the_integral_of_what_is_read_is_the_change_of_velocity(antialiasing):
+    beam = Structure.from_halves(m1=1.5, m2=0.7, f1=42.0, f2=55.0, zeta1=0.3, zeta2=0.3, e=0.6)
+    shock = Shock(peak=300.0, length=0.011, delay=0.02, duration=0.6)
+    history = shake(beam, shock, sample_rate=2000.0, progress=False)
+    assert history.sizes["impact"] >= 3 and history.impulse.max() > 0.3
+    rate = 20_000.0 if antialiasing else 400_000.0  # else what is aliased is missing in the sum
+    sensor = Sensor(bandwidth=3000.0, sample_rate=rate, antialiasing=antialiasing)
+    felt = measure(history, sensor, excitation=shock)
+    box = 300.0 * 0.011 * 2.0 / math.pi
+    for channel, own in zip(CHANNELS, (0.0, "v1", "v2"), strict=True):
+        change = box + (float(history[own][-1]) if own else 0.0)
+        assert math.isclose(float(felt[channel].sum()) / rate, change, rel_tol=2e-6), channel
+    between = float(history.a1_abs.sum()) / 2000.0
+    assert abs(between - box) > 0.05 * box  # without the impulses it is not
+
+
+def test_masses_are_pushed_apart():
+    history = shaken(False)
+    felt = measure(history, SENSOR)
+    first = float(history.impact_time[0])
+    near = felt.sel(time=slice(first, first + 5e-4))
+    assert float(near.acceleration1.min()) < -100.0 and float(near.acceleration2.max()) > 100.0
+
+
+@pytest.mark.parametrize("size", [1e-9, 0.3, 1.0, 2.9, 3.1, 12.0, 60.0, 1e4])
+def test_phi_functions(size):
+    for angle in (0.5 * math.pi, 0.6 * math.pi, math.pi):
+        z = complex(size * math.cos(angle), size * math.sin(angle))
+        found = phi_functions(np.array([z]), 7)[:, 0]
+        with mpmath.workdps(50):
+            for k, value in enumerate(found, 1):
+                exact = mpmath.hyp1f1(1, k + 1, mpmath.mpc(z)) / mpmath.factorial(k)
+                assert abs(complex(exact) - value) <= 1e-13 * abs(exact), (k, z)
+
+
+def test_the_filter_against_aliasing():
+    response = np.abs(
+        Sensor(bandwidth=1e6, sample_rate=25_600.0)
+        .analog_filter()
+        .frequency_response(np.array([0.0, 1e3, 9.9e3, 15_600.0, 25e3]))
+    )
+    assert response[0] == pytest.approx(1.0, abs=1e-9)
+    assert np.abs(response[1:3] - 1.0).max() < 2e-3
+    assert response[3:].max() <= 1.01e-4
+
+
+def test_a_sensor_is_3_db_down_at_its_bandwidth():
+    for kind in ("butterworth", "bessel"):
+        sensor = Sensor(bandwidth=700.0, order=5, kind=kind, antialiasing=False)
+        gain = abs(sensor.analog_filter().frequency_response(np.array([700.0])))[0]
+        assert gain == pytest.approx(math.sqrt(0.5), rel=1e-6)
+
+
+def test_noise_is_as_dense_as_said_and_has_a_seed():
+    history = shaken(True)
+    noisy = dataclasses.replace(SENSOR, noise=0.2, seed=4)
+    clean, one = measure(history, SENSOR), measure(history, noisy)
+    assert one.identical(measure(history, noisy))
+    other = measure(history, dataclasses.replace(noisy, seed=5))
+    added = [(data[name] - clean[name]).values for data in (one, other) for name in CHANNELS]
+    for column in added:
+        assert np.std(column) == pytest.approx(0.2 * math.sqrt(2560.0), rel=0.1)
+    alike = np.abs(np.corrcoef(added) - np.eye(6)).max()
+    assert alike < 0.15  # of 1531 values each
+
+
+def test_range_and_resolution():
+    felt = measure(shaken(False), dataclasses.replace(SENSOR, range=150.0, resolution=0.5))
+    values = felt.acceleration1.values
+    assert values.max() == 150.0 and values.min() == -150.0
+    assert (values == 0.5 * np.round(values / 0.5)).all()
+    free = measure(shaken(False), SENSOR).acceleration1.values
+    assert np.abs(values - np.clip(free, -150.0, 150.0)).max() <= 0.25
+
+
+def test_sensors_of_their_own():
+    narrow = dataclasses.replace(SENSOR, bandwidth=300.0)
+    felt = measure(shaken(False), {"box_acceleration": SENSOR, "acceleration2": narrow})
+    assert set(felt.data_vars) == {"box_acceleration", "acceleration2"}
+    assert felt.acceleration2.identical(measure(shaken(False), narrow).acceleration2)
+    assert "300 Hz" in felt.attrs["sensors"] and felt.attrs["sample_rate"] == 5120.0
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"bandwidth": 0.0}, "bandwidth = 0.0 Hz: expected 1e-09 <= bandwidth"),
+        ({"bandwidth": math.nan}, "bandwidth = nan"),
+        ({"order": 11}, "order = 11: expected a whole number of 1 to 10"),
+        ({"order": 2.5}, "order = 2.5: expected a whole number"),
+        ({"kind": "chebyshev"}, "kind = 'chebyshev': expected one of butterworth, bessel"),
+        ({"noise": -1.0}, "noise = -1.0 (m/s2)/sqrt(Hz): expected 0 <= noise"),
+        ({"range": 0.0}, "range = 0.0 m/s2: expected"),
+        ({"resolution": "fine"}, "resolution = 'fine': expected a number"),
+        ({"sample_rate": -1.0}, "sample_rate = -1.0 Hz"),
+        ({"seed": -1}, "seed = -1: expected a whole number"),
+        ({"antialiasing": "yes"}, "antialiasing = 'yes': expected true or false"),
+    ],
+)
+def test_mistaken_sensors_are_one_line(given, words):
+    with pytest.raises(InputError) as error:
+        Sensor(**{"bandwidth": 1000.0, **given})
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"history": 3.0}, "history: expected an answer of shake or simulate"),
+        ({"sensor": 3.0}, "sensor = 3.0: expected a Sensor, or one for each of"),
+        ({"sensor": {"mass1": SENSOR}}, "expected a Sensor, or one for each of box_acceleration"),
+        (
+            {"sensor": dict(zip(CHANNELS, (SENSOR, Sensor(bandwidth=1.0)), strict=False))},
+            "sensor: 2.56 and 5120 Hz; expected one sample rate",
+        ),
+        ({"sensor": Sensor(bandwidth=1e8)}, "sample_rate = 256000000.0 Hz: expected"),
+        (
+            {"excitation": SweptSine(first=1.0, last=2.0, duration=3.0, acceleration=1.0)},
+            "excitation = swept sine 1 to 2 Hz in 3 s: expected 300 samples at 1000 Hz",
+        ),
+    ],
+)
+def test_mistaken_measurements_are_one_line(given, words):
+    with pytest.raises(InputError) as error:
+        measure(**{"history": shaken(True), "sensor": SENSOR, **given})
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_steady_harmonic_motion_is_read_with_the_filters_gain_and_delay():
+    bonded, turn = BEAM.as_bonded(), 2.0 * math.pi * 45.0
+    history = simulate(bonded, frequency=turn, amplitude=1e-4, transient=1000, periods=20)
+    sensor = Sensor(bandwidth=150.0, order=3, sample_rate=2000.0)
+    felt = measure(history, sensor)
+    assert float(felt.time[0]) == float(history.time[0]) > 20.0
+    gain = complex(sensor.analog_filter().frequency_response(np.array([45.0]))[0])
+    late = felt.isel(time=slice(-200, None))
+    for channel, own in (("box_acceleration", "box_acceleration"), ("acceleration1", "a1_abs")):
+        lines = []
+        for times, values in (
+            (history.time.values, history[own].values),
+            (late.time.values, late[channel].values),
+        ):
+            basis = np.exp(1j * turn * times)
+            matrix = np.stack([basis.real, -basis.imag], axis=1)
+            (real, imaginary), *_ = np.linalg.lstsq(matrix, values, rcond=None)
+            lines.append(real + 1j * imaginary)
+        assert abs(lines[1] / lines[0] - gain) < 1e-5
+
+
+def test_releases_are_found_between_the_samples():
+    beam = dataclasses.replace(BEAM, e=0.3)
+    sweep = SweptSine(first=15.0, last=75.0, duration=2.0, acceleration=5.0)
+    found = []
+    for rate in (8000.0, 1000.0):
+        history = shake(beam, sweep, sample_rate=rate, progress=False)
+        motion = Motion.from_history(history, beam, sweep.pieces(1e-6))
+        found.append(motion.releases())
+        for release in found[-1][1:]:  # the first is the start's
+            after = history.in_contact.sel(time=slice(release, release + 1.5 / rate))
+            struck = (motion.impact_times > release) & (motion.impact_times < release + 1.5 / rate)
+            assert not after.values[0] or struck.any()
+    assert found[0][0] == found[1][0] == 0.0 and len(found[0]) == len(found[1]) > 5
+    assert np.abs(found[0] - found[1]).max() < 1e-9
+
+
+@pytest.mark.parametrize("excitation", [BOX, None])
+def test_a_part_of_a_history_is_read_as_the_whole(excitation):
+    whole = shaken(False)
+    part = whole.isel(time=slice(100, 201))
+    all_of_it, felt = (measure(h, SENSOR, excitation=excitation) for h in (whole, part))
+    assert felt.time.values[[0, -1]] == pytest.approx([0.1, 0.2])
+    both = all_of_it.sel(
+        time=felt.time.values[60:], method="nearest"
+    )  # the filter's own start over
+    for channel in CHANNELS:
+        peak = float(np.abs(both[channel]).max())
+        difference = np.abs(felt[channel].values[60:] - both[channel].values).max()
+        assert difference <= (1e-6 if excitation is not None else 1e-3) * peak, channel
