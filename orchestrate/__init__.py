@@ -15,6 +15,8 @@ What is asked
     :func:`lyapunov`, :func:`attractors`, :func:`basin`, :func:`impact_statistics`;
     :func:`shake` as in the laboratory, by a :class:`SweptSine`, :class:`Random` vibration, a
     :class:`Shock` or :class:`Sampled` acceleration;
+    :func:`frf`, :func:`psd`, :func:`track_orders`, :func:`harmonics`, :func:`spectrogram`,
+    :func:`shock_spectrum` and :func:`probability_density` of such a record, or of a measured one;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
     :func:`couple_all`,
     :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
@@ -45,6 +47,13 @@ if TYPE_CHECKING:
     from .dynamics.orbits import orbit
     from .dynamics.parameter_map import map
     from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
+    from .laboratory.analysis.density import probability_density
+    from .laboratory.analysis.frf import frf
+    from .laboratory.analysis.harmonics import harmonics
+    from .laboratory.analysis.orders import track_orders
+    from .laboratory.analysis.psd import psd
+    from .laboratory.analysis.shock_spectrum import shock_spectrum
+    from .laboratory.analysis.spectrogram import spectrogram
     from .laboratory.random_vibration import Random
     from .laboratory.sampled import Sampled
     from .laboratory.shake import shake
@@ -93,17 +102,24 @@ __all__ = [
     "couple_all",
     "drive_branch",
     "drive_spectra",
+    "frf",
+    "harmonics",
     "impact_statistics",
     "jump_voltages",
     "lyapunov",
     "map",
     "orbit",
     "passage",
+    "probability_density",
+    "psd",
     "resonance",
     "shake",
+    "shock_spectrum",
     "simulate",
     "spectra",
+    "spectrogram",
     "sweep",
+    "track_orders",
     "waterfall",
     "write_ssp",
 ]
@@ -118,6 +134,13 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "laboratory.shock": ("Shock",),
     "laboratory.swept_sine": ("SweptSine",),
     "laboratory.shake": ("shake",),
+    "laboratory.analysis.frf": ("frf",),
+    "laboratory.analysis.psd": ("psd",),
+    "laboratory.analysis.orders": ("track_orders",),
+    "laboratory.analysis.harmonics": ("harmonics",),
+    "laboratory.analysis.spectrogram": ("spectrogram",),
+    "laboratory.analysis.shock_spectrum": ("shock_spectrum",),
+    "laboratory.analysis.density": ("probability_density",),
     "response.simulate": ("simulate",),
     "response.resonance": ("resonance",),
     "response.sweep": ("sweep",),
