@@ -18,7 +18,6 @@ Reader = Callable[[xr.Dataset], xr.DataArray]
 CHANNELS = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 COLOURS = (BLUE, RED, BLACK, ORANGE, GREEN, PURPLE)
 DECADES = 6  # of an axis, below the largest value
-EXCITED = 1e-2  # of the largest power density of the box: where a response is drawn
 DEGREES = 180.0 / np.pi
 
 
@@ -155,8 +154,7 @@ def draw_frf(results: Results) -> Figure:
     shown: list[np.ndarray] = []
     for channel, (magnitude, phase, coherence) in columns.items():
         for _, data, colour in of_channel(results, channel):
-            excited = data.box_psd > EXCITED * data.box_psd.max()
-            part = data.sel(estimator="H1").where(excited & (data.frequency > 0.0))
+            part = data.sel(estimator="H1").where(data.excited > 0)
             line: dict[str, Any] = {"color": colour, "linewidth": 1.0}
             magnitude.plot(part.frequency, part.magnitude, **line)
             phase.plot(part.frequency, unbroken(part.phase), **line)

@@ -10,5 +10,6 @@ module                    idea
 :mod:`.shock`             a classical pulse
 :mod:`.sampled`           a record played again
 :mod:`.shake`             time histories and impacts under any of these
+:mod:`.analysis`          what an analyser shows of a record
 ========================  =========================================================================
 """

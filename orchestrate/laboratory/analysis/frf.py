@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...response.labels import variable
+from ...response.labels import variable, yes_or_no
 from .averaging import averaging
 from .channels import Channels, Floats, attributes, channel_coordinate, frequency_coordinate
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 ESTIMATORS = ("H1", "H2", "Hv")
+EXCITED = 1e-2  # of the largest power density of the box: below, a response has no meaning
 
 
 def frf(
@@ -48,7 +49,8 @@ def frf(
     xarray.Dataset
         ``magnitude`` and ``phase`` in rad over ``estimator`` (H1, H2, Hv), ``channel`` and
         ``frequency`` in Hz; ``coherence``, and ``random_error``, the standard deviation of the
-        magnitude relative to it, over ``channel`` and ``frequency``; ``box_psd`` in m2/s4/Hz;
+        magnitude relative to it, over ``channel`` and ``frequency``; ``box_psd`` in m2/s4/Hz
+        and ``excited``, whether that is a hundredth of its largest value at least (0 Hz is not);
         scalars ``averages`` and ``resolution``.
 
     Raises
@@ -85,6 +87,7 @@ def frf(
         estimates = estimate(box, response, cross)
         coherence = np.minimum(np.abs(cross) ** 2 / (box * response), 1.0)
         error = np.sqrt((1.0 - coherence) / (2.0 * coherence * segments.independent))
+    excited = (box >= EXCITED * box.max()) & (frequency > 0.0)
     over_all = ("estimator", "channel", "frequency")
     over_channels = ("channel", "frequency")
     text = "standard deviation of the magnitude over the magnitude"
@@ -95,6 +98,9 @@ def frf(
             "coherence": variable(over_channels, coherence, "1", "coherence with the box"),
             "random_error": variable(over_channels, error, "1", text),
             "box_psd": variable("frequency", box, "m2/s4/Hz", "power spectral density of the box"),
+            "excited": yes_or_no(
+                "frequency", excited, "whether the box shakes the structure there"
+            ),
             "averages": variable((), segments.independent, "1", "independent averages"),
             "resolution": variable((), segments.resolution, "Hz", "distance of the lines"),
         },

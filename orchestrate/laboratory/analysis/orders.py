@@ -298,6 +298,8 @@ def fit(channels: Channels, window: Window, orders: tuple[float, ...]) -> tuple[
     residual : ndarray, shape (channels,)
         Weighted root mean square of the rest.
     """
+    from scipy.linalg import lstsq
+
     limit = NYQUIST * channels.sample_rate
     resolved = [n for n in orders if n * window.frequency <= limit]
     columns = [np.ones_like(window.offset)]
@@ -307,7 +309,7 @@ def fit(channels: Channels, window: Window, orders: tuple[float, ...]) -> tuple[
     basis = np.stack(columns, axis=1)
     values = channels.values[:, window.part].T
     root = np.sqrt(window.weights)[:, None]
-    solution = np.linalg.lstsq(basis * root, values * root, rcond=None)[0]
+    solution = lstsq(basis * root, values * root, lapack_driver="gelsy", check_finite=False)[0]
     rest = (values - basis @ solution) * root
     residual = np.sqrt((rest**2).sum(axis=0) / window.weights.sum())
     amplitudes = np.full((values.shape[1], len(orders)), np.nan, dtype=complex)

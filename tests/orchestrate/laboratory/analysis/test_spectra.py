@@ -25,7 +25,7 @@ def complex_response(answer, estimator="H1", channel="acceleration1"):
 
 
 @pytest.mark.parametrize("estimator", ["H1", "H2", "Hv"])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator):
     """Without noise all that is left is leakage, which the coherence and its error know."""
     answer = frf(random_record(HEAVILY.as_bonded(), seed, 80.0), resolution=0.2)
@@ -37,7 +37,7 @@ def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator
         assert np.abs(found / expected - 1.0).max() < 0.01
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_coherence_away_from_leakage(seed):
     answer = frf(random_record(HEAVILY.as_bonded(), seed, 80.0), resolution=0.2)
     coherence = answer.coherence.sel(frequency=BAND)
@@ -64,7 +64,7 @@ def probabilities(seeds, duration):
 
 
 def test_random_error_is_the_one_stated():
-    chances = probabilities(range(5), 30.0)
+    chances = probabilities(range(3), 22.0)
     assert stats.kstest(chances, "uniform").pvalue > 1e-3
 
 
@@ -82,8 +82,8 @@ def test_estimators_where_the_noise_is():
     A gain of 2 and a delay of a sample, known exactly.
     """
     draw = np.random.default_rng(3).normal
-    box = draw(size=200_001)
-    response, noise, other = 2.0 * box[:-1], 0.8 * draw(size=200_000), 0.8 * draw(size=200_000)
+    box = draw(size=100_001)
+    response, noise, other = 2.0 * box[:-1], 0.8 * draw(size=100_000), 0.8 * draw(size=100_000)
     records = {
         "H1": make(1000.0, box[1:], response + noise),
         "H2": make(1000.0, box[1:] + noise, response),
@@ -97,12 +97,12 @@ def test_estimators_where_the_noise_is():
             found = (found.magnitude * np.exp(1j * found.phase)).values
             inner = slice(2, -2)
             away = np.abs(np.mean(found[inner] / expected[inner]) - 1.0)
-            assert (away < 0.005) == (right == estimator), (right, estimator, away)
+            assert (away < 0.01) == (right == estimator), (right, estimator, away)
 
 
 def test_opening_lowers_the_coherence():
-    whole = frf(random_record(LIGHT.as_bonded(), 1, 60.0), resolution=0.5)
-    parted = frf(random_record(LIGHT, 1, 60.0), resolution=0.5)
+    whole = frf(random_record(LIGHT.as_bonded(), 1, 40.0), resolution=0.5)
+    parted = frf(random_record(LIGHT, 1, 40.0), resolution=0.5)
     away = abs(whole.frequency - 48.0) > 10.0
     band = (whole.frequency > 60.0) & (whole.frequency < 140.0) & away
     one, other = (float(x.coherence[0].where(band).median()) for x in (whole, parted))
@@ -115,13 +115,13 @@ def test_opening_lowers_the_coherence():
 @pytest.mark.parametrize(("window", "overlap"), [("hann", 0.5), ("boxcar", 0.5), ("hann", 0.75)])
 def test_independent_averages_are_those_of_the_scatter(window, overlap):
     """Of white noise: the relative variance of a line is one over their number."""
-    values = np.random.default_rng(5).normal(size=(200, 64 * 12))
+    values = np.random.default_rng(5).normal(size=(120, 64 * 12))
     densities = [
         psd(make(64.0, row, row), resolution=1.0, window=window, overlap=overlap) for row in values
     ]
     lines = np.stack([one.psd.sel(channel="acceleration1").values[3:-3] for one in densities])
     scatter = (lines.var(axis=0) / lines.mean(axis=0) ** 2).mean()
-    assert np.isclose(1.0 / scatter, float(densities[0].averages), rtol=0.08)
+    assert np.isclose(1.0 / scatter, float(densities[0].averages), rtol=0.1)
 
 
 def test_segments_fit_into_the_record():
@@ -146,7 +146,7 @@ def test_density_integrates_to_the_mean_square():
 
 
 def test_density_of_random_vibration_is_its_profile():
-    answer = psd(random_record(DAMPED.as_bonded(), 1, 60.0), resolution=1.0)
+    answer = psd(random_record(DAMPED.as_bonded(), 1, 40.0), resolution=1.0)
     box = answer.psd.sel(channel="box_acceleration")
     inside = box.sel(frequency=slice(13.0, 147.0))
     assert np.isclose(float(inside.mean()), 0.2, rtol=0.02)

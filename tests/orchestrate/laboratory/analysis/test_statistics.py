@@ -139,7 +139,7 @@ def test_density_of_a_sine_has_its_closed_form():
 
 def test_impacts_make_the_density_lopsided():
     bonded, parted = (
-        probability_density(random_record(one, 1, 60.0)).sel(channel="acceleration1")
+        probability_density(random_record(one, 1, 40.0)).sel(channel="acceleration1")
         for one in (LIGHT.as_bonded(), LIGHT)
     )
     assert abs(float(bonded.skewness)) < 4.0 * float(bonded.skewness_error) < 0.05
@@ -197,7 +197,7 @@ def test_the_second_accelerometer_may_be_missing(name):
 
 def test_the_unit_of_time_and_level_do_not_matter():
     """Twice the level: ratios stay to the last bit."""
-    record = random_record(LIGHT, 1, 60.0)
+    record = random_record(LIGHT, 1, 40.0)
     one, other = (orchestrate.frf(x) for x in (record, 2.0 * record.assign_attrs()))
     assert (one.magnitude.values == other.magnitude.values).all()
 
