@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from orchestrate import InputError, SweptSine, harmonics, track_orders
+from orchestrate.laboratory.analysis.channels import Channels
+from orchestrate.laboratory.analysis.orders import against_box
 
 from .records import DAMPED, LIGHT, SWEEP, make, of_shaken, random_record, swept_record, transfer
 
@@ -66,6 +68,16 @@ def test_the_phase_is_measured(name):
             assert np.abs(turned).max() < 0.01 * n
     expected = sweep.frequency(answer.time.values - 7.0)
     assert np.abs(answer.frequency / expected - 1.0).max() < 1e-3
+
+
+def test_phases_count_from_the_box():
+    """Order n turns n times as far as the box's own order 1."""
+    channels = Channels.from_record(make(100.0, np.ones(100), np.ones(100)))
+    amplitudes = np.array([[2.0, 0.0], [3.0, 4.0]], dtype=complex)[:, :, None]
+    amplitudes = amplitudes * np.exp(1j * np.array([0.3, 1.0]))[None, :, None]
+    turned = against_box(channels, amplitudes, np.zeros((2, 1)), (1.0, 2.0))
+    assert np.allclose(np.angle(turned[1, :, 0]), [0.0, 0.4])
+    assert np.allclose(np.abs(turned[1, :, 0]), [3.0, 4.0])
 
 
 @pytest.mark.parametrize("known", [True, False])
