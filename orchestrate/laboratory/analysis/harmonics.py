@@ -22,7 +22,7 @@ def harmonics(
     highest: int = 5,
     phase: SweptSine | ArrayLike | None = None,
     periods: float = 16.0,
-    overlap: float = 0.75,
+    overlap: float = 0.5,
 ) -> xr.Dataset:
     """Harmonics and total harmonic distortion of a record of a swept sine.
 

@@ -67,7 +67,7 @@ def track_orders(
     orders: int | Sequence[float] = 3,
     phase: SweptSine | ArrayLike | None = None,
     periods: float = 16.0,
-    overlap: float = 0.75,
+    overlap: float = 0.5,
 ) -> xr.Dataset:
     """Track the orders of a record of a swept sine.
 
@@ -280,9 +280,12 @@ def window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Wind
     middle, half = 0.5 * (time[0] + time[-1]), 0.5 * (time[-1] - time[0])
     offset = (time - middle) / half
     weights = np.cos(0.5 * math.pi * offset) ** 2 + 1e-6  # not zero: few samples keep their rank
-    polynomial = np.polynomial.polynomial.polyfit(offset, angle, 3, w=np.sqrt(weights))
+    powers = np.vander(offset, 4, increasing=True).T
+    weighted = powers * weights
+    start = angle[len(angle) // 2]  # long records have large phases
+    polynomial = np.linalg.solve(weighted @ powers.T, weighted @ (angle - start))
     if smooth:
-        angle = np.polynomial.polynomial.polyval(offset, polynomial)
+        angle = start + polynomial @ powers
     frequency = polynomial[1] / (TURN * half)
     rate = 2.0 * polynomial[2] / (TURN * half**2)
     return Window(part, weights, offset, angle, float(middle), float(frequency), float(rate))
@@ -298,21 +301,19 @@ def fit(channels: Channels, window: Window, orders: tuple[float, ...]) -> tuple[
     residual : ndarray, shape (channels,)
         Weighted root mean square of the rest.
     """
-    from scipy.linalg import lstsq
-
     limit = NYQUIST * channels.sample_rate
     resolved = [n for n in orders if n * window.frequency <= limit]
     columns = [np.ones_like(window.offset)]
     for n in resolved:
         sine, cosine = np.sin(n * window.phase), np.cos(n * window.phase)
         columns += [sine, cosine, window.offset * sine, window.offset * cosine]
-    basis = np.stack(columns, axis=1)
-    values = channels.values[:, window.part].T
-    root = np.sqrt(window.weights)[:, None]
-    solution = lstsq(basis * root, values * root, lapack_driver="gelsy", check_finite=False)[0]
-    rest = (values - basis @ solution) * root
-    residual = np.sqrt((rest**2).sum(axis=0) / window.weights.sum())
-    amplitudes = np.full((values.shape[1], len(orders)), np.nan, dtype=complex)
+    basis, values = np.stack(columns), channels.values[:, window.part]
+    weighted = basis * window.weights
+    # normal equations: the columns are close to orthogonal, so that no digits are lost
+    solution = np.linalg.lstsq(weighted @ basis.T, weighted @ values.T, rcond=None)[0]
+    rest = (values - solution.T @ basis) ** 2
+    residual = np.sqrt(rest @ window.weights / window.weights.sum())
+    amplitudes = np.full((len(values), len(orders)), np.nan, dtype=complex)
     for number, n in enumerate(resolved):
         sine, cosine = solution[1 + 4 * number], solution[2 + 4 * number]
         amplitudes[:, orders.index(n)] = sine + 1j * cosine
