@@ -113,7 +113,7 @@ def track_orders(
     >>> answer = orchestrate.track_orders(orchestrate.shake(beam, sweep), phase=sweep)
     >>> first = answer.swap_dims(time="frequency").amplitude.sel(channel="acceleration1", order=1)
     >>> round(float(first.idxmax()), 1)
-    12.3
+    12.7
     """
     import xarray as xr
 
