@@ -66,7 +66,8 @@ def grid_of(results: Results, rows: int, heights: tuple[float, ...]) -> tuple[Fi
     axes : dict of str to list of Axes
         By channel, from top to bottom.
     """
-    names = [name for name in present(results) if name != "box_acceleration"]
+    every = present(results)
+    names = [name for name in every if name != "box_acceleration"] or every
     size = (5.4 * len(names), 0.6 + 2.0 * sum(heights))
     figure, axes = panels(
         rows, len(names), size, sharex=True, sharey="row", height_ratios=heights[:rows]

@@ -23,8 +23,8 @@ CHANNELS = {  # and what the result of shake calls them
     "acceleration2": "a2_abs",
 }
 FEWEST_SAMPLES = 16
-STEP_TOLERANCE = 0.01  # of a step: how far one may be from the others
-RATE_TOLERANCE = 1e-3  # between the attribute sample_rate and the time's steps
+STEP_TOLERANCE = 0.05  # of a step: how far a time may be from equal ones
+RATE_TOLERANCE = 0.01  # between the attribute sample_rate and the time's steps
 
 
 @dataclass(frozen=True)
@@ -52,8 +52,14 @@ class Channels:
     title: str
 
     @classmethod
-    def from_record(cls, record: xr.Dataset) -> Channels:
+    def from_record(cls, record: xr.Dataset, needed: tuple[str, ...] = ()) -> Channels:
         """Check a record, or a result of :func:`orchestrate.shake`, and take its channels.
+
+        Parameters
+        ----------
+        record : xarray.Dataset
+        needed : tuple of str
+            Channels that it must have, beside one at least.
 
         Raises
         ------
@@ -68,9 +74,11 @@ class Channels:
             raise InputError(f"record: {type(record).__name__} without time; {expected}")
         variables = {name: channel_variable(record, name) for name in CHANNELS}
         present = {name: array for name, array in variables.items() if array is not None}
-        for name in (BOX, "acceleration1"):
-            if name not in present:
-                raise InputError(f"record: no {name}; expected {BOX} and acceleration1 over time")
+        missing = [name for name in needed if name not in present]
+        if missing or not present:
+            lacking = " and no ".join(missing or CHANNELS)
+            expected = " and ".join(needed) or "one of them"
+            raise InputError(f"record: no {lacking}; expected {expected} over time, in m/s2")
         time = np.asarray(record.time.values, dtype=float)
         if time.ndim != 1 or len(time) < FEWEST_SAMPLES:
             raise InputError(f"record: {time.size} samples; expected at least {FEWEST_SAMPLES}")
@@ -114,9 +122,9 @@ def sample_rate(time: Floats, stated: Any) -> float:
         wrong = int(np.argmin(np.nan_to_num(steps, nan=-np.inf)))
         raise InputError(f"time[{wrong + 1}] = {time[wrong + 1]!r} s: expected ascending numbers")
     rate = (len(time) - 1) / (time[-1] - time[0])
-    uneven = np.abs(steps * rate - 1.0)
+    uneven = np.abs((time - time[0]) * rate - np.arange(len(time)))
     if uneven.max() > STEP_TOLERANCE:
-        wrong = int(uneven.argmax())
+        wrong = int(np.abs(steps * rate - 1.0).argmax())
         text = f"a step of {steps[wrong]:.6g} s after it, of {1.0 / rate:.6g} s on average"
         raise InputError(f"time[{wrong}] = {time[wrong]:.9g} s: {text}; expected equal steps")
     if stated is None:

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...errors import InputError
 from ...response.labels import variable, yes_or_no
 from .averaging import averaging
-from .channels import Channels, Floats, attributes, channel_coordinate, frequency_coordinate
+from .channels import BOX, Channels, Floats, attributes, channel_coordinate, frequency_coordinate
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,13 +72,15 @@ def frf(
     >>> noise = orchestrate.Random(psd=[(2.0, 0.01), (30.0, 0.01)], duration=60.0, seed=1)
     >>> answer = orchestrate.frf(orchestrate.shake(beam, noise), resolution=0.25)
     >>> float(answer.magnitude.sel(estimator="H1", channel="acceleration1").idxmax())
-    12.25
+    12.5
     """
     import xarray as xr
     from scipy.signal import csd, welch
 
-    channels = Channels.from_record(record)
+    channels = Channels.from_record(record, (BOX,))
     names, responses = channels.responses()
+    if not names:
+        raise InputError("record: no acceleration1; expected it beside the box's, in m/s2")
     segments = averaging(channels, resolution, window, overlap, fewest=2)
     rate, options = channels.sample_rate, segments.options
     frequency, box = welch(channels.box, rate, **options)

@@ -117,7 +117,7 @@ def track_orders(
     """
     import xarray as xr
 
-    channels = Channels.from_record(record)
+    channels = Channels.from_record(record, (BOX,) if phase is None else ())
     wanted = checked_orders(orders)
     length = checked_number("periods", periods, 2.0, 1e4)
     part = checked_number("overlap", overlap, 0.0, 0.95)

@@ -15,7 +15,7 @@ import orchestrate
 from orchestrate import InputError, Shock, probability_density, shake, shock_spectrum
 from orchestrate.laboratory.analysis.shock_spectrum import ramp_invariant
 
-from .records import DAMPED, LIGHT, make, of_shaken, random_record, swept_record
+from .records import DAMPED, LIGHT, SWEEP, make, of_shaken, random_record, swept_record
 
 ANALYSES = (
     *("frf", "psd", "track_orders", "harmonics", "spectrogram"),
@@ -195,6 +195,25 @@ def test_the_second_accelerometer_may_be_missing(name):
     assert "acceleration2" not in answer.channel.values
 
 
+@pytest.mark.parametrize("name", ["psd", "spectrogram", "shock_spectrum", "probability_density"])
+@pytest.mark.parametrize("left", ["box_acceleration", "acceleration2"])
+def test_one_channel_is_enough(name, left):
+    """Where nothing is compared with the box."""
+    answer = getattr(orchestrate, name)(swept_record(DAMPED)[[left]])
+    assert answer.channel.values.tolist() == [left]
+
+
+@pytest.mark.parametrize("name", ["frf", "track_orders", "harmonics"])
+def test_the_box_is_needed_to_compare_with_it(name):
+    record = swept_record(DAMPED)
+    with pytest.raises(InputError, match="no box_acceleration; expected box_acceleration over"):
+        getattr(orchestrate, name)(record.drop_vars("box_acceleration"))
+    with pytest.raises(InputError, match="no acceleration1; expected it beside"):
+        orchestrate.frf(record[["box_acceleration"]])
+    known = orchestrate.track_orders(record.drop_vars("box_acceleration"), phase=SWEEP)
+    assert "box_acceleration" not in known.channel.values
+
+
 def test_the_level_does_not_matter():
     """Twice the level: ratios stay to the last bit."""
     record = random_record(LIGHT, 1, 40.0)
@@ -219,8 +238,7 @@ REPEATED = np.arange(200) / 100.0 - 0.02 * (np.arange(200) == 70)
     ("record", "words"),
     [
         (3.0, "record: float without time; expected an xarray.Dataset"),
-        (damaged().drop_vars("acceleration1"), "record: no acceleration1; expected"),
-        (damaged().drop_vars("box_acceleration"), "record: no box_acceleration; expected"),
+        (damaged().drop_vars(["acceleration1", "box_acceleration"]), "record: no box_acceleration"),
         (damaged().isel(time=slice(5)), "record: 5 samples; expected at least 16"),
         (damaged(acceleration1=WITH_NAN), "acceleration1[42] = nan at 0.42 s: expected finite"),
         (damaged(time=UNEVEN), "time[69] = 0.69 s: a step of 0.014 s after it"),
