@@ -16,6 +16,8 @@ What is asked
     :func:`shake` as in the laboratory, by a :class:`SweptSine`, :class:`Random` vibration, a
     :class:`Shock` or :class:`Sampled` acceleration; :func:`measure` what a :class:`Sensor` reads
     of it, :func:`record`, :func:`read_record` and :func:`write_record` what was measured;
+    :func:`frf`, :func:`psd`, :func:`track_orders`, :func:`harmonics`, :func:`spectrogram`,
+    :func:`shock_spectrum` and :func:`probability_density` of such a record, or of a measured one;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
     :func:`couple_all`,
     :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
@@ -48,6 +50,13 @@ if TYPE_CHECKING:
     from .dynamics.parameter_map import map
     from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
     from .figures.plot import plot
+    from .laboratory.analysis.density import probability_density
+    from .laboratory.analysis.frf import frf
+    from .laboratory.analysis.harmonics import harmonics
+    from .laboratory.analysis.orders import track_orders
+    from .laboratory.analysis.psd import psd
+    from .laboratory.analysis.shock_spectrum import shock_spectrum
+    from .laboratory.analysis.spectrogram import spectrogram
     from .laboratory.random_vibration import Random
     from .laboratory.record import record
     from .laboratory.record_files import read_record, write_record
@@ -100,6 +109,8 @@ __all__ = [
     "couple_all",
     "drive_branch",
     "drive_spectra",
+    "frf",
+    "harmonics",
     "impact_statistics",
     "jump_voltages",
     "lyapunov",
@@ -108,13 +119,18 @@ __all__ = [
     "orbit",
     "passage",
     "plot",
+    "probability_density",
+    "psd",
     "read_record",
     "record",
     "resonance",
     "shake",
+    "shock_spectrum",
     "simulate",
     "spectra",
+    "spectrogram",
     "sweep",
+    "track_orders",
     "waterfall",
     "write_record",
     "write_ssp",
@@ -134,6 +150,13 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "laboratory.shock": ("Shock",),
     "laboratory.swept_sine": ("SweptSine",),
     "laboratory.shake": ("shake",),
+    "laboratory.analysis.frf": ("frf",),
+    "laboratory.analysis.psd": ("psd",),
+    "laboratory.analysis.orders": ("track_orders",),
+    "laboratory.analysis.harmonics": ("harmonics",),
+    "laboratory.analysis.spectrogram": ("spectrogram",),
+    "laboratory.analysis.shock_spectrum": ("shock_spectrum",),
+    "laboratory.analysis.density": ("probability_density",),
     "response.simulate": ("simulate",),
     "response.resonance": ("resonance",),
     "response.sweep": ("sweep",),

@@ -16,6 +16,7 @@ from pathlib import Path
 from ..errors import InputError, StaleError, VibroimpactError
 from ..version import __version__
 from . import (
+    analyse,
     attractors,
     basin,
     border,
@@ -41,7 +42,7 @@ from .options import Commands, sets_text
 from .process import Terminated, outputs, signals
 
 COMMANDS = (
-    *(build, simulate, shake, resonance, spectra, sweep, map),
+    *(build, simulate, shake, analyse, resonance, spectra, sweep, map),
     *(lyapunov, attractors, basin, orbit, branch, border),
     *(couple, capture, passage, jump_voltages, drive_branch),
     *(explore, paper),

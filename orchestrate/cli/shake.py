@@ -26,7 +26,7 @@ from .question import carry_out
 if TYPE_CHECKING:
     import xarray as xr
 
-    from .. import Random, Shock, SweptSine
+    from .. import Random, Sampled, Shock, SweptSine
 
 EXAMPLES = """  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
@@ -107,7 +107,7 @@ def run(arguments: argparse.Namespace) -> None:
     carry_out(arguments, structure.as_delaminated(), question, report, draw, "with_bonded")
 
 
-def signal_of(arguments: argparse.Namespace) -> Random | Shock | SweptSine:
+def signal_of(arguments: argparse.Namespace) -> Random | Sampled | Shock | SweptSine:
     """The excitation that the options describe.
 
     Raises
@@ -140,10 +140,9 @@ def signal_of(arguments: argparse.Namespace) -> Random | Shock | SweptSine:
     )
 
 
-def recorded(arguments: argparse.Namespace) -> ExcitationSignal:
+def recorded(arguments: argparse.Namespace) -> Sampled:
     """The box's acceleration of a file, played again."""
-    from ..laboratory.record_files import read_record
-    from ..laboratory.sampled import Sampled
+    from .. import Sampled, read_record
 
     column = arguments.column
     columns = None

@@ -18,5 +18,6 @@ module                    idea
 :mod:`.record_csv`        columns of numbers as text
 :mod:`.record_uff`        universal files
 :mod:`.record_files`      records read and written, of any kind of file
+:mod:`.analysis`          what an analyser shows of a record
 ========================  =========================================================================
 """

@@ -16,9 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..constants import TURN
+
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
-TURN = 2.0 * math.pi
 BLOCK = 1 << 16  # cells at once, for the memory
 FAR = 3.0  # |z| from which the recurrence upwards loses no digits of the first seven
 NEAR = 1.0

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..constants import GRAVITY
 from ..errors import InputError
-from ..structures.sections import GRAVITY
 from .record import CHANNELS
 
 Floats = NDArray[np.float64]

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..constants import TURN
 from ..errors import InputError
 from .pieces import ERROR, POINTS, Floats, Pieces, phase_step
 from .signals import (
     DENSITY,
     MOST_PIECES,
     SECONDS,
-    TURN,
     ExcitationSignal,
     Profile,
     along_profile,

@@ -89,7 +89,7 @@ class ShakeJob(Question):
         times: NDArray[np.float64] = np.arange(last + 1) / self.sample_rate
         return times[times <= self.pieces.duration]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], carry: Table | None) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """The motion over some pieces, and the FMU's state to go on from."""
         pieces, first, last = self.pieces, items[0], items[-1] + 1
         nodes = pieces.nodes[first : last + 1]
@@ -99,8 +99,8 @@ class ShakeJob(Question):
         at_rest = Excitation(frequency=self.structure.omega, amplitude=0.0)
         with EventInstance(fmus[OSCILLATOR]) as instance:
             begin(instance, self.structure, at_rest, self.start)
-            if carry is not None:
-                instance.restore_state(carry["fmu_state"][-1].tobytes())
+            if previous is not None:
+                instance.restore_state(previous["fmu_state"][-1].tobytes())
             played = play(instance, nodes, pieces.derivatives[first:last], samples)
             kept = np.frombuffer(instance.save_state(), dtype=np.uint8)[np.newaxis]
         one, two = absolute_accelerations(played.rows[:, :4], self.structure, played.touching).T

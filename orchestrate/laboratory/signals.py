@@ -6,7 +6,6 @@ Each knows how to tell itself to the FMU: as cubic pieces with a bound of their 
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -20,7 +19,6 @@ from ..errors import InputError
 from ..structures.ranges import Quantity
 from .pieces import Floats, Pieces
 
-TURN = 2.0 * math.pi
 Profile = tuple[tuple[float, float], ...]  # frequency in Hz and what holds there, ascending
 MOST_PIECES = 50_000_000
 HERTZ = Quantity("frequency", "Hz", "", 1e-9, 1e9)

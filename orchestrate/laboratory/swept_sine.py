@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..constants import TURN
 from ..errors import InputError
 from ..structures.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, divided, phase_step, subdivided
@@ -16,7 +17,6 @@ from .signals import (
     LEVEL,
     MOST_PIECES,
     SECONDS,
-    TURN,
     ExcitationSignal,
     Profile,
     along_profile,
@@ -198,8 +198,8 @@ class SweptSine(ExcitationSignal):
         sine = [1.0, w, w**2 + w2, w**3 + 3.0 * w * w2 + w3]
         sine.append(w**4 + 6.0 * w**2 * w2 + 3.0 * w2**2 + 4.0 * w * w3 + w4)
         level = self._level_bounds(ends, f.min(axis=0))
-        fourth = sum(math.comb(4, order) * level[order] * sine[4 - order] for order in range(5))
-        return np.asarray(np.diff(nodes) ** 4 * fourth / ERROR)
+        terms = [math.comb(4, k) * level[k] * np.asarray(sine[4 - k]) for k in range(5)]
+        return np.asarray(np.diff(nodes) ** 4 * np.sum(terms, axis=0) / ERROR)
 
     def _level_bounds(self, ends: Floats, lowest: Floats) -> list[Floats]:
         """Largest derivatives of the level of orders 0 to 4 on each piece, A ~ f^p there."""

@@ -8,7 +8,16 @@ from orchestrate import cli
 
 from .written import PAGES, commands, files, python_blocks
 
-LONG = {"build", "capture", "couple", "explore", "jump-voltages", "paper", "passage"}  # read only
+LONG = {
+    "analyse",
+    "build",
+    "capture",
+    "couple",
+    "explore",
+    "jump-voltages",
+    "paper",
+    "passage",
+}  # read only
 EVERY = [
     pytest.param(page, words, id=f"{page.stem}-{' '.join(words)[:60]}")
     for page in PAGES

@@ -20,6 +20,7 @@ COMMANDS = (
         "build",
         "simulate",
         "shake",
+        "analyse",
         "resonance",
         "spectra",
         "sweep",

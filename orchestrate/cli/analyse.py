@@ -1,0 +1,328 @@
+"""``analyse``: what an analyser shows of a record, measured or simulated."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from .options import Commands, plain_float
+from .output import (
+    FORMATS,
+    PLOTS,
+    add_files,
+    check_output,
+    digest,
+    draw_picture,
+    endings_of,
+    export_formats,
+)
+from .question import read_stored
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+EXAMPLES = """  {program} analyse results/shake.nc --show frf,psd --resolution 0.5
+  {program} analyse swept.nc --label delaminated --beside bonded=whole.nc --show orders,harmonics
+  {program} analyse record.nc --show spectrogram,density --from 2 --to 30
+  {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv"""
+SPECTRAL = ("resolution", "window")
+SWEPT = ("orders", "periods")
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What ``--show`` names.
+
+    Attributes
+    ----------
+    function : str
+        Of the public face.
+    options : tuple of str
+        Of the command that it takes.
+    text : str
+        What it shows.
+    """
+
+    function: str
+    options: tuple[str, ...]
+    text: str
+
+
+ANALYSES = {
+    "frf": Analysis("frf", (*SPECTRAL, "overlap"), "frequency response and coherence"),
+    "psd": Analysis("psd", (*SPECTRAL, "overlap"), "power spectral density"),
+    "orders": Analysis("track_orders", SWEPT, "orders of a swept sine"),
+    "harmonics": Analysis("harmonics", ("highest", "periods"), "harmonics and their distortion"),
+    "spectrogram": Analysis("spectrogram", SPECTRAL, "spectra over the time"),
+    "shock": Analysis("shock_spectrum", ("damping",), "shock response spectrum"),
+    "density": Analysis("probability_density", ("bins",), "probability density, skewness"),
+}
+MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
+Reporter = Callable[["xr.Dataset"], Iterator[str]]
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "what an analyser shows of a record: responses, spectra, orders, shock spectra"
+    parser = commands.add("analyse", run, text, EXAMPLES)
+    record = "NetCDF file: a result of shake, or box_acceleration and acceleration1 over time"
+    parser.add_argument("record", type=Path, metavar="FILE", help=record)
+    shown = ", ".join(f"{name} ({one.text})" for name, one in ANALYSES.items())
+    parser.add_argument(
+        "--show", default="frf,psd", metavar="A,B,...", help=f"{shown} (default: %(default)s)"
+    )
+    option = parser.add_argument_group("records").add_argument
+    option("--label", default="", metavar="WORDS", help="what the record is, for the picture")
+    beside = "another record in the same picture; may be repeated"
+    option("--beside", action="append", default=[], metavar="LABEL=FILE", help=beside)
+    option("--from", dest="begin", type=plain_float, metavar="S", help="time it begins at, s")
+    option("--to", dest="end", type=plain_float, metavar="S", help="time it ends at, s")
+    add_settings(parser)
+    add_files(parser, store=False)
+    option = parser.add_argument_group("results").add_argument
+    place = "folder of the results (default: results)"
+    option("--output", type=Path, default=Path("results"), metavar="FOLDER", help=place)
+
+
+def add_settings(parser: argparse.ArgumentParser) -> None:
+    """Options of the analyses; each is left to its function where it is not given."""
+    option = parser.add_argument_group("settings").add_argument
+    lines = "distance of the lines, Hz, of frf, psd and spectrogram"
+    option("--resolution", type=plain_float, metavar="HZ", help=lines)
+    option("--window", metavar="WORD", help="hann (default), flattop, boxcar and others")
+    option("--overlap", type=plain_float, metavar="X", help="part of a segment, of frf and psd")
+    orders = "orders 1 to N, or a list of them such as 0.5,1,2 (default: 3)"
+    option("--orders", metavar="N", help=orders)
+    option("--highest", type=plain_float, metavar="N", help="order of harmonics (default: 5)")
+    periods = "of the excitation, in a window of orders and harmonics (default: 16)"
+    option("--periods", type=plain_float, metavar="X", help=periods)
+    ratio = "of the oscillators of shock (default: 0.05)"
+    option("--damping", type=plain_float, metavar="X", help=ratio)
+    option("--bins", type=plain_float, metavar="N", help="of density (default: 100)")
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    names = endings_of("--show", arguments.show, tuple(ANALYSES))
+    formats = endings_of("--format", arguments.format, FORMATS)
+    plots = endings_of("--plot", arguments.plot, PLOTS)
+    settings = settings_of(arguments, names)
+    check_output(arguments.output)
+    paths = paths_of(arguments)
+    records = {label: part_of(arguments, path) for label, path in paths.items()}
+    for name in names:
+        results = {
+            label: analyse(ANALYSES[name], record, paths[label], settings[name])
+            for label, record in records.items()
+        }
+        report(name, results)
+        told = digest([str(path) for path in paths.values()], settings[name], arguments.begin)
+        stem = f"analyse_{name}_{arguments.record.stem}_{told}"
+        write(arguments.output / f"{stem}.nc", results, formats, plots)
+
+
+def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+    """Keywords of each function; an option that none of them takes is refused.
+
+    Raises
+    ------
+    InputError
+    """
+    owned = {option for one in ANALYSES.values() for option in one.options}
+    given = {option for option in owned if getattr(arguments, option) is not None}
+    for option in sorted(given):
+        owners = [name for name, one in ANALYSES.items() if option in one.options]
+        if not set(owners) & set(names):
+            raise InputError(f"--{option}: expected with --show {' or '.join(owners)} alone")
+    settings = {
+        name: {o: getattr(arguments, o) for o in ANALYSES[name].options if o in given}
+        for name in names
+    }
+    if arguments.orders is not None and "orders" in names:
+        settings["orders"]["orders"] = orders_of(arguments.orders)
+    return settings
+
+
+def orders_of(text: str) -> Any:
+    """Orders of ``--orders``: a number, or several."""
+    try:
+        numbers = [plain_float(part) for part in text.split(",")]
+    except ValueError:
+        raise InputError(f"--orders {text}: expected a whole number, or 0.5,1,2") from None
+    return numbers if "," in text else numbers[0]
+
+
+def paths_of(arguments: argparse.Namespace) -> dict[str, Path]:
+    """Files of the records by their labels, the first one first.
+
+    Raises
+    ------
+    InputError
+    """
+    label = arguments.label or (arguments.record.stem if arguments.beside else "")
+    paths = {label: arguments.record}
+    for text in arguments.beside:
+        name, equals, path = text.partition("=")
+        if not (name and equals and path):
+            raise InputError(f"--beside {text}: expected LABEL=FILE, such as bonded=whole.nc")
+        if name in paths:
+            raise InputError(f"--beside {text}: a second record {name}; expected another label")
+        paths[name] = Path(path)
+    return paths
+
+
+def part_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
+    """A record, between ``--from`` and ``--to``."""
+    record = read_stored("FILE" if path == arguments.record else "--beside", path)
+    if "time" not in record.coords or arguments.begin is arguments.end is None:
+        return record
+    part = record.sel(time=slice(arguments.begin, arguments.end))
+    if not part.sizes["time"]:
+        ends = f"{float(record.time[0]):.6g} to {float(record.time[-1]):.6g} s"
+        raise InputError(f"{path}: nothing between --from and --to; it has {ends}")
+    return part
+
+
+def analyse(
+    analysis: Analysis, record: xr.Dataset, path: Path, settings: Mapping[str, Any]
+) -> xr.Dataset:
+    """The result of an analysis of a record; a complaint names the record's file."""
+    import orchestrate
+
+    try:
+        result: xr.Dataset = getattr(orchestrate, analysis.function)(record, **settings)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    return result
+
+
+def write(
+    place: Path, results: dict[str, xr.Dataset], formats: tuple[str, ...], plots: tuple[str, ...]
+) -> None:
+    """Write results, a file a record, and one picture of all."""
+    from ..figures.analysis import draw
+    from ..files import open_folder
+    from ..running.store import write_netcdf
+
+    open_folder(place.parent)
+    for label, data in results.items():
+        words = "".join(letter if letter.isalnum() else "-" for letter in label)
+        ending = f"_{words}" if len(results) > 1 else ""
+        path = write_netcdf(data, place.with_name(f"{place.stem}{ending}.nc"))
+        for file in (path, *export_formats(data, path, formats, fresh=True)):
+            print(file)
+    (label, first), *others = results.items()
+    for file in draw_picture(place, plots, True, lambda: draw(first, label, dict(others))):
+        print(file)
+
+
+# -- what is said ---------------------------------------------------------------------------------
+
+
+def report(name: str, results: dict[str, xr.Dataset]) -> None:
+    """Print the numbers that a person wants, a line a channel."""
+    print(f"{ANALYSES[name].text}:")
+    for label, data in results.items():
+        for line in REPORTERS[name](data):
+            print(f"  {label + ': ' if label else ''}{line}")
+
+
+def channels_of(data: xr.Dataset, box: bool = True) -> Iterator[tuple[str, xr.Dataset]]:
+    """Name and result of each channel."""
+    for channel in map(str, data.channel.values):
+        if box or channel != "box_acceleration":
+            yield MASSES[channel], data.sel(channel=channel)
+
+
+def largest(values: xr.DataArray) -> xr.DataArray:
+    """The largest value, with the coordinates it has."""
+    flat = values.stack(every=values.dims)
+    return flat.isel(every=int(flat.fillna(-1.0).values.argmax()))
+
+
+def say_frf(data: xr.Dataset) -> Iterator[str]:
+    """The peak of H1, its error, and the coherence."""
+    if not data.excited.any():
+        yield "the box does not move"
+        return
+    for name, part in channels_of(data):
+        band = part.where(data.excited > 0, drop=True)
+        peak = band.isel(frequency=int(band.magnitude.sel(estimator="H1").values.argmax()))
+        height = float(peak.magnitude.sel(estimator="H1"))
+        yield (
+            f"{name}: |H1| has its largest value {height:.4g} at {float(peak.frequency):.5g} Hz, "
+            f"random error {100.0 * float(peak.random_error):.2g} %; coherence "
+            f"{float(peak.coherence):.4f} there, {float(band.coherence.median()):.4f} in the median"
+        )
+
+
+def say_psd(data: xr.Dataset) -> Iterator[str]:
+    """Root mean squares and peaks."""
+    for name, part in channels_of(data):
+        at = float(part.psd.idxmax())
+        yield (
+            f"{name}: {float(part.rms):.4g} m/s2 rms, largest density {float(part.psd.max()):.4g} "
+            f"(m/s2)2/Hz at {at:.5g} Hz"
+        )
+
+
+def say_orders(data: xr.Dataset) -> Iterator[str]:
+    """The largest amplitude of each order, and where."""
+    for name, part in channels_of(data, box=False):
+        peaks = []
+        for order in map(float, part.order.values):
+            peak = largest(part.amplitude.sel(order=order))
+            peaks.append(f"order {order:g} {float(peak):.4g} at {float(peak.frequency):.5g} Hz")
+        yield f"{name}: largest amplitudes in m/s2: {', '.join(peaks)}"
+
+
+def say_harmonics(data: xr.Dataset) -> Iterator[str]:
+    """The largest and the usual distortion."""
+    for name, part in channels_of(data, box=False):
+        peak, usual = largest(part.distortion), 100.0 * float(part.distortion.median())
+        yield (
+            f"{name}: distortion {usual:.3g} % in the median, {100.0 * float(peak):.3g} % at the "
+            f"most, at {float(peak.frequency):.5g} Hz"
+        )
+
+
+def say_spectrogram(data: xr.Dataset) -> Iterator[str]:
+    """The largest line."""
+    for name, part in channels_of(data):
+        peak = largest(part.amplitude)
+        yield (
+            f"{name}: largest amplitude {float(peak):.4g} m/s2 at {float(peak.frequency):.5g} Hz, "
+            f"{float(peak.time):.4g} s"
+        )
+
+
+def say_shock(data: xr.Dataset) -> Iterator[str]:
+    """The largest response."""
+    for name, part in channels_of(data):
+        peak = largest(part.maximax)
+        yield f"{name}: largest response {float(peak):.4g} m/s2 at {float(peak.frequency):.5g} Hz"
+
+
+def say_density(data: xr.Dataset) -> Iterator[str]:
+    """Skewness and kurtosis with their errors."""
+    for name, part in channels_of(data):
+        yield (
+            f"{name}: skewness {float(part.skewness):.3f} +- {float(part.skewness_error):.3f}, "
+            f"kurtosis {float(part.kurtosis):.3f} +- {float(part.kurtosis_error):.3f}, standard "
+            f"deviation {float(part.standard_deviation):.4g} m/s2"
+        )
+
+
+REPORTERS: dict[str, Reporter] = {
+    "frf": say_frf,
+    "psd": say_psd,
+    "orders": say_orders,
+    "harmonics": say_harmonics,
+    "spectrogram": say_spectrogram,
+    "shock": say_shock,
+    "density": say_density,
+}

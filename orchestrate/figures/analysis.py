@@ -1,0 +1,338 @@
+"""What an analyser shows, several records in one picture: bonded, delaminated, measured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, panels, set_title, styled
+
+Results = dict[str, xr.Dataset]  # by label
+Reader = Callable[[xr.Dataset], xr.DataArray]
+CHANNELS = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
+COLOURS = (BLUE, RED, BLACK, ORANGE, GREEN, PURPLE)
+DECADES = 6  # of an axis, below the largest value
+DEGREES = 180.0 / np.pi
+
+
+@styled
+def draw(
+    data: xr.Dataset,
+    label: str = "",
+    others: Mapping[str, xr.Dataset] | None = None,
+    title: str = "",
+) -> Figure:
+    """Draw a result of an analysis, and the same of other records with it.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.frf`, :func:`orchestrate.psd`, :func:`orchestrate.track_orders`,
+        :func:`orchestrate.harmonics`, :func:`orchestrate.spectrogram`,
+        :func:`orchestrate.shock_spectrum` or :func:`orchestrate.probability_density`.
+    label : str
+        What its record is, for the legend.
+    others : mapping of str to xarray.Dataset, optional
+        Results of the same analysis of other records, by what they are.
+    title : str
+        By default the result's own.
+    """
+    results = {label: data, **(others or {})}
+    kind = data.attrs["analysis"]
+    other = [name for name, result in results.items() if result.attrs["analysis"] != kind]
+    if other:
+        wrong = results[other[0]].attrs["analysis"]
+        raise ValueError(f"others[{other[0]!r}]: result of {wrong}; expected one of {kind}")
+    figure = DRAW[kind](results)
+    set_title(figure, title or str(data.attrs["title"]))
+    return figure
+
+
+# -- parts of pictures ----------------------------------------------------------------------------
+
+
+def grid_of(results: Results, rows: int, heights: tuple[float, ...]) -> tuple[Figure, Any]:
+    """A figure with a column for each mass whose acceleration is in one of the records.
+
+    Returns
+    -------
+    figure : matplotlib.figure.Figure
+    axes : dict of str to list of Axes
+        By channel, from top to bottom.
+    """
+    every = present(results)
+    names = [name for name in every if name != "box_acceleration"] or every
+    size = (5.4 * len(names), 0.6 + 2.0 * sum(heights))
+    figure, axes = panels(
+        rows, len(names), size, sharex=True, sharey="row", height_ratios=heights[:rows]
+    )
+    columns = {name: axes[i :: len(names)] for i, name in enumerate(names)}
+    for name, column in columns.items():
+        column[0].set_title(CHANNELS[name])
+    return figure, columns
+
+
+def present(results: Results) -> list[str]:
+    """The channels that one of the records has, the box first."""
+    known = {str(name) for data in results.values() for name in data.channel.values}
+    return [name for name in CHANNELS if name in known]
+
+
+def of_channel(results: Results, channel: str) -> Iterator[tuple[str, xr.Dataset, str]]:
+    """Label, result of a channel and colour, where a record has the channel."""
+    colours = colours_of(results)
+    for label, data in results.items():
+        if channel in data.channel.values:
+            yield label, data.sel(channel=channel), colours[label]
+
+
+def colours_of(results: Results) -> dict[str, str]:
+    """A colour for each record; a record that was measured is black."""
+    free = [colour for colour in COLOURS if colour != BLACK]
+    colours: dict[str, str] = {}
+    for label in results:
+        measured = label.startswith("measured") and BLACK not in colours.values()
+        colours[label] = BLACK if measured else free[len(colours) % len(free)]
+    return colours
+
+
+def add_legend(figure: Figure, axes: Axes, results: Results) -> None:
+    """Names of the records below all panels, where there are any."""
+    if any(results):
+        colours = colours_of(results)
+        handles = [axes.plot([], [], color=colours[label])[0] for label in results]
+        place: Any = {"loc": "outside lower right", "ncols": len(results)}
+        figure.legend(handles, list(results), **place)
+
+
+def from_the_top(axes: Axes, values: list[np.ndarray], decades: int = DECADES) -> None:
+    """A logarithmic axis that ends some decades below the largest value."""
+    every = np.concatenate([np.ravel(array) for array in values])
+    every = every[np.isfinite(every) & (every > 0.0)]
+    axes.set_yscale("log")
+    if len(every):
+        top = float(every.max())
+        low = max(0.7 * float(every.min()), 10.0**-decades * top)
+        axes.set_ylim(min(low, 0.5 * top), 1.5 * top)
+
+
+def unbroken(phase: xr.DataArray) -> np.ndarray:
+    """A phase in degrees from -270 to 90, where resonances turn; no line where it jumps."""
+    degrees = (DEGREES * phase.values + 270.0) % 360.0 - 270.0
+    jumps = np.flatnonzero(np.abs(np.diff(degrees)) > 180.0)
+    degrees[jumps] = np.nan
+    return np.asarray(degrees)
+
+
+def note_hidden(axes: Axes, values: Mapping[str, list[np.ndarray]]) -> None:
+    """Say which records lie below an axis."""
+    low = axes.get_ylim()[0]
+    hidden = [name for name, arrays in values.items() if np.nanmedian(np.hstack(arrays)) < low]
+    if any(hidden):
+        place: Any = {"transform": axes.transAxes, "ha": "left", "va": "bottom"}
+        axes.text(0.01, 0.02, f"below this axis: {', '.join(hidden)}", fontsize=8, **place)
+
+
+def directions(data: xr.Dataset) -> Iterator[tuple[xr.Dataset, str]]:
+    """The parts of a sweep that go up, and those that go down, with their line styles."""
+    rising = (data.sweep_rate.values >= 0.0).tolist()
+    for up, numbers in groupby(range(len(rising)), key=rising.__getitem__):
+        yield data.isel(time=list(numbers)), "-" if up else "--"
+
+
+# -- pictures -------------------------------------------------------------------------------------
+
+
+def draw_frf(results: Results) -> Figure:
+    """Magnitude by H1, phase and coherence."""
+    figure, columns = grid_of(results, 3, (1.5, 0.9, 0.9))
+    shown: list[np.ndarray] = []
+    for channel, (magnitude, phase, coherence) in columns.items():
+        for _, data, colour in of_channel(results, channel):
+            part = data.sel(estimator="H1").where(data.excited > 0)
+            line: dict[str, Any] = {"color": colour, "linewidth": 1.0}
+            magnitude.plot(part.frequency, part.magnitude, **line)
+            phase.plot(part.frequency, unbroken(part.phase), **line)
+            coherence.plot(part.frequency, part.coherence, **line)
+            shown.append(part.magnitude.values)
+        phase.set(ylim=(-280.0, 100.0), yticks=(-270, -180, -90, 0, 90))
+        coherence.set(ylim=(-0.03, 1.03), xlabel="frequency in Hz")
+    first = next(iter(columns.values()))
+    for axes, word in zip(first, ("|H1|", "phase in degrees", "coherence"), strict=True):
+        axes.set_ylabel(word)
+    from_the_top(first[0], shown)
+    first[0].set_ylabel("|H1|, mass over box")
+    add_legend(figure, first[0], results)
+    return figure
+
+
+def draw_psd(results: Results) -> Figure:
+    """Power densities, a row a channel."""
+    names = present(results)
+    figure, axes = panels(len(names), 1, (9.0, 0.8 + 2.0 * len(names)), sharex=True)
+    for channel, plane in zip(names, axes, strict=True):
+        shown = []
+        for label, data, colour in of_channel(results, channel):
+            words = f"{label + ': ' if label else ''}{float(data.rms):.4g} m/s$^2$ rms"
+            plane.plot(data.frequency, data.psd, color=colour, linewidth=1.0, label=words)
+            shown.append(data.psd.values[1:])
+        from_the_top(plane, shown)
+        plane.set_title(CHANNELS[channel])
+        plane.set_ylabel("(m/s$^2$)$^2$/Hz")
+        plane.legend(loc="upper right")
+    axes[-1].set_xlabel("frequency in Hz")
+    return figure
+
+
+def draw_orders(results: Results) -> Figure:
+    """Amplitudes, a row an order, and the phase of the first."""
+    orders = [float(order) for order in next(iter(results.values())).order.values]
+    rows = [(f"order {n:g}\nin m/s$^2$", order_reader(n, "amplitude", 1.0)) for n in orders]
+    figure, columns = draw_rows(results, rows, (1.0,) * len(orders) + (0.8,))
+    for channel, column in columns.items():
+        for _, data, colour in of_channel(results, channel):
+            for part, style in directions(data):
+                phase = unbroken(at_order(part, 1.0).phase)
+                column[-1].plot(part.frequency, phase, color=colour, linestyle=style, linewidth=1.0)
+        column[-1].set(ylim=(-280.0, 100.0), yticks=(-270, -180, -90, 0, 90))
+    next(iter(columns.values()))[-1].set_ylabel("phase of order 1\nin degrees")
+    return figure
+
+
+def draw_harmonics(results: Results) -> Figure:
+    """Total harmonic distortion, and the lowest harmonics one by one."""
+    orders = [float(order) for order in next(iter(results.values())).order.values[:2]]
+    rows: list[tuple[str, Reader]] = [("distortion\n(THD) in %", lambda x: 100.0 * x.distortion)]
+    words = "order {:g}\nover order 1 in %"
+    rows += [(words.format(n), order_reader(n, "ratio", 100.0)) for n in orders]
+    return draw_rows(results, rows, (1.3,) + (1.0,) * len(orders))[0]
+
+
+def order_reader(order: float, name: str, factor: float) -> Reader:
+    """A function that takes an order's values from a result."""
+    return lambda data: factor * at_order(data, order)[name]
+
+
+def draw_rows(
+    results: Results, rows: list[tuple[str, Reader]], heights: tuple[float, ...]
+) -> tuple[Figure, Any]:
+    """Curves over the frequency of a sweep, dashed where it goes down.
+
+    Parameters
+    ----------
+    results : dict of str to xarray.Dataset
+    rows : list of (str, callable)
+        Label of each row, and what gives its curve from a result.
+    heights : tuple of float
+        Of the rows; where there are more than ``rows`` the last ones stay empty.
+    """
+    figure, columns = grid_of(results, len(heights), heights)
+    shown: list[dict[str, list[np.ndarray]]] = [{} for _ in rows]
+    for channel, column in columns.items():
+        for label, data, colour in of_channel(results, channel):
+            for part, style in directions(data):
+                line: dict[str, Any] = {"color": colour, "linestyle": style, "linewidth": 1.0}
+                for axes, (_, values_of), values in zip(column, rows, shown, strict=False):
+                    curve = values_of(part)
+                    axes.plot(part.frequency, curve, **line)
+                    values.setdefault(label, []).append(curve.values)
+        column[-1].set_xlabel("frequency of the excitation in Hz")
+    first = next(iter(columns.values()))
+    for axes, (word, _), values in zip(first, rows, shown, strict=False):
+        axes.set_ylabel(word)
+        from_the_top(axes, [array for arrays in values.values() for array in arrays], 3)
+        note_hidden(axes, values)
+    add_legend(figure, first[0], results)
+    return figure, columns
+
+
+def at_order(data: xr.Dataset, order: float) -> xr.Dataset:
+    """An order of a result; NaN where it was not tracked."""
+    return data.reindex(order=[order]).isel(order=0)
+
+
+def draw_spectrograms(results: Results) -> Figure:
+    """A row a channel, a column a record, all on one scale of decibels."""
+    names, count = present(results), len(results)
+    size = (1.2 + 4.2 * count, 0.8 + 2.2 * len(names))
+    figure, axes = panels(len(names), count, size, sharex=True, sharey=True)
+    top = max(float(data.amplitude.max()) for data in results.values()) or 1.0
+    for row, channel in enumerate(names):
+        for column, (label, data) in enumerate(results.items()):
+            plane = axes[row * count + column]
+            if channel not in data.channel.values:
+                plane.set_axis_off()
+                continue
+            amplitude = data.amplitude.sel(channel=channel)
+            levels = 20.0 * np.log10(np.maximum(amplitude / top, 1e-12))
+            mesh = plane.pcolormesh(
+                data.time, data.frequency, levels.T, vmin=-80.0, vmax=0.0, rasterized=True
+            )
+            plane.grid(visible=False)
+            plane.set_title(", ".join(filter(None, [CHANNELS[channel], label])))
+            if column == 0:
+                plane.set_ylabel("frequency in Hz")
+            if row == len(names) - 1:
+                plane.set_xlabel("time in s")
+    figure.colorbar(mesh, ax=axes, label=f"amplitude in dB re {top:.3g} m/s$^2$", aspect=40)
+    return figure
+
+
+def draw_shock_spectra(results: Results) -> Figure:
+    """Maximax spectra, the residual ones thin."""
+    names = present(results)
+    size = (1.0 + 3.6 * len(names), 4.4)
+    figure, axes = panels(1, len(names), size, sharex=True, sharey=True)
+    shown = []
+    for channel, plane in zip(names, axes, strict=True):
+        for _, data, colour in of_channel(results, channel):
+            plane.loglog(data.frequency, data.maximax, color=colour, linewidth=1.4)
+            plane.loglog(data.frequency, data.residual, color=colour, linewidth=0.7, linestyle=":")
+            shown.append(data.maximax.values)
+        plane.set_title(f"{CHANNELS[channel]} (dotted: after the record)")
+        plane.set_xlabel("natural frequency in Hz")
+    damping = float(next(iter(results.values())).damping)
+    axes[0].set_ylabel(f"largest acceleration in m/s$^2$, damping ratio {100.0 * damping:g} %")
+    from_the_top(axes[0], shown, 4)
+    add_legend(figure, axes[0], results)
+    return figure
+
+
+def draw_densities(results: Results) -> Figure:
+    """Densities over standard deviations, beside the Gaussian one."""
+    names = present(results)
+    figure, axes = panels(1, len(names), (1.0 + 3.8 * len(names), 4.2), sharey=True)
+    gauss = np.linspace(-4.5, 4.5, 181)
+    for channel, plane in zip(names, axes, strict=True):
+        bell = np.exp(-0.5 * gauss**2) / np.sqrt(2.0 * np.pi)
+        plane.semilogy(gauss, bell, color=GREY, linestyle="--", linewidth=1.0, label="Gaussian")
+        for label, data, colour in of_channel(results, channel):
+            sigma = float(data.standard_deviation) or 1.0
+            numbers = f"skewness {float(data.skewness):.2f}, kurtosis {float(data.kurtosis):.2f}"
+            words = f"{label + ': ' if label else ''}{numbers}"
+            density = (sigma * data.density).where(data.density > 0.0)
+            over = (data.acceleration - data["mean"]) / sigma
+            plane.plot(over, density, color=colour, linewidth=1.1, label=words)
+        plane.set_ylim(1e-5, 20.0)
+        plane.set_title(CHANNELS[channel])
+        plane.set_xlabel("acceleration in standard deviations")
+        plane.legend(loc="upper right", fontsize=7)
+    axes[0].set_ylabel("probability density")
+    return figure
+
+
+DRAW: dict[str, Callable[[Results], Figure]] = {
+    "frf": draw_frf,
+    "psd": draw_psd,
+    "orders": draw_orders,
+    "harmonics": draw_harmonics,
+    "spectrogram": draw_spectrograms,
+    "shock_spectrum": draw_shock_spectra,
+    "probability_density": draw_densities,
+}

@@ -1,0 +1,103 @@
+"""Overlapping windowed segments (Welch), and how many independent averages they are worth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InputError
+from .channels import Channels, checked_number, one_of
+
+Floats = NDArray[np.float64]
+WINDOWS = ("hann", "hamming", "blackman", "blackmanharris", "flattop", "boxcar")
+USUAL_SEGMENTS = 16  # without overlap
+FEWEST_LINES = 8  # samples in a segment
+
+
+@dataclass(frozen=True)
+class Averaging:
+    """Segments of a record.
+
+    Attributes
+    ----------
+    length, overlap : int
+        Samples of a segment, and those it shares with the next.
+    window : str
+        Of :func:`scipy.signal.get_window`.
+    segments : int
+        How many there are.
+    resolution : float
+        Distance of the lines, Hz.
+    """
+
+    length: int
+    overlap: int
+    window: str
+    segments: int
+    resolution: float
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Keywords of :func:`scipy.signal.csd` and :func:`scipy.signal.welch`."""
+        return {
+            "window": self.window,
+            "nperseg": self.length,
+            "noverlap": self.overlap,
+            "detrend": "constant",
+        }
+
+    @property
+    def independent(self) -> float:
+        """How many independent segments have the same random error.
+
+        Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70-73: overlapping segments are
+        correlated by the squared correlation of the window with itself.
+        """
+        from scipy.signal import get_window
+
+        w = get_window(self.window, self.length)
+        hop, count = self.length - self.overlap, self.segments
+        shifts = range(1, min(count, -(-self.length // hop)))
+        shared = (float(w[: -s * hop] @ w[s * hop :]) / float(w @ w) for s in shifts)
+        total = sum((1.0 - s / count) * c**2 for s, c in zip(shifts, shared, strict=True))
+        return count / (1.0 + 2.0 * total)
+
+
+def averaging(
+    channels: Channels, resolution: float | None, window: str, overlap: float, fewest: int = 1
+) -> Averaging:
+    """Divide a record into segments.
+
+    Parameters
+    ----------
+    channels : Channels
+    resolution : float, optional
+        Distance of the lines, Hz; by default such that 16 segments fit without overlap.
+    window : str
+        One of ``WINDOWS``.
+    overlap : float
+        Part of a segment that the next one shares, 0 to 0.95.
+    fewest : int
+        Segments that are needed.
+
+    Raises
+    ------
+    InputError
+    """
+    one_of("window", window, WINDOWS)
+    part = checked_number("overlap", overlap, 0.0, 0.95)
+    count, rate = len(channels.time), channels.sample_rate
+    if resolution is None:
+        length = max(count // USUAL_SEGMENTS, FEWEST_LINES)
+    else:
+        finest, coarsest = rate / count, rate / FEWEST_LINES
+        length = round(rate / checked_number("resolution", resolution, finest, coarsest, "Hz"))
+    shared = min(int(part * length), length - 1)
+    segments = (count - shared) // (length - shared)
+    if segments < fewest:
+        text = f"{segments} segments in {channels.duration:.4g} s; expected at least {fewest}"
+        raise InputError(f"resolution = {rate / length:.4g} Hz: {text}")
+    return Averaging(length, shared, window, segments, rate / length)

@@ -1,0 +1,215 @@
+"""The acceleration channels of a record, checked before they are analysed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InputError
+from ...response.labels import Variable, variable
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+BOX = "box_acceleration"
+CHANNELS = {  # and what the result of shake calls them
+    BOX: BOX,
+    "acceleration1": "a1_abs",
+    "acceleration2": "a2_abs",
+}
+FEWEST_SAMPLES = 16
+STEP_TOLERANCE = 0.05  # of a step: how far a time may be from equal ones
+RATE_TOLERANCE = 0.01  # between the attribute sample_rate and the time's steps
+
+
+@dataclass(frozen=True)
+class Channels:
+    """Channels of a record as one array.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        s.
+    sample_rate : float
+        Hz.
+    names : tuple of str
+        Of ``CHANNELS``.
+    values : ndarray, shape (channels, n)
+        m/s2.
+    title : str
+        Of the record.
+    """
+
+    time: Floats
+    sample_rate: float
+    names: tuple[str, ...]
+    values: Floats
+    title: str
+
+    @classmethod
+    def from_record(cls, record: xr.Dataset, needed: tuple[str, ...] = ()) -> Channels:
+        """Check a record, or a result of :func:`orchestrate.shake`, and take its channels.
+
+        Parameters
+        ----------
+        record : xarray.Dataset
+        needed : tuple of str
+            Channels that it must have, beside one at least.
+
+        Raises
+        ------
+        InputError
+            Where it is no dataset over ``time``, its steps differ, a channel is missing or has
+            values that are not finite.
+        """
+        import xarray as xr
+
+        if not isinstance(record, xr.Dataset) or "time" not in record.coords:
+            expected = "expected an xarray.Dataset over time with box_acceleration, acceleration1"
+            raise InputError(f"record: {type(record).__name__} without time; {expected}")
+        variables = {name: channel_variable(record, name) for name in CHANNELS}
+        present = {name: array for name, array in variables.items() if array is not None}
+        missing = [name for name in needed if name not in present]
+        if missing or not present:
+            lacking = " and no ".join(missing or CHANNELS)
+            expected = " and ".join(needed) or "one of them"
+            raise InputError(f"record: no {lacking}; expected {expected} over time, in m/s2")
+        time = np.asarray(record.time.values, dtype=float)
+        if time.ndim != 1 or len(time) < FEWEST_SAMPLES:
+            raise InputError(f"record: {time.size} samples; expected at least {FEWEST_SAMPLES}")
+        rate = sample_rate(time, record.attrs.get("sample_rate"))
+        values = np.stack([finite(name, array, time) for name, array in present.items()])
+        return cls(time, rate, tuple(present), values, str(record.attrs.get("title", "record")))
+
+    @property
+    def box(self) -> Floats:
+        """Acceleration of the box, m/s2."""
+        return np.asarray(self.values[self.names.index(BOX)])
+
+    @property
+    def duration(self) -> float:
+        """Number of samples over the sampling rate, s."""
+        return len(self.time) / self.sample_rate
+
+    def responses(self) -> tuple[tuple[str, ...], Floats]:
+        """Names and values of all channels but the box's."""
+        chosen = [i for i, name in enumerate(self.names) if name != BOX]
+        return tuple(self.names[i] for i in chosen), self.values[chosen]
+
+
+def channel_variable(record: xr.Dataset, name: str) -> xr.DataArray | None:
+    """A record's channel by its name, or by the name that :func:`orchestrate.shake` gives it."""
+    for candidate in (name, CHANNELS[name]):
+        if candidate in record and record[candidate].dims == ("time",):
+            return record[candidate]
+    return None
+
+
+def sample_rate(time: Floats, stated: Any) -> float:
+    """The sampling rate of equal steps, as it is stated where the steps agree with that; Hz.
+
+    Raises
+    ------
+    InputError
+    """
+    steps = np.diff(time)
+    if not np.isfinite(time).all() or not (steps > 0.0).all():
+        wrong = int(np.argmin(np.nan_to_num(steps, nan=-np.inf)))
+        raise InputError(f"time[{wrong + 1}] = {time[wrong + 1]!r} s: expected ascending numbers")
+    rate = (len(time) - 1) / (time[-1] - time[0])
+    uneven = np.abs((time - time[0]) * rate - np.arange(len(time)))
+    if uneven.max() > STEP_TOLERANCE:
+        wrong = int(np.abs(steps * rate - 1.0).argmax())
+        text = f"a step of {steps[wrong]:.6g} s after it, of {1.0 / rate:.6g} s on average"
+        raise InputError(f"time[{wrong}] = {time[wrong]:.9g} s: {text}; expected equal steps")
+    if stated is None:
+        return float(rate)
+    try:
+        number = float(stated)
+    except (TypeError, ValueError):
+        number = np.nan
+    if not abs(number / rate - 1.0) <= RATE_TOLERANCE:
+        text = f"the time has {rate:.6g} samples a second; expected the same"
+        raise InputError(f"attribute sample_rate = {stated!r} Hz: {text}")
+    return number
+
+
+def finite(name: str, array: xr.DataArray, time: Floats) -> Floats:
+    """A channel's values.
+
+    Raises
+    ------
+    InputError
+    """
+    values = np.asarray(array.values, dtype=float)
+    if not np.isfinite(values).all():
+        wrong = int(np.flatnonzero(~np.isfinite(values))[0])
+        text = f"= {values[wrong]} at {time[wrong]:.9g} s: expected finite numbers"
+        raise InputError(f"{name}[{wrong}] {text}")
+    return values
+
+
+# -- results --------------------------------------------------------------------------------------
+
+
+def channel_coordinate(names: Sequence[str]) -> dict[str, Variable]:
+    """The coordinate along the channels."""
+    return {"channel": ("channel", np.array(names), {"long_name": "channel of the record"})}
+
+
+def frequency_coordinate(frequency: Floats) -> dict[str, Variable]:
+    """The coordinate along frequencies."""
+    return {"frequency": variable("frequency", frequency, "Hz", "frequency")}
+
+
+def attributes(analysis: str, heading: str, title: str, **settings: Any) -> dict[str, Any]:
+    """Attributes of a result: which analysis it is, of what, with which settings."""
+    return {"analysis": analysis, "title": f"{heading}: {title}", **settings}
+
+
+def checked_number(
+    name: str, value: Any, low: float, high: float, unit: str = "", open_end: bool = False
+) -> float:
+    """A number in a range.
+
+    Parameters
+    ----------
+    name : str
+    value : float
+    low, high : float
+        Ends of the range.
+    unit : str
+        For the message.
+    open_end : bool
+        Whether ``high`` itself is outside.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = np.nan
+    if not low <= number <= high or (open_end and number == high):
+        sign = "<" if open_end else "<="
+        text = f"expected {low:.4g} <= {name} {sign} {high:.4g}"
+        raise InputError(f"{name} = {value!r}{' ' + unit if unit else ''}: {text}")
+    return number
+
+
+def one_of(name: str, value: Any, known: Mapping[str, Any] | Sequence[str]) -> str:
+    """A word that is known.
+
+    Raises
+    ------
+    InputError
+    """
+    if value not in known:
+        raise InputError(f"{name} = {value!r}: expected one of {', '.join(known)}")
+    return str(value)

@@ -1,0 +1,118 @@
+"""How often which acceleration occurs: its probability density, skewness and kurtosis."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...response.labels import variable
+from .channels import Channels, Floats, attributes, channel_coordinate, checked_number
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+PARTS = 16  # of the record, for standard errors
+
+
+def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
+    """The probability density of the acceleration of each channel of a record.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        As for :func:`orchestrate.frf`.
+    bins : int
+        Of equal width from the least to the largest acceleration of a channel.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``density`` in s2/m over ``channel`` and ``bin``, with the coordinate ``acceleration`` in
+        m/s2, the middle of each bin; over ``channel``: ``mean`` and ``standard_deviation`` in m/s2,
+        ``skewness`` (0 for a symmetric density), ``kurtosis`` (3 for a Gaussian one, 1.5 for a
+        sine), ``skewness_error`` and ``kurtosis_error``.
+
+    Raises
+    ------
+    InputError
+
+    Notes
+    -----
+    Standard errors come from 16 parts of the record: the standard deviation of the parts' values
+    over the square root of their number. They say nothing where the record is not stationary. A
+    channel that does not move has skewness and kurtosis NaN.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_file("beam")
+    >>> noise = orchestrate.Random(psd=[(2.0, 0.01), (30.0, 0.01)], duration=60.0, seed=1)
+    >>> answer = orchestrate.probability_density(orchestrate.shake(beam, noise))
+    >>> abs(float(answer.skewness.sel(channel="box_acceleration"))) < 0.2
+    True
+    """
+    import xarray as xr
+
+    channels = Channels.from_record(record)
+    number = round(checked_number("bins", bins, 4, 100_000))
+    middles, density = histograms(channels.values, number)
+    moments = {name: variable("channel", *row) for name, row in statistics(channels.values).items()}
+    over = ("channel", "bin")
+    return xr.Dataset(
+        {"density": variable(over, density, "s2/m", "probability density"), **moments},
+        {
+            **channel_coordinate(channels.names),
+            "bin": variable("bin", np.arange(number), "1", "number of the bin"),
+            "acceleration": variable(over, middles, "m/s2", "acceleration in the bin's middle"),
+        },
+        attributes("probability_density", "Probability density", channels.title),
+    )
+
+
+def histograms(values: Floats, bins: int) -> tuple[Floats, Floats]:
+    """Middles of the bins and densities of each channel, both of shape (channels, bins)."""
+    middles, densities = [], []
+    for channel in values:
+        density, edges = np.histogram(channel, bins, density=True)
+        densities.append(density)
+        middles.append(0.5 * (edges[:-1] + edges[1:]))
+    return np.stack(middles), np.stack(densities)
+
+
+def statistics(values: Floats) -> dict[str, tuple[Floats, str, str]]:
+    """Moments of channels, with unit and long name; values of shape (channels,)."""
+    shape = {"skewness": third(values), "kurtosis": fourth(values)}
+    parts = np.array_split(values, PARTS, axis=1)
+    errors = {
+        "skewness_error": np.std([third(part) for part in parts], axis=0, ddof=1) / PARTS**0.5,
+        "kurtosis_error": np.std([fourth(part) for part in parts], axis=0, ddof=1) / PARTS**0.5,
+    }
+    return {
+        "mean": (values.mean(axis=1), "m/s2", "mean value"),
+        "standard_deviation": (values.std(axis=1), "m/s2", "standard deviation"),
+        "skewness": (shape["skewness"], "1", "third moment over the deviation's third power"),
+        "kurtosis": (shape["kurtosis"], "1", "fourth moment over the deviation's fourth power"),
+        "skewness_error": (errors["skewness_error"], "1", "standard error of the skewness"),
+        "kurtosis_error": (errors["kurtosis_error"], "1", "standard error of the kurtosis"),
+    }
+
+
+def third(values: Floats) -> Floats:
+    """Skewness along the last axis; NaN where nothing moves."""
+    from scipy.stats import skew
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # of a part that does not move
+        return np.where(np.ptp(values, axis=-1) > 0.0, skew(values, axis=-1), np.nan)
+
+
+def fourth(values: Floats) -> Floats:
+    """Kurtosis along the last axis, 3 for a Gaussian signal; NaN where nothing moves."""
+    from scipy.stats import kurtosis
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        number = kurtosis(values, axis=-1, fisher=False)
+    return np.where(np.ptp(values, axis=-1) > 0.0, number, np.nan)

@@ -1,0 +1,320 @@
+"""Order tracking: amplitude and phase of a swept sine's orders, by least squares in windows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...errors import InputError
+from ...response.labels import variable
+from ..swept_sine import SweptSine
+from .channels import (
+    BOX,
+    Channels,
+    Floats,
+    attributes,
+    channel_coordinate,
+    checked_number,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+TURN = 2.0 * math.pi
+MOST_ORDERS = 50
+EDGE = 2.0  # periods at both ends where the Hilbert transform is not trusted
+NYQUIST = 0.45  # of the sampling rate: orders above are not resolved
+NO_SINE = 0.5  # rms of what the box does beside its sine, over the rms of the sine
+
+
+@dataclass(frozen=True)
+class Window:
+    """A part of a record that is fitted.
+
+    Attributes
+    ----------
+    part : slice
+        Samples.
+    weights : ndarray
+        Of the squares, Hann's over the phase.
+    offset : ndarray
+        Time from the middle, in half lengths of the window.
+    phase : ndarray
+        rad.
+    time : float
+        Of the middle, s.
+    frequency, rate : float
+        In the middle, Hz, and its derivative, Hz/s.
+    """
+
+    part: slice
+    weights: Floats
+    offset: Floats
+    phase: Floats
+    time: float
+    frequency: float
+    rate: float
+
+
+def track_orders(
+    record: xr.Dataset,
+    *,
+    orders: int | Sequence[float] = 3,
+    phase: SweptSine | ArrayLike | None = None,
+    periods: float = 16.0,
+    overlap: float = 0.5,
+) -> xr.Dataset:
+    """Track the orders of a record of a swept sine.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        As for :func:`orchestrate.frf`.
+    orders : int or sequence of float
+        Orders 1 to this one, or the orders themselves, as ``(0.5, 1, 1.5, 2)``.
+    phase : SweptSine or array_like, optional
+        The phase of order 1: of the swept sine, or in rad at each sample. By default it is measured
+        from the box's acceleration.
+    periods : float
+        Of the excitation, in a window.
+    overlap : float
+        Part of a window that the next one shares, 0 to 0.95.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time`` in s (the middle of a window) with the coordinate ``frequency`` in Hz:
+        ``amplitude`` in m/s2 and ``phase`` in rad over ``channel`` and ``order``; ``residual``, the
+        root mean square of what is not in these orders, over ``channel``; ``sweep_rate`` in Hz/s,
+        negative where the sweep goes down. Orders above 0.45 of the sampling rate are NaN.
+
+    Raises
+    ------
+    InputError
+        Where no phase is given and the box's acceleration is no sine of growing phase.
+
+    Notes
+    -----
+    In each window a constant and, for each order n, ``A sin(n phase + theta)`` are fitted by least
+    squares with Hann weights; A cos(theta) and A sin(theta) may change at a constant rate. The
+    measured phase is that of the analytic signal, smoothed in each window by a polynomial of third
+    degree, less the phase that the box's own order 1 then has.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_file("beam").as_bonded()
+    >>> sweep = orchestrate.SweptSine(first=10.0, last=14.0, duration=60.0, acceleration=0.2)
+    >>> answer = orchestrate.track_orders(orchestrate.shake(beam, sweep), phase=sweep)
+    >>> first = answer.swap_dims(time="frequency").amplitude.sel(channel="acceleration1", order=1)
+    >>> round(float(first.idxmax()), 1)
+    12.7
+    """
+    import xarray as xr
+
+    channels = Channels.from_record(record, (BOX,) if phase is None else ())
+    wanted = checked_orders(orders)
+    length = checked_number("periods", periods, 2.0, 1e4)
+    part = checked_number("overlap", overlap, 0.0, 0.95)
+    measured = phase is None
+    angle = measured_phase(channels) if measured else given_phase(channels, phase)
+    windows = list(divide(channels, angle, length, part, smooth=measured))
+    if not windows:
+        turns = abs(float(angle[-1] - angle[0])) / TURN
+        raise InputError(
+            f"periods = {periods!r}: the record has {turns:.4g}; expected fewer in a window"
+        )
+    fits = [fit(channels, window, wanted) for window in windows]
+    complex_amplitudes = np.stack([fitted[0] for fitted in fits], axis=-1)
+    residual = np.stack([fitted[1] for fitted in fits], axis=-1)
+    if measured:
+        complex_amplitudes = against_box(channels, complex_amplitudes, residual, wanted)
+    over = ("channel", "order", "time")
+    rate = [window.rate for window in windows]
+    frequency = [window.frequency for window in windows]
+    return xr.Dataset(
+        {
+            "amplitude": variable(over, np.abs(complex_amplitudes), "m/s2", "amplitude of orders"),
+            "phase": variable(over, np.angle(complex_amplitudes), "rad", "phase of sines"),
+            "residual": variable(
+                ("channel", "time"), residual, "m/s2", "root mean square of all but the orders"
+            ),
+            "sweep_rate": variable("time", rate, "Hz/s", "rate of the sweep"),
+        },
+        {
+            **channel_coordinate(channels.names),
+            "order": variable("order", np.array(wanted), "1", "frequency over the excitation's"),
+            "time": variable("time", [w.time for w in windows], "s", "middle of the window"),
+            "frequency": variable("time", frequency, "Hz", "frequency of the excitation"),
+        },
+        attributes("orders", "Orders", channels.title, periods=length, overlap=part),
+    )
+
+
+def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:
+    """The orders that are tracked; the first one is always among them.
+
+    Raises
+    ------
+    InputError
+    """
+    expected = f"expected a whole number of 1 to {MOST_ORDERS}, or orders > 0 with 1 among them"
+    try:
+        if np.ndim(orders) == 0:
+            highest = float(orders)  # type: ignore[arg-type]
+            if not highest.is_integer() or not 1 <= highest <= MOST_ORDERS:
+                raise ValueError
+            return tuple(map(float, range(1, int(highest) + 1)))
+        wanted = tuple(sorted({float(order) for order in orders}))  # type: ignore[union-attr]
+    except (TypeError, ValueError):
+        raise InputError(f"orders = {orders!r}: {expected}") from None
+    if 1.0 not in wanted or len(wanted) > MOST_ORDERS or not 0.0 < wanted[0] <= wanted[-1] < 1e3:
+        raise InputError(f"orders = {orders!r}: {expected}")
+    return wanted
+
+
+# -- phase ----------------------------------------------------------------------------------------
+
+
+def given_phase(channels: Channels, phase: SweptSine | ArrayLike | None) -> Floats:
+    """The phase at each sample as the caller knows it, rad.
+
+    Raises
+    ------
+    InputError
+    """
+    if isinstance(phase, SweptSine):
+        return phase.phase(channels.time)
+    try:
+        angle = np.asarray(phase, dtype=float)
+    except (TypeError, ValueError):
+        angle = np.empty(0)
+    if angle.shape != channels.time.shape or not np.isfinite(angle).all():
+        count = len(channels.time)
+        raise InputError(f"phase: expected a SweptSine or {count} finite numbers, one a sample")
+    if not (np.diff(angle) > 0.0).all():
+        wrong = int(np.argmin(np.diff(angle)))
+        text = f"{angle[wrong]:.6g} rad before {angle[wrong + 1]:.6g} rad"
+        raise InputError(f"phase[{wrong}]: {text}; expected a phase that grows")
+    return angle
+
+
+def measured_phase(channels: Channels) -> Floats:
+    """The phase of the box's acceleration as a sine, by its analytic signal; rad.
+
+    Raises
+    ------
+    InputError
+    """
+    from scipy.signal import hilbert
+
+    box = channels.box - channels.box.mean()
+    if not np.ptp(box) > 0.0:
+        raise InputError(f"{BOX}: does not move; expected a swept sine")
+    angle = np.unwrap(np.angle(hilbert(box))) + 0.5 * math.pi
+    if not angle[-1] > angle[0]:
+        raise InputError(f"{BOX}: its phase does not grow; expected a swept sine")
+    return np.asarray(angle)
+
+
+def against_box(
+    channels: Channels, amplitudes: Floats, residual: Floats, orders: tuple[float, ...]
+) -> Floats:
+    """Complex amplitudes, with the phase of the box's own order 1 as phase.
+
+    Raises
+    ------
+    InputError
+        Where the box does much beside its orders.
+    """
+    row, first = channels.names.index(BOX), orders.index(1.0)
+    box = amplitudes[row, first]
+    beside = float(np.median(residual[row] / np.maximum(np.abs(box) * 0.5**0.5, 1e-300)))
+    if not beside <= NO_SINE:
+        raise InputError(
+            f"{BOX}: {beside:.2g} of its sine's rms is no sine; expected a swept sine, or phase="
+        )
+    shift = np.angle(box)
+    return np.asarray(amplitudes * np.exp(-1j * np.array(orders)[:, None] * shift))
+
+
+# -- windows --------------------------------------------------------------------------------------
+
+
+def divide(
+    channels: Channels, phase: Floats, periods: float, overlap: float, smooth: bool
+) -> Iterator[Window]:
+    """Divide a record into windows of equal phase.
+
+    Parameters
+    ----------
+    channels : Channels
+    phase : ndarray, shape (n,)
+        rad.
+    periods : float
+        In a window.
+    overlap : float
+    smooth : bool
+        Whether the phase is measured: it is replaced by a polynomial in each window.
+    """
+    edge = EDGE * TURN if smooth else 0.0
+    length = TURN * periods
+    grown = np.maximum.accumulate(phase)
+    first, last = grown[0] + edge, grown[-1] - edge
+    count = math.floor((last - first - length) / (length * (1.0 - overlap)) + 1e-9) + 1
+    starts = first + length * (1.0 - overlap) * np.arange(max(count, 0))
+    begins = np.searchsorted(grown, starts - 1e-9)
+    ends = np.searchsorted(grown, starts + length + 1e-9, side="right")
+    for begin, end in zip(begins, ends, strict=True):
+        yield window(channels, phase, slice(int(begin), int(end)), smooth)
+
+
+def window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Window:
+    """One window: its weights, and phase and frequency in it."""
+    time, angle = channels.time[part], phase[part]
+    middle, half = 0.5 * (time[0] + time[-1]), 0.5 * (time[-1] - time[0])
+    offset = (time - middle) / half
+    weights = np.cos(0.5 * math.pi * offset) ** 2 + 1e-6  # not zero: few samples keep their rank
+    powers = np.vander(offset, 4, increasing=True).T
+    weighted = powers * weights
+    start = angle[len(angle) // 2]  # long records have large phases
+    polynomial = np.linalg.solve(weighted @ powers.T, weighted @ (angle - start))
+    if smooth:
+        angle = start + polynomial @ powers
+    frequency = polynomial[1] / (TURN * half)
+    rate = 2.0 * polynomial[2] / (TURN * half**2)
+    return Window(part, weights, offset, angle, float(middle), float(frequency), float(rate))
+
+
+def fit(channels: Channels, window: Window, orders: tuple[float, ...]) -> tuple[Floats, Floats]:
+    """Fit orders in a window.
+
+    Returns
+    -------
+    amplitudes : ndarray, shape (channels, orders)
+        Complex: ``A exp(i theta)`` of ``A sin(n phase + theta)`` in the middle.
+    residual : ndarray, shape (channels,)
+        Weighted root mean square of the rest.
+    """
+    limit = NYQUIST * channels.sample_rate
+    resolved = [n for n in orders if n * window.frequency <= limit]
+    columns = [np.ones_like(window.offset)]
+    for n in resolved:
+        sine, cosine = np.sin(n * window.phase), np.cos(n * window.phase)
+        columns += [sine, cosine, window.offset * sine, window.offset * cosine]
+    basis, values = np.stack(columns), channels.values[:, window.part]
+    weighted = basis * window.weights
+    # normal equations: the columns are close to orthogonal, so that no digits are lost
+    solution = np.linalg.lstsq(weighted @ basis.T, weighted @ values.T, rcond=None)[0]
+    rest = (values - solution.T @ basis) ** 2
+    residual = np.sqrt(rest @ window.weights / window.weights.sum())
+    amplitudes = np.full((len(values), len(orders)), np.nan, dtype=complex)
+    for number, n in enumerate(resolved):
+        sine, cosine = solution[1 + 4 * number], solution[2 + 4 * number]
+        amplitudes[:, orders.index(n)] = sine + 1j * cosine
+    return amplitudes, residual

@@ -1,0 +1,183 @@
+"""Shock response spectra: the largest acceleration of oscillators that a record shakes."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...errors import InputError
+from ...response.labels import variable
+from .channels import (
+    Channels,
+    Floats,
+    attributes,
+    channel_coordinate,
+    checked_number,
+    frequency_coordinate,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+IN_AN_OCTAVE = 12
+IN_A_PERIOD = 40  # response samples: a peak between them is at most 0.3 % higher
+HIGHEST = 0.1  # of the sampling rate, as ISO 18431-4 advises
+
+
+def shock_spectrum(
+    record: xr.Dataset, *, frequencies: ArrayLike | None = None, damping: float = 0.05
+) -> xr.Dataset:
+    """Shock response spectra of a record's channels.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        As for :func:`orchestrate.frf`; at rest before it begins.
+    frequencies : array_like, optional
+        Natural frequencies of the oscillators, Hz; by default 12 in an octave from one oscillation
+        in the record to a tenth of the sampling rate.
+    damping : float
+        Damping ratio of the oscillators, 0 <= damping < 1; 0.05 is Q = 10.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``channel`` and ``frequency`` in Hz, in m/s2: ``primary``, the largest absolute
+        acceleration in space of the oscillator during the record; ``residual``, the largest one
+        after it; ``maximax``, the larger of both. Scalar ``damping``.
+
+    Raises
+    ------
+    InputError
+
+    Notes
+    -----
+    The recursion is exact for a base acceleration that is straight between samples (ramp-invariant,
+    ISO 18431-4; Smallwood, Shock and Vibration Bulletin 51, 1981). Where there are fewer than 40
+    samples in the oscillator's period it runs at intermediate points of the same straight lines.
+    After the record the base's acceleration goes to zero within a sample.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_file("beam")
+    >>> shock = orchestrate.Shock(peak=100.0, length=0.011, duration=0.1)
+    >>> history = orchestrate.shake(beam, shock, sample_rate=20000.0)
+    >>> answer = orchestrate.shock_spectrum(history, frequencies=[10.0, 70.0, 1000.0])
+    >>> answer.maximax.sel(channel="box_acceleration").values.round(1)
+    array([ 40.5, 164.8, 100.8])
+    """
+    import xarray as xr
+
+    channels = Channels.from_record(record)
+    ratio = checked_number("damping", damping, 0.0, 1.0, open_end=True)
+    natural = natural_frequencies(channels, frequencies)
+    primary = np.empty((len(channels.names), len(natural)))
+    residual = np.empty_like(primary)
+    for column, frequency in enumerate(natural):
+        primary[:, column], residual[:, column] = peaks(channels, float(frequency), ratio)
+    over = ("channel", "frequency")
+    text = "largest absolute acceleration of the oscillator"
+    return xr.Dataset(
+        {
+            "maximax": variable(over, np.maximum(primary, residual), "m/s2", text),
+            "primary": variable(over, primary, "m/s2", f"{text} during the record"),
+            "residual": variable(over, residual, "m/s2", f"{text} after the record"),
+            "damping": variable((), ratio, "1", "damping ratio of the oscillators"),
+        },
+        {**channel_coordinate(channels.names), **frequency_coordinate(natural)},
+        attributes("shock_spectrum", "Shock response spectrum", channels.title),
+    )
+
+
+def natural_frequencies(channels: Channels, given: ArrayLike | None) -> Floats:
+    """Natural frequencies of the oscillators, Hz.
+
+    Raises
+    ------
+    InputError
+    """
+    highest = HIGHEST * channels.sample_rate
+    if given is None:
+        octaves = math.log2(highest * channels.duration)
+        count = max(1, math.floor(octaves * IN_AN_OCTAVE))
+        return np.asarray(highest * 2.0 ** (np.arange(-count, 1) / IN_AN_OCTAVE))
+    try:
+        natural = np.atleast_1d(np.asarray(given, dtype=float))
+    except (TypeError, ValueError):
+        natural = np.array([np.nan])
+    limit = 0.5 * channels.sample_rate
+    if natural.ndim != 1 or not len(natural) or not ((natural > 0.0) & (natural <= limit)).all():
+        text = f"expected numbers > 0 and <= {limit:g} Hz, half the sampling rate"
+        raise InputError(f"frequencies = {given!r}: {text}")
+    return natural
+
+
+def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats, Floats]:
+    """The largest absolute responses of an oscillator, during and after the record.
+
+    Parameters
+    ----------
+    channels : Channels
+    frequency : float
+        Natural frequency, Hz.
+    damping : float
+        Damping ratio.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        Each of shape (channels,), m/s2.
+    """
+    from scipy.signal import lfilter
+
+    rate = channels.sample_rate
+    parts = max(1, math.ceil(IN_A_PERIOD * frequency / rate))
+    base = straight_between(channels.values, parts)
+    # one period of the free vibration after the record has its largest value
+    after = math.ceil(parts * rate / frequency) + parts
+    padded = np.concatenate([base, np.zeros((len(base), after))], axis=1)
+    for part in range(1, parts):  # down to zero within a sample, straight as elsewhere
+        padded[:, base.shape[1] - 1 + part] = base[:, -1] * (1.0 - part / parts)
+    response = np.abs(lfilter(*ramp_invariant(frequency, damping, parts * rate), padded, axis=1))
+    end = base.shape[1] - 1 + parts  # a sample after the last one, when the base is at rest
+    return response[:, : end + 1].max(axis=1), response[:, end:].max(axis=1)
+
+
+def straight_between(values: Floats, parts: int) -> Floats:
+    """Samples with intermediate points on the straight lines between them."""
+    if parts == 1:
+        return values
+    shares = np.arange(parts) / parts
+    inner = values[:, :-1, None] + np.diff(values)[:, :, None] * shares
+    return np.concatenate([inner.reshape(len(values), -1), values[:, -1:]], axis=1)
+
+
+def ramp_invariant(
+    frequency: float, damping: float, rate: float
+) -> tuple[list[float], list[float]]:
+    """Filter from the base's acceleration to that of an oscillator, for input that is straight.
+
+    Parameters
+    ----------
+    frequency : float
+        Natural frequency, Hz.
+    damping : float
+        Damping ratio.
+    rate : float
+        Sampling rate, Hz.
+
+    Returns
+    -------
+    (list of float, list of float)
+        Numerator and denominator for :func:`scipy.signal.lfilter`.
+    """
+    angle = 2.0 * math.pi * frequency / rate
+    damped = angle * math.sqrt(1.0 - damping**2)
+    decay = math.exp(-damping * angle)
+    cosine, slope = decay * math.cos(damped), decay * math.sin(damped) / damped
+    numerator = [1.0 - slope, 2.0 * (slope - cosine), decay**2 - slope]
+    return numerator, [1.0, -2.0 * cosine, decay**2]

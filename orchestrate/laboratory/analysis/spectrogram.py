@@ -1,0 +1,101 @@
+"""Amplitude spectra over the time: the waterfall of an analyser."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...response.labels import variable
+from .averaging import FEWEST_LINES, WINDOWS
+from .channels import (
+    Channels,
+    attributes,
+    channel_coordinate,
+    checked_number,
+    frequency_coordinate,
+    one_of,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+USUAL_SHARE = 32.0  # lines times spectra, over the samples, without overlap
+
+
+def spectrogram(
+    record: xr.Dataset,
+    *,
+    resolution: float | None = None,
+    spectra: int = 200,
+    window: str = "hann",
+) -> xr.Dataset:
+    """Amplitude spectra of short parts of a record.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        As for :func:`orchestrate.frf`.
+    resolution : float, optional
+        Distance of the lines, Hz; a part of the record takes 1/resolution.
+    spectra : int
+        How many at the most, at equal distances.
+    window : str
+        As for :func:`orchestrate.frf`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``amplitude`` in m/s2 over ``channel``, ``time`` in s (the middle of a part) and
+        ``frequency`` in Hz: a steady sine on a line has its amplitude there, not its root mean
+        square; scalar ``resolution``.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_file("beam")
+    >>> sweep = orchestrate.SweptSine(first=10.0, last=14.0, duration=20.0, acceleration=0.2)
+    >>> answer = orchestrate.spectrogram(orchestrate.shake(beam, sweep), resolution=1.0)
+    >>> box = answer.amplitude.sel(channel="box_acceleration").sel(time=10.0, method="nearest")
+    >>> float(box.idxmax())
+    12.0
+    """
+    import xarray as xr
+    from scipy.signal import ShortTimeFFT
+
+    channels = Channels.from_record(record)
+    one_of("window", window, WINDOWS)
+    most = round(checked_number("spectra", spectra, 1, 100_000))
+    count, rate = len(channels.time), channels.sample_rate
+    if resolution is None:
+        length = min(max(int((USUAL_SHARE * count) ** 0.5), FEWEST_LINES), count)
+    else:
+        finest, coarsest = rate / count, rate / FEWEST_LINES
+        length = round(rate / checked_number("resolution", resolution, finest, coarsest, "Hz"))
+    hop = max(1, -(-(count - length) // most))
+    transform = ShortTimeFFT.from_window(
+        window, rate, length, length - hop, fft_mode="onesided2X", scale_to="magnitude"
+    )
+    first = -(-(length // 2) // hop)  # whole parts alone: nothing is put before or after
+    last = (count - (length - length // 2)) // hop
+    amplitude = np.abs(transform.stft(channels.values, p0=first, p1=max(last, first) + 1))
+    time = channels.time[0] + np.arange(first, max(last, first) + 1) * hop / rate
+    over = ("channel", "time", "frequency")
+    return xr.Dataset(
+        {
+            "amplitude": variable(
+                over, amplitude.transpose(0, 2, 1), "m/s2", "amplitude of a sine at the line"
+            ),
+            "resolution": variable((), rate / length, "Hz", "distance of the lines"),
+        },
+        {
+            **channel_coordinate(channels.names),
+            "time": variable("time", time, "s", "time in the middle of the spectrum"),
+            **frequency_coordinate(transform.f),
+        },
+        attributes("spectrogram", "Spectra over the time", channels.title, window=window),
+    )

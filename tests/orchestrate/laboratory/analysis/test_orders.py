@@ -1,0 +1,174 @@
+"""Orders of swept sines: of signals that are known, and of shaken structures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from orchestrate import InputError, SweptSine, harmonics, track_orders
+from orchestrate.laboratory.analysis.channels import Channels
+from orchestrate.laboratory.analysis.orders import against_box
+
+from .records import DAMPED, LIGHT, SWEEP, make, of_shaken, random_record, swept_record, transfer
+
+RATE = 2000.0
+SWEEPS = {
+    "up": SweptSine(first=20.0, last=50.0, duration=6.0, acceleration=2.0),
+    "down": SweptSine(first=50.0, last=20.0, duration=6.0, acceleration=2.0),
+    "log": SweptSine(first=20.0, last=50.0, duration=6.0, acceleration=2.0, spacing="log"),
+}
+KNOWN = {0.5: (0.3, 1.0), 1.0: (5.0, -0.7), 2.0: (1.0, 2.0), 3.0: (0.2, -2.5)}
+
+
+def synthetic(sweep, begin=0.0):
+    time = np.arange(int(sweep.duration * RATE)) / RATE
+    angle = sweep.phase(time)
+    response = 0.4 + sum(a * np.sin(n * angle + theta) for n, (a, theta) in KNOWN.items())
+    return make(RATE, sweep(time), response, begin=begin)
+
+
+@pytest.mark.parametrize("name", SWEEPS)
+def test_known_orders_are_found(name):
+    sweep = SWEEPS[name]
+    answer = track_orders(synthetic(sweep), orders=(0.5, 1, 2, 3), phase=sweep)
+    shown = answer.sel(channel="acceleration1")
+    for n, (amplitude, theta) in KNOWN.items():
+        assert np.abs(shown.amplitude.sel(order=n) - amplitude).max() < 1e-9
+        assert np.abs(shown.phase.sel(order=n) - theta).max() < 1e-8 / amplitude
+    assert float(shown.residual.max()) < 1e-9
+    box = answer.sel(channel="box_acceleration", order=1.0)
+    assert np.abs(box.amplitude - 2.0).max() < 1e-9 and np.abs(box.phase).max() < 1e-9
+    expected = sweep.frequency(answer.time.values)
+    assert np.abs(answer.frequency / expected - 1.0).max() < 1e-5
+    assert (np.sign(answer.sweep_rate) == np.sign(sweep.last - sweep.first)).all()
+
+
+def test_amplitudes_that_change_at_a_constant_rate_are_found():
+    sweep = SWEEPS["up"]
+    time = np.arange(int(6.0 * RATE)) / RATE
+    angle = sweep.phase(time)
+    rising = (1.0 + time) * np.sin(angle) + (2.0 - 0.1 * time) * np.cos(2.0 * angle)
+    answer = track_orders(make(RATE, sweep(time), rising), orders=2, phase=angle)
+    shown = answer.amplitude.sel(channel="acceleration1")
+    assert np.abs(shown.sel(order=1) - (1.0 + answer.time)).max() < 1e-9
+    assert np.abs(shown.sel(order=2) - (2.0 - 0.1 * answer.time)).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", SWEEPS)
+def test_the_phase_is_measured(name):
+    sweep = SWEEPS[name]
+    record = synthetic(sweep, begin=7.0)
+    noise = 0.02 * np.random.default_rng(1).normal(size=record.sizes["time"])
+    record["box_acceleration"] = record.box_acceleration + noise
+    answer = track_orders(record, orders=(0.5, 1, 2, 3)).sel(channel="acceleration1")
+    for n, (amplitude, theta) in KNOWN.items():
+        assert np.abs(answer.amplitude.sel(order=n) - amplitude).max() < 1e-3 * 5.0
+        if n >= 1:
+            turned = np.angle(np.exp(1j * (answer.phase.sel(order=n) - theta)))
+            assert np.abs(turned).max() < 0.01 * n
+    expected = sweep.frequency(answer.time.values - 7.0)
+    assert np.abs(answer.frequency / expected - 1.0).max() < 1e-3
+
+
+def test_phases_count_from_the_box():
+    """Order n turns n times as far as the box's own order 1."""
+    channels = Channels.from_record(make(100.0, np.ones(100), np.ones(100)))
+    amplitudes = np.array([[2.0, 0.0], [3.0, 4.0]], dtype=complex)[:, :, None]
+    amplitudes = amplitudes * np.exp(1j * np.array([0.3, 1.0]))[None, :, None]
+    turned = against_box(channels, amplitudes, np.zeros((2, 1)), (1.0, 2.0))
+    assert np.allclose(np.angle(turned[1, :, 0]), [0.0, 0.4])
+    assert np.allclose(np.abs(turned[1, :, 0]), [3.0, 4.0])
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_a_slow_sweep_has_the_steady_state(known):
+    sweep = SweptSine(first=20.0, last=34.0, duration=40.0, acceleration=2.0)
+    answer = track_orders(
+        swept_record(DAMPED.as_bonded(), sweep).sel(time=slice(2.0, None)),
+        phase=None if not known else sweep,
+    )
+    amplitude = (answer.amplitude * np.exp(1j * answer.phase)).sel(order=1.0)
+    ratio = amplitude.sel(channel="acceleration1") / amplitude.sel(channel="box_acceleration")
+    expected = transfer(DAMPED, answer.frequency)
+    assert float(np.abs(ratio / expected - 1.0).max()) < 1e-3
+    assert np.abs(answer.amplitude.sel(channel="box_acceleration", order=1.0) - 2.0).max() < 2e-3
+
+
+def test_opening_shows_in_order_2_and_in_the_distortion():
+    sound, parted = swept_record(LIGHT.as_bonded()), swept_record(LIGHT)
+    bonded, delaminated = (track_orders(one, phase=SWEEP) for one in (sound, parted))
+    second = [x.amplitude.sel(channel="acceleration1", order=2.0) for x in (bonded, delaminated)]
+    first = bonded.amplitude.sel(channel="acceleration1", order=1.0)
+    assert float(second[0].max()) < 1e-4 * float(first.max())
+    assert float(second[1].max()) > 100.0 * float(second[0].max())
+    noise = [harmonics(one, phase=SWEEP).sel(channel="acceleration1") for one in (sound, parted)]
+    assert float(noise[0].distortion.max()) < 0.002
+    assert float(noise[1].distortion.max()) > max(0.05, 50.0 * float(noise[0].distortion.max()))
+
+
+def test_up_and_down_are_told_by_the_rate():
+    down = SweptSine(first=60.0, last=30.0, duration=20.0, acceleration=5.0)
+    there, back = (track_orders(swept_record(LIGHT, sweep)) for sweep in (SWEEP, down))
+    assert (there.sweep_rate > 0.0).all() and (back.sweep_rate < 0.0).all()
+    assert (np.diff(there.frequency) > 0.0).all() and (np.diff(back.frequency) < 0.0).all()
+
+
+def test_distortion_of_a_known_signal():
+    sweep = SWEEPS["up"]
+    time = np.arange(int(6.0 * RATE)) / RATE
+    angle = sweep.phase(time)
+    response = 4.0 * np.sin(angle) + 0.3 * np.sin(2 * angle) + 0.4 * np.cos(3 * angle)
+    answer = harmonics(make(RATE, sweep(time), response), phase=sweep, highest=3)
+    shown = answer.sel(channel="acceleration1")
+    assert np.allclose(shown.distortion, 0.5 / 4.0, rtol=1e-9)
+    assert np.allclose(shown.ratio.sel(order=3.0), 0.1, rtol=1e-9)
+    short = harmonics(make(RATE, sweep(time), response), phase=sweep, highest=2)
+    short = short.sel(channel="acceleration1")
+    assert np.allclose(short.distortion, 0.3 / 4.0, atol=1e-3)
+    assert np.allclose(short.distortion_and_noise, 0.5 / 4.0, atol=2e-3)
+
+
+def test_orders_beyond_the_sampling_rate_are_not_known():
+    sweep = SweptSine(first=20.0, last=50.0, duration=6.0, acceleration=2.0)
+    time = np.arange(1800) / 300.0
+    record = make(300.0, sweep(time), sweep(time))
+    answer = track_orders(record, orders=4, phase=sweep)
+    known = np.isfinite(answer.amplitude.sel(channel="acceleration1", order=4.0))
+    assert (known == (4.0 * answer.frequency <= 0.45 * 300.0)).all()
+    assert np.isfinite(answer.amplitude.sel(order=1.0)).all()
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"orders": 0}, "orders = 0: expected a whole number"),
+        ({"orders": 2.5}, "orders = 2.5: expected"),
+        ({"orders": (2, 3)}, "with 1 among them"),
+        ({"orders": "first"}, "orders = 'first'"),
+        ({"periods": 1.0}, "periods = 1.0: expected 2 <= periods"),
+        ({"periods": 5000.0}, "periods = 5000.0: the record has"),
+        ({"overlap": 1.0}, "overlap = 1.0: expected"),
+        ({"phase": [1.0, 2.0]}, "phase: expected a SweptSine or 12000 finite numbers"),
+        ({"phase": np.zeros(12000)}, "expected a phase that grows"),
+    ],
+)
+def test_mistakes_are_one_line(given, words):
+    with pytest.raises(InputError) as error:
+        track_orders(synthetic(SWEEPS["up"]), **given)
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_random_vibration_has_no_orders():
+    with pytest.raises(InputError, match="expected a swept sine"):
+        track_orders(random_record(DAMPED.as_bonded(), 1, 40.0))
+    still = make(100.0, np.zeros(1000), np.zeros(1000))
+    with pytest.raises(InputError, match="does not move"):
+        track_orders(still)
+
+
+def test_a_result_of_shake_is_taken_as_it_is(exported):
+    from orchestrate import shake
+
+    data = shake(DAMPED, SWEEP, sample_rate=500.0, progress=False)
+    one, other = track_orders(data), track_orders(of_shaken(data))
+    assert one.drop_attrs().identical(other.drop_attrs())

@@ -1,0 +1,188 @@
+"""Frequency response, coherence, power density and spectrogram against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from orchestrate import Structure, frf, psd, spectrogram
+from orchestrate.laboratory.analysis.averaging import averaging
+from orchestrate.laboratory.analysis.channels import Channels
+
+from .records import DAMPED, LIGHT, make, random_record, transfer
+
+HEAVILY = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.1, zeta2=0.1, e=0.6)
+BAND = slice(14.0, 140.0)
+
+
+def complex_response(answer, estimator="H1", channel="acceleration1"):
+    part = answer.sel(estimator=estimator, channel=channel, frequency=BAND)
+    return part.frequency.values, (part.magnitude * np.exp(1j * part.phase)).values
+
+
+# -- frequency response ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("estimator", ["H1", "H2", "Hv"])
+@pytest.mark.parametrize("seed", range(2))
+def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator):
+    """Without noise all that is left is leakage, which the coherence and its error know."""
+    answer = frf(random_record(HEAVILY.as_bonded(), seed, 80.0), resolution=0.2)
+    for channel in ("acceleration1", "acceleration2"):
+        frequency, found = complex_response(answer, estimator, channel)
+        expected = transfer(HEAVILY, frequency)
+        error = answer.random_error.sel(channel=channel, frequency=BAND).values
+        assert (np.abs(found - expected) < 5.0 * error * np.abs(expected)).all()
+        assert np.abs(found / expected - 1.0).max() < 0.01
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_coherence_away_from_leakage(seed):
+    answer = frf(random_record(HEAVILY.as_bonded(), seed, 80.0), resolution=0.2)
+    coherence = answer.coherence.sel(frequency=BAND)
+    away = abs(coherence.frequency - 48.0) > 4.0
+    assert float(coherence.where(away).min()) > 0.999
+    assert float(coherence.min()) > 0.998
+
+
+def probabilities(seeds, duration):
+    """Of a smaller error than each one found, where noise is on the response (Goodman's F)."""
+    chances = []
+    for seed in seeds:
+        record = random_record(HEAVILY.as_bonded(), seed, duration)
+        noise = np.random.default_rng(1000 + seed).normal(size=record.sizes["time"])
+        noisy = record.assign(acceleration1=record.acceleration1 + 4.0 * noise)
+        answer = frf(noisy, resolution=0.3)
+        frequency, found = complex_response(answer)
+        error = answer.random_error.sel(channel="acceleration1", frequency=BAND).values
+        expected, n = transfer(HEAVILY, frequency), float(answer.averages)
+        # the variance comes from n - 1 of n averages
+        ratio = np.abs(found - expected) ** 2 / (2.0 * (error * np.abs(found)) ** 2) * (n - 1) / n
+        chances.append(stats.f.cdf(ratio, 2, 2 * n - 2)[::3])  # lines 3 apart are independent
+    return np.concatenate(chances)
+
+
+def test_random_error_is_the_one_stated():
+    chances = probabilities(range(3), 22.0)
+    assert stats.kstest(chances, "uniform").pvalue > 1e-3
+
+
+@pytest.mark.slow
+def test_random_error_over_fifty_seeds():
+    chances = probabilities(range(50), 62.0)
+    counts = np.histogram(chances, 20, (0.0, 1.0))[0]
+    assert len(chances) == 7000
+    assert stats.chisquare(counts).pvalue > 1e-3
+
+
+def test_estimators_where_the_noise_is():
+    """H1 is right with noise on the response, H2 with noise on the box, Hv with the same on both.
+
+    A gain of 2 and a delay of a sample, known exactly.
+    """
+    draw = np.random.default_rng(3).normal
+    box = draw(size=100_001)
+    response, noise, other = 2.0 * box[:-1], 0.8 * draw(size=100_000), 0.8 * draw(size=100_000)
+    records = {
+        "H1": make(1000.0, box[1:], response + noise),
+        "H2": make(1000.0, box[1:] + noise, response),
+        "Hv": make(1000.0, box[1:] + noise, response + other),
+    }
+    for right, record in records.items():
+        answer = frf(record, resolution=20.0)
+        expected = 2.0 * np.exp(-2j * np.pi * answer.frequency.values / 1000.0)
+        for estimator in ("H1", "H2", "Hv"):
+            found = answer.sel(estimator=estimator, channel="acceleration1")
+            found = (found.magnitude * np.exp(1j * found.phase)).values
+            inner = slice(2, -2)
+            away = np.abs(np.mean(found[inner] / expected[inner]) - 1.0)
+            assert (away < 0.01) == (right == estimator), (right, estimator, away)
+
+
+def test_opening_lowers_the_coherence():
+    whole = frf(random_record(LIGHT.as_bonded(), 1, 40.0), resolution=0.5)
+    parted = frf(random_record(LIGHT, 1, 40.0), resolution=0.5)
+    away = abs(whole.frequency - 48.0) > 10.0
+    band = (whole.frequency > 60.0) & (whole.frequency < 140.0) & away
+    one, other = (float(x.coherence[0].where(band).median()) for x in (whole, parted))
+    assert one > 0.999 and other < 0.9
+
+
+# -- averages -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("window", "overlap"), [("hann", 0.5), ("boxcar", 0.5), ("hann", 0.75)])
+def test_independent_averages_are_those_of_the_scatter(window, overlap):
+    """Of white noise: the relative variance of a line is one over their number."""
+    values = np.random.default_rng(5).normal(size=(120, 64 * 12))
+    densities = [
+        psd(make(64.0, row, row), resolution=1.0, window=window, overlap=overlap) for row in values
+    ]
+    lines = np.stack([one.psd.sel(channel="acceleration1").values[3:-3] for one in densities])
+    scatter = (lines.var(axis=0) / lines.mean(axis=0) ** 2).mean()
+    assert np.isclose(1.0 / scatter, float(densities[0].averages), rtol=0.1)
+
+
+def test_segments_fit_into_the_record():
+    channels = Channels.from_record(make(100.0, np.arange(1000.0), np.arange(1000.0)))
+    chosen = averaging(channels, 1.0, "hann", 0.5)
+    assert (chosen.length, chosen.overlap, chosen.segments) == (100, 50, 19)
+    assert averaging(channels, 0.1, "hann", 0.5).segments == 1
+    assert averaging(channels, 0.1, "hann", 0.5).independent == 1.0
+
+
+# -- power density --------------------------------------------------------------------------------
+
+
+def test_density_integrates_to_the_mean_square():
+    values = np.random.default_rng(2).normal(1.0, 3.0, (3, 4000))
+    answer = psd(make(200.0, *values), resolution=0.05, window="boxcar", overlap=0.0)
+    assert np.allclose(answer.rms, values.std(axis=1), rtol=1e-12)  # Parseval's theorem
+    integral = answer.psd.sum("frequency") * answer.resolution
+    assert np.allclose(integral, values.var(axis=1), rtol=1e-12)
+    smoothed = psd(make(200.0, *values), resolution=1.0)
+    assert np.allclose(smoothed.rms, values.std(axis=1), rtol=0.03)
+
+
+def test_density_of_random_vibration_is_its_profile():
+    answer = psd(random_record(DAMPED.as_bonded(), 1, 40.0), resolution=1.0)
+    box = answer.psd.sel(channel="box_acceleration")
+    inside = box.sel(frequency=slice(13.0, 147.0))
+    assert np.isclose(float(inside.mean()), 0.2, rtol=0.02)
+    assert float(box.sel(frequency=slice(153.0, None)).max()) < 1e-4
+    response = answer.psd.sel(channel="acceleration1") / box
+    expected = np.abs(transfer(DAMPED, response.frequency)) ** 2
+    away = (abs(response.frequency - 48.0) > 8.0) & (abs(response.frequency - 80.0) < 65.0)
+    assert float(np.abs(response / expected - 1.0).where(away).max()) < 0.15
+
+
+# -- spectrogram ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("begin", [0.0, 3.0])
+def test_a_sine_has_its_amplitude_where_and_when_it_is(begin):
+    rate, time = 1000.0, np.arange(8000) / 1000.0
+    first = np.where(time < 4.0, 3.0 * np.sin(2 * np.pi * 40.0 * time), 0.0)
+    second = np.where(time >= 4.0, 5.0 * np.cos(2 * np.pi * 120.0 * time), 0.0)
+    record = make(rate, first, first + second + 0.5, begin=begin)
+    answer = spectrogram(record, resolution=4.0)
+    shown = answer.amplitude.sel(channel="acceleration1")
+    early = shown.sel(time=slice(begin, begin + 3.8))
+    late = shown.sel(time=slice(begin + 4.2, None))
+    assert np.allclose(early.sel(frequency=40.0), 3.0, rtol=1e-9)
+    assert np.allclose(late.sel(frequency=120.0), 5.0, rtol=1e-9)
+    assert np.allclose(late.sel(frequency=0.0), 0.5, rtol=1e-9)
+    assert float(early.sel(frequency=slice(100, None)).max()) < 1e-9
+    assert answer.sizes["time"] <= 201
+    half = 0.5 / 4.0  # whole parts alone
+    assert begin + half - 1e-3 <= float(answer.time[0]) <= begin + half + 0.05
+    assert begin + 8.0 - half - 0.05 <= float(answer.time[-1]) <= begin + 8.0 - half + 1e-3
+
+
+def test_one_spectrum_of_the_whole_record():
+    time = np.arange(100) / 100.0
+    record = make(100.0, np.sin(2 * np.pi * 10 * time), 2 * np.sin(2 * np.pi * 10 * time))
+    answer = spectrogram(record, resolution=1.0, window="boxcar")
+    assert answer.sizes["time"] == 1
+    assert np.isclose(float(answer.amplitude.sel(frequency=10.0, channel="acceleration1")[0]), 2.0)

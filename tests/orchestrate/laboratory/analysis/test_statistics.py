@@ -1,0 +1,274 @@
+"""Shock spectra against integrations, densities against closed forms, and what records may be."""
+
+from __future__ import annotations
+
+import inspect
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.integrate import solve_ivp
+from scipy.signal import cont2discrete
+
+import orchestrate
+from orchestrate import InputError, Shock, probability_density, shake, shock_spectrum
+from orchestrate.laboratory.analysis.shock_spectrum import ramp_invariant
+
+from .records import DAMPED, LIGHT, SWEEP, make, of_shaken, random_record, swept_record
+
+ANALYSES = (
+    *("frf", "psd", "track_orders", "harmonics", "spectrogram"),
+    *("shock_spectrum", "probability_density"),
+)
+
+# -- shock spectra --------------------------------------------------------------------------------
+
+
+def integrated(time, base, frequency, damping):
+    """Largest responses during and after a base acceleration that is straight between samples."""
+    w = 2.0 * math.pi * frequency
+
+    def acceleration(y):
+        return -2.0 * damping * w * y[1] - w**2 * y[0]
+
+    def rates(t, y):
+        return [y[1], acceleration(y) - np.interp(t, time, base, right=0.0)]
+
+    state, peaks = [0.0, 0.0], []
+    step = time[1] - time[0]
+    end = time[-1] + step
+    for first, last in ((time[0], end), (end, end + 1.5 / frequency)):
+        grid = np.linspace(first, last, 4000)
+        longest = min(step, 0.05 / frequency)
+        run = solve_ivp(
+            rates, (first, last), state, "DOP853", grid, rtol=1e-9, atol=1e-12, max_step=longest
+        )
+        peaks.append(np.abs(acceleration(run.y)).max())
+        state = run.y[:, -1]
+    return peaks
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05, 0.5])
+@pytest.mark.parametrize("frequency", [8.0, 40.0, 110.0, 300.0])
+def test_peaks_are_those_of_an_integration(frequency, damping):
+    """A pulse that begins and ends at zero, and one that is cut off beside it."""
+    rate, time = 2000.0, np.arange(61) / 2000.0
+    pulse = 100.0 * np.sin(np.pi * np.minimum(time / 0.011, 1.0))
+    cut = np.where(time < 0.02, pulse, 0.0) + 30.0 * np.sin(2 * np.pi * 70.0 * time) * (time > 0.01)
+    cut[-1] = 0.0
+    answer = shock_spectrum(make(rate, pulse, cut), frequencies=[frequency], damping=damping)
+    for channel, base in (("box_acceleration", pulse), ("acceleration1", cut)):
+        primary, residual = integrated(time, base, frequency, damping)
+        shown = answer.sel(channel=channel).isel(frequency=0)
+        assert np.isclose(float(shown.primary), primary, rtol=4e-3)
+        assert np.isclose(float(shown.residual), residual, rtol=4e-3)
+        assert float(shown.maximax) == max(float(shown.primary), float(shown.residual))
+
+
+@pytest.mark.filterwarnings("ignore:Badly conditioned")  # an undamped system's leading zero
+@pytest.mark.parametrize("damping", [0.0, 0.05, 0.9])
+@pytest.mark.parametrize("ratio", [1e-3, 0.05, 0.4])
+def test_recursion_is_the_exact_one(ratio, damping):
+    """SciPy's first-order hold, by a matrix exponential, is the same filter."""
+    w = 2.0 * math.pi * ratio
+    system = ([2.0 * damping * w, w**2], [1.0, 2.0 * damping * w, w**2])
+    numerator, denominator, _ = cont2discrete(system, 1.0, method="foh")
+    mine = ramp_invariant(ratio, damping, 1.0)
+    assert np.allclose(mine[0], np.ravel(numerator), rtol=1e-9, atol=1e-12)
+    assert np.allclose(mine[1], denominator, rtol=1e-9, atol=1e-12)
+
+
+def test_a_half_sine_gives_its_classical_spectrum():
+    """Undamped: at most 1.77 of the peak, at 0.81 of 1/length; the peak itself far above."""
+    rate = 20_000.0
+    time = np.arange(2000) / rate
+    pulse = np.where(time <= 0.01, 100.0 * np.sin(np.pi * time / 0.01), 0.0)
+    answer = shock_spectrum(
+        make(rate, pulse, pulse), frequencies=np.arange(10.0, 400.0), damping=0.0
+    )
+    shown = answer.maximax.sel(channel="acceleration1")
+    assert np.isclose(float(shown.max()), 176.8, rtol=2e-3)
+    assert np.isclose(float(shown.idxmax()), 81.0, atol=2.0)
+    stiff = shock_spectrum(make(rate, pulse, pulse), frequencies=[5000.0], damping=0.05)
+    assert np.isclose(float(stiff.maximax[1, 0]), 100.0, rtol=2e-2)
+
+
+def test_usual_frequencies():
+    answer = shock_spectrum(make(1000.0, np.ones(1000), np.ones(1000)))
+    assert np.isclose(answer.frequency[-1], 100.0) and 1.0 <= float(answer.frequency[0]) < 1.06
+    assert np.allclose(np.diff(np.log2(answer.frequency)), 1.0 / 12.0)
+
+
+def test_the_spectrum_of_a_shaken_structure(exported):
+    shock = Shock(peak=100.0, length=0.011, duration=0.3)
+    data = shake(LIGHT.as_bonded(), shock, sample_rate=5000.0, progress=False)
+    answer = shock_spectrum(of_shaken(data), frequencies=[48.0, 500.0])
+    box, mass = (answer.maximax.sel(channel=x) for x in ("box_acceleration", "acceleration1"))
+    assert float(mass[0]) > 3.0 * float(box[0])  # two resonances after one another
+    peak = float(np.abs(data.a1_abs).max())
+    assert np.isclose(float(mass[1]), peak, rtol=0.1)  # stiff: it follows
+
+
+# -- density --------------------------------------------------------------------------------------
+
+
+def test_moments_of_known_signals():
+    angle = 2.0 * np.pi * np.arange(20_000) / 1000.0
+    gauss = np.random.default_rng(1).normal(size=20_000)
+    lopsided = np.random.default_rng(2).exponential(size=20_000)
+    answer = probability_density(make(1000.0, np.sin(angle), gauss, lopsided))
+    sine, normal, exponential = (answer.isel(channel=i) for i in range(3))
+    assert np.isclose(float(sine.kurtosis), 1.5, rtol=1e-12)
+    assert abs(float(sine.skewness)) < 1e-12
+    assert abs(float(normal.kurtosis) - 3.0) < 4.0 * float(normal.kurtosis_error) < 0.3
+    assert abs(float(normal.skewness)) < 4.0 * float(normal.skewness_error) < 0.2
+    assert abs(float(exponential.skewness) - 2.0) < 4.0 * float(exponential.skewness_error)
+
+
+def test_density_of_a_sine_has_its_closed_form():
+    angle = 2.0 * np.pi * np.arange(200_000) / 12345.6789
+    answer = probability_density(make(1000.0, np.sin(angle), 3.0 * np.sin(angle)), bins=40)
+    shown = answer.sel(channel="acceleration1")
+    width = float(shown.acceleration[1] - shown.acceleration[0])
+    assert np.isclose(float(shown.density.sum()) * width, 1.0)
+    ends = np.clip((shown.acceleration.values[:, None] + [-width / 2, width / 2]) / 3.0, -1, 1)
+    expected = np.diff(np.arcsin(ends), axis=1)[:, 0] / np.pi / width
+    assert np.allclose(shown.density, expected, rtol=0.02)
+
+
+def test_impacts_make_the_density_lopsided():
+    bonded, parted = (
+        probability_density(random_record(one, 1, 40.0)).sel(channel="acceleration1")
+        for one in (LIGHT.as_bonded(), LIGHT)
+    )
+    assert abs(float(bonded.skewness)) < 4.0 * float(bonded.skewness_error) < 0.05
+    assert float(parted.skewness) > max(0.1, 8.0 * float(parted.skewness_error))
+
+
+def test_a_channel_at_rest_has_no_shape():
+    answer = probability_density(make(100.0, np.zeros(500), np.sin(np.arange(500.0))))
+    assert np.isnan(float(answer.skewness[0])) and np.isnan(float(answer.kurtosis[0]))
+    assert float(answer.standard_deviation[0]) == 0.0
+
+
+# -- all analyses ---------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def answers():
+    record = swept_record(LIGHT)
+    return {name: getattr(orchestrate, name)(record) for name in ANALYSES}
+
+
+def test_units_and_long_names_are_on_everything(answers):
+    bare = [
+        f"{question}: {name}.{attribute}"
+        for question, data in answers.items()
+        for name, variable in data.variables.items()
+        for attribute in ("units", "long_name")
+        if attribute not in variable.attrs
+        and not (attribute == "units" and variable.dtype.kind in "SUO")
+    ]
+    assert bare == []
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_answers_can_be_written_and_read(answers, tmp_path, name):
+    data = answers[name]
+    data.to_netcdf(tmp_path / "answer.nc")
+    assert xr.load_dataset(tmp_path / "answer.nc").equals(data)
+    assert data.attrs["analysis"] in name and data.attrs["title"].endswith(": record")
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_each_is_documented_with_an_example(name):
+    text = inspect.getdoc(getattr(orchestrate, name))
+    for part in ("Parameters\n", "Returns\n", "Raises\n", "Examples\n", ">>> "):
+        assert part in text, part
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_the_second_accelerometer_may_be_missing(name):
+    record = swept_record(DAMPED).drop_vars("acceleration2")
+    answer = getattr(orchestrate, name)(record)
+    assert "acceleration2" not in answer.channel.values
+
+
+@pytest.mark.parametrize("name", ["psd", "spectrogram", "shock_spectrum", "probability_density"])
+@pytest.mark.parametrize("left", ["box_acceleration", "acceleration2"])
+def test_one_channel_is_enough(name, left):
+    """Where nothing is compared with the box."""
+    answer = getattr(orchestrate, name)(swept_record(DAMPED)[[left]])
+    assert answer.channel.values.tolist() == [left]
+
+
+@pytest.mark.parametrize("name", ["frf", "track_orders", "harmonics"])
+def test_the_box_is_needed_to_compare_with_it(name):
+    record = swept_record(DAMPED)
+    with pytest.raises(InputError, match="no box_acceleration; expected box_acceleration over"):
+        getattr(orchestrate, name)(record.drop_vars("box_acceleration"))
+    with pytest.raises(InputError, match="no acceleration1; expected it beside"):
+        orchestrate.frf(record[["box_acceleration"]])
+    known = orchestrate.track_orders(record.drop_vars("box_acceleration"), phase=SWEEP)
+    assert "box_acceleration" not in known.channel.values
+
+
+def test_the_level_does_not_matter():
+    """Twice the level: ratios stay to the last bit."""
+    record = random_record(LIGHT, 1, 40.0)
+    one, other = (orchestrate.frf(x) for x in (record, 2.0 * record))
+    assert (one.magnitude.values == other.magnitude.values).all()
+
+
+def damaged(**changes):
+    time = np.arange(200) / 100.0
+    record = make(100.0, np.sin(time), np.cos(time))
+    for name, value in changes.items():
+        record[name] = ("time", value)
+    return record
+
+
+WITH_NAN = np.where(np.arange(200) == 42, np.nan, 1.0)
+UNEVEN = np.arange(200) / 100.0 + 0.004 * (np.arange(200) == 70)
+REPEATED = np.arange(200) / 100.0 - 0.02 * (np.arange(200) == 70)
+
+
+@pytest.mark.parametrize(
+    ("record", "words"),
+    [
+        (3.0, "record: float without time; expected an xarray.Dataset"),
+        (damaged().drop_vars(["acceleration1", "box_acceleration"]), "record: no box_acceleration"),
+        (damaged().isel(time=slice(5)), "record: 5 samples; expected at least 16"),
+        (damaged(acceleration1=WITH_NAN), "acceleration1[42] = nan at 0.42 s: expected finite"),
+        (damaged(time=UNEVEN), "time[69] = 0.69 s: a step of 0.014 s after it"),
+        (damaged(time=REPEATED), "expected ascending numbers"),
+        (damaged().assign_attrs(sample_rate=50.0), "attribute sample_rate = 50.0 Hz: the time has"),
+        (damaged().assign_attrs(sample_rate="fast"), "attribute sample_rate = 'fast' Hz"),
+    ],
+)
+def test_records_that_cannot_be_analysed_are_one_line(record, words):
+    with pytest.raises(InputError) as error:
+        orchestrate.psd(record)
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "words"),
+    [
+        ("frf", {"resolution": 0.01}, "resolution = 0.01 Hz: expected 0.5 <="),
+        ("frf", {"resolution": 0.5}, "expected at least 2"),
+        ("frf", {"resolution": "fine"}, "resolution = 'fine' Hz: expected"),
+        ("psd", {"window": "round"}, "window = 'round': expected one of hann"),
+        ("psd", {"overlap": -0.1}, "overlap = -0.1: expected 0 <= overlap <= 0.95"),
+        ("spectrogram", {"spectra": 0}, "spectra = 0: expected"),
+        ("shock_spectrum", {"damping": 1.0}, "damping = 1.0: expected 0 <= damping < 1"),
+        ("shock_spectrum", {"frequencies": [-1.0]}, "frequencies = [-1.0]: expected numbers > 0"),
+        ("shock_spectrum", {"frequencies": [60.0]}, "<= 50 Hz, half the sampling rate"),
+        ("probability_density", {"bins": 1}, "bins = 1: expected 4 <= bins"),
+    ],
+)
+def test_mistakes_are_one_line(name, given, words):
+    with pytest.raises(InputError) as error:
+        getattr(orchestrate, name)(damaged(), **given)
+    assert words in str(error.value) and "\n" not in str(error.value)
