@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from ..errors import InputError
 from . import (
+    analysis,
     attractors,
     basin,
     borders,
@@ -51,10 +52,10 @@ SEVERAL: dict[str, Callable[..., Figure]] = {  # of which one picture shows any 
 }
 BESIDE: dict[str, Callable[..., Figure]] = {"simulate": motion.draw, "shake": shaken.draw}
 OF_BOTH: dict[str, Callable[..., Figure]] = {"couple": weak_drive.draw, "capture": capture.draw}
+KNOWN = ", ".join(sorted({*DRAW, *OF_BOTH, *analysis.DRAW}))
 EXPECTED = (
-    f"expected answers of one of {', '.join(sorted({*DRAW, *OF_BOTH}))}; several of one of "
-    f"{', '.join(SEVERAL)}; a sweep with branches over it; simulate or shake with the bonded "
-    "structure's; couple with drive_branch"
+    f"expected answers of one of {KNOWN}; several of one of {', '.join(SEVERAL)}; a sweep with "
+    "branches over it; simulate or shake with the bonded structure's; couple with drive_branch"
 )
 
 
@@ -91,6 +92,8 @@ def plot(*answers: xr.Dataset, title: str = "") -> Figure:
     """
     kinds = [question_of(answer) for answer in answers]
     several = set(kinds)
+    if len(answers) == 1 and kinds[0] in analysis.DRAW:
+        return analysis.draw(answers[0], title=title)
     told = {"title": title} if title else {}
     if len(answers) == 1 and kinds[0] in DRAW:
         return DRAW[kinds[0]](answers[0], **told)
@@ -131,7 +134,10 @@ def question_of(answer: object) -> str:
     InputError
         Where it is no answer.
     """
-    call = answer.attrs.get("call") if isinstance(answer, xr.Dataset) else None
+    attributes = answer.attrs if isinstance(answer, xr.Dataset) else {}
+    if "analysis" in attributes:  # of a record
+        return str(attributes["analysis"])
+    call = attributes.get("call")
     if not isinstance(call, str):
         kind = type(answer).__name__
         raise InputError(f"plot: {kind} is no answer of a question; {EXPECTED}")

@@ -87,15 +87,24 @@ def test_pictures_of_several_show_something(continued, driven):
         assert any(axes.lines or axes.collections for axes in figure.axes)
 
 
-def test_all_answers_that_the_command_line_draws_are_known():
-    from orchestrate.figures.plot import DRAW, OF_BOTH
+def test_answers_of_an_analyser():
+    time = np.arange(2000) / 1000.0
+    box = np.random.default_rng(1).normal(size=2000)
+    record = orchestrate.record(time=time, box_acceleration=box, acceleration1=0.5 * box)
+    figure = plot(orchestrate.frf(record))
+    assert any(axes.lines for axes in figure.axes)
+
+
+def test_all_public_questions_are_drawn_or_known_to_have_no_picture():
+    from orchestrate.figures.plot import DRAW, OF_BOTH, analysis
 
     public = {name for name in orchestrate.__all__ if name.islower()}
-    unknown = public - {*DRAW, *OF_BOTH}
-    # an orbit is drawn as a motion begun on it, a passage with its waterfall, the rest is no answer
-    assert unknown == {
+    named = {"track_orders": "orders"}  # what an analysis calls itself
+    drawn = {*DRAW, *OF_BOTH, *analysis.DRAW}
+    # an orbit is drawn as a motion begun on it, a passage with its waterfall; records are analysed
+    assert {name for name in public if named.get(name, name) not in drawn} == {
         *("couple_all", "impact_statistics", "orbit", "passage", "plot", "waterfall", "write_ssp"),
-        "__version__",
+        *("__version__", "measure", "record", "read_record", "write_record"),
     }
 
 
