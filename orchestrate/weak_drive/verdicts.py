@@ -23,7 +23,7 @@ THEORY_ERROR = 5e-4  # of eta0, of the averaged theory's folds
 NARROW = 2e-4  # of eta0: two folds so close may be none, so far as the averaged theory knows
 FOLLOWS_TEXT = "no jump: at held voltages too the speed passes the resonance without a gap"
 LEFT_BEFORE_TEXT = "left its branch before the ramp: it does so at the first voltage, held, too"
-NO_FOLD_TEXT = "no fold: the speed follows the voltage through the resonance"
+SMOOTH_TEXT = "no jump: the speed follows the voltage through the resonance"
 
 
 class Theory(NamedTuple):
@@ -104,7 +104,7 @@ def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold
     if passing.look == UNFINISHED:
         return "the ramp ends while the speed passes the resonance"
     texts = {FOLLOWS: FOLLOWS_TEXT, LEFT_BEFORE: LEFT_BEFORE_TEXT}
-    return texts.get(int(final.what), NO_FOLD_TEXT)
+    return texts.get(int(final.what), SMOOTH_TEXT)
 
 
 def undecided(held: Verdict, theory: Theory, hold: float) -> str:

@@ -261,19 +261,27 @@ def refuted_bracket(system: System, answer: Answer, way: str) -> str:
 
 
 def refuted_by_grid(system: System, answer: Answer, way: str) -> str:
-    """Hold voltages through the resonance and back: two speeds at one of them, or none."""
+    """Hold voltages through the resonance and back: two speeds at one of them, or none.
+
+    A jump through the resonance leaves the speed behind the voltage until it jumps: on the way
+    there the speed has passed less far than on the way back. Two motions the other way round are
+    lost against the way of the voltage: they exchange beside the resonance, and no verdict is about
+    them.
+    """
     low, high = ends_of(system)
+    sign = 1.0 if way == "up" else -1.0
     ends = (low + 0.15 - AROUND[0], high - 0.15 + AROUND[1])
     voltages = ordered(np.arange(*ends, GRID).tolist(), way)
     there_and_back = [*voltages, *voltages[::-1]]
     speeds = held_speeds(system, first_of(system, way), there_and_back, SHORT)
-    apart = np.abs(speeds[: len(voltages)] - speeds[::-1][: len(voltages)])
+    behind = sign * (speeds[::-1][: len(voltages)] - speeds[: len(voltages)])
     if answer.said == "lost":
-        return "" if not (apart < SAME).all() else "lost, but held speeds come back everywhere"
-    if not (apart > CHANGE).any():
+        unlike = (behind >= SAME) | np.isnan(behind)
+        return "" if unlike.any() else "lost, but held speeds come back everywhere"
+    if not (behind > CHANGE).any():
         return ""
-    at = voltages[int(np.nanargmax(apart))]
-    return f"none, but two motions last at {at:.5f}: speeds {np.nanmax(apart):.4f} apart"
+    at = voltages[int(np.nanargmax(behind))]
+    return f"none, but two motions last at {at:.5f}: speeds {np.nanmax(behind):.4f} apart"
 
 
 def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:

@@ -46,7 +46,7 @@ def test_a_motor_without_folds():
     strong = QUICK._replace(drive=QUICK.drive.replace(armature_resistance=resistance))
     found = run(strong.as_bonded(), (1.25, 1.45), 4e-4)
     assert np.isnan(found.jumps).all() and np.isnan(found.averaged_jumps).all()
-    assert all("no fold" in text for text in found.no_jump.values)
+    assert all("follows the voltage" in text for text in found.no_jump.values)
 
 
 @pytest.mark.slow

@@ -195,6 +195,18 @@ def test_none_is_refuted_by_two_motions_and_a_jump_of_the_record_by_their_lack(m
     assert "come back" in verdicts.refuted(SYSTEM, SEEN, way)
 
 
+@pytest.mark.parametrize("way", verdicts.WAYS)
+def test_motions_that_exchange_against_the_voltage_are_no_jump_through_the_resonance(
+    monkeypatch, way
+):
+    """On the way there the speed is ahead of the one on the way back: nothing is captured."""
+    low, high = verdicts.ends_of(SYSTEM)
+    middle = 0.5 * (low + high)
+    Motions(monkeypatch, gap=-0.05, up=middle + 0.01, down=middle - 0.01)
+    assert not verdicts.refuted(SYSTEM, NOTHING, way)
+    assert "come back" in verdicts.refuted(SYSTEM, SEEN, way)
+
+
 def test_a_voltage_is_held_after_another_and_the_speed_read_at_the_end(monkeypatch):
     """It follows the voltage; the second hold is too short for how slowly it does so."""
 
