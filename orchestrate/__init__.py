@@ -12,7 +12,8 @@ What is described
     numbers, in Python or in TOML files.
 What is asked
     :func:`simulate`, :func:`resonance`, :func:`sweep`, :func:`spectra`; :func:`map`,
-    :func:`lyapunov`, :func:`attractors`, :func:`basin`, :func:`impact_statistics`;
+    :func:`lyapunov`, :func:`poincare`, :func:`attractors`, :func:`basin`,
+    :func:`basin_entropy`, :func:`impact_statistics`;
     :func:`shake` as in the laboratory, by a :class:`SweptSine`, :class:`Random` vibration, a
     :class:`Shock` or :class:`Sampled` acceleration; :func:`measure` what a :class:`Sensor` reads
     of it, :func:`record`, :func:`read_record` and :func:`write_record` what was measured;
@@ -41,6 +42,7 @@ from .version import __version__
 
 if TYPE_CHECKING:
     from .dynamics.attractors import attractors
+    from .dynamics.basin_entropy import basin_entropy
     from .dynamics.basins import basin
     from .dynamics.borders import border
     from .dynamics.branches import branch
@@ -48,6 +50,7 @@ if TYPE_CHECKING:
     from .dynamics.lyapunov import lyapunov
     from .dynamics.orbits import orbit
     from .dynamics.parameter_map import map
+    from .dynamics.poincare import poincare
     from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
     from .figures.plot import plot
     from .laboratory.analysis.density import probability_density
@@ -102,6 +105,7 @@ __all__ = [
     "__version__",
     "attractors",
     "basin",
+    "basin_entropy",
     "border",
     "branch",
     "capture",
@@ -119,6 +123,7 @@ __all__ = [
     "orbit",
     "passage",
     "plot",
+    "poincare",
     "probability_density",
     "psd",
     "read_record",
@@ -163,8 +168,10 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "response.spectra": ("spectra",),
     "dynamics.parameter_map": ("map",),
     "dynamics.lyapunov": ("lyapunov",),
+    "dynamics.poincare": ("poincare",),
     "dynamics.attractors": ("attractors",),
     "dynamics.basins": ("basin",),
+    "dynamics.basin_entropy": ("basin_entropy",),
     "dynamics.orbits": ("orbit",),
     "dynamics.branches": ("branch",),
     "dynamics.borders": ("border",),

@@ -32,6 +32,7 @@ from . import (
     orbit,
     paper,
     passage,
+    poincare,
     resonance,
     shake,
     simulate,
@@ -43,7 +44,7 @@ from .process import Terminated, outputs, signals
 
 COMMANDS = (
     *(build, simulate, shake, analyse, resonance, spectra, sweep, map),
-    *(lyapunov, attractors, basin, orbit, branch, border),
+    *(lyapunov, poincare, attractors, basin, orbit, branch, border),
     *(couple, capture, passage, jump_voltages, drive_branch),
     *(explore, paper),
 )

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import math
 from typing import TYPE_CHECKING
+
+import orchestrate
 
 from ..errors import InputError
 from .options import (
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Side = tuple[str, float, float, int]
+FEWEST_STARTS = 32  # along a side, for entropies
 EXAMPLES = """\
   {program} basin --eta 1.315
   {program} basin --eta 1.315 --x x_rel,0,1.3,60 --y v_rel,-1.3,1.3,60
@@ -98,3 +102,16 @@ def report(data: xr.Dataset) -> None:
     print_attractors(data, "the plane")
     if overlapping:
         print(f"{overlapping} starts left out: there the masses would overlap")
+    print_entropy(data)
+
+
+def print_entropy(data: xr.Dataset) -> None:
+    """Print how uncertain it is where a start leads, of a plane with enough starts."""
+    if data.sizes["attractor"] < 2 or min(data.attractor_of.shape) < FEWEST_STARTS:
+        return
+    mixed = orchestrate.basin_entropy(data)
+    exponent, error = float(mixed.uncertainty_exponent), float(mixed.uncertainty_exponent_error)
+    entropies = float(mixed.basin_entropy), float(mixed.boundary_basin_entropy)
+    print("basin entropy {:.3g}, at boundaries {:.3g} (above 0.69: fractal)".format(*entropies))
+    if math.isfinite(exponent):
+        print(f"uncertainty exponent {exponent:.3g} +- {error:.2g} (1: smooth boundaries)")

@@ -42,6 +42,8 @@ def add_parser(commands: Commands) -> None:
     add_over(option)
     follow = "responses of a sweep in this direction (default: each from rest)"
     option("--follow", choices=("up", "down"), help=follow)
+    text = "all four exponents too, and the Kaplan-Yorke dimension"
+    option("--spectrum", action="store_true", help=text)
     add_numbers(
         option,
         transient=(500, "periods dropped"),
@@ -55,7 +57,7 @@ def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
     excitation, _ = varied_arguments(arguments, structure)
-    question = {**excitation, **numbers_of(arguments, "transient", "periods", "sigmas")}
+    question = {**excitation, **numbers_of(arguments, "transient", "periods", "sigmas", "spectrum")}
     if arguments.follow:
         swept: dict[str, Any] = {**excitation, "direction": arguments.follow, "samples": 1}
         swept["transient"] = arguments.transient
@@ -74,6 +76,7 @@ def report(data: xr.Dataset) -> None:
         ):
             where = format_parameter(name, float(value))
             print(f"{where}: exponent {exponent:.5f} +- {error:.5f} per tau, {WORDS[int(verdict)]}")
+        print_spectra(ordered, name)
         print_undecided(ordered)
         return
     top = data.isel(data.exponent.argmax(...))
@@ -88,6 +91,18 @@ def report(data: xr.Dataset) -> None:
         where = f" at {format_ranges(name, ordered[name].values, holds)}" if holds.any() else ""
         print(f"{word}: {int(holds.sum())} of {holds.size}{where}")
     print_undecided(ordered)
+
+
+def print_spectra(data: xr.Dataset, name: str) -> None:
+    """Print all exponents of each response, and the dimension of its attractor."""
+    if "exponents" not in data:
+        return
+    for value, exponents, dimension in zip(
+        *(data[key].values for key in (name, "exponents", "kaplan_yorke_dimension")), strict=True
+    ):
+        numbers = ", ".join(f"{exponent:.5f}" for exponent in exponents)
+        where = format_parameter(name, float(value))
+        print(f"{where}: exponents {numbers}; Kaplan-Yorke dimension {dimension:.4g}")
 
 
 def print_undecided(data: xr.Dataset) -> None:

@@ -25,6 +25,13 @@ from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .following import Followed, FollowingQuestion, start_states
+from .lyapunov_growth import block_growth, means_of_batches
+from .lyapunov_spectrum import (
+    STATES,
+    kaplan_yorke_dimension,
+    lyapunov_spectrum,
+    spectrum_without_impacts,
+)
 from .variational import impact_matrices, period
 
 if TYPE_CHECKING:
@@ -36,6 +43,7 @@ if TYPE_CHECKING:
 PERIODIC, NEUTRAL, CHAOTIC = -1, 0, 1
 WORDS = {PERIODIC: "periodic", NEUTRAL: "neutral", CHAOTIC: "chaotic"}
 LARGEST = "largest Lyapunov exponent"
+ORDER = "exponent's place, the largest first"
 BLOCKS, BATCHES, SIGMAS, WANDER = 40, 8, 3.0, 10.0  # defaults of the parameters of these names
 Floats = NDArray[np.float64]
 
@@ -45,36 +53,6 @@ class Exponent(NamedTuple):
 
     value: float
     error: float
-
-
-def scaled_products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
-    """Return products of ``size`` matrices in turn, scaled, with the logarithms of the scales.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (n, 4, 4)
-    size : int
-        The last product may have fewer factors.
-
-    Returns
-    -------
-    ndarray, shape (m, 4, 4)
-    ndarray, shape (m,)
-    """
-    count = -(-len(matrices) // size)
-    stack = np.broadcast_to(np.eye(4), (count * size, 4, 4)).copy()
-    stack[: len(matrices)] = matrices
-    stack = stack.reshape(count, size, 4, 4)
-    logs = np.zeros((count, size))
-    while stack.shape[1] > 1:
-        if stack.shape[1] % 2:
-            rest = np.broadcast_to(np.eye(4), (count, 1, 4, 4))
-            stack = np.concatenate([stack, rest], axis=1)
-            logs = np.concatenate([logs, np.zeros((count, 1))], axis=1)
-        stack, logs = stack[:, 1::2] @ stack[:, 0::2], logs[:, 0::2] + logs[:, 1::2]
-        scale = np.maximum(np.abs(stack).max(axis=(2, 3)), 1e-300)
-        stack, logs = stack / scale[:, :, None, None], logs + np.log(scale)
-    return stack[:, 0], logs[:, 0]
 
 
 def fewest_impacts(batches: int = BATCHES) -> int:
@@ -112,29 +90,10 @@ def largest_exponent(
     """
     if len(impacts.time) < fewest_impacts(batches):
         return Exponent(math.nan, math.nan)
-    matrices = impact_matrices(impacts, end, point)
-    size = max(1, len(matrices) // blocks)
-    growth = log_growth(*scaled_products(matrices, size))
+    growth = block_growth(impact_matrices(impacts, end, point), impacts.time, end, blocks)
     if growth is None:
         return Exponent(-math.inf, math.nan)
-    durations = np.diff(np.append(impacts.time[::size], end))
-    skip = len(growth) // batches  # the vector turns into its own direction first
-    groups = np.array_split(np.arange(skip, len(growth)), batches - 1)
-    means = np.array([growth[group].sum() / durations[group].sum() for group in groups])
-    mean = growth[skip:].sum() / durations[skip:].sum()
-    return Exponent(float(mean), float(means.std(ddof=1) / np.sqrt(len(means))))
-
-
-def log_growth(blocks: Floats, logs: Floats) -> Floats | None:
-    """Return logarithms of a vector's growth by each block in turn; None where it vanishes."""
-    growth, vector = np.empty(len(blocks)), np.array([1.0, 0.7, 0.3, -0.5])
-    for i, (block, log) in enumerate(zip(blocks, logs, strict=True)):
-        vector = block @ vector
-        norm = np.linalg.norm(vector)
-        if norm == 0.0:
-            return None
-        growth[i], vector = log + np.log(norm), vector / norm
-    return growth
+    return Exponent(*means_of_batches(growth, batches))
 
 
 def without_impacts(structure: Structure) -> Exponent | None:
@@ -190,6 +149,8 @@ class LyapunovJob(FollowingQuestion):
 
     Attributes
     ----------
+    spectrum : bool
+        Whether all four exponents are wanted.
     blocks, batches : int
         As in :func:`largest_exponent`.
     sigmas, wander : float
@@ -197,6 +158,7 @@ class LyapunovJob(FollowingQuestion):
     """
 
     periods: int = 2500
+    spectrum: bool = False
     blocks: int = BLOCKS
     batches: int = BATCHES
     sigmas: float = SIGMAS
@@ -205,8 +167,21 @@ class LyapunovJob(FollowingQuestion):
     chunk: ClassVar[int] = 5
 
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
-        """Return exponent, error, impacts per period."""
-        return [*self.exponent(impacts, item), len(impacts.time) / self.periods]
+        """Return exponent, error, impacts per period; all exponents and errors if wanted."""
+        row = [*self.exponent(impacts, item), len(impacts.time) / self.periods]
+        return [*row, *self.all_exponents(impacts, item)] if self.spectrum else row
+
+    def all_exponents(self, impacts: Impacts, item: Followed) -> NDArray[np.float64]:
+        """Return the four exponents and their errors; NaN of alike masses, which never part."""
+        structure, excitation = item.point
+        if len(impacts.time):
+            end = self.periods * period(excitation.eta(structure))
+            found = lyapunov_spectrum(impacts, end, item.point, self.blocks, self.batches)
+        elif structure.bonded:
+            found = spectrum_without_impacts(structure)
+        else:
+            return np.full(2 * STATES, math.nan)
+        return np.concatenate(found)
 
     def exponent(self, impacts: Impacts, item: Followed) -> Exponent:
         """Return the exponent of one response.
@@ -235,7 +210,7 @@ class LyapunovJob(FollowingQuestion):
         """Return exponent, error and verdict over the parameter."""
         import xarray as xr
 
-        along, (exponent, error, impacts) = self.series.name, table["rows"].T
+        along, (exponent, error, impacts) = self.series.name, table["rows"].T[:3]
         spans = self.periods * np.array([period(eta) for eta in self.series.etas])
         verdicts = verdict(exponent, error, np.log(self.wander) / spans, self.sigmas)
         variables: dict[str, Variable] = {
@@ -244,8 +219,24 @@ class LyapunovJob(FollowingQuestion):
             "verdict": flags(along, verdicts, "what the exponent says of the response", WORDS),
             "impacts_per_period": variable(along, impacts, "1", "impacts per excitation period"),
         }
+        coordinates = self.series.coordinates()
+        if self.spectrum:
+            variables |= spectrum_variables(along, table["rows"][:, 3:])
+            coordinates["order"] = variable("order", np.arange(1, STATES + 1), "1", ORDER)
         title = f"{LARGEST} along {along}: {self.structure.label()}"
-        return xr.Dataset(variables, self.series.coordinates(), {"title": title})
+        return xr.Dataset(variables, coordinates, {"title": title})
+
+
+def spectrum_variables(along: str, rows: NDArray[np.float64]) -> dict[str, Variable]:
+    """Return all exponents, their errors, and the dimension that follows from them."""
+    exponents, errors = rows[:, :STATES], rows[:, STATES:]
+    dimensions = [kaplan_yorke_dimension(row) for row in exponents]
+    text = "Kaplan-Yorke dimension of the attractor in the stroboscopic section"
+    return {
+        "exponents": variable((along, "order"), exponents, "1", "Lyapunov exponents, per tau"),
+        "exponent_errors": variable((along, "order"), errors, "1", "their standard errors"),
+        "kaplan_yorke_dimension": variable(along, dimensions, "1", text),
+    }
 
 
 def lyapunov(
@@ -259,6 +250,7 @@ def lyapunov(
     transient: int = 500,
     periods: int = 2500,
     start: ArrayLike | xr.Dataset | None = None,
+    spectrum: bool = False,
     blocks: int = BLOCKS,
     batches: int = BATCHES,
     sigmas: float = SIGMAS,
@@ -284,6 +276,8 @@ def lyapunov(
         State at phase 0 that each response starts from, x1, x2 in m, v1, v2 in m/s, or one state
         for each; or what :func:`orchestrate.sweep` has answered for the same values, whose
         responses are followed on. At rest by default.
+    spectrum : bool
+        Whether all four exponents and the Kaplan-Yorke dimension are computed too.
     blocks : int
         Products of the impacts' matrices whose growth is averaged.
     batches : int
@@ -300,7 +294,11 @@ def lyapunov(
     xarray.Dataset
         ``exponent`` per unit of tau (multiply by omega for 1/s), ``standard_error``, ``verdict``
         (-1 periodic, 0 neutral: quasi-periodic or not decided, 1 chaotic) and
-        ``impacts_per_period``.
+        ``impacts_per_period``. With ``spectrum=True`` also ``exponents`` over ``order``, the
+        largest first, ``exponent_errors``, and the ``kaplan_yorke_dimension`` of the attractor in
+        the stroboscopic section (add 1 for that of the flow). The third and the fourth exponent
+        are minus infinity where permanent contact occurs, which forgets the gap; all are NaN of
+        masses that are alike and never part.
 
     Raises
     ------
@@ -322,6 +320,9 @@ def lyapunov(
     >>> found = lyapunov(Structure.nondimensional(), eta=[0.8, 1.047], periods=400)
     >>> found.verdict.values.tolist(), float(found.exponent[1].round(3))
     ([1, -1], -0.007)
+    >>> found = lyapunov(Structure.nondimensional(e=0.7), eta=2.9, periods=400, spectrum=True)
+    >>> float(found.kaplan_yorke_dimension[0].round(1))
+    0.0
     """
     question = series_arguments(structure, eta, frequency, amplitude, over, values)
     name = f"exponent_{structure.label()}"
@@ -331,6 +332,7 @@ def lyapunov(
         transient=checked_integer("transient", transient, 0),
         periods=checked_integer("periods", periods, 1),
         start=start_states(start, LyapunovJob(name=name, **question)),
+        spectrum=bool(spectrum),
         blocks=checked_integer("blocks", blocks, 1),
         batches=checked_integer("batches", batches, 3),
         sigmas=positive("sigmas", sigmas),

@@ -18,7 +18,7 @@ from orchestrate import Drive, InputError, Structure
 ROOT = Path(__file__).resolve().parents[2]
 FUNCTIONS = (
     *("simulate", "resonance", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
-    *("impact_statistics", "orbit", "branch", "border", "couple"),
+    *("impact_statistics", "poincare", "basin_entropy", "orbit", "branch", "border", "couple"),
     *("shake", "measure", "record", "read_record", "write_record"),
 )
 HEAVY = ("xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "pandas", "loky", "tqdm")
@@ -59,6 +59,7 @@ def questions() -> dict[str, xr.Dataset]:
             OWN, **box, x=("x_rel", 0.0, 1e-3, 3), y=("v_rel", -0.1, 0.1, 2), transient=20
         ),
         "spectra": orchestrate.spectra(OWN, **box, periods=4, points=128, transient=20),
+        "poincare": orchestrate.poincare(OWN, **box, transient=20, periods=20, at="impacts"),
         "impact_statistics": orchestrate.impact_statistics(OWN, **box, transient=20, periods=20),
         "orbit": orchestrate.orbit(UNIT, eta=2.0),
         "branch": orchestrate.branch(UNIT, eta=2.0, limits=(1.95, 2.05)),

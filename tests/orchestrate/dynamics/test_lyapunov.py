@@ -25,9 +25,9 @@ from orchestrate.dynamics.lyapunov import (
     fewest_impacts,
     largest_exponent,
     lyapunov,
-    scaled_products,
     verdict,
 )
+from orchestrate.dynamics.lyapunov_growth import scaled_products
 from orchestrate.dynamics.variational import monodromy, period
 from orchestrate.errors import InputError
 from orchestrate.response.questions import Point

@@ -1,0 +1,71 @@
+"""``poincare``: the section of a motion, at a phase of the box, at impacts or at releases."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from .options import (
+    Commands,
+    add_excitation,
+    add_numbers,
+    add_structure,
+    excitation_of,
+    numbers_of,
+    state_of,
+    structure_of,
+)
+from .output import add_results
+from .question import carry_out, picture_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+EXAMPLES = """  {program} poincare --eta 2.9 --periods 5000
+  {program} poincare --eta 0.8 --at impacts
+  {program} poincare --structure beam --hz 12.5 --g 0.02 --at releases"""
+
+SHOWN = {  # of each section
+    "phase": {"x_rel": "gap", "v_rel": "its rate"},
+    "impacts": {"impact_velocity": "closing speed", "phase": "phase of the box"},
+    "releases": {"v1": "velocity of both masses", "phase": "phase of the box"},
+}
+
+
+def add_parser(commands: Commands) -> None:
+    """Add the command's parser."""
+    text = "a Poincaré section: states at a phase of the box, at impacts or at releases"
+    parser = commands.add("poincare", run, text, EXAMPLES)
+    add_structure(parser)
+    option = add_excitation(parser, several=False).add_argument
+    option("--at", choices=tuple(SHOWN), default="phase", help="where (default: %(default)s)")
+    add_numbers(
+        option,
+        phase=(0.0, "phase of the box, rad"),
+        transient=(500, "periods dropped"),
+        periods=(1000, "periods followed"),
+    )
+    option("--start", metavar="X1,X2,V1,V2", help="state at the start, m and m/s (default: rest)")
+    add_results(parser)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Run the command."""
+    structure = structure_of(arguments)
+    question = {
+        **excitation_of(arguments, structure, si=True, one=True),
+        **numbers_of(arguments, "at", "phase", "transient", "periods"),
+        "start": state_of("--start", arguments.start),
+    }
+    carry_out(arguments, structure, question, report, picture_of)
+
+
+def report(data: xr.Dataset) -> None:
+    """Print how many points the section has, and where they lie."""
+    count = data.sizes["point"]
+    print(f"{count} points")
+    if not count:
+        return
+    for name, label in SHOWN[str(data.attrs["at"])].items():
+        low, high = float(data[name].min()), float(data[name].max())
+        print(f"{label} from {low:.6g} to {high:.6g} {data[name].attrs['units']}")

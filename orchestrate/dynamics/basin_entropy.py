@@ -1,0 +1,177 @@
+"""How uncertain it is which attractor a start leads to: basin entropy and uncertainty exponent."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import checked_integer
+from ..errors import InputError
+from ..response.labels import variable
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+LEAST_BOXES = 4  # along each side of the plane
+LEAST_SIZES = 3  # of boxes, through which a line is fitted
+Labels = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+
+class BoxEntropies(NamedTuple):
+    """Entropies of boxes of starts.
+
+    Attributes
+    ----------
+    entropies : ndarray, shape (n,)
+        ``-sum p ln p`` over the shares p of the attractors in each box.
+    """
+
+    entropies: Floats
+
+    @property
+    def mean(self) -> float:
+        """Basin entropy: the mean over all boxes."""
+        return float(self.entropies.mean())
+
+    @property
+    def on_boundary(self) -> Floats:
+        """Entropies of boxes with more than one attractor."""
+        return self.entropies[self.entropies > 0.0]
+
+    @property
+    def boundary_mean(self) -> float:
+        """Boundary basin entropy: the mean over those; NaN without any."""
+        return float(self.on_boundary.mean()) if self.on_boundary.size else math.nan
+
+    @property
+    def uncertain_fraction(self) -> float:
+        """Share of boxes with more than one attractor."""
+        return self.on_boundary.size / self.entropies.size
+
+
+def box_entropies(labels: Labels, size: int) -> BoxEntropies:
+    """Return the entropies of square boxes of ``size`` starts a side, laid side by side.
+
+    Boxes with a start that leads to no attractor (-1) are left out, and what is left at the end of
+    a side that ``size`` does not divide.
+    """
+    rows, columns = (side // size for side in labels.shape)
+    boxes = labels[: rows * size, : columns * size]
+    boxes = boxes.reshape(rows, size, columns, size).swapaxes(1, 2).reshape(rows * columns, -1)
+    boxes = boxes[(boxes >= 0).all(axis=1)]
+    shares = np.stack([(boxes == label).mean(axis=1) for label in range(max(1, labels.max() + 1))])
+    terms = np.where(shares > 0.0, -shares * np.log(np.where(shares > 0.0, shares, 1.0)), 0.0)
+    return BoxEntropies(np.asarray(terms.sum(axis=0)))
+
+
+def box_sizes(labels: Labels) -> list[int]:
+    """Return box sizes that leave enough boxes: powers of two."""
+    longest = min(labels.shape) // LEAST_BOXES
+    return [2**power for power in range(1, longest.bit_length()) if 2**power <= longest]
+
+
+def uncertainty_exponent(sizes: Floats, fractions: Floats) -> tuple[float, float]:
+    """Return the exponent alpha of ``fraction ~ size**alpha`` and its standard error, by a line
+    through the logarithms; NaN where there are too few.
+    """
+    from scipy.stats import linregress
+
+    known = fractions > 0.0
+    if np.count_nonzero(known) < LEAST_SIZES:
+        return math.nan, math.nan
+    line = linregress(np.log(sizes[known]), np.log(fractions[known]))
+    return float(line.slope), float(line.stderr)
+
+
+def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
+    """Compute basin entropy, boundary basin entropy, and the uncertainty exponent of basins.
+
+    Parameters
+    ----------
+    basins : xarray.Dataset
+        What :func:`orchestrate.basin` has answered: a plane of starts.
+    box : int
+        Starts along each side of a box whose entropy is computed.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``basin_entropy`` and ``boundary_basin_entropy`` (natural logarithms, so that above
+        ln 2 = 0.693 boundaries are fractal; below that nothing is said); over ``box_size`` the
+        ``uncertain_fraction`` of boxes with more than one attractor; ``uncertainty_exponent``
+        alpha, by which that fraction shrinks with the size of the boxes, its standard error of
+        the fit, and the ``boundary_dimension`` 2 - alpha: 1 for smooth boundaries.
+
+    Raises
+    ------
+    InputError
+        Where there are no basins, or fewer than four boxes along a side.
+
+    Notes
+    -----
+    Basin entropy: Daza, Wagemakers, Georgeot, Guery-Odelin and Sanjuan, Scientific Reports 6, 31416
+    (2016). Uncertainty exponent: Grebogi, McDonald, Ott and Yorke, Physics Letters A 99, 415
+    (1983); here the fraction is that of boxes of starts. Boxes in which the masses would overlap
+    at a start are left out.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> from orchestrate.dynamics.basin_entropy import basin_entropy
+    >>> halves = np.tile(np.arange(64) >= 30, (64, 1)).astype(int)
+    >>> found = basin_entropy(xr.Dataset({"attractor_of": (("v_rel", "x_rel"), halves)}), box=4)
+    >>> float(found.boundary_basin_entropy.round(4)), float(found.uncertain_fraction[0])
+    (0.6931, 0.0)
+    """
+    import xarray as xr
+
+    size = checked_integer("box", box, 2)
+    labels = labels_of(basins)
+    if min(labels.shape) < LEAST_BOXES * size:
+        raise InputError(
+            f"box = {size}: of a plane of {labels.shape[1]} x {labels.shape[0]} starts; expected "
+            f"at most {min(labels.shape) // LEAST_BOXES}"
+        )
+    entropies = box_entropies(labels, size)
+    if not entropies.entropies.size:
+        raise InputError(f"box = {size}: the masses overlap in each box; expected a smaller one")
+    sizes = np.array(box_sizes(labels))
+    fractions = np.array([box_entropies(labels, each).uncertain_fraction for each in sizes])
+    exponent, error = uncertainty_exponent(sizes - 1.0, fractions)  # sides from start to start
+    texts = {
+        "basin_entropy": (entropies.mean, "mean entropy of boxes of starts"),
+        "boundary_basin_entropy": (
+            entropies.boundary_mean,
+            "mean entropy of boxes with more than one attractor",
+        ),
+        "uncertainty_exponent": (exponent, "exponent of the uncertain fraction over the box size"),
+        "uncertainty_exponent_error": (error, "standard error of the exponent by the fit"),
+        "boundary_dimension": (2.0 - exponent, "box-counting dimension of the boundaries"),
+    }
+    fraction = variable("box_size", fractions, "1", "share of boxes with more than one attractor")
+    side = variable("box_size", sizes, "1", "starts along each side of a box")
+    return xr.Dataset(
+        {name: variable((), value, "1", text) for name, (value, text) in texts.items()}
+        | {"uncertain_fraction": fraction},
+        {"box_size": side},
+        {"title": "Basin entropy", "box": size},
+    )
+
+
+def labels_of(basins: object) -> Labels:
+    """Return the attractor of each start.
+
+    Raises
+    ------
+    InputError
+        Where these are no basins.
+    """
+    known = getattr(basins, "attractor_of", None)
+    if known is None or len(known.dims) != 2:
+        kind = type(basins).__name__
+        raise InputError(f"basins: {kind} is no answer of basin; expected one")
+    return np.asarray(known.values, dtype=np.int64)

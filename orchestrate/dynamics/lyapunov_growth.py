@@ -1,0 +1,101 @@
+"""How fast products of matrices grow: logarithms by blocks, their mean, and its standard error."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .closed_form import Floats
+
+FIRST_VECTOR = np.array([1.0, 0.7, 0.3, -0.5, 0.2, -0.4])  # in no special direction
+
+
+class Growth(NamedTuple):
+    """Growth by blocks of successive matrices.
+
+    Attributes
+    ----------
+    growth : ndarray, shape (n,)
+        Logarithm of a vector's growth over each block.
+    durations : ndarray, shape (n,)
+        Of the blocks, in units of tau.
+    """
+
+    growth: Floats
+    durations: Floats
+
+
+def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> Growth | None:
+    """Return the growth of a vector by blocks of matrices; None where it vanishes.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (n, m, m)
+    times : ndarray, shape (n,)
+        tau at which each begins.
+    end : float
+        tau at which the last one ends.
+    blocks : int
+        About how many.
+    """
+    size = max(1, len(matrices) // blocks)
+    growth = log_growth(*scaled_products(matrices, size))
+    if growth is None:
+        return None
+    return Growth(growth, np.diff(np.append(times[::size], end)))
+
+
+def means_of_batches(blocks: Growth, batches: int) -> tuple[float, float]:
+    """Return the mean growth per unit of tau and its standard error, by means of batches.
+
+    The first batch is left out: meanwhile the vector turns into the direction that grows most.
+    """
+    growth, durations = blocks
+    skip = len(growth) // batches
+    groups = np.array_split(np.arange(skip, len(growth)), batches - 1)
+    means = np.array([growth[group].sum() / durations[group].sum() for group in groups])
+    mean = growth[skip:].sum() / durations[skip:].sum()
+    return float(mean), float(means.std(ddof=1) / np.sqrt(len(means)))
+
+
+def scaled_products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
+    """Return products of ``size`` matrices in turn, scaled, with the logarithms of the scales.
+
+    Parameters
+    ----------
+    matrices : ndarray, shape (n, m, m)
+    size : int
+        The last product may have fewer factors.
+
+    Returns
+    -------
+    ndarray, shape (p, m, m)
+    ndarray, shape (p,)
+    """
+    count, rows = -(-len(matrices) // size), matrices.shape[-1]
+    stack = np.broadcast_to(np.eye(rows), (count * size, rows, rows)).copy()
+    stack[: len(matrices)] = matrices
+    stack = stack.reshape(count, size, rows, rows)
+    logs = np.zeros((count, size))
+    while stack.shape[1] > 1:
+        if stack.shape[1] % 2:
+            rest = np.broadcast_to(np.eye(rows), (count, 1, rows, rows))
+            stack = np.concatenate([stack, rest], axis=1)
+            logs = np.concatenate([logs, np.zeros((count, 1))], axis=1)
+        stack, logs = stack[:, 1::2] @ stack[:, 0::2], logs[:, 0::2] + logs[:, 1::2]
+        scale = np.maximum(np.abs(stack).max(axis=(2, 3)), 1e-300)
+        stack, logs = stack / scale[:, :, None, None], logs + np.log(scale)
+    return stack[:, 0], logs[:, 0]
+
+
+def log_growth(blocks: Floats, logs: Floats) -> Floats | None:
+    """Return logarithms of a vector's growth by each block in turn; None where it vanishes."""
+    growth, vector = np.empty(len(blocks)), FIRST_VECTOR[: blocks.shape[-1]]
+    for i, (block, log) in enumerate(zip(blocks, logs, strict=True)):
+        vector = block @ vector
+        norm = np.linalg.norm(vector)
+        if norm == 0.0:
+            return None
+        growth[i], vector = log + np.log(norm), vector / norm
+    return growth

@@ -1,0 +1,229 @@
+"""Poincaré sections of a motion: its states at a phase of the box, at impacts, or at releases."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..access import OSCILLATOR, REST, EventInstance, Impacts, Instance, begin, finder
+from ..checks import checked_integer, checked_word
+from ..constants import TURN
+from ..errors import InputError
+from ..response.labels import variable, yes_or_no
+from ..response.questions import Point, Question, numbers, one_point, state
+from ..response.simulate import IN_TIME
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Excitation, Structure
+from .following import Followed, state_after
+from .variational import contact_times, nondimensional
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+COLUMNS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel")
+SECTIONS = {  # what a section is, by its name
+    "phase": "states at one phase of the box, once a period",
+    "impacts": "states just after impacts",
+    "releases": "states where permanent contact ends",
+}
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoincareJob(Question):
+    """A section of one motion.
+
+    Attributes
+    ----------
+    excitation : Excitation
+    at : str
+        Of ``SECTIONS``.
+    phase : float
+        Of the box, in [0, 2 pi), where ``at`` is ``"phase"``.
+    transient, periods : int
+        Periods dropped, and followed after them.
+    start : tuple of float
+        x1, x2 in m, v1, v2 in m/s at phase 0.
+    """
+
+    excitation: Excitation
+    at: str = "phase"
+    phase: float = 0.0
+    transient: int = 500
+    periods: int = 1000
+    start: tuple[float, ...] = REST
+    asked: ClassVar[str] = "poincare"
+
+    def count(self) -> int:
+        """Return 1: there is one motion."""
+        return 1
+
+    def items(self, inputs: Inputs) -> Sequence[Point]:
+        """Return the structure under its excitation."""
+        return [Point(self.structure, self.excitation)]
+
+    def work(
+        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
+    ) -> Table:
+        """Follow the motion after its transient, and read it in the section."""
+        point, period = items[0], self.excitation.period
+        with Instance(fmus[OSCILLATOR]) as plain:
+            start = state_after(plain, Followed(point, self.start), self.transient)
+            if self.at == "phase":
+                times = self.phase / self.excitation.frequency + period * np.arange(
+                    float(self.periods)
+                )
+                return {"time": times, "rows": read_at(plain, point, start, times)}
+            with EventInstance(fmus[OSCILLATOR]) as eventful:
+                begin(eventful, *point, start)
+                impacts = eventful.impacts(0.0, self.periods * period)
+            if self.at == "releases":
+                times = release_times(impacts, point, self.periods * period)
+                return {"time": times, "rows": read_at(plain, point, start, times)}
+        return impact_table(impacts)
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Return the states, when they are passed, and at which phase."""
+        import xarray as xr
+
+        time, columns = table["time"], dict(zip(COLUMNS, table["rows"].T, strict=True))
+        phase = np.mod(time * self.excitation.frequency, TURN)
+        if self.at == "phase":
+            phase = np.full(len(time), self.phase)
+        variables = {
+            **{name: variable("point", columns[name], *IN_TIME[name]) for name in COLUMNS},
+            "phase": variable("point", phase, "rad", "phase of the box"),
+        }
+        if self.at == "impacts":
+            closing, text = table["impact_velocity"], "whether permanent contact follows (17)"
+            variables |= {
+                "impact_velocity": variable("point", closing, "m/s", "closing speed before it"),
+                "sticks": yes_or_no("point", table["sticks"], text),
+            }
+        since = self.transient * self.excitation.period
+        coordinates = {"time": variable("point", since + time, "s", "time from the start")}
+        title = f"Poincaré section, {SECTIONS[self.at]}: {self.structure.label()}"
+        return xr.Dataset(variables, coordinates, {"title": title})
+
+
+def read_at(instance: Instance, point: Point, start: ArrayLike, times: Floats) -> Floats:
+    """Return the outputs of a motion from phase 0 on at some times, s, shape (n, 6)."""
+    begin(instance, *point, start)
+    rows, now = np.empty((len(times), len(COLUMNS))), 0.0
+    for row, time in zip(rows, times.tolist(), strict=True):
+        if time > now:
+            instance.step(now, time)
+        row[:], now = instance.get(*COLUMNS), time
+    return rows
+
+
+def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
+    """Return when permanent contacts end that impacts have begun, s; not those that outlast the
+    span or end in another impact's place.
+    """
+    omega = point.structure.omega
+    scaled = nondimensional(impacts, point)
+    ends = np.append(scaled.time[1:], omega * end)
+    lasting = contact_times(scaled, ends, point)
+    released = scaled.sticks & (lasting < ends - scaled.time)
+    times: Floats = (scaled.time + lasting)[released] / omega
+    return times
+
+
+def impact_table(impacts: Impacts) -> Table:
+    """Return impacts as columns of a table; the gap is closed there."""
+    rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
+    return {
+        "time": impacts.time,
+        "rows": np.column_stack([impacts.state, np.zeros(len(rate)), rate]),
+        "impact_velocity": impacts.closing,
+        "sticks": impacts.sticks,
+    }
+
+
+def poincare(
+    structure: Structure,
+    *,
+    eta: float | None = None,
+    frequency: float | None = None,
+    amplitude: float | None = None,
+    at: str = "phase",
+    phase: float = 0.0,
+    transient: int = 500,
+    periods: int = 1000,
+    start: ArrayLike | None = None,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Compute a Poincaré section of a motion: at a phase of the box, at impacts, or at releases.
+
+    Parameters
+    ----------
+    structure : Structure
+    eta : float, optional
+        Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m.
+    frequency, amplitude : float, optional
+        The physical form instead: rad/s and m.
+    at : str
+        ``"phase"``: once an excitation period, at one phase of the box. ``"impacts"``: just after
+        each impact. ``"releases"``: where each permanent contact that an impact began ends.
+    phase : float
+        Of the box, rad, where ``at="phase"``.
+    transient, periods : int
+        Excitation periods dropped, and followed after them.
+    start : array_like of 4 floats, optional
+        x1, x2 in m, v1, v2 in m/s at phase 0; at rest by default.
+    **running
+        ``store``, ``progress`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``point``: ``x1``, ``x2``, ``v1``, ``v2``, ``x_rel``, ``v_rel`` relative to the box,
+        ``phase`` of the box, ``time``; at impacts also ``impact_velocity``, the closing speed
+        before them, and ``sticks``. There may be none: a motion without impacts has no section at
+        impacts.
+
+    Raises
+    ------
+    InputError
+        Where a required argument is missing, arguments contradict each other, or a number is out
+        of its range.
+
+    Notes
+    -----
+    All states are read from the FMU, at exact times: those of impacts are its events, those of
+    releases are the zeros (19) of the contact force.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.dynamics.poincare import poincare
+    >>> section = poincare(Structure.nondimensional(), eta=0.4, at="releases", periods=3)
+    >>> section.sizes["point"], float(abs(section.v_rel).max() < 1e-12)
+    (3, 1.0)
+    """
+    chosen, excitation = one_point(structure, eta, frequency, amplitude)
+    angle = numbers("phase", phase)
+    if not isinstance(angle, float):
+        raise InputError(f"phase = {phase!r}: expected a number, rad")
+    job = PoincareJob(
+        name=f"poincare_{structure.label()}",
+        structure=chosen,
+        excitation=excitation,
+        at=checked_word("at", at, SECTIONS),
+        phase=math.fmod(angle, TURN) % TURN,
+        transient=checked_integer("transient", transient, 0),
+        periods=checked_integer("periods", periods, 1),
+        start=state("start", start, structure),
+    )
+    return answer(job, running, finder(running))

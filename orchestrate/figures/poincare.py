@@ -1,0 +1,95 @@
+"""A Poincaré section: gap and its rate, or impacts and releases by the phase of the box."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, MultipleLocator
+
+from ..constants import TURN
+from .labels import prefix, title_from_attributes
+from .style import BLACK, RED, panels, set_title, styled
+
+POINTS: dict[str, Any] = {"linestyle": "none", "marker": ".", "markeredgewidth": 0.0}
+LEAST_HALF = 0.05  # of an axis, over its middle
+SHARES = {0.0: "0", 0.25: "π/2", 0.5: "π", 0.75: "3π/2", 1.0: "2π"}  # of a turn
+
+
+@styled
+def draw(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw the section of a motion.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.poincare`: at a phase the gap and its rate; at impacts the closing
+        speed, and at releases the velocity of both masses, by the phase of the box.
+    title : str
+        By default the structure and the excitation.
+    """
+    figure, (plane,) = panels(1, 1, (6.4, 5.0))
+    DRAW[str(data.attrs["at"])](plane, data, marker_size(data.sizes["point"]))
+    widen(plane)
+    set_title(figure, title or title_from_attributes(data))
+    return figure
+
+
+def widen(plane: Axes) -> None:
+    """Widen axes whose values are nearly one: a motion that repeats is a point, not a cloud."""
+    for low, high, put in (
+        (*plane.get_xlim(), plane.set_xlim),
+        (*plane.get_ylim(), plane.set_ylim),
+    ):
+        middle = 0.5 * (low + high)
+        half = max(0.5 * (high - low), LEAST_HALF * abs(middle))
+        put(middle - half, middle + half)
+
+
+def marker_size(count: int) -> float:
+    """Return a dot's size: smaller where there are many."""
+    return 2.0 if count > 2000 else 4.0 if count > 200 else 7.0
+
+
+def draw_phase(plane: Axes, data: xr.Dataset, size: float) -> None:
+    """Draw the gap and its rate, once a period."""
+    factor, letter = prefix(float(data.x_rel.max()) if data.sizes["point"] else 1.0)
+    pace, speed_letter = prefix(float(abs(data.v_rel).max()) if data.sizes["point"] else 1.0)
+    plane.plot(data.x_rel / factor, data.v_rel / pace, color=BLACK, markersize=size, **POINTS)
+    plane.set(xlabel=f"gap in {letter}m", ylabel=f"its rate in {speed_letter}m/s")
+
+
+def draw_impacts(plane: Axes, data: xr.Dataset, size: float) -> None:
+    """Draw closing speeds by the phase of the box; those that begin permanent contact in red."""
+    sticks = data.sticks.values.astype(bool)
+    factor, letter = prefix(float(data.impact_velocity.max()) if data.sizes["point"] else 1.0)
+    kinds = (("impacts", ~sticks, BLACK), ("permanent contact follows", sticks, RED))
+    for label, which, colour in kinds:
+        if which.any():
+            speed = data.impact_velocity.values[which] / factor
+            phase = data.phase.values[which] / TURN
+            plane.plot(phase, speed, color=colour, markersize=size, label=label, **POINTS)
+    plane.set_ylabel(f"closing speed in {letter}m/s")
+    label_phase(plane)
+    if sticks.any():
+        plane.legend()
+
+
+def draw_releases(plane: Axes, data: xr.Dataset, size: float) -> None:
+    """Draw the common velocity of both masses by the phase of the box."""
+    factor, letter = prefix(float(abs(data.v1).max()) if data.sizes["point"] else 1.0)
+    plane.plot(data.phase / TURN, data.v1 / factor, color=BLACK, markersize=size, **POINTS)
+    plane.set_ylabel(f"velocity of both masses in {letter}m/s")
+    label_phase(plane)
+
+
+def label_phase(plane: Axes) -> None:
+    """Label an axis of the box's phase, in turns, by parts of 2 pi."""
+    plane.set(xlim=(0.0, 1.0), xlabel="phase of the box in rad")
+    plane.xaxis.set_major_locator(MultipleLocator(0.25))
+    plane.xaxis.set_major_formatter(FuncFormatter(lambda turn, _: SHARES.get(turn, "")))
+
+
+DRAW = {"phase": draw_phase, "impacts": draw_impacts, "releases": draw_releases}

@@ -1,0 +1,94 @@
+"""Basin entropy and uncertainty exponent: smooth boundaries, Newton's fractal, a Cantor set."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate import InputError
+from orchestrate.dynamics.basin_entropy import box_entropies
+
+
+def basins(labels):
+    return xr.Dataset({"attractor_of": (("v_rel", "x_rel"), np.asarray(labels, dtype=np.int16))})
+
+
+def plane(count):
+    return np.meshgrid(np.linspace(-2.0, 2.0, count), np.linspace(-2.0, 2.0, count))
+
+
+def newton(count):
+    """Which root of z^3 = 1 Newton's method leads to."""
+    x, y = plane(count)
+    z = x + 1j * y
+    for _ in range(40):
+        z = z - (z**3 - 1.0) / (3.0 * z**2)
+    roots = np.exp(2j * np.pi * np.arange(3) / 3.0)
+    return np.abs(z[..., np.newaxis] - roots).argmin(axis=-1)
+
+
+def test_a_smooth_boundary_is_a_line():
+    x, y = plane(600)
+    found = orchestrate.basin_entropy(basins(x + 0.31 * y > 0.123))
+    assert float(found.uncertainty_exponent) == pytest.approx(1.0, abs=0.05)
+    assert float(found.boundary_dimension) == pytest.approx(1.0, abs=0.05)
+    assert float(found.boundary_basin_entropy) < math.log(2.0)
+
+
+def test_the_basins_of_newtons_method_are_fractal():
+    """The dimension of their boundary is 1.42 to 1.44 (Nusse and Yorke; Daza and others)."""
+    found = orchestrate.basin_entropy(basins(newton(600)))
+    assert float(found.boundary_dimension) == pytest.approx(1.43, abs=0.04)
+    assert float(found.boundary_basin_entropy) > math.log(2.0)
+
+
+def test_stripes_between_the_points_of_a_cantor_set():
+    """A stripe that is left out as a middle third has the colour of its level, by turns."""
+    levels = 7
+    thirds = np.arange(3**levels)[:, np.newaxis] // 3 ** np.arange(levels)[::-1] % 3
+    middle = thirds == 1
+    left_out = np.where(middle.any(axis=1), middle.argmax(axis=1), levels)
+    found = orchestrate.basin_entropy(basins(np.tile(left_out % 2, (1024, 1))), box=4)
+    dimension = 1.0 + math.log(2.0) / math.log(3.0)
+    assert float(found.boundary_dimension) == pytest.approx(dimension, abs=0.05)
+
+
+def test_the_entropy_of_a_box_is_that_of_its_shares():
+    labels = np.array([[0, 0, 1, 1], [0, 1, 1, 1], [2, 2, 0, 1], [2, 2, -1, 1]])
+    found = box_entropies(labels, 2)
+    mixed = -(0.75 * math.log(0.75) + 0.25 * math.log(0.25))
+    np.testing.assert_allclose(np.sort(found.entropies), [0.0, 0.0, mixed])  # one overlaps
+    assert found.uncertain_fraction == pytest.approx(1.0 / 3.0)
+
+
+def test_one_basin_has_no_boundary():
+    found = orchestrate.basin_entropy(basins(np.zeros((40, 40))))
+    assert float(found.basin_entropy) == 0.0
+    assert math.isnan(float(found.boundary_basin_entropy))
+    assert math.isnan(float(found.uncertainty_exponent))
+
+
+def test_of_an_answer_of_basin(exported):
+    sides = {"x": ("x_rel", 0.0, 1.3, 16), "y": ("v_rel", -1.3, 1.3, 16)}
+    found = orchestrate.basin_entropy(
+        orchestrate.basin(orchestrate.Structure.nondimensional(), eta=1.315, **sides), box=4
+    )
+    assert 0.0 < float(found.basin_entropy) < math.log(2.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "box", "named"),
+    [
+        (xr.Dataset(), 5, "no answer of basin"),
+        (basins(np.zeros((12, 40))), 5, "at most 3"),
+        (basins(np.full((40, 40), -1)), 5, "overlap"),
+        (basins(np.zeros((40, 40))), 1, "box = 1"),
+    ],
+)
+def test_what_is_wrong_is_named(given, box, named):
+    with pytest.raises(InputError, match=named):
+        orchestrate.basin_entropy(given, box=box)

@@ -1,0 +1,117 @@
+"""All four exponents: against the mean divergence, a QR method, multipliers, and known maps."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import orchestrate
+from orchestrate.access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
+from orchestrate.dynamics.following import follow_impacts
+from orchestrate.dynamics.lyapunov_spectrum import (
+    compound,
+    kaplan_yorke_dimension,
+    lyapunov_spectrum,
+)
+from orchestrate.dynamics.variational import impact_matrices, monodromy, period
+from orchestrate.response.questions import Point
+from orchestrate.structures import Excitation, Structure
+
+make = Structure.nondimensional
+
+
+@pytest.fixture(scope="module")
+def followed(exported):
+    """Impacts of a response after its transient, and its point."""
+    fmu = find(OSCILLATOR).path
+    with Instance(fmu) as plain, EventInstance(fmu) as eventful:
+
+        def follow(structure, eta, transient, periods):
+            point = Point(structure, Excitation.nondimensional(eta, structure))
+            begin(plain, *point, REST)
+            plain.step(0.0, transient * point.excitation.period)
+            start = np.array(plain.get(*STATE))
+            return follow_impacts(eventful, point, start, periods), point
+
+        yield follow
+
+
+@given(st.integers(0, 2**32), st.sampled_from([1, 2, 3, 4]))
+def test_volumes_are_carried_by_products_as_by_their_factors(seed, order):
+    """Cauchy and Binet: the compound of a product is the product of the compounds."""
+    one, two = np.random.default_rng(seed).uniform(-2.0, 2.0, (2, 4, 4))
+    product = compound((two @ one)[None], order)[0]
+    separate = compound(two[None], order)[0] @ compound(one[None], order)[0]
+    np.testing.assert_allclose(product, separate, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("structure", "eta"),
+    [(make(), 0.8), (make(), 1.047), (make(D1=0.02, D2=0.1), 0.9), (make(mu=0.5, kappa=1.9), 1.3)],
+)
+def test_their_sum_is_the_mean_divergence(exported, structure, eta):
+    """Of the flow -2 (D1 + D2), and at each impact 2 log e; the exponents do not know of it."""
+    found = orchestrate.lyapunov(structure, eta=[eta], periods=1500, spectrum=True, progress=False)
+    impacts = float(found.impacts_per_period[0]) / period(eta)
+    divergence = -2.0 * (structure.D1 + structure.D2) + 2.0 * impacts * math.log(structure.e)
+    assert float(found.exponents[0].sum()) == pytest.approx(divergence, abs=1e-3)
+    assert float(found.exponents[0, 0]) == float(found.exponent[0])
+    assert (np.diff(found.exponents[0]) < 1e-3).all()
+
+
+def test_a_qr_method_gives_the_same(followed):
+    """Benettin's method, one impact after the other, in chaotic motion."""
+    impacts, point = followed(make(), 0.8, 300, 600)
+    end = 600 * period(0.8)
+    found = lyapunov_spectrum(impacts, end, point, 40, 8)
+    frame, sums = np.eye(4), np.zeros(4)
+    for matrix in impact_matrices(impacts, end, point):
+        frame, upper = np.linalg.qr(matrix @ frame)
+        sums += np.log(np.abs(np.diag(upper)))
+    np.testing.assert_allclose(found.exponents, sums / end, atol=4e-3)
+    assert 3.0 < found.dimension < 3.2
+
+
+def test_of_a_periodic_response_they_are_those_of_its_multipliers(followed):
+    impacts, point = followed(make(), 1.047, 1500, 1)
+    multipliers = np.abs(np.linalg.eigvals(monodromy(impacts, point)))
+    long, _ = followed(make(), 1.047, 1500, 600)
+    found = lyapunov_spectrum(long, 600 * period(1.047), point, 40, 8)
+    expected = np.sort(np.log(multipliers))[::-1] / period(1.047)
+    np.testing.assert_allclose(found.exponents, expected, atol=1e-3)
+    assert found.dimension == 0.0
+
+
+def test_permanent_contact_forgets_the_gap(exported):
+    structure = make(e=0.3, D=0.05)
+    found = orchestrate.lyapunov(structure, eta=[0.6], periods=400, spectrum=True, progress=False)
+    assert np.isneginf(found.exponents[0, 2:]).all() and np.isfinite(found.exponents[0, :2]).all()
+    assert np.isnan(found.exponent_errors[0, 2:]).all()
+
+
+@pytest.mark.parametrize("damping", [0.02, 1.4])
+def test_of_a_bonded_structure_they_are_those_of_its_one_oscillator(exported, damping):
+    structure = make(D=damping, bonded=True)
+    found = orchestrate.lyapunov(structure, eta=[0.9], periods=20, spectrum=True, progress=False)
+    square = (1.0 + structure.kappa) / (1.0 + structure.mu)
+    roots = np.roots([1.0, 2.0 * structure.D3, square])
+    np.testing.assert_allclose(found.exponents[0, :2], np.sort(roots.real)[::-1], rtol=1e-12)
+    assert np.isneginf(found.exponents[0, 2:]).all()
+
+
+@pytest.mark.parametrize(
+    ("exponents", "dimension"),
+    [
+        ((0.41922, -1.62319), 1.2583),  # Henon's map: Sprott, Chaos and Time-Series Analysis, 2003
+        ((0.9056, 0.0, -14.5723), 2.0621),  # Lorenz's flow, there too
+        ((0.1, -math.inf), 1.0),
+        ((-0.1, -0.2), 0.0),
+        ((0.2, 0.1), 2.0),
+    ],
+)
+def test_dimension(exponents, dimension):
+    assert kaplan_yorke_dimension(np.array(exponents)) == pytest.approx(dimension, abs=1e-4)
