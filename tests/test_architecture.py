@@ -200,6 +200,51 @@ def test_a_package_of_others_is_known_in_one_place(package):
     assert [file for file in users(package) if not file.startswith(places)] == []
 
 
+MODULES = {module_name(file): file for file in FILES}
+
+
+def imported_files(file: str) -> set[str]:
+    """Files of ours that a file imports anywhere, for the type checker alone too."""
+    names = (
+        name if name in MODULES else name.rpartition(".")[0]
+        for name in imports(tree_of(file), file)
+    )
+    return {MODULES[name] for name in names if name in MODULES} - {file}
+
+
+def circles(graph: dict[str, set[str]]) -> list[set[str]]:
+    """Groups of nodes of which each is reached from every other of the group."""
+
+    def reached(start: str) -> set[str]:
+        seen: set[str] = set()
+        waiting = [start]
+        while waiting:
+            new = graph[waiting.pop()] - seen
+            seen |= new
+            waiting += new
+        return seen
+
+    beyond = {node: reached(node) for node in graph}
+    groups = {
+        frozenset(other for other in beyond[node] if node in beyond[other])
+        for node in graph
+        if node in beyond[node]
+    }
+    return [set(group) for group in groups]
+
+
+def test_the_finder_of_circles():
+    graph = {"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set(), "e": {"a", "d"}}
+    assert circles(graph) == [{"b", "c"}]
+    assert circles({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == []
+
+
+def test_no_files_import_each_other_in_a_circle():
+    graph = {file: imported_files(file) for file in FILES}
+    assert "orchestrate/errors.py" in graph["orchestrate/cli/__init__.py"]
+    assert circles(graph) == []
+
+
 def test_commands_do_not_know_each_other():
     commands = {
         path.stem

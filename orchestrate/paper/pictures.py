@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 from ..running.executors import Processes, running_workers
 from ..running.store import load
+from .cases import ORBITS
+from .plan import Part
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from ..figures.style import Figure
-    from .plan import Part
 
-ORBITS = {"6": "elastic", "10": "damped", "11": "plastic"}  # figures that are sweeps
 FORMATS = ("png", "pdf")
 
 

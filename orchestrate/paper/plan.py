@@ -21,7 +21,7 @@ from ..structures import Drive, Excitation, Structure
 from ..weak_drive import averaged
 from ..weak_drive.couple import CoupleJob, couple_job, schedule_of, scheme_of
 from .basin import EvenBasinJob
-from .cases import CASES, MAP_ETAS, MAPS, RIG, map_values
+from .cases import CASES, MAP_ETAS, MAPS, ORBITS, RIG, map_values
 from .chattering import ChatteringJob
 from .curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
 from .gamma import GammaJob
@@ -29,7 +29,6 @@ from .largest import LargestJob
 from .limits import LimitsJob
 from .low_speed import LowSpeedJob
 from .map_peaks import MapPeakJob
-from .pictures import ORBITS
 from .resolution import Resolution
 from .settled import SettledJob
 from .spectra import PeakSpectraJob

@@ -31,8 +31,9 @@ from ..structures.ranges import DRIVE
 from ..structures.structure import Structure
 from . import averaged
 from .controllers import Controller
-from .couple import Run, couple_job, require_motor, scheme_of
+from .couple import couple_job, require_motor, scheme_of
 from .master import Scheme
+from .run import Run
 from .schedule import Constant, check
 from .settling import (
     DECISIONS,

@@ -27,8 +27,9 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import Run, couple_job, scheme_of
+from .couple import couple_job, scheme_of
 from .master import parts_of
+from .run import Run
 from .schedule import Ramp, check
 
 if TYPE_CHECKING:

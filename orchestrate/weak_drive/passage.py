@@ -27,10 +27,11 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from .controllers import Controller
-from .couple import CoupleJob, Run, couple_job, no_verdicts, require_motor, schedule_of, scheme_of
+from .couple import CoupleJob, couple_job, no_verdicts, require_motor, schedule_of, scheme_of
 from .held import with_final_chunk
 from .master import STATE_INDEX, Master, parts_of
 from .revolutions import COLUMNS
+from .run import Run
 from .schedule import Schedule, check
 
 if TYPE_CHECKING:

@@ -15,7 +15,8 @@ from orchestrate.files import write_whole
 from orchestrate.running.runner import answer
 
 from . import page, records
-from .campaign import Campaign, CampaignJob, sources
+from .campaign import Campaign
+from .job import CampaignJob, sources
 from .registry import CAMPAIGNS
 
 STORE = Path(__file__).resolve().parents[2] / "results" / "trust"
