@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import Commands, plain_float
+from .grammar import orders_of, plain_float
+from .options import Commands
 from .output import (
     FORMATS,
     PLOTS,
@@ -143,17 +144,8 @@ def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[s
         for name in names
     }
     if arguments.orders is not None and "orders" in names:
-        settings["orders"]["orders"] = orders_of(arguments.orders)
+        settings["orders"]["orders"] = orders_of("--orders", arguments.orders)
     return settings
-
-
-def orders_of(text: str) -> Any:
-    """Orders of ``--orders``: a number, or several."""
-    try:
-        numbers = [plain_float(part) for part in text.split(",")]
-    except ValueError:
-        raise InputError(f"--orders {text}: expected a whole number, or 0.5,1,2") from None
-    return numbers if "," in text else numbers[0]
 
 
 def paths_of(arguments: argparse.Namespace) -> dict[str, Path]:

@@ -8,17 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import orchestrate
 
-from .options import (
-    Commands,
-    add_excitation,
-    add_numbers,
-    add_over,
-    add_structure,
-    numbers_of,
-    structure_of,
-    varied_arguments,
-)
-from .output import add_results, running_of
+from .options import Commands, add_over, structure_of, varied_arguments
+from .output import running_of
 from .question import carry_out, format_parameter, format_ranges, is_curve, parameter_of, picture_of
 
 if TYPE_CHECKING:
@@ -36,26 +27,18 @@ WORDS = {1: "chaotic", 0: "neutral", -1: "periodic"}
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "largest Lyapunov exponents of responses: periodic, neutral or chaotic"
-    parser = commands.add("lyapunov", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser).add_argument
-    add_over(option)
+    question = commands.ask("lyapunov", run, text, EXAMPLES)
+    add_over(question)
     follow = "responses of a sweep in this direction (default: each from rest)"
-    option("--follow", choices=("up", "down"), help=follow)
-    add_numbers(
-        option,
-        transient=(500, "periods dropped"),
-        periods=(2500, "periods followed"),
-        sigmas=(3.0, "standard errors from zero that decide"),
-    )
-    add_results(parser)
+    question.group.add_argument("--follow", choices=("up", "down"), help=follow)
+    question.declare("transient", "periods", "sigmas")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
     excitation, _ = varied_arguments(arguments, structure)
-    question = {**excitation, **numbers_of(arguments, "transient", "periods", "sigmas")}
+    question = {**excitation, **arguments.question.keywords(arguments)}
     if arguments.follow:
         swept: dict[str, Any] = {**excitation, "direction": arguments.follow, "samples": 1}
         swept["transient"] = arguments.transient

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import plain_int
+from .grammar import plain_int
 
 if TYPE_CHECKING:
     import xarray as xr

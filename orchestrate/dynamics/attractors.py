@@ -427,15 +427,12 @@ def attractors(
     Parameters
     ----------
     structure : Structure
-    eta : array_like, optional
-        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m.
-    frequency, amplitude : array_like, optional
-        The physical form instead: rad/s and m, one amplitude or one for each frequency.
-    over : str, optional
-        Parameter that takes ``values``; by default what is given as a list.
-    values : array_like, optional
-    starts, seed : int
-        Starts at each value, and seed of their random numbers: the same seed, the same starts.
+    eta, frequency, amplitude, over, values
+        As in :func:`orchestrate.sweep`.
+    starts : int
+        Random starts at each value.
+    seed : int
+        Of their random numbers: the same seed, the same starts.
     scale : array_like, optional
         Half width of the box of starts, m: one, or one for each value. Displacement of mass 1 in
         +-scale, gap in [0, scale], velocity of mass 1 and of the gap in +-omega scale. By default
@@ -444,6 +441,7 @@ def attractors(
         (over Omega) of mass 1 within 0.7 of its largest displacement, gap in [0, 3 G] and gap
         rate in +-3 G Omega.
     width : float
+        Half width of that box over the largest gap from rest, where there is no ``scale``.
     transient : int
         Periods dropped at least.
     settle : float

@@ -68,7 +68,7 @@ class BranchJob(OneItemQuestion):
     longest : float
         Longest step.
     most : int
-        Points in one direction.
+        Most points in one direction.
     """
 
     setting: Setting
@@ -240,12 +240,12 @@ def branch(
         The excitation, where it does not vary; by default that of ``start``.
     period : int
         Excitation periods of the orbit, without ``start``.
-    box_acceleration : float
-        Constant acceleration of the box beside the harmonic one, m/s2.
+    box_acceleration
+        As in :func:`orchestrate.orbit`.
     longest : float
         Longest step along the branch: about the limits' span, and phases in rad, are measured in 1.
     most : int
-        Points in one direction.
+        Most points in one direction.
     **running
         ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.
 

@@ -263,10 +263,8 @@ def orbit(
     Parameters
     ----------
     structure : Structure
-    eta : float, optional
-        Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m, so that xi of (3) is x in m.
-    frequency, amplitude : float, optional
-        The physical form instead: rad/s and m.
+    eta, frequency, amplitude
+        As in :func:`orchestrate.simulate`.
     period : int
         Excitation periods after which the orbit closes.
     guess : array_like of 4 floats, or mapping, optional

@@ -207,8 +207,10 @@ def simulate(
         Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m, so that xi of (3) is x in m.
     frequency, amplitude : float, optional
         The physical form instead: rad/s and m.
-    periods, transient : int
-        Excitation periods kept, and dropped before them.
+    periods : int
+        Excitation periods kept.
+    transient : int
+        Periods dropped before them.
     points : int
         Communication points a period.
     start : array_like of 4 floats, optional

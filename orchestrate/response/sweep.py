@@ -56,8 +56,10 @@ class SweepJob(SeriesQuestion):
     ----------
     direction : str
         Of ``DIRECTIONS``.
-    transient, samples : int
-        Periods dropped, and stroboscopic samples kept after them, at each value.
+    transient : int
+        Periods dropped at each value.
+    samples : int
+        Periods kept after them, a stroboscopic sample each.
     tolerance : float
         Of :func:`.multiplicity.decide`.
     start : tuple of float
@@ -252,11 +254,14 @@ def sweep(
         Parameter that takes ``values``, such as ``"e"``, ``"D"``, ``"k2"``, ``"amplitude"``; by
         default what is given as a list.
     values : array_like, optional
+        Its values.
     direction : {"up", "down", "both", "given"}
         Order in which the values are computed; the result keeps the order in which they were
         given. ``"both"`` computes them upwards and downwards and adds a dimension ``direction``.
-    transient, samples : int
-        Periods dropped, and stroboscopic samples kept after them, at each value.
+    transient : int
+        Periods dropped at each value.
+    samples : int
+        Periods kept after them, a stroboscopic sample each.
     tolerance : float
         Part of the motion's size within which a state counts as repeated.
     start : array_like of 4 floats, optional

@@ -342,9 +342,9 @@ def capture(
     count : int
         Voltages that are tried for each value before the border is sought between them.
     tolerance : float
-        Of the border, V.
+        Largest error of the border found by bisection, V.
     time : float, optional
-        After which a motor whose speed has not settled is undecided, s. By default 600 times the
+        Time after which a start that has not settled is undecided, s; by default 600 times the
         slowest time constant of motor and dampers, and ten times what the speed takes to creep
         past the fold, ``tolerance`` above it. A start ends as soon as it is decided.
     stay : int

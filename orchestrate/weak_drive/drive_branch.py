@@ -282,8 +282,8 @@ def drive_branch(
     speed : (float, float), optional
         Range of the mean speed, rad/s; by default 0.95 and 1.25 times the resonance.
     longest : float
-        Longest step along the branch, displacements over the averaged theory's largest amplitude,
-        voltage over K omega and speed over omega: 0.05 makes about 70 points.
+        Longest step along the branch, without a unit: displacements over the averaged theory's
+        largest amplitude, voltage over K omega and speed over omega: 0.05 makes about 70 points.
     most : int
         Most points in one direction.
     period : int
