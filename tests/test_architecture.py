@@ -18,7 +18,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 OURS = ("fmu_src", "orchestrate", "tools")
 FILES = sorted(
-    path.relative_to(ROOT).as_posix() for name in OURS for path in (ROOT / name).rglob("*.py")
+    path.relative_to(ROOT).as_posix()
+    for name in OURS
+    for path in (ROOT / name).rglob("*.py*")
+    if path.suffix in (".py", ".pyi")
 )
 GROUND = {"checks", "constants", "errors", "files", "flags", "temporary", "version"}
 BELOW_ANSWERS = GROUND | {"structures", "access", "running"}
@@ -79,7 +82,7 @@ def tree_of(file: str) -> ast.Module:
 
 def module_name(file: str) -> str:
     """Dotted name of a source file's module."""
-    return file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    return file.removesuffix("i").removesuffix(".py").removesuffix("/__init__").replace("/", ".")
 
 
 def called(node: ast.AST) -> str:

@@ -127,12 +127,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-    """Keywords of each function; an option that none of them takes is refused.
-
-    Raises
-    ------
-    InputError
-    """
+    """Keywords of each function; an option that none of them takes is refused."""
     owned = {option for one in ANALYSES.values() for option in one.options}
     given = {option for option in owned if getattr(arguments, option) is not None}
     for option in sorted(given):
@@ -149,12 +144,7 @@ def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[s
 
 
 def paths_of(arguments: argparse.Namespace) -> dict[str, Path]:
-    """Files of the records by their labels, the first one first.
-
-    Raises
-    ------
-    InputError
-    """
+    """Files of the records by their labels, the first one first."""
     label = arguments.label or (arguments.record.stem if arguments.beside else "")
     paths = {label: arguments.record}
     for text in arguments.beside:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from .grammar import ends_of, plain_int
 from .options import Commands, add_structure, structure_of
 from .output import add_results
-from .question import carry_out, format_parameter, read_stored
+from .question import carry_out, format_parameter, picture_of, read_stored
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,14 +56,6 @@ def run(arguments: argparse.Namespace) -> None:
             raise InputError(f"--{name}: nothing given; expected {expected}")
     question = arguments.question.keywords(arguments)
     carry_out(arguments, structure, question, report, picture_of)
-
-
-def picture_of(data: xr.Dataset) -> Any:
-    """Draw the curve."""
-    from ..figures.borders import draw
-    from ..figures.labels import title_from_attributes
-
-    return draw(data, title=title_from_attributes(data))
 
 
 def report(data: xr.Dataset) -> None:

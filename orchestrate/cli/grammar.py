@@ -54,10 +54,6 @@ def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]
     option, text, expected : str
         For the message.
     reader : callable
-
-    Raises
-    ------
-    InputError
     """
     try:
         return reader(text)
@@ -166,10 +162,6 @@ def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, 
     text : str
     zero : bool
         Whether a number may be 0.
-
-    Raises
-    ------
-    InputError
     """
     is_range = ":" in text
     try:
@@ -208,12 +200,7 @@ def one_or_more(option: str, text: str, one: bool = False) -> float | tuple[floa
 
 
 def one_value(option: str, text: str) -> float:
-    """Parse a single number > 0.
-
-    Raises
-    ------
-    InputError
-    """
+    """Parse a single number > 0."""
     values, _ = values_of(option, text)
     if len(values) != 1:
         raise InputError(
@@ -231,12 +218,7 @@ def level_of(option: str, text: str, several: bool = False) -> float | tuple[flo
 
 
 def changes_of(texts: list[str]) -> dict[str, float | bool]:
-    """Parse names and values of ``--set``.
-
-    Raises
-    ------
-    InputError
-    """
+    """Parse names and values of ``--set``."""
     changes: dict[str, float | bool] = {}
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))

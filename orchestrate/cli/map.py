@@ -44,12 +44,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def map_arguments(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
-    """Return the box's motion and the parameters, two of them as lists.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the box's motion and the parameters, two of them as lists."""
     if len(arguments.over) != len(arguments.values):
         raise InputError("--over and --values: expected as many of one as of the other")
     for name in arguments.over:

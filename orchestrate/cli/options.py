@@ -171,12 +171,7 @@ class Question:
                 self.add(name, **option_of(function, name))
 
     def keywords(self, arguments: argparse.Namespace) -> dict[str, Any]:
-        """Return the options as keywords of the function.
-
-        Raises
-        ------
-        InputError
-        """
+        """Return the options as keywords of the function."""
         keywords = {name: getattr(arguments, name) for name in self.readers}
         for name, reader in self.readers.items():
             if reader is not None and keywords[name] is not None:
@@ -349,10 +344,6 @@ def excitation_of(
         Whether ``--g`` may tell the amplitude.
     levels : bool
         Whether amplitude or level may be a range or a list, at one frequency.
-
-    Raises
-    ------
-    InputError
     """
     from ..constants import GRAVITY
     from ..structures.sections import TO_RAD_S

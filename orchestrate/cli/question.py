@@ -80,34 +80,26 @@ def carry_out_beside(
     structure: Structure,
     question: Question,
     report: Callable[[xr.Dataset], None],
-    draw: Callable[..., Any],
 ) -> None:
-    """Ask a question as :func:`carry_out`; with ``--beside`` of the bonded structure before.
-
-    Parameters
-    ----------
-    arguments, structure, question, report
-        As in :func:`carry_out`.
-    draw : callable
-        From the result, and ``bonded``, that of the bonded structure, to a picture.
-    """
+    """Ask and draw as :func:`carry_out`; with ``--beside`` of the bonded structure before."""
     if not arguments.beside:
-        carry_out(arguments, structure, question, report, draw)
+        carry_out(arguments, structure, question, report, picture_of)
         return
     for name in ("store", "start"):
         if getattr(arguments, name) is not None:
             raise InputError(f"--beside: of two structures; expected it without --{name}")
     bonded = carry_out(arguments, structure.as_bonded(), question, report, None)
     print("delaminated:")
-    beside = partial(draw, bonded=bonded)
+    beside = partial(picture_of, bonded=bonded)
     carry_out(arguments, structure.as_delaminated(), question, report, beside, "with_bonded")
 
 
-def picture_of(data: xr.Dataset) -> Any:
-    """Draw an answer that needs no more than the answer."""
-    from ..figures.plot import DRAW
+def picture_of(data: xr.Dataset, **beside: xr.Dataset) -> Any:
+    """Draw an answer that needs no more than the answer, or one of the bonded structure beside."""
+    from ..figures.plot import BESIDE, DRAW
 
-    return DRAW[data.attrs["call"].partition("(")[0]](data)
+    command = data.attrs["call"].partition("(")[0]
+    return BESIDE[command](data, **beside) if beside else DRAW[command](data)
 
 
 def is_curve(question: Question) -> bool:

@@ -79,16 +79,11 @@ def run(arguments: argparse.Namespace) -> None:
     question = {"excitation": signal_of(arguments), **arguments.question.keywords(arguments)}
     if question["sample_rate"] is None:
         del question["sample_rate"]  # a file's name has always been without it
-    carry_out_beside(arguments, structure, question, report, picture_of)
+    carry_out_beside(arguments, structure, question, report)
 
 
 def signal_of(arguments: argparse.Namespace) -> Random | Sampled | Shock | SweptSine:
-    """The excitation that the options describe.
-
-    Raises
-    ------
-    InputError
-    """
+    """The excitation that the options describe."""
     from .. import Random, Shock, SweptSine
 
     kind = kind_of(arguments)
@@ -160,13 +155,6 @@ def level_of(arguments: argparse.Namespace) -> Any:
     if ":" not in text:
         return unit * number_of(f"--{given[0]}", text)
     return tuple((f, unit * value) for f, value in breakpoints_of(f"--{given[0]}", text))
-
-
-def picture_of(data: xr.Dataset, bonded: xr.Dataset | None = None) -> Any:
-    """The histories."""
-    from ..figures.shaken import draw
-
-    return draw(data, bonded=bonded)
 
 
 def report(data: xr.Dataset) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .grammar import state_of
 from .options import Commands, add_beside, excitation_of, structure_of
@@ -33,14 +33,7 @@ def run(arguments: argparse.Namespace) -> None:
     structure = structure_of(arguments)
     excitation = excitation_of(arguments, structure, si=True, one=True)
     question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out_beside(arguments, structure, question, report, picture_of)
-
-
-def picture_of(data: xr.Dataset, bonded: xr.Dataset | None = None) -> Any:
-    """Draw the histories."""
-    from ..figures.motion import draw
-
-    return draw(data, bonded=bonded)
+    carry_out_beside(arguments, structure, question, report)
 
 
 def report(data: xr.Dataset) -> None:

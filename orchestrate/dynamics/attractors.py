@@ -68,16 +68,10 @@ class Start(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class AttractorsJob(SeriesQuestion):
-    """Random starts along a parameter.
+    """Random starts along a parameter; what is not said here as in :func:`orchestrate.attractors`.
 
     Attributes
     ----------
-    starts, seed : int
-        Number of starts at each value, and seed of their random numbers.
-    scale : float or tuple of float, optional
-        Half width of the box of starts, m: one, or one for each value.
-    width : float
-        Half width in units of the largest gap there, where no scale is given.
     follows : str
         Name of a sweep over the same parameter whose gaps are taken instead of those from rest.
     settings : AttractorSettings

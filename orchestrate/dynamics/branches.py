@@ -317,10 +317,6 @@ def check_start(start: Any, several: bool) -> None:
     """Check that a branch can begin with it.
 
     Several orbits will do where one of their bifurcations is named.
-
-    Raises
-    ------
-    InputError
     """
     if not hasattr(start, "sizes"):
         raise InputError(
@@ -390,12 +386,7 @@ def first_orbit(
 
 
 def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
-    """Check that a branch starts between its limits.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a branch starts between its limits."""
     if not limits[0] <= value <= limits[1]:
         raise InputError(
             f"limits = {limits!r}: {over} = {value!r} at the start; expected it inside"

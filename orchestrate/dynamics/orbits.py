@@ -86,21 +86,12 @@ class OneItemQuestion(Question, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class OrbitJob(OneItemQuestion):
-    """An orbit.
+    """An orbit; what is not said here is as in :func:`orchestrate.orbit`.
 
     Attributes
     ----------
     excitation : tuple of (str, float)
         As the user gave it.
-    box_acceleration : float
-        m/s2.
-    period : int
-        Excitation periods after which the orbit closes.
-    guess : FirstGuess, optional
-    transient, search : int
-        Periods of the response from rest that are dropped, and searched for close returns.
-    tries : int
-        Close returns that Newton's method begins with, at most.
     """
 
     excitation: tuple[tuple[str, float], ...]

@@ -90,27 +90,12 @@ class Axis(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class MapJob(Question):
-    """A map.
+    """A map; what is not said here is as in :func:`orchestrate.map`.
 
     Attributes
     ----------
     given : tuple of (str, float or tuple of float)
         Parameters of the excitation and the structure; two of them are lists.
-    transient : int
-        Periods dropped at least.
-    settle : float
-        At least ``settle * eta`` periods are dropped.
-    samples : int
-        Periods kept.
-    tolerance : float
-        Of :func:`orchestrate.response.multiplicity.decide`.
-    longest : int
-        Periods up to which a response is run on whose multiplicity is undecided.
-    start : tuple of float
-        State that all points start from: x1, x2 in m, v1, v2 in m/s.
-    exponent : bool
-        Whether the largest Lyapunov exponent is computed, over ``periods`` periods.
-    periods : int
     """
 
     given: tuple[tuple[str, Numbers], ...]

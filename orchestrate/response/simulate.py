@@ -45,18 +45,7 @@ IN_TIME = {  # units, long name
 
 @dataclass(frozen=True, kw_only=True)
 class SimulateJob(Question):
-    """One motion in time.
-
-    Attributes
-    ----------
-    excitation : Excitation
-    periods, transient : int
-        Periods kept, and dropped before them.
-    points : int
-        Points a period.
-    start : tuple of float
-        x1, x2 in m, v1, v2 in m/s.
-    """
+    """One motion in time; attributes are as in :func:`orchestrate.simulate`."""
 
     excitation: Excitation
     periods: int = 20

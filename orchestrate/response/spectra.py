@@ -76,17 +76,7 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
 
 @dataclass(frozen=True, kw_only=True)
 class SpectraJob(SeriesQuestion):
-    """Spectra of steady-state responses.
-
-    Attributes
-    ----------
-    periods, points : int
-        Excitation periods in the span, and states a period.
-    transient : int
-        Periods dropped before.
-    highest : float
-        Highest line, as a multiple of the excitation frequency.
-    """
+    """Spectra of steady-state responses; attributes are as in :func:`orchestrate.spectra`."""
 
     periods: int = 64
     points: int = 1024

@@ -50,23 +50,7 @@ HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a g
 
 @dataclass(frozen=True, kw_only=True)
 class SweepJob(SeriesQuestion):
-    """Responses along one parameter.
-
-    Attributes
-    ----------
-    direction : str
-        Of ``DIRECTIONS``.
-    transient : int
-        Periods dropped at each value.
-    samples : int
-        Periods kept after them, a stroboscopic sample each.
-    tolerance : float
-        Of :func:`.multiplicity.decide`.
-    start : tuple of float
-        State that the first value starts from: x1, x2 in m, v1, v2 in m/s.
-    peak_periods : int
-        Periods over which amplitudes and accelerations are looked for, at most.
-    """
+    """Responses along one parameter; attributes are as in :func:`orchestrate.sweep`."""
 
     direction: Direction = "up"
     transient: int = 500

@@ -258,10 +258,6 @@ def torque_line(
 ) -> tuple[float, float]:
     """Return K in N m/A and R_a in Ohm of the line between a datasheet's two points, V, rad/s and N
     m.
-
-    Raises
-    ------
-    InputError
     """
     checked = {
         "rated_voltage": rated_voltage,

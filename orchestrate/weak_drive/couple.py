@@ -7,7 +7,7 @@ and of the master, so an interrupted run goes on with the same bits.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -28,7 +28,7 @@ from .held import MEANINGS, NOT_ASKED, HeldVoltageTest, Verdict, with_final_chun
 from .jumps import Passing, SweepLeg, find_passing, stays_beyond, why_none
 from .master import Scheme
 from .revolutions import COLUMNS
-from .run import CoupledRun, Run
+from .run import CoupledRun, Run, begin_run
 from .schedule import Constant, Ramp, Schedule, check
 from .verdicts import check_against_theory, how_decided, is_doubtful, is_jump, reason, theories
 
@@ -79,24 +79,36 @@ class CoupleJob(CoupledRun):
         return concatenate_tables(chunks)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Compute a chunk of steps, with all that the next one needs; or the verdicts at the
-        end.
+        """Compute a chunk of steps, or the verdicts at the end."""
+        return self.work_on(fmus, items, previous, self.chunk, lambda run: run.revolve(items))
+
+    def work_on(
+        self,
+        fmus: Mapping[str, Path],
+        items: Sequence[int],
+        previous: Table | None,
+        every: int,
+        revolve: Callable[[Run], Table],
+    ) -> Table:
+        """Compute a chunk of steps, with all that the next one needs; or the verdicts at the end.
+
+        Parameters
+        ----------
+        fmus, items, previous
+            As of :meth:`work`.
+        every : int
+            Steps of a chunk.
+        revolve : callable
+            Does the steps; gives what is kept of them.
         """
         if items[0] == self.steps():
             assert previous is not None
             nothing = {name: values[:0] for name, values in previous.items()}
-            return {**nothing, "verdicts": self.verdicts(fmus, previous, self.chunk)[np.newaxis]}
-        with (
-            Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
-            Instance(fmus[SHAKER], "shaker") as shaker,
-        ):
-            run = Run(self, oscillator, shaker)
-            try:
-                if previous is not None:
-                    run.set_state(previous)
-                return {**run.revolve(items), **run.get_state(), **no_verdicts()}
-            finally:
-                run.master.close()
+            return {**nothing, "verdicts": self.verdicts(fmus, previous, every)[np.newaxis]}
+        with begin_run(self, fmus) as run:
+            if previous is not None:
+                run.set_state(previous)
+            return {**revolve(run), **run.get_state(), **no_verdicts()}
 
     def progress_note(self, first: int) -> str:
         """Return a note for the verdicts: they are no step, and may take as long as many."""
@@ -334,12 +346,7 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
 
 
 def require_motor(drive: Drive) -> None:
-    """Check that a voltage turns the motor.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a voltage turns the motor."""
     if not drive.motor_constant > 0.0:
         raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
 
@@ -355,12 +362,7 @@ def schedule_of(
     back: bool = True,
     spin_up: float | None = None,
 ) -> Schedule:
-    """Return a schedule from the arguments of :func:`couple`.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return a schedule from the arguments of :func:`couple`."""
     if isinstance(voltage, Schedule):
         return voltage
     try:
@@ -396,10 +398,6 @@ def scheme_of(
 ) -> Scheme:
     """Return a scheme from the arguments of :func:`couple`; ``sampled`` where each step is a
     sample.
-
-    Raises
-    ------
-    InputError
     """
     omega = structure.omega
     if tolerance is None:
@@ -422,12 +420,7 @@ def couple_job(
     control: Controller | None = None,
     hold: float | None = None,
 ) -> CoupleJob:
-    """Return the job of a run with this schedule.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the job of a run with this schedule."""
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
     if speed_start is None:

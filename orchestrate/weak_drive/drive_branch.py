@@ -69,25 +69,7 @@ Leg = BranchSegment[Motion]
 
 @dataclass(frozen=True)
 class DriveBranchJob(Job):
-    """The branches of both structures over the same range of speeds.
-
-    Attributes
-    ----------
-    structure : Structure
-    drive : Drive
-    speeds : (float, float)
-        rad/s, rising.
-    longest : float
-        Longest step, in unknowns.
-    most : int
-        Points in one direction.
-    period : int
-        Most revolutions after which the delaminated motion repeats.
-    steps : int
-        Communication steps in a revolution.
-    settle : float
-        Time in which the first motion is approached by simulation, s.
-    """
+    """Branches of both structures; attributes are as in :func:`orchestrate.drive_branch`."""
 
     structure: Structure
     drive: Drive

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -140,3 +142,17 @@ class Run:
         self.master.set_state(table["master_memory"][-1].tolist())
         self.revolutions.set_state(table["revolution_memory"][-1].tolist())
         self.control_memory = tuple(table["control_memory"][-1].tolist())
+
+
+@contextmanager
+def begin_run(job: CoupledRun, fmus: Mapping[str, Path]) -> Iterator[Run]:
+    """Begin a run on new instances of both FMUs; free them at the end."""
+    with (
+        Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
+        Instance(fmus[SHAKER], "shaker") as shaker,
+    ):
+        run = Run(job, oscillator, shaker)
+        try:
+            yield run
+        finally:
+            run.master.close()
