@@ -41,8 +41,8 @@ def run(
         sources=sources(),
     )
     place = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
-    found = answer(job, {"store": place, **running}, finder(running))
-    return records.record_of(campaign.name, seed, budget, found)
+    result = answer(job, {"store": place, **running}, finder(running))
+    return records.record_of(campaign.name, seed, budget, result)
 
 
 def write_page() -> None:

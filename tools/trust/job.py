@@ -60,11 +60,11 @@ class CampaignJob(Job):
         campaign, rows = CAMPAIGNS[self.campaign], []
         for seed, count in items:
             clock = processor_time()
-            found = campaign.run(fmus[OSCILLATOR], seed, count)
-            notes = [without_places(note) for note in found.notes[:TOLD]]
-            told = json.dumps({"counts": dict(found.counts), "notes": notes})
+            outcome = campaign.run(fmus[OSCILLATOR], seed, count)
+            notes = [without_places(note) for note in outcome.notes[:TOLD]]
+            told = json.dumps({"counts": dict(outcome.counts), "notes": notes})
             seconds = processor_time() - clock
-            rows.append((found.done, found.findings, found.worst, seconds, seed, told))
+            rows.append((outcome.done, outcome.findings, outcome.worst, seconds, seed, told))
         names = ("done", "findings", "worst", "seconds", "seed", "told")
         return {
             name: np.array(part) for name, part in zip(names, zip(*rows, strict=True), strict=True)

@@ -50,16 +50,16 @@ def beam_mass(results: Results) -> Finding:
 def sommerfeld(results: Results) -> Finding:
     """Whether the averaged theory of the set ``beam`` has a break at its resonance."""
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
-    found = averaged.folds(structure, drive)
+    folds = averaged.folds(structure, drive)
     place = averaged.resonance(structure, drive)
     text = "; ".join(
         f"fold at speed {fold.Omega:.4f} omega, "
         f"{fold.eta0 * drive.motor_constant * structure.omega:.3f} V"
-        for fold in found
+        for fold in folds
     )
     value = f"resonance at {place:.4f} omega; {text or 'no fold: the speed does not jump'}"
     why = "Bonded masses; jumps of the delaminated beam: the command couple."
-    return Finding(value, YES if len(found) > 1 else NO, why)
+    return Finding(value, YES if len(folds) > 1 else NO, why)
 
 
 def linear_curve(numbers: np.ndarray, speed: np.ndarray) -> np.ndarray:
@@ -88,8 +88,8 @@ def fitted(speed: np.ndarray, amplitude: np.ndarray) -> tuple[np.ndarray, float]
     def away(numbers: np.ndarray) -> np.ndarray:
         return linear_curve(numbers, speed) / amplitude - 1.0
 
-    found = least_squares(away, begin, x_scale=np.abs(begin))
-    return found.x, float(np.abs(away(found.x)).max())
+    fit = least_squares(away, begin, x_scale=np.abs(begin))
+    return fit.x, float(np.abs(away(fit.x)).max())
 
 
 def up_to_the_break(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:

@@ -90,11 +90,11 @@ def three_states(results: Results) -> Finding:
     """Figure 5's three states."""
     kinds = results.get("figure5").kind.values
     steady = results.steady("elastic").sel(eta=0.4, method="nearest")
-    found = (
+    text = (
         f"{float(steady.contacts):.0f} permanent contact and {float(steady.impacts):.0f} impacts "
         "per T"
     )
-    return holds([bool((kinds == state).any()) for state in (SEQUENCE, CONTACT, FLIGHT)], found)
+    return holds([bool((kinds == state).any()) for state in (SEQUENCE, CONTACT, FLIGHT)], text)
 
 
 @claim(
@@ -194,10 +194,10 @@ def enough_periods(results: Results) -> Finding:
     later, latest = (results.of(name, "elastic", "_up") for name in ("later", "latest"))
     text, parts = [], []
     for low, high in ((float(up.eta.min()), end), (end, float(up.eta.max()))):
-        others, count, which = told_apart(up, between(later, low, high))
+        others, count, which = count_changed(up, between(later, low, high))
         text.append(f"{others} of {count} frequencies from {low:.3f} to {high:.3f}{which}")
         parts.append(others <= FEW * count)
-    others, count, which = told_apart(up, latest)
+    others, count, which = count_changed(up, latest)
     late = f"after n = {first_sample(up, latest):,} {others} of {count} drawn by chance{which}"
     why = (
         "Each response was run on from where the sweep left it. A deviation decays as e^(-D tau), "
@@ -214,7 +214,7 @@ def first_sample(up: xr.Dataset, later: xr.Dataset) -> int:
     return done + int(later.attrs["transient"]) + 1
 
 
-def told_apart(up: xr.Dataset, later: xr.Dataset) -> tuple[int, int, str]:
+def count_changed(up: xr.Dataset, later: xr.Dataset) -> tuple[int, int, str]:
     """How many responses of a sweep are others later, of how many, and what they are."""
     kinds = {what: int(part.sum()) for what, part in changed(up, later, CHANGE).items()}
     named = ", ".join(f"{count} {what}" for what, count in kinds.items() if count)
@@ -310,17 +310,17 @@ def no_contact_above(results: Results) -> Finding:
 def windows_in_order(results: Results) -> Finding:
     """Windows nT with one impact, in order."""
     up = results.up("elastic")
-    found = [window(up, n) for n in range(1, 5)]
+    windows = [window(up, n) for n in range(1, 5)]
     exact = [
         results.window("elastic", f"{n if n > 1 else ''}T/1", 0.5 * (w[0] + w[1]))
-        for n, w in enumerate(found, 1)
+        for n, w in enumerate(windows, 1)
         if w
     ]
-    text = "; ".join(f"{n}T: {w[0]:.3f} to {w[1]:.3f}" for n, w in enumerate(found, 1) if w)
+    text = "; ".join(f"{n}T: {w[0]:.3f} to {w[1]:.3f}" for n, w in enumerate(windows, 1) if w)
     text += "; exact: " + "; ".join(f"{w.low:.5f} to {w.high:.5f}" for w in exact)
     before: tuple[float, float] | None = None
     ordered = []
-    for limits in found:
+    for limits in windows:
         ordered.append(limits is not None and (before is None or before[1] < limits[0]))
         before = limits
     return holds(ordered, text)
@@ -381,7 +381,7 @@ def one_impact_everywhere(results: Results) -> Finding:
 def impact_distance(results: Results) -> Finding:
     """Times between impacts at the peaks of the windows."""
     up, steady = results.up("elastic"), results.steady("elastic")
-    found, parts = [], []
+    texts, parts = [], []
     for n in range(1, 4):
         eta = relative_peak(up, n)
         if eta is None:
@@ -389,9 +389,9 @@ def impact_distance(results: Results) -> Finding:
             continue
         row = steady.sel(eta=eta, method="nearest")
         low, high = float(row.distance_min), float(row.distance_max)
-        found.append(f"{low:.3f} to {high:.3f} T at {eta:.3f}")
+        texts.append(f"{low:.3f} to {high:.3f} T at {eta:.3f}")
         parts.append(abs(low - n) < 0.01 and abs(high - n) < 0.01)
-    return holds(parts, "; ".join(found))
+    return holds(parts, "; ".join(texts))
 
 
 @claim(

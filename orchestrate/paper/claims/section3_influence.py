@@ -62,15 +62,15 @@ def alternation(results: Results) -> Finding:
     settled = between(results.settled("elastic"), 0.43, 0.89)
     counts = np.round(settled.impacts_per_period.values).astype(int)
     regular = settled.multiplicity.values == 1
-    found = [
+    windows = [
         f"{counts[first]} ({settled.eta.values[first]:.3f} to {settled.eta.values[last]:.3f})"
         for first, last in runs(regular)
     ]
     chaotic, neutral = shares(results, "elastic", 0.43, 0.89)
-    text = f"T-periodic with so many impacts: {', '.join(found)}"
+    text = f"T-periodic with so many impacts: {', '.join(windows)}"
     why = f"In between 2T- and more periodic, {100 * chaotic:.0f} % of all frequencies chaotic, "
     why += f"{100 * neutral:.0f} % neutral (a torus, or not decided): what interchanges is chaos."
-    return holds([len(found) > 2, not regular.all(), neutral > chaotic], text, why)
+    return holds([len(windows) > 2, not regular.all(), neutral > chaotic], text, why)
 
 
 limit(
@@ -129,16 +129,16 @@ def peak_place(results: Results) -> Finding:
 def no_influence(results: Results) -> Finding:
     """Whether the largest gap has an extremum at the natural frequencies."""
     gaps = results.up("elastic").xi_rel_max
-    found, parts = [], []
+    texts, parts = [], []
     for eta in (1.0, 1.095):
         near = gaps.sel(eta=slice(eta - 0.0105, eta + 0.0105)).values
         change = np.diff(np.log(near))
         parts.append(bool((change > 0).all() or (change < 0).all()))
-        found.append(
+        texts.append(
             f"around {eta:g} it changes by {100 * change.min():.1f} to {100 * change.max():.1f} % "
             f"a step, without an extremum: {parts[-1]}"
         )
-    return holds(parts, "; ".join(found))
+    return holds(parts, "; ".join(texts))
 
 
 @claim(
@@ -211,11 +211,11 @@ def non_unique(results: Results) -> Finding:
         "near its end few starts lead to the second."
     )
     if len(several):
-        why += f" Frequencies at which starts find two: {told(several)}."
+        why += f" Frequencies at which starts find two: {format_frequencies(several)}."
     return holds([len(sure) > 0, bool(differ.any())], text, why)
 
 
-def told(etas: np.ndarray) -> str:
+def format_frequencies(etas: np.ndarray) -> str:
     """Frequencies as a text: the first and last of each row without a gap larger than 0.006."""
     groups = np.split(etas, np.flatnonzero(np.diff(etas) > 0.006) + 1)
     return ", ".join(f"{g[0]:.3f}" + (f" to {g[-1]:.3f}" if len(g) > 1 else "") for g in groups)

@@ -40,7 +40,7 @@ def as_before(case: str, low: float, high: float) -> Check:
 
     def check(results: Results) -> Finding:
         part = between(results.up(case), low, 8.0)
-        found = [n for n in (1, 2, 3, 4) if kind(part, n, 1).any()]
+        periods = [n for n in (1, 2, 3, 4) if kind(part, n, 1).any()]
         begin, end = results.ends(case, "T/1", 2.0), results.begins(case, "2T/1", 4.2)
         chaotic, neutral = shares(results, case, begin.value, end.value)
         steady = between(results.steady(case), low, high)
@@ -52,13 +52,13 @@ def as_before(case: str, low: float, high: float) -> Check:
         )
         text = (
             f"T-periodic with one impact from {low} to {high}: {simple}; windows nT with one "
-            f"impact for n = {found}"
+            f"impact for n = {periods}"
         )
         why = (
             f"From {begin.value:.5f} to {end.value:.5f} {100 * chaotic:.0f} % of the responses are "
             f"chaotic, {100 * neutral:.0f} % neutral."
         )
-        return holds([simple, found == [1, 2, 3, 4]], text, why)
+        return holds([simple, periods == [1, 2, 3, 4]], text, why)
 
     return check
 
