@@ -101,12 +101,7 @@ def read_text(path: str | os.PathLike[str], most: int) -> str:
 
 
 def check_name(path: str | os.PathLike[str]) -> None:
-    """See that a path is UTF-8: the libraries that write results take no other.
-
-    Raises
-    ------
-    InputError
-    """
+    """See that a path is UTF-8: the libraries that write results take no other."""
     try:
         str(Path(path).absolute()).encode("utf-8")
     except UnicodeEncodeError:

@@ -18,7 +18,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 OURS = ("fmu_src", "orchestrate", "tools")
 FILES = sorted(
-    path.relative_to(ROOT).as_posix() for name in OURS for path in (ROOT / name).rglob("*.py")
+    path.relative_to(ROOT).as_posix()
+    for name in OURS
+    for path in (ROOT / name).rglob("*.py*")
+    if path.suffix in (".py", ".pyi")
 )
 GROUND = {"checks", "constants", "errors", "files", "flags", "temporary", "version"}
 BELOW_ANSWERS = GROUND | {"structures", "access", "running"}
@@ -79,7 +82,7 @@ def tree_of(file: str) -> ast.Module:
 
 def module_name(file: str) -> str:
     """Dotted name of a source file's module."""
-    return file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    return file.removesuffix("i").removesuffix(".py").removesuffix("/__init__").replace("/", ".")
 
 
 def called(node: ast.AST) -> str:
@@ -200,12 +203,54 @@ def test_a_package_of_others_is_known_in_one_place(package):
     assert [file for file in users(package) if not file.startswith(places)] == []
 
 
-def test_commands_do_not_know_each_other():
-    commands = {
-        path.stem
-        for path in (ROOT / "orchestrate" / "cli").glob("*.py")
-        if path.stem not in ("__init__", "drives", "options", "output", "question")
+MODULES = {module_name(file): file for file in FILES}
+
+
+def imported_files(file: str) -> set[str]:
+    """Files of ours that a file imports anywhere, for the type checker alone too."""
+    names = (
+        name if name in MODULES else name.rpartition(".")[0]
+        for name in imports(tree_of(file), file)
+    )
+    return {MODULES[name] for name in names if name in MODULES} - {file}
+
+
+def circles(graph: dict[str, set[str]]) -> list[set[str]]:
+    """Groups of nodes of which each is reached from every other of the group."""
+
+    def reached(start: str) -> set[str]:
+        seen: set[str] = set()
+        waiting = [start]
+        while waiting:
+            new = graph[waiting.pop()] - seen
+            seen |= new
+            waiting += new
+        return seen
+
+    beyond = {node: reached(node) for node in graph}
+    groups = {
+        frozenset(other for other in beyond[node] if node in beyond[other])
+        for node in graph
+        if node in beyond[node]
     }
+    return [set(group) for group in groups]
+
+
+def test_the_finder_of_circles():
+    graph = {"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set(), "e": {"a", "d"}}
+    assert circles(graph) == [{"b", "c"}]
+    assert circles({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == []
+
+
+def test_no_files_import_each_other_in_a_circle():
+    graph = {file: imported_files(file) for file in FILES}
+    assert "orchestrate/errors.py" in graph["orchestrate/cli/__init__.py"]
+    assert circles(graph) == []
+
+
+def test_commands_do_not_know_each_other():
+    shared = {"__init__", "declared", "drives", "grammar", "options", "output", "question"}
+    commands = {path.stem for path in (ROOT / "orchestrate" / "cli").glob("*.py")} - shared
     assert {"build", "sweep", "paper"} <= commands
     for command in commands:
         file = f"orchestrate/cli/{command}.py"

@@ -118,14 +118,14 @@ def compare(count: int) -> None:
     print("".join(f"{name:>12}" for name in COLUMNS), "  (the last two: times the native FMU)")
     seconds, impacts = 0.0, 0
     for eta in ETAS:
-        taken, found = min(periods(native, eta, count) for _ in range(3))
-        seconds, impacts = seconds + taken, impacts + found
+        taken, count_of_impacts = min(periods(native, eta, count) for _ in range(3))
+        seconds, impacts = seconds + taken, impacts + count_of_impacts
         each = taken / count
         ratios = (
             pure_python(python, eta, 30) / 30 / each,
             sampled_solver.seconds(eta, 10) / 10 / each,
         )
-        row = (eta, each * 1e6, taken / max(found, 1) * 1e9, *ratios)
+        row = (eta, each * 1e6, taken / max(count_of_impacts, 1) * 1e9, *ratios)
         print("".join(f"{value:12.4g}" for value in row), flush=True)
     quiet = quiet_step(native) * 1e9
     print(f"all: {seconds / impacts * 1e9:.0f} ns an impact; a step without one: {quiet:.0f} ns")

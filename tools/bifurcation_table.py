@@ -68,35 +68,35 @@ def run(instance: EventInstance, eta: float, state: np.ndarray, periods: int) ->
     return instance.read("x1", "x2", "v1", "v2").copy()
 
 
-def growth(instance: EventInstance, found: xr.Dataset) -> float:
+def growth(instance: EventInstance, answer: xr.Dataset) -> float:
     """How much a small deviation from an orbit has grown after ``PERIODS``."""
-    states = found.state.values
+    states = answer.state.values
     nudged = states[0] + NUDGE * np.array([-1.0, 1.0, 1.0, -1.0])
-    ended = run(instance, float(found.eta), nudged, PERIODS // len(states) * len(states))
+    ended = run(instance, float(answer.eta), nudged, PERIODS // len(states) * len(states))
     return float(np.abs(states - ended).max(axis=1).min() / NUDGE)
 
 
-def outside(instance: EventInstance, found: xr.Dataset) -> int:
+def outside(instance: EventInstance, answer: xr.Dataset) -> int:
     """Multipliers outside the unit circle, by differences of the FMU's own map."""
-    state, periods, eta = found.state.values[0], found.sizes["sample"], float(found.eta)
-    slowest = float(np.nanmin(found.node_closing.where(found.node_kind == 0)))
+    state, periods, eta = answer.state.values[0], answer.sizes["sample"], float(answer.eta)
+    slowest = float(np.nanmin(answer.node_closing.where(answer.node_kind == 0)))
     step = min(1e-7, max(1e-9, 1e-4 * slowest**2))  # the map bends the more the slower an impact
     moved = [run(instance, eta, state + s * step * a, periods) for a in np.eye(4) for s in (1, -1)]
     matrix = (np.array(moved[0::2]) - np.array(moved[1::2])).T / (2.0 * step)
     return int((np.abs(np.linalg.eigvals(matrix)) > 1.0).sum())
 
 
-def beside(found: xr.Dataset, at: xr.Dataset, eta: float) -> list[xr.Dataset]:
+def beside(answer: xr.Dataset, at: xr.Dataset, eta: float) -> list[xr.Dataset]:
     """The branch's orbits at an eta beside a bifurcation: one, none, or two at a fold."""
     place, value = float(at.bifurcation_place), float(at.bifurcation_value)
-    count = found.sizes["point"]
+    count = answer.sizes["point"]
     orbits = []
     for way in (-1, 1):
         first = int(np.floor(place) if way < 0 else np.ceil(place))
         numbers = [i for i in range(first, first + NEIGHBOURS * way, way) if 0 <= i < count]
-        near = [i for i in numbers if (found.eta.values[i] - value) * (eta - value) > 0.0]
-        for i in sorted(near, key=lambda i: abs(float(found.eta[i]) - eta)):
-            one = corrected(found.isel(point=i), eta)
+        near = [i for i in numbers if (answer.eta.values[i] - value) * (eta - value) > 0.0]
+        for i in sorted(near, key=lambda i: abs(float(answer.eta[i]) - eta)):
+            one = corrected(answer.isel(point=i), eta)
             if one is not None:
                 orbits.append(one)
                 break
@@ -107,18 +107,18 @@ def corrected(guess: xr.Dataset, eta: float) -> xr.Dataset | None:
     """The orbit at an eta near another one, if there is one that the FMU runs through."""
     periods = guess.sizes["sample"]
     try:
-        found = orbit(PAPER, eta=eta, period=periods, guess=guess, progress=False)
+        answer = orbit(PAPER, eta=eta, period=periods, guess=guess, progress=False)
     except InputError:
         return None
-    return found if found.fmu_same_impacts else None
+    return answer if answer.fmu_same_impacts else None
 
 
-def told(instance: EventInstance, found: xr.Dataset) -> str:
+def format_orbit(instance: EventInstance, answer: xr.Dataset) -> str:
     """What the FMU does near an orbit."""
-    largest, grown = float(np.hypot(*found.multipliers.values[0])), growth(instance, found)
-    as_said = grown < 1.0 / GROWTH if found.stable else grown > GROWTH
-    count = outside(instance, found)
-    by_formula = int((np.hypot(*found.multipliers.values.T) > 1.0).sum())
+    largest, grown = float(np.hypot(*answer.multipliers.values[0])), growth(instance, answer)
+    as_said = grown < 1.0 / GROWTH if answer.stable else grown > GROWTH
+    count = outside(instance, answer)
+    by_formula = int((np.hypot(*answer.multipliers.values.T) > 1.0).sum())
     agrees = as_said and count == by_formula
     return f"{largest:.4f}, {count}, {grown:.0e}{'' if agrees else ' (!)'}"
 
@@ -136,11 +136,11 @@ def contacts(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
     return f"{int(instance.get('contact_count')[0])} contacts in {PERIODS} periods"
 
 
-def rows(instance: EventInstance, label: str, found: xr.Dataset) -> Iterator[str]:
+def rows(instance: EventInstance, label: str, answer: xr.Dataset) -> Iterator[str]:
     """Lines of the table for a branch, upwards."""
-    values, names = found.bifurcation_value.values, kind_names(found)
+    values, names = answer.bifurcation_value.values, kind_names(answer)
     for i in np.argsort(values):
-        at = found.isel(bifurcation=int(i))
+        at = answer.isel(bifurcation=int(i))
         kind = names[int(at.bifurcation_kind)]
         lost = "contact" in kind
         gaps = np.abs(np.delete(values, i) - values[i]) / 3.0
@@ -150,27 +150,27 @@ def rows(instance: EventInstance, label: str, found: xr.Dataset) -> Iterator[str
             if lost:
                 cells.append(contacts(instance, at, eta))
                 continue
-            orbits = [told(instance, one) for one in beside(found, at, eta)]
+            orbits = [format_orbit(instance, one) for one in beside(answer, at, eta)]
             cells.append("; ".join(orbits) or without_orbit(instance, at, eta))
         yield f"| {label} | {values[i]:.8f} | {kind} | {away:.1e} | {cells[0]} | {cells[1]} |"
 
 
-def table(found: dict[str, xr.Dataset]) -> list[str]:
+def table(answer: dict[str, xr.Dataset]) -> list[str]:
     """All lines."""
     lines = ["| branch | eta | kind | ± | below | above |", "|---|---|---|---|---|---|"]
     with EventInstance(find(OSCILLATOR).path) as instance:
-        for label, one in found.items():
+        for label, one in answer.items():
             lines += rows(instance, label, one)
     return lines
 
 
-def windows(found: dict[str, xr.Dataset]) -> list[xr.Dataset]:
+def windows(answer: dict[str, xr.Dataset]) -> list[xr.Dataset]:
     """The borders of T/1 to 4T/1 over eta and e."""
     curves = []
     for label in ("T/1", "2T/1", "3T/1", "4T/1"):
-        for i in range(found[label].sizes["bifurcation"]):
+        for i in range(answer[label].sizes["bifurcation"]):
             limits = [(0.9, 9.5), (0.05, 1.0)]
-            curves.append(border(PAPER, start=found[label], bifurcation=i, limits=limits))
+            curves.append(border(PAPER, start=answer[label], bifurcation=i, limits=limits))
     return curves
 
 
@@ -191,24 +191,24 @@ def all_windows() -> list[str]:
     for case, structure in CASES.items():
         for label, (eta, period, limits) in WINDOWS.items():
             start = orbit(structure, eta=eta, period=period)
-            found = branch(structure, start=start, limits=limits)
-            lines += [window_line(case, label, window) for window in stable_windows(found)]
+            answer = branch(structure, start=start, limits=limits)
+            lines += [window_line(case, label, window) for window in stable_windows(answer)]
     return lines
 
 
 def main() -> None:
     """Write tables and pictures."""
-    found = {
+    answer = {
         label: branch(PAPER, start=orbit(PAPER, eta=eta, period=period), limits=limits)
         for label, (eta, period, limits) in STARTS.items()
     }
     page = DOCS / "bifurcations.md"
-    text = put(page.read_text("utf-8"), "table", table(found))
+    text = put(page.read_text("utf-8"), "table", table(answer))
     text = put(text, "windows", all_windows())
     write_whole(page, lambda place: place.write_text(text, "utf-8"))
     responses = sweep(PAPER, eta=FIGURE_6)
-    save(branches_figure.draw(*found.values(), responses=responses), DOCS / "branches")
-    save(borders_figure.draw(*windows(found)), DOCS / "borders")
+    save(branches_figure.draw(*answer.values(), responses=responses), DOCS / "branches")
+    save(borders_figure.draw(*windows(answer)), DOCS / "borders")
 
 
 if __name__ == "__main__":

@@ -22,10 +22,10 @@ LEFT_OUT = ("identity", "history")  # of every source: the stamp tells what deci
 def figure6() -> xr.Dataset:
     """The sweep, of it what the page needs."""
     etas = np.arange(100, 8001) / 1000
-    found = orchestrate.sweep(orchestrate.Structure(), eta=etas, direction="up")
-    found = found[KEPT].drop_vars("period")
-    found.attrs = {name: value for name, value in found.attrs.items() if name not in LEFT_OUT}
-    return found.assign_attrs({STAMP: kernel_digest(OSCILLATOR)})
+    answer = orchestrate.sweep(orchestrate.Structure(), eta=etas, direction="up")
+    answer = answer[KEPT].drop_vars("period")
+    answer.attrs = {name: value for name, value in answer.attrs.items() if name not in LEFT_OUT}
+    return answer.assign_attrs({STAMP: kernel_digest(OSCILLATOR)})
 
 
 def main() -> None:

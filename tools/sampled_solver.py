@@ -57,8 +57,8 @@ def seconds(eta: float, count: int, e: float = 0.7, D: float = 0.005, kappa: flo
     t, stop, y, touching = 0.0, count * 2.0 * math.pi / eta, np.zeros(4), True
     while t < stop:
         motion, event = (contact, pressed) if touching else (flight, gap)
-        found = solve_ivp(motion, (t, stop), y, rtol=1e-8, atol=1e-10, events=event)
-        t, y = found.t[-1], found.y[:, -1].copy()
+        solution = solve_ivp(motion, (t, stop), y, rtol=1e-8, atol=1e-10, events=event)
+        t, y = solution.t[-1], solution.y[:, -1].copy()
         slow = e * (y[1] - y[3]) < 1e-4
         touching = not touching and slow and pressed(t, y) < 0.0
         y = after(y, touching, e)

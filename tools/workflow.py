@@ -25,8 +25,11 @@ ROOT = Path(__file__).resolve().parents[1]
 def interpreter(version: str) -> str:
     """Python of a version, from the path or pyenv; else this one, which is said."""
     pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
-    found = [*map(str, pyenv.glob(f"{version}.*/bin/python")), shutil.which(f"python{version}")]
-    chosen = next(filter(None, found), None)
+    candidates = [
+        *map(str, pyenv.glob(f"{version}.*/bin/python")),
+        shutil.which(f"python{version}"),
+    ]
+    chosen = next(filter(None, candidates), None)
     if chosen is None:
         print(f"no Python {version} here: {sys.version.split()[0]} instead")
     return chosen or sys.executable

@@ -10,7 +10,7 @@ import argparse
 import logging
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from ..errors import InputError, StaleError, VibroimpactError
@@ -67,8 +67,14 @@ def program_name() -> str:
     return "vibroimpact" if called.startswith("vibroimpact") else "python -m orchestrate"
 
 
-def make_parser() -> argparse.ArgumentParser:
-    """Make the command line's parser, with one subparser per command."""
+def make_parser(words: Collection[str] | None = None) -> argparse.ArgumentParser:
+    """Make the command line's parser, with one subparser per command.
+
+    Parameters
+    ----------
+    words : collection of str, optional
+        Of a command line: only functions of commands among them are imported for their options.
+    """
     program = program_name()
     parser = argparse.ArgumentParser(
         prog=program,
@@ -82,8 +88,10 @@ def make_parser() -> argparse.ArgumentParser:
     debug = "show where in the program an error came from"
     parser.add_argument("--debug", action="store_true", help=debug)
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    adding = Commands(commands, program, words)
     for command in COMMANDS:
-        command.add_parser(Commands(commands, program))
+        command.add_parser(adding)
+    adding.finish()
     return parser
 
 
@@ -140,7 +148,7 @@ def carry_out(arguments: Sequence[str]) -> int:
     if store := sys.modules.get(STORE):  # of a command before, in this process
         store.STARTED.clear()
         store.FINISHED.clear()
-    chosen = make_parser().parse_args(join_negative_values(arguments))
+    chosen = make_parser(arguments).parse_args(join_negative_values(arguments))
     try:
         chosen.run(chosen)
         return SUCCESS

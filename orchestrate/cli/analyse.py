@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import Commands, plain_float
+from .grammar import orders_of, plain_float
+from .options import Commands
 from .output import (
     FORMATS,
     PLOTS,
@@ -127,12 +128,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-    """Keywords of each function; an option that none of them takes is refused.
-
-    Raises
-    ------
-    InputError
-    """
+    """Keywords of each function; an option that none of them takes is refused."""
     owned = {option for one in ANALYSES.values() for option in one.options}
     given = {option for option in owned if getattr(arguments, option) is not None}
     for option in sorted(given):
@@ -144,26 +140,12 @@ def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[s
         for name in names
     }
     if arguments.orders is not None and "orders" in names:
-        settings["orders"]["orders"] = orders_of(arguments.orders)
+        settings["orders"]["orders"] = orders_of("--orders", arguments.orders)
     return settings
 
 
-def orders_of(text: str) -> Any:
-    """Orders of ``--orders``: a number, or several."""
-    try:
-        numbers = [plain_float(part) for part in text.split(",")]
-    except ValueError:
-        raise InputError(f"--orders {text}: expected a whole number, or 0.5,1,2") from None
-    return numbers if "," in text else numbers[0]
-
-
 def paths_of(arguments: argparse.Namespace) -> dict[str, Path]:
-    """Files of the records by their labels, the first one first.
-
-    Raises
-    ------
-    InputError
-    """
+    """Files of the records by their labels, the first one first."""
     label = arguments.label or (arguments.record.stem if arguments.beside else "")
     paths = {label: arguments.record}
     for text in arguments.beside:

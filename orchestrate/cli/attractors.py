@@ -5,19 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from .options import (
-    Commands,
-    add_excitation,
-    add_numbers,
-    add_over,
-    add_settling,
-    add_structure,
-    numbers_of,
-    one_value,
-    structure_of,
-    varied_arguments,
-)
-from .output import add_results
+from .grammar import one_value
+from .options import Commands, add_over, structure_of, varied_arguments
 from .question import (
     carry_out,
     format_parameter,
@@ -45,33 +34,21 @@ MAX_ATTRACTORS = 12  # attractors along a parameter that are told
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "coexisting motions: how many, and how many random starts lead to each"
-    parser = commands.add("attractors", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser).add_argument
-    add_over(option)
-    option(
-        "--scale",
-        metavar="X",
-        help="half width of one box of starts around zero, m (default: --width times the gap from "
-        "rest, and a second box around the response from rest)",
+    question = commands.ask("attractors", run, text, EXAMPLES)
+    add_over(question)
+    half = (
+        "half width of one box of starts around zero, m (default: --width times the gap from "
+        "rest, and a second box around the response from rest)"
     )
-    add_numbers(
-        option,
-        starts=(60, "random starts at each value"),
-        seed=(0, "of the random numbers: the same seed, the same starts"),
-        width=(3.0, "half width of the box of starts over the largest gap from rest"),
-    )
-    add_settling(option, (48, "periods looked at"), transient=400)
-    add_results(parser)
+    question.add("scale", one_value, metavar="X", help=half)
+    question.declare("starts", "seed", "width", "transient", "settle", "samples")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
     excitation, _ = varied_arguments(arguments, structure)
-    names = ("starts", "seed", "width", "transient", "settle", "samples")
-    scale = None if arguments.scale is None else one_value("--scale", arguments.scale)
-    question = {**excitation, "scale": scale, **numbers_of(arguments, *names)}
+    question = {**excitation, **arguments.question.keywords(arguments)}
     carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
 
 

@@ -8,27 +8,13 @@ from typing import TYPE_CHECKING
 
 import orchestrate
 
-from ..errors import InputError
-from .options import (
-    Commands,
-    add_excitation,
-    add_numbers,
-    add_settling,
-    add_structure,
-    excitation_of,
-    numbers_of,
-    plain_float,
-    plain_int,
-    state_of,
-    structure_of,
-)
-from .output import add_results
+from .grammar import side_of, state_of
+from .options import Commands, excitation_of, structure_of
 from .question import carry_out, picture_of, print_attractors
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Side = tuple[str, float, float, int]
 FEWEST_STARTS = 32  # along a side, for entropies
 EXAMPLES = """\
   {program} basin --eta 1.315
@@ -42,56 +28,26 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "basins of attraction: which motion each start of a plane leads to"
-    parser = commands.add("basin", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser, several=False).add_argument
-    side = "NAME,FIRST,LAST,COUNT"
-    usual = "x_rel as far as twice the attractors' largest gap, 80 values"
-    option("--x", metavar=side, help=f"horizontal side of the plane (default: {usual})")
-    usual = "v_rel as far as twice the attractors' largest rate, 80 values"
-    option("--y", metavar=side, help=f"vertical side of the plane (default: {usual})")
+    question = commands.ask("basin", run, text, EXAMPLES, several=False)
+    form = "NAME,FIRST,LAST,COUNT"
+    side = "horizontal side of the plane (default: x_rel as far as twice the attractors' largest "
+    question.add("x", side_of, metavar=form, help=f"{side}gap, 80 values)")
+    side = "vertical side of the plane (default: v_rel as far as twice the attractors' largest "
+    question.add("y", side_of, metavar=form, help=f"{side}rate, 80 values)")
     rest = (
         "state that the plane goes through, m and m/s "
         "(default: rest; without --x and --y the mean of the attractors)"
     )
-    option("--at", metavar="X1,X2,V1,V2", help=rest)
-    add_numbers(
-        option,
-        phase=(0.0, "phase of the box at the start, rad"),
-    )
-    add_settling(option, (48, "periods looked at"), transient=400)
-    add_results(parser)
+    question.add("at", state_of, metavar="X1,X2,V1,V2", help=rest)
+    question.declare("phase", "transient", "settle", "samples")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
     excitation = excitation_of(arguments, structure, si=True, one=True)
-    question = {
-        **excitation,
-        "x": side_of("--x", arguments.x),
-        "y": side_of("--y", arguments.y),
-        "at": state_of("--at", arguments.at),
-        **numbers_of(arguments, "phase", "transient", "settle", "samples"),
-    }
+    question = {**excitation, **arguments.question.keywords(arguments)}
     carry_out(arguments, structure, question, report, picture_of)
-
-
-def side_of(option: str, text: str | None) -> Side | None:
-    """Parse a side of the plane from ``NAME,FIRST,LAST,COUNT``.
-
-    Raises
-    ------
-    InputError
-    """
-    if text is None:
-        return None
-    try:
-        name, first, last, count = (part.strip() for part in text.split(","))
-        return name, plain_float(first), plain_float(last), plain_int(count)
-    except ValueError:
-        expected = "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60"
-        raise InputError(f"{option} {text}: expected {expected}") from None
 
 
 def report(data: xr.Dataset) -> None:

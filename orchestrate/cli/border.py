@@ -4,20 +4,13 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..errors import InputError
-from .options import (
-    Commands,
-    add_numbers,
-    add_structure,
-    ends_of,
-    numbers_of,
-    plain_int,
-    structure_of,
-)
+from .grammar import ends_of, plain_int
+from .options import Commands, add_structure, structure_of
 from .output import add_results
-from .question import carry_out, format_parameter, read_stored
+from .question import carry_out, format_parameter, picture_of, read_stored
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,19 +25,26 @@ def add_parser(commands: Commands) -> None:
     text = "follow a bifurcation of a branch over two parameters: where a window begins or ends"
     parser = commands.add("border", run, text, EXAMPLES)
     add_structure(parser)
-    option = parser.add_argument_group("question").add_argument
-    option("--start", type=Path, metavar="FILE", help="NetCDF file of a branch")
-    option("--bifurcation", type=plain_int, default=0, metavar="N", help="its number (default: 0)")
+    question = commands.question(parser)
     over = "both parameters, that of the branch first (default: %(default)s)"
-    option("--over", default="eta,e", metavar="NAME,NAME", help=over)
+    question.add("over", names_of, default="eta,e", metavar="NAME,NAME", help=over)
     limits = "between which each is followed"
-    option("--limits", metavar="A:B,C:D", help=limits)
-    add_numbers(
-        option,
-        longest=(0.03, "longest step along the curve"),
-        most=(500, "points in one direction, at most"),
-    )
+    question.add("limits", limits_of, metavar="A:B,C:D", help=limits)
+    question.add("start", read_stored, type=Path, metavar="FILE", help="NetCDF file of a branch")
+    number = "its number (default: 0)"
+    question.add("bifurcation", type=plain_int, default=0, metavar="N", help=number)
+    question.declare("longest", "most")
     add_results(parser)
+
+
+def names_of(option: str, text: str) -> tuple[str, ...]:
+    """Parse names of parameters."""
+    return tuple(part.strip() for part in text.split(","))
+
+
+def limits_of(option: str, text: str) -> tuple[tuple[float, float], ...]:
+    """Parse the limits of each parameter."""
+    return tuple(ends_of(option, part) for part in text.split(","))
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -54,22 +54,8 @@ def run(arguments: argparse.Namespace) -> None:
         if getattr(arguments, name) is None:
             expected = "a file of the command branch" if name == "start" else "A:B,C:D"
             raise InputError(f"--{name}: nothing given; expected {expected}")
-    limits = tuple(ends_of("--limits", part) for part in arguments.limits.split(","))
-    question = {
-        "start": read_stored("--start", arguments.start),
-        "over": tuple(part.strip() for part in arguments.over.split(",")),
-        "limits": limits,
-        **numbers_of(arguments, "bifurcation", "longest", "most"),
-    }
+    question = arguments.question.keywords(arguments)
     carry_out(arguments, structure, question, report, picture_of)
-
-
-def picture_of(data: xr.Dataset) -> Any:
-    """Draw the curve."""
-    from ..figures.borders import draw
-    from ..figures.labels import title_from_attributes
-
-    return draw(data, title=title_from_attributes(data))
 
 
 def report(data: xr.Dataset) -> None:

@@ -8,21 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 from ..constants import TURN
 from ..errors import InputError
+from .grammar import ends_of, plain_int
 from .options import (
     UNITS,
     Commands,
-    add_excitation,
-    add_numbers,
-    add_structure,
     amplitude_of,
-    ends_of,
     excitation_of,
     frequency_option,
-    numbers_of,
-    plain_int,
     structure_of,
 )
-from .output import add_results
 from .question import carry_out, format_parameter, read_stored
 
 if TYPE_CHECKING:
@@ -41,40 +35,26 @@ The excitation says where a first orbit is looked for; without it that is the lo
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "follow periodic motions along a parameter, stable and unstable, to their bifurcations"
-    parser = commands.add("branch", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser, several=False).add_argument
+    question = commands.ask("branch", run, text, EXAMPLES, several=False)
+    option = question.group.add_argument
     names = "eta, hz, rpm, frequency, amplitude, box_acceleration or a parameter of the structure"
     over = f"what varies: {names} (default: %(default)s)"
     option("--over", default="eta", metavar="NAME", help=over)
     option("--limits", metavar="FIRST:LAST", help="between which it is followed, in its own unit")
     start = "NetCDF file of an orbit or a branch to begin with"
-    option("--start", type=Path, metavar="FILE", help=start)
+    question.add("start", read_stored, type=Path, metavar="FILE", help=start)
     switch = "number of a bifurcation of --start: the branch that leaves there"
-    option("--switch", type=plain_int, metavar="N", help=switch)
-    add_numbers(
-        option,
-        period=(1, "excitation periods of the first orbit"),
-        box_acceleration=(0.0, "constant acceleration of the box beside the harmonic one, m/s2"),
-        longest=(0.03, "longest step along the branch"),
-        most=(1000, "points in one direction, at most"),
-    )
-    add_results(parser)
+    question.add("switch", type=plain_int, metavar="N", help=switch)
+    question.declare("period", "box_acceleration", "longest", "most")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
     over, limits = over_of(arguments)
-    start = None if arguments.start is None else read_stored("--start", arguments.start)
-    question = {
-        **excitation_arguments(arguments, structure, over, start is not None),
-        "over": over,
-        "limits": limits,
-        "start": start,
-        "switch": arguments.switch,
-        **numbers_of(arguments, "period", "box_acceleration", "longest", "most"),
-    }
+    keywords = arguments.question.keywords(arguments)
+    excitation = excitation_arguments(arguments, structure, over, keywords["start"] is not None)
+    question = {**excitation, "over": over, "limits": limits, **keywords}
     carry_out(arguments, structure, question, report, picture_of)
 
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from .drives import (
-    ETA0,
     add_control,
     add_ends,
     add_only,
@@ -18,10 +17,11 @@ from .drives import (
     ask_each,
     control_of,
     folds_of,
-    step_of,
+    times_of,
     two_voltages,
 )
-from .options import Commands, add_drive, plain_float, plain_int, structure_and_drive, values_of
+from .grammar import values_of
+from .options import Commands, structure_and_drive
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -43,21 +43,14 @@ command goes on where it was."""
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "voltages switched on from rest: which pass the resonance, which are captured"
-    parser = commands.add("capture", run, text, EXAMPLES.replace("{eta0}", ETA0))
-    add_drive(parser)
+    parser = commands.ask_coupled("capture", run, text, EXAMPLES)
     add_only(parser)
-    group = parser.add_argument_group("question")
-    option = group.add_argument
+    question = commands.question(parser)
+    group, option = question.group, question.group.add_argument
     add_ends(group, "LOWEST:HIGHEST", "from the jump down to above the jump up")
     option("--over", metavar="NAME", help="a second parameter, of drive or structure")
     option("--values", metavar="VALUES", help="its values, FIRST:LAST:STEP or a list A,B,...")
-    option(
-        "--count", type=plain_int, default=9, help="voltages tried for each (default: %(default)s)"
-    )
-    border = "of the border found by bisection, V (default: %(default)s)"
-    option("--tolerance", type=plain_float, default=1e-4, help=border)
-    text = "time after which a start that has not settled is undecided, s (default: many times the"
-    option("--time", type=plain_float, metavar="S", help=f"{text} slowest time constant)")
+    question.declare("count", "tolerance", "time")
     add_step(group)
     add_control(parser)
     add_results(parser, store=False, several=True)
@@ -83,11 +76,9 @@ def run(arguments: argparse.Namespace) -> None:
         "voltage": range_of(arguments, structure, drive),
         "over": arguments.over,
         "values": values,
-        "count": arguments.count,
-        "tolerance": arguments.tolerance,
-        "time": arguments.time,
+        **arguments.question.keywords(arguments),
         "control": control_of(arguments, structure, drive),
-        "step": step_of(arguments, structure),
+        **times_of(arguments, structure, "step"),
     }
     draw = partial(picture_of, name=Path(arguments.drive).stem, question=question)
     ask_each(arguments, structure, drive, question, draw, report)

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .drives import (
-    ETA0,
     add_control,
     add_hold,
     add_only,
@@ -19,13 +18,13 @@ from .drives import (
     check_files,
     control_of,
     file_name,
-    hold_of,
     schedule_from,
     states_of,
-    step_of,
+    times_of,
     title_of_runs,
 )
-from .options import Commands, add_drive, plain_float, structure_and_drive
+from .grammar import plain_float
+from .options import Commands, structure_and_drive
 from .output import add_results, digest, draw_picture, export_formats, running_of, user_fmus
 
 if TYPE_CHECKING:
@@ -54,8 +53,7 @@ Interrupted, the same command goes on where it was. A finished result is left as
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "the weak drive: structure and motor coupled, the voltage up and down (Figure 2)"
-    parser = commands.add("couple", run, text, EXAMPLES.replace("{eta0}", ETA0))
-    add_drive(parser)
+    parser = commands.ask_coupled("couple", run, text, EXAMPLES)
     add_only(parser)
     add_schedule(parser)
     add_control(parser)
@@ -84,10 +82,9 @@ def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -
 
     control = control_of(arguments, structure, drive)
     schedule = schedule_from(arguments, structure, drive, control)
-    step = step_of(arguments, structure)
+    step, hold = times_of(arguments, structure, "step", "hold").values()
     settings = (arguments.algorithm, arguments.tolerance, control is not None)
     scheme = scheme_of(structure, step, *settings)
-    hold = hold_of(arguments, structure)
     base_name = file_name(arguments, structure, drive, (schedule, scheme, control, hold))
     return [
         replace(

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .drives import ask_once
-from .options import Commands, add_drive, ends_of, plain_float, plain_int, structure_and_drive
+from .grammar import ends_of
+from .options import Commands, structure_and_drive
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -35,39 +36,18 @@ Branches go round their folds. Interrupted, the same command goes on where it wa
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "stationary motions of structure and motor, stable and unstable, and their bifurcations"
-    parser = commands.add("drive-branch", run, text, EXAMPLES)
-    add_drive(parser)
-    option = parser.add_argument_group("question").add_argument
-    usual = "0.95 and 1.25 times the resonance"
-    option("--speed", metavar="FIRST:LAST", help=f"range of mean speeds, rad/s (default: {usual})")
-    longest_text = "longest step along the branch, without a unit (default: %(default)s)"
-    option("--longest", type=plain_float, default=0.05, help=longest_text)
-    most_text = "most points in one direction (default: %(default)s)"
-    option("--most", type=plain_int, default=200, help=most_text)
-    period = "most revolutions after which the delaminated motion repeats (default: %(default)s)"
-    option("--period", type=plain_int, default=2, help=period)
-    steps = "communication steps in a revolution (default: %(default)s)"
-    option("--steps", type=plain_int, default=48, help=steps)
-    option(
-        "--settle",
-        type=plain_float,
-        metavar="S",
-        help="time to the first motion (default 600/omega)",
-    )
+    parser = commands.ask_coupled("drive-branch", run, text, EXAMPLES)
+    question = commands.question(parser)
+    speed = "range of mean speeds, rad/s (default: 0.95 and 1.25 times the resonance)"
+    question.add("speed", ends_of, metavar="FIRST:LAST", help=speed)
+    question.declare("longest", "most", "period", "steps", "settle")
     add_results(parser, several=True)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure, drive = structure_and_drive(arguments)
-    question = {
-        "speed": ends_of("--speed", arguments.speed) if arguments.speed else None,
-        "longest": arguments.longest,
-        "most": arguments.most,
-        "period": arguments.period,
-        "steps": arguments.steps,
-        "settle": arguments.settle,
-    }
+    question = arguments.question.keywords(arguments)
     draw = partial(picture_of, name=Path(arguments.drive).stem)
     ask_once(arguments, structure, drive, question, draw, report)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import ends_of, plain_float
+from .grammar import ends_of, number_or_ends, plain_float, rates_of
 from .output import (
     FORMATS,
     PLOTS,
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 USUAL = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 5e-6), "rig": ("0.95:1.24", 5e-5)}
 RATE = 1e-4  # of eta0, in a time 1/omega
-ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
 
 
 # -- options --------------------------------------------------------------------------------------
@@ -127,17 +126,6 @@ def states_of(arguments: argparse.Namespace, structure: Structure) -> dict[str, 
     return {arguments.only: both[arguments.only]} if arguments.only else both
 
 
-def number_or_ends(option: str, text: str) -> tuple[float, ...]:
-    """Parse ``VALUE`` or ``FIRST:LAST``."""
-    if ":" in text:
-        return ends_of(option, text)
-    try:
-        return (plain_float(text),)
-    except ValueError:
-        expected = "expected a number, or FIRST:LAST such as 1.2:1.65"
-        raise InputError(f"{option} {text}: {expected}") from None
-
-
 def voltages_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, ...]:
@@ -187,27 +175,6 @@ def folds_of(
     return folds[-1].eta0 * volts, folds[0].eta0 * volts
 
 
-def rates_of(option: str, text: str, one: bool = False) -> tuple[float, ...]:
-    """Parse rates, a list, or one of them.
-
-    Raises
-    ------
-    InputError
-    """
-    try:
-        rates = tuple(plain_float(part) for part in text.split(","))
-    except ValueError:
-        rates = ()
-    several = "" if one else ", or several as A,B,..., such as 1e-4,5e-5,2.5e-5"
-    if not rates or not all(math.isfinite(rate) and rate > 0.0 for rate in rates):
-        raise InputError(f"{option} {text}: expected a number > 0{several}")
-    if one and len(rates) > 1:
-        raise InputError(
-            f"{option} {text}: {len(rates)} rates; expected one (jump-voltages takes several)"
-        )
-    return rates
-
-
 def volt_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> float:
     """Return the one rate of a ramp, V/s."""
     if arguments.rate is not None and arguments.volt_rate is not None:
@@ -220,14 +187,13 @@ def volt_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive)
     return unit * rates_of("--rate", arguments.rate, one=True)[0]
 
 
-def step_of(arguments: argparse.Namespace, structure: Structure) -> float | None:
-    """Return the communication step, s, or None."""
-    return None if arguments.step is None else float(arguments.step / structure.omega)
-
-
-def hold_of(arguments: argparse.Namespace, structure: Structure) -> float | None:
-    """Return the longest hold, s, or None."""
-    return None if arguments.hold is None else float(arguments.hold / structure.omega)
+def times_of(
+    arguments: argparse.Namespace, structure: Structure, *names: str
+) -> dict[str, float | None]:
+    """Return times of options in 1/omega, such as the communication step: s, or None."""
+    values = {name: getattr(arguments, name) for name in names}
+    omega = structure.omega
+    return {name: None if time is None else time / omega for name, time in values.items()}
 
 
 def schedule_from(

@@ -9,17 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .drives import (
-    ETA0,
     add_ends,
     add_rate,
     add_settle,
     add_step,
     ask_once,
-    rates_of,
-    step_of,
+    times_of,
     two_voltages,
 )
-from .options import Commands, add_drive, structure_and_drive
+from .grammar import rates_of
+from .options import Commands, structure_and_drive
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -37,8 +36,7 @@ Three rates or more give a standard error. Interrupted, the same command goes on
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "voltages at which the speed jumps, at rate 0 from ramps of several rates"
-    parser = commands.add("jump-voltages", run, text, EXAMPLES.replace("{eta0}", ETA0))
-    add_drive(parser)
+    parser = commands.ask_coupled("jump-voltages", run, text, EXAMPLES)
     group = parser.add_argument_group("ramps")
     add_ends(group)
     add_rate(group, "A,B,...", ", a list", USUAL)
@@ -57,8 +55,7 @@ def run(arguments: argparse.Namespace) -> None:
         "voltage": ends,
         "rates": [rate * unit for rate in rates_of("--rate", arguments.rate or USUAL)],
         "back": not arguments.one_way,
-        "settle": arguments.settle / structure.omega,
-        "step": step_of(arguments, structure),
+        **times_of(arguments, structure, "settle", "step"),
     }
     draw = partial(picture_of, name=Path(arguments.drive).stem, ends=ends)
     tell = partial(report, directions=("up",) if arguments.one_way else ("up", "down"))

@@ -8,17 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import orchestrate
 
-from .options import (
-    Commands,
-    add_excitation,
-    add_numbers,
-    add_over,
-    add_structure,
-    numbers_of,
-    structure_of,
-    varied_arguments,
-)
-from .output import add_results, running_of
+from .options import Commands, add_over, structure_of, varied_arguments
+from .output import running_of
 from .question import carry_out, format_parameter, format_ranges, is_curve, parameter_of, picture_of
 
 if TYPE_CHECKING:
@@ -36,28 +27,18 @@ WORDS = {1: "chaotic", 0: "neutral", -1: "periodic"}
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "largest Lyapunov exponents of responses: periodic, neutral or chaotic"
-    parser = commands.add("lyapunov", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser).add_argument
-    add_over(option)
+    question = commands.ask("lyapunov", run, text, EXAMPLES)
+    add_over(question)
     follow = "responses of a sweep in this direction (default: each from rest)"
-    option("--follow", choices=("up", "down"), help=follow)
-    text = "all four exponents too, and the Kaplan-Yorke dimension"
-    option("--spectrum", action="store_true", help=text)
-    add_numbers(
-        option,
-        transient=(500, "periods dropped"),
-        periods=(2500, "periods followed"),
-        sigmas=(3.0, "standard errors from zero that decide"),
-    )
-    add_results(parser)
+    question.group.add_argument("--follow", choices=("up", "down"), help=follow)
+    question.declare("transient", "periods", "sigmas", "spectrum")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
     excitation, _ = varied_arguments(arguments, structure)
-    question = {**excitation, **numbers_of(arguments, "transient", "periods", "sigmas", "spectrum")}
+    question = {**excitation, **arguments.question.keywords(arguments)}
     if arguments.follow:
         swept: dict[str, Any] = {**excitation, "direction": arguments.follow, "samples": 1}
         swept["transient"] = arguments.transient
@@ -76,7 +57,6 @@ def report(data: xr.Dataset) -> None:
         ):
             where = format_parameter(name, float(value))
             print(f"{where}: exponent {exponent:.5f} +- {error:.5f} per tau, {WORDS[int(verdict)]}")
-        print_spectra(ordered, name)
         print_undecided(ordered)
         return
     top = data.isel(data.exponent.argmax(...))
@@ -91,18 +71,6 @@ def report(data: xr.Dataset) -> None:
         where = f" at {format_ranges(name, ordered[name].values, holds)}" if holds.any() else ""
         print(f"{word}: {int(holds.sum())} of {holds.size}{where}")
     print_undecided(ordered)
-
-
-def print_spectra(data: xr.Dataset, name: str) -> None:
-    """Print all exponents of each response, and the dimension of its attractor."""
-    if "exponents" not in data:
-        return
-    for value, exponents, dimension in zip(
-        *(data[key].values for key in (name, "exponents", "kaplan_yorke_dimension")), strict=True
-    ):
-        numbers = ", ".join(f"{exponent:.5f}" for exponent in exponents)
-        where = format_parameter(name, float(value))
-        print(f"{where}: exponents {numbers}; Kaplan-Yorke dimension {dimension:.4g}")
 
 
 def print_undecided(data: xr.Dataset) -> None:

@@ -6,20 +6,8 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import (
-    Commands,
-    add_excitation,
-    add_numbers,
-    add_over,
-    add_settling,
-    add_structure,
-    check_over,
-    excitation_of,
-    numbers_of,
-    structure_of,
-    values_of,
-)
-from .output import add_results
+from .grammar import values_of
+from .options import Commands, add_over, check_over, excitation_of, structure_of
 from .question import carry_out, format_parameter, is_flag, picture_of
 
 if TYPE_CHECKING:
@@ -38,36 +26,25 @@ MAX_KINDS = 4  # multiplicities that are told
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "responses over two parameters: impacts per period, multiplicity, largest gap, exponent"
-    parser = commands.add("map", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser).add_argument
-    add_over(option, twice=True)
-    option("--exponent", action="store_true", help="the largest Lyapunov exponents too")
-    add_settling(option, (60, "periods kept"), transient=300)
-    add_numbers(
-        option,
-        periods=(500, "periods for an exponent"),
-        tolerance=(1e-2, "part of the motion's size within which a state repeats"),
-        longest=(20_000, "periods up to which an undecided response is run on"),
+    question = commands.ask("map", run, text, EXAMPLES)
+    add_over(question, twice=True)
+    question.declare(
+        "exponent", "transient", "settle", "samples", "periods", "tolerance", "longest"
     )
-    add_results(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
-    names = ("exponent", "transient", "settle", "samples", "periods", "tolerance", "longest")
-    question = {**map_arguments(arguments, structure), **numbers_of(arguments, *names)}
+    question = {
+        **map_arguments(arguments, structure),
+        **arguments.question.keywords(arguments),
+    }
     carry_out(arguments, structure, question, report, picture_of)
 
 
 def map_arguments(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
-    """Return the box's motion and the parameters, two of them as lists.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the box's motion and the parameters, two of them as lists."""
     if len(arguments.over) != len(arguments.values):
         raise InputError("--over and --values: expected as many of one as of the other")
     for name in arguments.over:

@@ -1,25 +1,26 @@
-"""Shared options of commands: structures, motors, frequencies, numbers."""
+"""Options of commands: structures, motors, frequencies, arguments of the public functions."""
 
 from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
-from decimal import Decimal, InvalidOperation
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from .declared import option_of
+from .grammar import changes_of, level_of, one_or_more, plain_float, values_of
+from .output import add_results
 
 if TYPE_CHECKING:
     from ..structures import Drive, Structure
 
-MAX_VALUES = 10_000_000
-RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
 SETS = Path(__file__).resolve().parents[1] / "structures" / "sets"
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
 FREQUENCIES = ("eta", *UNITS)
+ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
 QUANTITIES = """quantities:
   m1 m2, k1 k2, d1 d2   masses kg, stiffnesses N/m, dampers N s/m
   e                     coefficient of restitution: speed after an impact over that before
@@ -48,10 +49,16 @@ class Commands:
     subparsers : argparse._SubParsersAction
     program : str
         How the command line was called, for examples.
+    wanted : collection of str, optional
+        Commands whose functions are imported for their options; all by default.
+    asked : list of argparse.ArgumentParser
+        Parsers to which the options of a result are to be added, after their own.
     """
 
     subparsers: Any
     program: str
+    wanted: Collection[str] | None = None
+    asked: list[argparse.ArgumentParser] = field(default_factory=list)
 
     def add(
         self, name: str, run: Callable[[argparse.Namespace], None], text: str, examples: str
@@ -80,6 +87,101 @@ class Commands:
         parser.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help=debug)
         parser.set_defaults(run=run, command=name)
         return parser
+
+    def ask(
+        self,
+        name: str,
+        run: Callable[[argparse.Namespace], None],
+        text: str,
+        examples: str,
+        several: bool = True,
+        usual: str = "",
+    ) -> Question:
+        """Add a command that asks for responses of a structure to a harmonic motion of the box.
+
+        Parameters
+        ----------
+        name, run, text, examples
+            As in :meth:`add`.
+        several : bool
+            Whether frequencies may be a range or a list.
+        usual : str
+            What is asked where no frequency is given.
+        """
+        parser = self.add(name, run, text, examples)
+        add_structure(parser)
+        add_excitation(parser, several, usual)
+        self.asked.append(parser)
+        return self.question(parser)
+
+    def ask_coupled(
+        self, name: str, run: Callable[[argparse.Namespace], None], text: str, examples: str
+    ) -> argparse.ArgumentParser:
+        """Add a command that asks for a structure on a motor; arguments as of :meth:`add`."""
+        parser = self.add(name, run, text, examples.replace("{eta0}", ETA0))
+        add_drive(parser)
+        return parser
+
+    def finish(self) -> None:
+        """Add the options of a result to the commands of :meth:`ask`."""
+        for parser in self.asked:
+            add_results(parser)
+
+    def question(self, parser: argparse.ArgumentParser, title: str = "question") -> Question:
+        """Add the group of a command's options that are arguments of its public function."""
+        command = parser.get_default("command")
+        question = Question(command, self.wanted is None or command in self.wanted)
+        question.group = parser.add_argument_group(title)
+        parser.set_defaults(question=question)
+        return question
+
+
+@dataclass
+class Question:
+    """Options of a command that are arguments of the public function of its name.
+
+    Attributes
+    ----------
+    command : str
+    wanted : bool
+        Whether the function is imported for its options.
+    readers : dict of callable
+        What reads the texts of options, by their names; None where they stand as they are.
+    """
+
+    command: str
+    wanted: bool
+    group: Any = None
+    readers: dict[str, Callable[[str, Any], Any] | None] = field(default_factory=dict)
+
+    def add(
+        self, name: str, reader: Callable[[str, Any], Any] | None = None, **details: Any
+    ) -> None:
+        """Add an argument by ``details`` for ``argparse``, and how its text is read."""
+        self.readers[name] = reader
+        self.group.add_argument(option_name(name), **details)
+
+    def declare(self, *names: str) -> None:
+        """Add arguments as the function's signature and docstring declare them."""
+        if self.wanted:
+            import orchestrate
+
+            function = getattr(orchestrate, self.command.replace("-", "_"))
+            for name in names:
+                self.add(name, **option_of(function, name))
+
+    def keywords(self, arguments: argparse.Namespace) -> dict[str, Any]:
+        """Return the options as keywords of the function."""
+        keywords = {name: getattr(arguments, name) for name in self.readers}
+        for name, reader in self.readers.items():
+            if reader is not None and keywords[name] is not None:
+                keywords[name] = reader(option_name(name), keywords[name])
+        return keywords
+
+
+def option_name(name: str) -> str:
+    """Return the option of an argument."""
+    return f"--{name.replace('_', '-')}"
 
 
 def sets_text() -> str:
@@ -114,36 +216,6 @@ def add_structure(parser: argparse.ArgumentParser, default: str = "paper") -> No
 def add_set(group: Any, text: str) -> None:
     """Add ``--set``."""
     group.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help=text)
-
-
-def changes_of(texts: list[str]) -> dict[str, float | bool]:
-    """Parse names and values of ``--set``.
-
-    Raises
-    ------
-    InputError
-    """
-    changes: dict[str, float | bool] = {}
-    for text in texts:
-        name, equals, value = (part.strip() for part in text.partition("="))
-        if not (name and equals):
-            raise InputError(f"--set {text}: expected NAME=VALUE, such as e=0.3")
-        if name in changes:
-            raise InputError(f"--set {text}: {name} is set twice; expected once")
-        changes[name] = value_of(text, value)
-    return changes
-
-
-def value_of(text: str, value: str) -> float | bool:
-    """Parse a value of ``--set``."""
-    if value in ("true", "false"):
-        return value == "true"
-    try:
-        return plain_float(value)
-    except ValueError:
-        raise InputError(
-            f"--set {text}: {value or 'nothing'} is no number; expected one, or true or false"
-        ) from None
 
 
 def structure_of(arguments: argparse.Namespace) -> Structure:
@@ -199,7 +271,7 @@ def datasheet_of(arguments: argparse.Namespace, changes: Mapping[str, float]) ->
 
     names = ("rated_voltage", "no_load_rpm", "stall_torque")
     values = {name: getattr(arguments, name) for name in names}
-    options = {name: f"--{name.replace('_', '-')}" for name in names}
+    options = {name: option_name(name) for name in names}
     present = [name for name in names if values[name] is not None]
     if not present:
         return {}
@@ -222,8 +294,8 @@ def datasheet_of(arguments: argparse.Namespace, changes: Mapping[str, float]) ->
 # -- the box's motion -----------------------------------------------------------------------------
 
 
-def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual: str = "") -> Any:
-    """Add frequency and amplitude of the box; return the group of the question's options.
+def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual: str = "") -> None:
+    """Add frequency and amplitude of the box.
 
     Parameters
     ----------
@@ -247,7 +319,6 @@ def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual:
     option("--eta", metavar=values, help=f"the same as frequency ratio Omega/omega{default}")
     option("--amplitude", metavar="A", help="amplitude a in m (default with --eta: 1/eta^2 m)")
     option("--g", metavar="G", help="the same as peak acceleration in g, held at all frequencies")
-    return parser.add_argument_group("question")
 
 
 def excitation_of(
@@ -256,6 +327,7 @@ def excitation_of(
     si: bool = False,
     one: bool = False,
     level: bool = True,
+    levels: bool = False,
 ) -> dict[str, Any]:
     """Return the box's motion as keywords of the public API.
 
@@ -270,23 +342,21 @@ def excitation_of(
         Whether it must be one frequency.
     level : bool
         Whether ``--g`` may tell the amplitude.
-
-    Raises
-    ------
-    InputError
+    levels : bool
+        Whether amplitude or level may be a range or a list, at one frequency.
     """
     from ..constants import GRAVITY
     from ..structures.sections import TO_RAD_S
 
     name = frequency_option(arguments)
-    amplitude = amplitude_of(arguments)
+    amplitude = amplitude_of(arguments, levels)
     described_too = described_excitation(arguments) if name is None and amplitude is None else None
     if described_too:
         return described_too
     if name is None:
         raise InputError(f"frequency: nothing given; expected one of {options(FREQUENCIES)}")
     text = getattr(arguments, name)
-    values = one_or_more(f"--{name}", text, one)
+    values = one_or_more(f"--{name}", text, one or isinstance(amplitude, tuple))
     if name == "eta" and amplitude is None:
         if si and not math.isclose(structure.omega, 1.0):
             raise InputError(
@@ -301,7 +371,10 @@ def excitation_of(
     turns = each(TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values)
     if arguments.g is None:
         return {"frequency": turns, "amplitude": amplitude}
-    held = each(lambda value: amplitude * GRAVITY / value**2, turns)
+    if isinstance(amplitude, tuple):
+        held = each(lambda peak: peak * GRAVITY / turns**2, amplitude)
+    else:
+        held = each(lambda value: amplitude * GRAVITY / value**2, turns)
     return {"frequency": turns, "amplitude": held}
 
 
@@ -327,14 +400,14 @@ def frequency_option(arguments: argparse.Namespace) -> str | None:
     return present[0] if present else None
 
 
-def amplitude_of(arguments: argparse.Namespace) -> float | None:
-    """Return the amplitude in m, or in g if that is given; None if neither is."""
+def amplitude_of(arguments: argparse.Namespace, several: bool = False) -> Any:
+    """Return the amplitude in m, or in g if that is given, or several; None if neither is."""
     if arguments.amplitude is not None and arguments.g is not None:
         raise InputError("--amplitude and --g: expected one of them")
     for name in ("amplitude", "g"):
         text = getattr(arguments, name)
         if text is not None:
-            return number_of(f"--{name}", text)
+            return level_of(f"--{name}", text, several)
     return None
 
 
@@ -348,72 +421,12 @@ def each(change: Callable[[float], float], values: float | tuple[float, ...]) ->
     return tuple(map(change, values)) if isinstance(values, tuple) else change(values)
 
 
-# -- plain numbers --------------------------------------------------------------------------------
-
-
-def add_numbers(option: Callable[..., Any], **numbers: tuple[int | float, str]) -> None:
-    """Add options for numbers, integers where the default is one.
-
-    Parameters
-    ----------
-    option : callable
-        Adds an option to a group.
-    **numbers
-        Default and meaning of each.
-    """
-    for name, (default, text) in numbers.items():
-        option(
-            f"--{name.replace('_', '-')}",
-            type=plain_int if isinstance(default, int) else plain_float,
-            default=default,
-            metavar="N" if isinstance(default, int) else "X",
-            help=f"{text} (default: %(default)s)",
-        )
-
-
-def add_settling(option: Callable[..., Any], samples: tuple[int, str], transient: int) -> None:
-    """Add the options for how long a response settles, and how many periods are sampled.
-
-    Parameters
-    ----------
-    option : callable
-        Adds an option to a group.
-    samples : (int, str)
-        Default and meaning.
-    transient : int
-        Default.
-    """
-    add_numbers(
-        option,
-        transient=(transient, "periods dropped at least"),
-        settle=(300.0, "periods dropped at least, over eta"),
-        samples=samples,
-    )
-
-
-def numbers_of(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
-    """Return some of the options as keywords of the public API."""
-    return {name: getattr(arguments, name) for name in names}
-
-
-def state_of(option: str, text: str | None) -> tuple[float, ...] | None:
-    """Parse a state from ``X1,X2,V1,V2``."""
-    if text is None:
-        return None
-    try:
-        state = tuple(plain_float(part) for part in text.split(","))
-    except ValueError:
-        state = ()
-    if len(state) != 4:
-        raise InputError(f"{option} {text}: expected X1,X2,V1,V2, four numbers in m and m/s")
-    return state
-
-
 # -- a parameter that varies ----------------------------------------------------------------------
 
 
-def add_over(option: Callable[..., Any], twice: bool = False) -> None:
+def add_over(question: Question, twice: bool = False) -> None:
     """Add ``--over`` and ``--values``, once or twice."""
+    option = question.group.add_argument
     action: dict[str, Any] = {"action": "append", "default": []} if twice else {}
     more = "; twice at one frequency" if twice else ", at one frequency"
     text = f"a parameter of the structure that varies, as for --set{more}"
@@ -453,6 +466,12 @@ def varied_arguments(
     return excitation, ":" in str(getattr(arguments, frequency_option(arguments) or "eta"))
 
 
+def add_beside(question: Question) -> None:
+    """Add ``--beside``, see :func:`.question.carry_out_beside`."""
+    text = "the same of the bonded structure, beside it"
+    question.group.add_argument("--beside", action="store_true", help=text)
+
+
 def check_over(over: str, arguments: argparse.Namespace) -> None:
     """Check that what varies is the structure, and that ``--eta`` means one frequency then."""
     if over in FREQUENCIES:
@@ -466,128 +485,3 @@ def check_over(over: str, arguments: argparse.Namespace) -> None:
     if scaled and over in ("m1", "k1", "omega"):
         expected = options(UNITS, " or ")
         raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")
-
-
-# -- numbers --------------------------------------------------------------------------------------
-
-
-def check_digits(text: str) -> None:
-    """Check that a text has plain digits only: Python takes those of any script, and ``1_000``.
-
-    Raises
-    ------
-    ValueError
-    """
-    if not text.isascii() or "_" in text:
-        raise ValueError(text)
-
-
-def plain_float(text: str) -> float:
-    """Parse a number in plain digits."""
-    check_digits(text)
-    return float(text)
-
-
-def plain_int(text: str) -> int:
-    """Parse an integer in plain digits."""
-    check_digits(text)
-    return int(text)
-
-
-plain_float.__name__, plain_int.__name__ = "float", "int"  # what argparse calls them in its errors
-
-
-def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, ...], bool]:
-    """Parse numbers from ``FIRST:LAST:STEP`` or ``A,B,...``; return them and whether they are a
-    range.
-
-    Parameters
-    ----------
-    option : str
-        Its name, for messages.
-    text : str
-    zero : bool
-        Whether a number may be 0.
-
-    Raises
-    ------
-    InputError
-    """
-    is_range = ":" in text
-    try:
-        check_digits(text)
-        numbers = [Decimal(part.strip()) for part in text.split(":" if is_range else ",")]
-    except (InvalidOperation, ValueError):
-        raise InputError(f"{option} {text}: not numbers; {RANGE}") from None
-    finite = all(number.is_finite() for number in numbers)
-    if not finite or (is_range and len(numbers) != 3) or min(numbers) < 0:
-        raise InputError(f"{option} {text}: {RANGE}")
-    if not zero and min(numbers) == 0:
-        raise InputError(f"{option} {text}: {RANGE}")
-    if is_range:
-        first, last, step = numbers
-        if step == 0 or last < first or (last - first) > MAX_VALUES * step:
-            raise InputError(f"{option} {text}: {RANGE}, and at most {MAX_VALUES} values")
-        numbers = [first + i * step for i in range(int((last - first) / step) + 1)]
-    return tuple(map(float, numbers)), is_range
-
-
-def one_or_more(option: str, text: str, one: bool = False) -> float | tuple[float, ...]:
-    """Parse a number, or those of a range or a list.
-
-    Parameters
-    ----------
-    option, text : str
-    one : bool
-        Whether it must be one number.
-    """
-    if one or not (":" in text or "," in text):
-        return one_value(option, text)
-    return values_of(option, text)[0]
-
-
-def one_value(option: str, text: str) -> float:
-    """Parse a single number > 0.
-
-    Raises
-    ------
-    InputError
-    """
-    values, _ = values_of(option, text)
-    if len(values) != 1:
-        raise InputError(
-            f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2"
-        )
-    return values[0]
-
-
-def number_of(option: str, text: str) -> float:
-    """Parse a number > 0 where a range would make no sense.
-
-    Raises
-    ------
-    InputError
-    """
-    try:
-        number = plain_float(text)
-    except ValueError:
-        number = math.nan
-    if not (math.isfinite(number) and number > 0.0):
-        raise InputError(f"{option} {text}: expected a number > 0, such as {option} 0.5")
-    return number
-
-
-def ends_of(option: str, text: str) -> tuple[float, float]:
-    """Parse both numbers of ``FIRST:LAST``.
-
-    Raises
-    ------
-    InputError
-    """
-    try:
-        first, last = (plain_float(part) for part in text.split(":"))
-    except ValueError:
-        raise InputError(
-            f"{option} {text}: expected FIRST:LAST, two numbers such as 1.2:1.65"
-        ) from None
-    return first, last

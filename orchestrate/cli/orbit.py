@@ -7,17 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import orchestrate
 
-from .options import (
-    Commands,
-    add_excitation,
-    add_numbers,
-    add_structure,
-    excitation_of,
-    numbers_of,
-    state_of,
-    structure_of,
-)
-from .output import add_results
+from .grammar import state_of
+from .options import Commands, excitation_of, structure_of
 from .question import carry_out
 
 if TYPE_CHECKING:
@@ -33,28 +24,17 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "a periodic motion by Newton's method, stable or unstable, with its multipliers"
-    parser = commands.add("orbit", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser, several=False).add_argument
+    question = commands.ask("orbit", run, text, EXAMPLES, several=False)
     guess = "state at phase 0 to begin with, m and m/s (default: from the response from rest)"
-    option("--guess", metavar="X1,X2,V1,V2", help=guess)
-    add_numbers(
-        option,
-        period=(1, "excitation periods after which it closes"),
-        box_acceleration=(0.0, "constant acceleration of the box beside the harmonic one, m/s2"),
-    )
-    add_results(parser)
+    question.add("guess", state_of, metavar="X1,X2,V1,V2", help=guess)
+    question.declare("period", "box_acceleration")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
     excitation = excitation_of(arguments, structure, si=True, one=True)
-    question = {
-        **excitation,
-        "guess": state_of("--guess", arguments.guess),
-        **numbers_of(arguments, "period", "box_acceleration"),
-    }
+    question = {**excitation, **arguments.question.keywords(arguments)}
 
     def picture_of(data: xr.Dataset) -> Any:
         """Draw the motion over its periods, started on it."""

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import plain_int
+from .grammar import plain_int
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -112,12 +112,7 @@ def running_of(arguments: argparse.Namespace, store: Path | None = None) -> Runn
 
 
 def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
-    """Return the user's own FMUs by the model names that they give.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the user's own FMUs by the model names that they give."""
     from ..access import MODELS, describe
 
     fmus: dict[str, Path] = {}
@@ -132,12 +127,7 @@ def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
 
 
 def endings_of(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...]:
-    """Parse file endings from a list such as ``png,pdf``.
-
-    Raises
-    ------
-    InputError
-    """
+    """Parse file endings from a list such as ``png,pdf``."""
     if text == "none":
         return ()
     names = tuple(dict.fromkeys(part.strip() for part in text.split(",")))
@@ -149,12 +139,7 @@ def endings_of(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...
 
 
 def check_output(folder: Path, option: str = "--output") -> None:
-    """Check that a folder can be written, or made, without making it yet.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a folder can be written, or made, without making it yet."""
     existing = next(
         (existing for existing in (folder, *folder.parents) if existing.exists()), Path()
     )

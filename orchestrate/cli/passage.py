@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from .drives import (
-    ETA0,
     add_control,
     add_hold,
     add_only,
@@ -17,12 +16,12 @@ from .drives import (
     add_step,
     ask_each,
     control_of,
-    hold_of,
     schedule_from,
-    step_of,
+    times_of,
     title_of_runs,
 )
-from .options import Commands, add_drive, structure_and_drive
+from .grammar import plain_float, plain_int
+from .options import Commands, structure_and_drive
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -39,8 +38,7 @@ Interrupted, the same command goes on where it was. A finished result is left as
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "a run through the resonance at full resolution: speed, motion, power, waterfall"
-    parser = commands.add("passage", run, text, EXAMPLES.replace("{eta0}", ETA0))
-    add_drive(parser)
+    parser = commands.ask_coupled("passage", run, text, EXAMPLES)
     add_only(parser)
     add_schedule(parser)
     add_control(parser)
@@ -49,11 +47,11 @@ def add_parser(commands: Commands) -> None:
         "time before and after the jump, or the passage where there is no jump, in s (default: "
         "300/omega; all of a run at one voltage)"
     )
-    group.add_argument("--around", type=float, metavar="S", help=around)
+    group.add_argument("--around", type=plain_float, metavar="S", help=around)
     turns = "revolutions of each spectrum of the waterfall (default: %(default)s)"
-    group.add_argument("--revolutions", type=int, default=8, metavar="N", help=turns)
+    group.add_argument("--revolutions", type=plain_int, default=8, metavar="N", help=turns)
     mass = "whose acceleration the spectra are of (default: %(default)s)"
-    group.add_argument("--mass", type=int, default=1, choices=(1, 2), help=mass)
+    group.add_argument("--mass", type=plain_int, default=1, choices=(1, 2), help=mass)
     add_step(group)
     add_hold(group)
     add_results(parser, store=False, several=True)
@@ -75,8 +73,7 @@ def run(arguments: argparse.Namespace) -> None:
         "voltage": schedule,
         "around": around,
         "control": control,
-        "step": step_of(arguments, structure),
-        "hold": hold_of(arguments, structure),
+        **times_of(arguments, structure, "step", "hold"),
     }
     spectra = {"revolutions": arguments.revolutions, "mass": arguments.mass}
     draw = partial(picture_of, name=Path(arguments.drive).stem, spectra=spectra, control=control)

@@ -5,17 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from .options import (
-    Commands,
-    add_excitation,
-    add_numbers,
-    add_structure,
-    excitation_of,
-    numbers_of,
-    state_of,
-    structure_of,
-)
-from .output import add_results
+from .grammar import state_of
+from .options import Commands, excitation_of, structure_of
 from .question import carry_out, picture_of
 
 if TYPE_CHECKING:
@@ -35,28 +26,17 @@ SHOWN = {  # of each section
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "a Poincaré section: states at a phase of the box, at impacts or at releases"
-    parser = commands.add("poincare", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser, several=False).add_argument
-    option("--at", choices=tuple(SHOWN), default="phase", help="where (default: %(default)s)")
-    add_numbers(
-        option,
-        phase=(0.0, "phase of the box, rad"),
-        transient=(500, "periods dropped"),
-        periods=(1000, "periods followed"),
-    )
-    option("--start", metavar="X1,X2,V1,V2", help="state at the start, m and m/s (default: rest)")
-    add_results(parser)
+    question = commands.ask("poincare", run, text, EXAMPLES, several=False)
+    question.declare("at", "phase", "transient", "periods")
+    start = "state at phase 0, m and m/s (default: rest)"
+    question.add("start", state_of, metavar="X1,X2,V1,V2", help=start)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
-    question = {
-        **excitation_of(arguments, structure, si=True, one=True),
-        **numbers_of(arguments, "at", "phase", "transient", "periods"),
-        "start": state_of("--start", arguments.start),
-    }
+    excitation = excitation_of(arguments, structure, si=True, one=True)
+    question = {**excitation, **arguments.question.keywords(arguments)}
     carry_out(arguments, structure, question, report, picture_of)
 
 

@@ -80,43 +80,26 @@ def carry_out_beside(
     structure: Structure,
     question: Question,
     report: Callable[[xr.Dataset], None],
-    draw: Callable[..., Any],
 ) -> None:
-    """Ask a question about a motion, with ``--beside`` of the bonded structure first.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        With ``beside``; see :func:`carry_out`.
-    structure : Structure
-    question : mapping
-        With the ``start`` of the motion.
-    report : callable
-    draw : callable
-        Takes the bonded structure's result too, as ``bonded=``.
-
-    Raises
-    ------
-    InputError
-        Where ``--beside`` has a store or a start, which one of both structures alone could have.
-    """
+    """Ask and draw as :func:`carry_out`; with ``--beside`` of the bonded structure before."""
     if not arguments.beside:
-        carry_out(arguments, structure, question, report, draw)
+        carry_out(arguments, structure, question, report, picture_of)
         return
-    if arguments.store is not None or question["start"] is not None:
-        option = "--store" if arguments.store is not None else "--start"
-        raise InputError(f"--beside: of two structures; expected it without {option}")
+    for name in ("store", "start"):
+        if getattr(arguments, name) is not None:
+            raise InputError(f"--beside: of two structures; expected it without --{name}")
     bonded = carry_out(arguments, structure.as_bonded(), question, report, None)
     print("delaminated:")
-    picture = partial(draw, bonded=bonded)
-    carry_out(arguments, structure.as_delaminated(), question, report, picture, "with_bonded")
+    beside = partial(picture_of, bonded=bonded)
+    carry_out(arguments, structure.as_delaminated(), question, report, beside, "with_bonded")
 
 
-def picture_of(data: xr.Dataset) -> Any:
-    """Draw an answer that needs no more than the answer."""
-    from ..figures.plot import DRAW
+def picture_of(data: xr.Dataset, **beside: xr.Dataset) -> Any:
+    """Draw an answer that needs no more than the answer, or one of the bonded structure beside."""
+    from ..figures.plot import BESIDE, DRAW
 
-    return DRAW[data.attrs["call"].partition("(")[0]](data)
+    command = data.attrs["call"].partition("(")[0]
+    return BESIDE[command](data, **beside) if beside else DRAW[command](data)
 
 
 def is_curve(question: Question) -> bool:

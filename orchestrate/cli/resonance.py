@@ -5,16 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from .options import (
-    Commands,
-    add_excitation,
-    add_numbers,
-    add_structure,
-    excitation_of,
-    numbers_of,
-    structure_of,
-)
-from .output import add_results
+from .options import Commands, excitation_of, structure_of
 from .question import carry_out, format_parameter, is_curve, parameter_of, picture_of, print_table
 
 if TYPE_CHECKING:
@@ -35,27 +26,15 @@ COLUMNS = {  # of a printed peak: title, format
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "resonance curves: amplitude and peak acceleration, bonded against delaminated"
-    parser = commands.add("resonance", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser).add_argument
-    directions = "order of the frequencies (default: %(default)s)"
-    option("--direction", choices=("up", "down", "both"), default="both", help=directions)
-    add_numbers(
-        option,
-        transient=(500, "periods dropped"),
-        samples=(60, "periods kept"),
-        prominence=(0.1, "by what part of itself a peak stands out at least"),
-        jump=(0.15, "by what part of itself the gap jumps at least"),
-    )
-    add_results(parser)
+    question = commands.ask("resonance", run, text, EXAMPLES)
+    question.declare("direction", "transient", "samples", "prominence", "jump")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
     excitation = excitation_of(arguments, structure, si=True)
-    names = ("direction", "transient", "samples", "prominence", "jump")
-    question = {**excitation, **numbers_of(arguments, *names)}
+    question = {**excitation, **arguments.question.keywords(arguments)}
     carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
 
 

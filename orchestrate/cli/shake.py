@@ -3,22 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import math
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .options import (
-    Commands,
-    add_numbers,
-    add_structure,
-    ends_of,
-    number_of,
-    options,
-    plain_float,
-    plain_int,
-    state_of,
-    structure_of,
-)
+from .grammar import breakpoints_of, ends_of, number_of, state_of, whole_number_of
+from .options import Commands, add_beside, add_structure, options, structure_of
 from .output import add_results
 from .question import carry_out_beside
 
@@ -50,12 +39,13 @@ def add_parser(commands: Commands) -> None:
     parser = commands.add("shake", run, text, EXAMPLES)
     add_structure(parser)
     add_signals(parser)
-    group = parser.add_argument_group("the record")
-    option = group.add_argument
-    option("--sample-rate", metavar="HZ", help="of the record (default: what the excitation needs)")
-    option("--start", metavar="X1,X2,V1,V2", help="state at the start, m and m/s (default: rest)")
-    add_numbers(option, accuracy=(1e-6, "of the excitation's cubic pieces, relative to its peak"))
-    option("--beside", action="store_true", help="the same of the bonded structure, beside it")
+    question = commands.question(parser, "the record")
+    rate = "of the record (default: what the excitation needs)"
+    question.add("sample_rate", number_of, metavar="HZ", help=rate)
+    start = "state at the start, m and m/s (default: rest)"
+    question.add("start", state_of, metavar="X1,X2,V1,V2", help=start)
+    question.declare("accuracy")
+    add_beside(question)
     add_results(parser)
 
 
@@ -86,24 +76,14 @@ def add_signals(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Carry it out."""
     structure = structure_of(arguments)
-    start = state_of("--start", arguments.start)
-    question: dict[str, Any] = {
-        "excitation": signal_of(arguments),
-        "accuracy": arguments.accuracy,
-        "start": start,
-    }
-    if arguments.sample_rate is not None:
-        question["sample_rate"] = number_of("--sample-rate", arguments.sample_rate)
-    carry_out_beside(arguments, structure, question, report, picture_of)
+    question = {"excitation": signal_of(arguments), **arguments.question.keywords(arguments)}
+    if question["sample_rate"] is None:
+        del question["sample_rate"]  # a file's name has always been without it
+    carry_out_beside(arguments, structure, question, report)
 
 
 def signal_of(arguments: argparse.Namespace) -> Random | Sampled | Shock | SweptSine:
-    """The excitation that the options describe.
-
-    Raises
-    ------
-    InputError
-    """
+    """The excitation that the options describe."""
     from .. import Random, Shock, SweptSine
 
     kind = kind_of(arguments)
@@ -115,9 +95,8 @@ def signal_of(arguments: argparse.Namespace) -> Random | Sampled | Shock | Swept
         if getattr(arguments, name) is not None
     }
     if kind == "random":
-        return Random(
-            psd=breakpoints("--random", arguments.random), seed=seed_of(arguments), **numbers
-        )
+        seed = 0 if arguments.seed is None else whole_number_of("--seed", arguments.seed)
+        return Random(psd=breakpoints_of("--random", arguments.random), seed=seed, **numbers)
     if kind == "shock":
         level = level_of(arguments)
         if not isinstance(level, float):
@@ -164,16 +143,6 @@ def kind_of(arguments: argparse.Namespace) -> str:
     return kind
 
 
-def seed_of(arguments: argparse.Namespace) -> int:
-    """The seed of random vibration."""
-    if arguments.seed is None:
-        return 0
-    try:
-        return plain_int(arguments.seed)
-    except ValueError:
-        raise InputError(f"--seed {arguments.seed}: expected a whole number >= 0") from None
-
-
 def level_of(arguments: argparse.Namespace) -> Any:
     """The peak acceleration in m/s2: a number, or a profile."""
     from ..constants import GRAVITY
@@ -185,30 +154,7 @@ def level_of(arguments: argparse.Namespace) -> Any:
     text, unit = getattr(arguments, given[0]), GRAVITY if given[0] == "g" else 1.0
     if ":" not in text:
         return unit * number_of(f"--{given[0]}", text)
-    return tuple((f, unit * value) for f, value in breakpoints(f"--{given[0]}", text))
-
-
-def breakpoints(option: str, text: str) -> tuple[tuple[float, float], ...]:
-    """Break points of ``HZ:VALUE,HZ:VALUE,...``.
-
-    Raises
-    ------
-    InputError
-    """
-    try:
-        pairs = [tuple(map(plain_float, part.split(":"))) for part in text.split(",")]
-    except ValueError:
-        pairs = []
-    if not pairs or any(len(pair) != 2 or not all(map(math.isfinite, pair)) for pair in pairs):
-        raise InputError(f"{option} {text}: expected HZ:VALUE,HZ:VALUE,... such as 10:0.5,200:0.5")
-    return tuple((pair[0], pair[1]) for pair in pairs)
-
-
-def picture_of(data: xr.Dataset, bonded: xr.Dataset | None = None) -> Any:
-    """The histories."""
-    from ..figures.shaken import draw
-
-    return draw(data, bonded=bonded)
+    return tuple((f, unit * value) for f, value in breakpoints_of(f"--{given[0]}", text))
 
 
 def report(data: xr.Dataset) -> None:

@@ -3,19 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from .options import (
-    Commands,
-    add_excitation,
-    add_numbers,
-    add_structure,
-    excitation_of,
-    numbers_of,
-    state_of,
-    structure_of,
-)
-from .output import add_results
+from .grammar import state_of
+from .options import Commands, add_beside, excitation_of, structure_of
 from .question import carry_out_beside
 
 if TYPE_CHECKING:
@@ -30,38 +21,19 @@ EXAMPLES = """  {program} simulate --eta 0.4 --transient 500 --periods 2      th
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "a motion in time: both masses, gap, contact force, impacts, phase plane and spectrum"
-    parser = commands.add("simulate", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser, several=False).add_argument
-    add_numbers(
-        option,
-        periods=(20, "periods kept"),
-        transient=(0, "periods dropped before"),
-        points=(200, "points a period"),
-        phase=(0.0, "phase of the box at the start, rad"),
-    )
-    option("--start", metavar="X1,X2,V1,V2", help="state at the start, m and m/s (default: rest)")
-    option("--beside", action="store_true", help="the same of the bonded structure, beside it")
-    add_results(parser)
+    question = commands.ask("simulate", run, text, EXAMPLES, several=False)
+    question.declare("periods", "transient", "points", "phase")
+    start = "state at the start, m and m/s (default: rest)"
+    question.add("start", state_of, metavar="X1,X2,V1,V2", help=start)
+    add_beside(question)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
-    start = state_of("--start", arguments.start)
-    question = {
-        **excitation_of(arguments, structure, si=True, one=True),
-        **numbers_of(arguments, "periods", "transient", "points", "phase"),
-        "start": start,
-    }
-    carry_out_beside(arguments, structure, question, report, picture_of)
-
-
-def picture_of(data: xr.Dataset, bonded: xr.Dataset | None = None) -> Any:
-    """Draw the histories."""
-    from ..figures.motion import draw
-
-    return draw(data, bonded=bonded)
+    excitation = excitation_of(arguments, structure, si=True, one=True)
+    question = {**excitation, **arguments.question.keywords(arguments)}
+    carry_out_beside(arguments, structure, question, report)
 
 
 def report(data: xr.Dataset) -> None:

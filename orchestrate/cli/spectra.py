@@ -7,16 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from .grammar import changes_of, plain_float
 from .options import (
     FREQUENCIES,
     Commands,
     add_drive,
     add_excitation,
-    add_numbers,
     amplitude_of,
-    changes_of,
     excitation_of,
-    numbers_of,
     options,
     structure_and_drive,
 )
@@ -42,19 +40,14 @@ def add_parser(commands: Commands) -> None:
     option = parser.add_argument_group("shaken by the motor").add_argument
     option(
         "--eta0",
-        type=float,
+        type=plain_float,
         help="voltage as no-load speed over omega (default: "
         + ", ".join(f"{eta0} for {name}" for name, eta0 in USUAL.items())
         + ", else between the jumps of the averaged theory)",
     )
-    option("--voltage", type=float, help="the same in V")
-    option = add_excitation(parser, usual="none: shaken by the motor").add_argument
-    add_numbers(
-        option,
-        transient=(2000, "periods dropped"),
-        periods=(64, "periods of the record"),
-        points=(1024, "samples a period"),
-    )
+    option("--voltage", type=plain_float, help="the same in V")
+    add_excitation(parser, usual="none: shaken by the motor")
+    commands.question(parser).declare("transient", "periods", "points")
     add_results(parser, several=True)
 
 
@@ -101,10 +94,8 @@ def harmonic_spectra(arguments: argparse.Namespace) -> None:
 
     structure = Structure.from_file(arguments.structure or "paper")
     structure = structure.replace(**changes_of(arguments.set))
-    question = {
-        **excitation_of(arguments, structure, si=True),
-        **numbers_of(arguments, "transient", "periods", "points"),
-    }
+    excitation = excitation_of(arguments, structure, si=True)
+    question = {**excitation, **arguments.question.keywords(arguments)}
     carry_out(arguments, structure, question, report, picture_of)
 
 

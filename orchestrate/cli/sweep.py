@@ -5,17 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from .options import (
-    Commands,
-    add_excitation,
-    add_numbers,
-    add_over,
-    add_structure,
-    numbers_of,
-    structure_of,
-    varied_arguments,
-)
-from .output import add_results
+from .options import Commands, add_over, structure_of, varied_arguments
 from .question import (
     carry_out,
     format_parameter,
@@ -47,34 +37,24 @@ DIFFERENT = 0.01  # of the largest gap: where up and down differ by more, they a
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
     text = "follow responses along the frequency or another parameter: an orbit diagram"
-    parser = commands.add("sweep", run, text, EXAMPLES)
-    add_structure(parser)
-    option = add_excitation(parser, usual=f"{PAPER_RANGE} where no frequency is given").add_argument
-    add_over(option)
-    option(
+    usual = f"{PAPER_RANGE} where no frequency is given"
+    question = commands.ask("sweep", run, text, EXAMPLES, usual=usual)
+    add_over(question)
+    question.group.add_argument(
         "--direction",
         choices=("up", "down", "both"),
         help="order of the values, each started from the end of the last (default: up for a "
         "range, a list as it stands)",
     )
-    add_numbers(
-        option,
-        transient=(500, "periods dropped"),
-        samples=(200, "periods kept"),
-        tolerance=(1e-2, "part of the motion's size within which a state repeats"),
-    )
-    add_results(parser)
+    question.declare("transient", "samples", "tolerance")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
     excitation, is_range = varied_arguments(arguments, structure, usual=PAPER_RANGE)
-    question = {
-        **excitation,
-        "direction": arguments.direction or ("up" if is_range else "given"),
-        **numbers_of(arguments, "transient", "samples", "tolerance"),
-    }
+    direction = arguments.direction or ("up" if is_range else "given")
+    question = {**excitation, "direction": direction, **arguments.question.keywords(arguments)}
     carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
 
 

@@ -68,16 +68,10 @@ class Start(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class AttractorsJob(SeriesQuestion):
-    """Random starts along a parameter.
+    """Random starts along a parameter; what is not said here as in :func:`orchestrate.attractors`.
 
     Attributes
     ----------
-    starts, seed : int
-        Number of starts at each value, and seed of their random numbers.
-    scale : float or tuple of float, optional
-        Half width of the box of starts, m: one, or one for each value.
-    width : float
-        Half width in units of the largest gap there, where no scale is given.
     follows : str
         Name of a sweep over the same parameter whose gaps are taken instead of those from rest.
     settings : AttractorSettings
@@ -427,15 +421,12 @@ def attractors(
     Parameters
     ----------
     structure : Structure
-    eta : array_like, optional
-        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m.
-    frequency, amplitude : array_like, optional
-        The physical form instead: rad/s and m, one amplitude or one for each frequency.
-    over : str, optional
-        Parameter that takes ``values``; by default what is given as a list.
-    values : array_like, optional
-    starts, seed : int
-        Starts at each value, and seed of their random numbers: the same seed, the same starts.
+    eta, frequency, amplitude, over, values
+        As in :func:`orchestrate.sweep`.
+    starts : int
+        Random starts at each value.
+    seed : int
+        Of their random numbers: the same seed, the same starts.
     scale : array_like, optional
         Half width of the box of starts, m: one, or one for each value. Displacement of mass 1 in
         +-scale, gap in [0, scale], velocity of mass 1 and of the gap in +-omega scale. By default
@@ -444,6 +435,7 @@ def attractors(
         (over Omega) of mass 1 within 0.7 of its largest displacement, gap in [0, 3 G] and gap
         rate in +-3 G Omega.
     width : float
+        Half width of that box over the largest gap from rest, where there is no ``scale``.
     transient : int
         Periods dropped at least.
     settle : float

@@ -283,10 +283,8 @@ def basin(
     Parameters
     ----------
     structure : Structure
-    eta : float, optional
-        Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m.
-    frequency, amplitude : float, optional
-        The physical form instead: rad/s and m.
+    eta, frequency, amplitude
+        As in :func:`orchestrate.simulate`.
     x, y : (str, float, float, int), optional
         Sides of the plane: coordinate, its first and last value, and how many. Coordinates are
         ``x1``, ``x2`` in m, ``v1``, ``v2`` in m/s, ``x_rel`` in m, ``v_rel`` in m/s and ``phase``
@@ -297,8 +295,8 @@ def basin(
         x1, x2 in m, v1, v2 in m/s: what the coordinates that are not varied are. Where a gap or its
         velocity is varied alone, the mean of both masses stays that of ``at``. By default rest;
         where neither side is given either, the mean of the attractors' states at phase 0.
-    phase : float
-        Phase of the box at the start, rad.
+    phase
+        As in :func:`orchestrate.simulate`.
     transient, settle, samples, converged, longest, alike, alike_irregular
         As in :func:`orchestrate.attractors`.
     **running

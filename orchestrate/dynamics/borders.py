@@ -164,11 +164,7 @@ def border(
         The parameters; the first one is that of the branch.
     limits : array_like, shape (2, 2)
         Between which each is followed.
-    eta, frequency, amplitude : float, optional
-        The excitation, where it does not vary; by default that of ``start``.
-    box_acceleration : float
-        Constant acceleration of the box beside the harmonic one, m/s2.
-    longest, most
+    eta, frequency, amplitude, box_acceleration, longest, most
         As in :func:`orchestrate.branch`.
     **running
         ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.

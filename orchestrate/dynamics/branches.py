@@ -68,7 +68,7 @@ class BranchJob(OneItemQuestion):
     longest : float
         Longest step.
     most : int
-        Points in one direction.
+        Most points in one direction.
     """
 
     setting: Setting
@@ -240,12 +240,12 @@ def branch(
         The excitation, where it does not vary; by default that of ``start``.
     period : int
         Excitation periods of the orbit, without ``start``.
-    box_acceleration : float
-        Constant acceleration of the box beside the harmonic one, m/s2.
+    box_acceleration
+        As in :func:`orchestrate.orbit`.
     longest : float
         Longest step along the branch: about the limits' span, and phases in rad, are measured in 1.
     most : int
-        Points in one direction.
+        Most points in one direction.
     **running
         ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.
 
@@ -317,10 +317,6 @@ def check_start(start: Any, several: bool) -> None:
     """Check that a branch can begin with it.
 
     Several orbits will do where one of their bifurcations is named.
-
-    Raises
-    ------
-    InputError
     """
     if not hasattr(start, "sizes"):
         raise InputError(
@@ -390,12 +386,7 @@ def first_orbit(
 
 
 def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
-    """Check that a branch starts between its limits.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a branch starts between its limits."""
     if not limits[0] <= value <= limits[1]:
         raise InputError(
             f"limits = {limits!r}: {over} = {value!r} at the start; expected it inside"

@@ -118,12 +118,7 @@ def require_delaminated(structure: Structure) -> Structure:
 
 
 def check_parameters(over: tuple[str, ...]) -> None:
-    """Check that these are parameters that can vary.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that these are parameters that can vary."""
     known = (*EXCITATION_PARAMETERS, *PARAMETERS, ACCELERATION)
     for name in over:
         if name not in known:

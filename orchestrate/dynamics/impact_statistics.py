@@ -155,16 +155,9 @@ def impact_statistics(
     Parameters
     ----------
     structure : Structure
-    eta : array_like, optional
-        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m.
-    frequency, amplitude : array_like, optional
-        The physical form instead: rad/s and m, one amplitude or one for each frequency.
-    over : str, optional
-        Parameter that takes ``values``; by default what is given as a list.
-    values : array_like, optional
-    transient, periods : int
-        Excitation periods dropped, and followed after them, at each value.
-    start : array_like or xarray.Dataset, optional
+    eta, frequency, amplitude, over, values
+        As in :func:`orchestrate.sweep`.
+    transient, periods, start
         As in :func:`orchestrate.lyapunov`.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.

@@ -263,21 +263,18 @@ def lyapunov(
     ----------
     structure : Structure
         Masses of different damping, and overdamped ones, included.
-    eta : array_like, optional
-        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m.
-    frequency, amplitude : array_like, optional
-        The physical form instead: rad/s and m, one amplitude or one for each frequency.
-    over : str, optional
-        Parameter that takes ``values``; by default what is given as a list.
-    values : array_like, optional
-    transient, periods : int
-        Excitation periods dropped, and followed after them, at each value.
+    eta, frequency, amplitude, over, values
+        As in :func:`orchestrate.sweep`.
+    transient : int
+        Excitation periods dropped at each value.
+    periods : int
+        Periods followed after them.
     start : array_like or xarray.Dataset, optional
         State at phase 0 that each response starts from, x1, x2 in m, v1, v2 in m/s, or one state
         for each; or what :func:`orchestrate.sweep` has answered for the same values, whose
         responses are followed on. At rest by default.
     spectrum : bool
-        Whether all four exponents and the Kaplan-Yorke dimension are computed too.
+        Whether to compute all four exponents and the Kaplan-Yorke dimension too.
     blocks : int
         Products of the impacts' matrices whose growth is averaged.
     batches : int

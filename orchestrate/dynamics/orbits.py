@@ -86,21 +86,12 @@ class OneItemQuestion(Question, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class OrbitJob(OneItemQuestion):
-    """An orbit.
+    """An orbit; what is not said here is as in :func:`orchestrate.orbit`.
 
     Attributes
     ----------
     excitation : tuple of (str, float)
         As the user gave it.
-    box_acceleration : float
-        m/s2.
-    period : int
-        Excitation periods after which the orbit closes.
-    guess : FirstGuess, optional
-    transient, search : int
-        Periods of the response from rest that are dropped, and searched for close returns.
-    tries : int
-        Close returns that Newton's method begins with, at most.
     """
 
     excitation: tuple[tuple[str, float], ...]
@@ -263,10 +254,8 @@ def orbit(
     Parameters
     ----------
     structure : Structure
-    eta : float, optional
-        Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m, so that xi of (3) is x in m.
-    frequency, amplitude : float, optional
-        The physical form instead: rad/s and m.
+    eta, frequency, amplitude
+        As in :func:`orchestrate.simulate`.
     period : int
         Excitation periods after which the orbit closes.
     guess : array_like of 4 floats, or mapping, optional

@@ -90,27 +90,12 @@ class Axis(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class MapJob(Question):
-    """A map.
+    """A map; what is not said here is as in :func:`orchestrate.map`.
 
     Attributes
     ----------
     given : tuple of (str, float or tuple of float)
         Parameters of the excitation and the structure; two of them are lists.
-    transient : int
-        Periods dropped at least.
-    settle : float
-        At least ``settle * eta`` periods are dropped.
-    samples : int
-        Periods kept.
-    tolerance : float
-        Of :func:`orchestrate.response.multiplicity.decide`.
-    longest : int
-        Periods up to which a response is run on whose multiplicity is undecided.
-    start : tuple of float
-        State that all points start from: x1, x2 in m, v1, v2 in m/s.
-    exponent : bool
-        Whether the largest Lyapunov exponent is computed, over ``periods`` periods.
-    periods : int
     """
 
     given: tuple[tuple[str, Numbers], ...]
@@ -261,18 +246,14 @@ def map(
     Parameters
     ----------
     structure : Structure
-    eta : array_like, optional
-        Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m.
-    frequency, amplitude : array_like, optional
-        The physical form instead: rad/s and m.
-    transient : int
-        Periods dropped at least.
-    settle : float
-        At least ``settle * eta`` periods are dropped: a slow decay takes time, not periods.
+    eta, frequency, amplitude
+        As in :func:`orchestrate.sweep`.
+    transient, settle
+        As in :func:`orchestrate.attractors`.
     samples : int
         Periods kept.
-    tolerance : float
-        Part of the motion's size within which a state counts as repeated.
+    tolerance
+        As in :func:`orchestrate.sweep`.
     longest : int
         Periods up to which a response is run on whose multiplicity is undecided, see
         :func:`orchestrate.sweep`.
@@ -280,8 +261,9 @@ def map(
         State at phase 0 that every point starts from: x1, x2 in m, v1, v2 in m/s; at rest by
         default.
     exponent : bool
-        Whether to compute the largest Lyapunov exponents, over ``periods`` further periods.
+        Whether to compute the largest Lyapunov exponents too.
     periods : int
+        Further periods, over which an exponent is measured.
     **others
         Parameters of the structure by name, such as ``e=``, ``D=``, ``k2=``, as numbers or lists;
         and ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`. Of

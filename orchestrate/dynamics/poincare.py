@@ -173,13 +173,15 @@ def poincare(
         Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m.
     frequency, amplitude : float, optional
         The physical form instead: rad/s and m.
-    at : str
-        ``"phase"``: once an excitation period, at one phase of the box. ``"impacts"``: just after
-        each impact. ``"releases"``: where each permanent contact that an impact began ends.
+    at : {"phase", "impacts", "releases"}
+        Where states are taken. At one phase of the box, once an excitation period; just after each
+        impact; or where each permanent contact that an impact began ends.
     phase : float
-        Of the box, rad, where ``at="phase"``.
-    transient, periods : int
-        Excitation periods dropped, and followed after them.
+        Phase of the box, rad, where ``at`` is ``"phase"``.
+    transient : int
+        Excitation periods dropped.
+    periods : int
+        Excitation periods followed after them.
     start : array_like of 4 floats, optional
         x1, x2 in m, v1, v2 in m/s at phase 0; at rest by default.
     **running

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .labels import symbol
+from .labels import symbol, title_from_attributes
 from .style import BLACK, BLUE, GREEN, ORANGE, RED, panels, styled
 
 COLOURS = {
@@ -35,6 +35,7 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
         label = kind if kind not in shown else None
         plane.plot(curve[first], curve[second], color=COLOURS[kind], linewidth=1.2, label=label)
         shown.add(kind)
+    title = title or title_from_attributes(curves[0])
     plane.set(xlabel=symbol(first), ylabel=symbol(second), title=title)
     figure.legend(loc="outside lower right", ncols=len(shown))
     return figure

@@ -47,8 +47,8 @@ class EvenBasinJob(BasinJob):
 
         def two(name: str) -> NDArray[np.float64]:
             """A quantity of the two most frequent attractors at each frequency."""
-            found: NDArray[np.float64] = np.take_along_axis(data[name].values, frequent, axis=1)
-            return found
+            values: NDArray[np.float64] = np.take_along_axis(data[name].values, frequent, axis=1)
+            return values
 
         share, impacts = two("share")[:, -1], two("impacts_per_period")
         apart = np.abs(impacts[:, 0] - impacts[:, -1]) > self.apart

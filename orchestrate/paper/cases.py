@@ -11,6 +11,7 @@ CASES = {
     "damped": Structure.nondimensional(e=0.7, D=0.05),  # section 4.1
     "plastic": Structure.nondimensional(e=0.3, D=0.005),  # section 4.2
 }
+ORBITS = {"6": "elastic", "10": "damped", "11": "plastic"}  # figures that are sweeps
 RIG = "rig"  # the shipped set that is nearest to the paper's experiment
 MAPS = {"e": (0.05, 0.95), "D": (0.005, 0.15), "kappa": (1.02, 2.0)}  # D in equal ratios
 MAP_ETAS = (0.4, 2.2)

@@ -102,11 +102,13 @@ class ChatteringJob(Job):
         share = structure.mu / (1.0 + structure.mu)
         start = middle, middle, -share * parting, (1.0 - share) * parting
         begin(instance, *point, start)
-        found = instance.impacts(0.0, 0.25 * point.excitation.period)
-        ends = np.flatnonzero(found.sticks)
-        last = int(ends[0]) + 1 if len(ends) else len(found.time)
+        impacts = instance.impacts(0.0, 0.25 * point.excitation.period)
+        ends = np.flatnonzero(impacts.sticks)
+        last = int(ends[0]) + 1 if len(ends) else len(impacts.time)
         kept = slice(0, last)
-        cut = Impacts(found.time[kept], found.state[kept], found.closing[kept], found.sticks[kept])
+        cut = Impacts(
+            impacts.time[kept], impacts.state[kept], impacts.closing[kept], impacts.sticks[kept]
+        )
         return cut, point
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:

@@ -197,13 +197,13 @@ class CurvesInWindows(CurvesJob):
 
     def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
         """The peaks; where a window has none, its last response with the multiplicity -n."""
-        sweep, structure, found = sweeps[0], self.structures[0], []
+        sweep, structure, panels = sweeps[0], self.structures[0], []
         for n in range(1, self.windows + 1):
             peak = relative_peak(sweep, n)
             last = (window(sweep, n) or (0.0, float(sweep.eta.max())))[1]
             panel = panel_at(sweep, structure, last if peak is None else peak)
-            found.append(panel if peak is not None else replace(panel, multiplicity=-n))
-        return found
+            panels.append(panel if peak is not None else replace(panel, multiplicity=-n))
+        return panels
 
     def settled(self, fmu: Path, panel: Panel) -> Panel:
         """A panel without a peak is followed upwards to one beyond the sweep."""

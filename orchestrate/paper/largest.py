@@ -115,7 +115,7 @@ class LargestJob(Job):
         """The regions, each with its candidates; none where it holds no frequency."""
         exponents = inputs[self.exponents].sortby("eta")
         ends = inputs[self.settled].sortby("eta").end_state
-        found = []
+        searched = []
         for number, region in enumerate(regions(inputs[self.limits], self.case)):
             part = exponents.exponent.sel(eta=slice(region.low, region.high))
             order = np.argsort(-part.values, kind="stable")[: self.candidates]
@@ -124,8 +124,8 @@ class LargestJob(Job):
                 self.candidate(eta, ends.sel(eta=eta, method="nearest").values, value)
                 for eta, value in zip(rows.eta.values.tolist(), rows.values.tolist(), strict=True)
             ]
-            found.append(Searched(number, candidates))
-        return found
+            searched.append(Searched(number, candidates))
+        return searched
 
     def candidate(self, eta: float, end: np.ndarray, screened: float) -> Candidate:
         """A candidate from a non-dimensional state on its response."""
@@ -142,24 +142,22 @@ class LargestJob(Job):
         with EventInstance(fmus[OSCILLATOR]) as instance:
             for place, (point, start, screened) in enumerate(candidates):
                 other = another_start(point, start, [self.seed, number, place])
-                found = long_run(instance, point, other, self.periods, self.parts, self.runs)
+                run = long_run(instance, point, other, self.periods, self.parts, self.runs)
                 eta = point.excitation.eta(point.structure)
-                outcome = self.judged(found, screened, eta)
-                rows[place] = [eta, screened, *found.exponent, outcome]
+                outcome = self.judged(run, screened, eta)
+                rows[place] = [eta, screened, *run.exponent, outcome]
                 if outcome == STEADY:
                     break
         return {"rows": rows[np.newaxis]}
 
-    def judged(self, found: LongRun, screened: float, eta: float) -> int:
+    def judged(self, run: LongRun, screened: float, eta: float) -> int:
         """The outcome of a run: ``LOST`` where less than half of the growth is left.
 
         Chaos may have ended before the first part that counts, or the other start may lead to
         another attractor.
         """
-        lost = screened - found.exponent.value > max(
-            0.5 * screened, wander_error(self.periods, eta)
-        )
-        return LOST if found.outcome == STEADY and screened > 0.0 and lost else found.outcome
+        lost = screened - run.exponent.value > max(0.5 * screened, wander_error(self.periods, eta))
+        return LOST if run.outcome == STEADY and screened > 0.0 and lost else run.outcome
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Over region and candidate."""

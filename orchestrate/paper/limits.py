@@ -98,13 +98,13 @@ class LimitsJob(Job):
 
     def items(self, inputs: Inputs) -> Sequence[tuple[int, Structure, tuple[float, ...]]]:
         """Number, structure and first state of each."""
-        found = []
+        items = []
         for number, one in enumerate(self.branches):
             place = list(CASES).index(one.case)
             row = inputs[self.sweeps[place]].sel(eta=one.eta, method="nearest")
             state = tuple(map(float, row.end_state.values))
-            found.append((number, self.structures[place], state))
-        return found
+            items.append((number, self.structures[place], state))
+        return items
 
     def work(
         self,

@@ -38,8 +38,8 @@ def points() -> tuple[Point, ...]:
     """Figure 6's structure at some frequencies; then structures that are alike, and one almost."""
     etas = np.round(np.arange(0.45, 8.0, 0.15), 3).tolist()
     alike = [ELASTIC.replace(mu=mu, kappa=kappa) for mu, kappa in ((1, 1), (2, 2), (2, 2.2))]
-    found = [Point(ELASTIC, Excitation.nondimensional(eta, ELASTIC)) for eta in etas]
-    return (*found, *(Point(one, Excitation.nondimensional(1.3, one)) for one in alike))
+    points_along = [Point(ELASTIC, Excitation.nondimensional(eta, ELASTIC)) for eta in etas]
+    return (*points_along, *(Point(one, Excitation.nondimensional(1.3, one)) for one in alike))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -68,11 +68,11 @@ class MapPeakJob(DerivedJob):
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Its statistics, its largest impulse (15), and what its exponent says."""
         structure = self.question(inputs).structure
-        found = super().dataset(table, inputs)
+        answer = super().dataset(table, inputs)
         factor = (1.0 + structure.e) * structure.mu / (1.0 + structure.mu)
-        floor = np.log(WANDER) / (self.periods * period(float(found.eta[0])))
-        kind = verdict(found.exponent, found.standard_error, floor)
+        floor = np.log(WANDER) / (self.periods * period(float(answer.eta[0])))
+        kind = verdict(answer.exponent, answer.standard_error, floor)
         text = "largest impulse over m1 omega a eta^2"
-        found["impulse_max"] = variable("eta", factor * found.closing_max.values, "1", text)
-        found["verdict"] = flags("eta", kind, "what the exponent says of the response", WORDS)
-        return found
+        answer["impulse_max"] = variable("eta", factor * answer.closing_max.values, "1", text)
+        answer["verdict"] = flags("eta", kind, "what the exponent says of the response", WORDS)
+        return answer

@@ -7,85 +7,49 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..figures import (
+    attractors,
+    basin,
+    lyapunov,
+    maps,
+    orbit_diagram,
+    phase_curves,
+    phase_grid,
+    spectra,
+    time_histories,
+)
+from ..figures.files import save
+from ..figures.labels import title_from_attributes
+from ..figures.style import XI_REL, XI_REL_RATE, Figure
 from ..running.executors import Processes, running_workers
 from ..running.store import load
+from .cases import ORBITS
+from .plan import Part
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..figures.style import Figure
-    from .plan import Part
-
-ORBITS = {"6": "elastic", "10": "damped", "11": "plastic"}  # figures that are sweeps
 FORMATS = ("png", "pdf")
 
 
-def orbit(name: str, data: xr.Dataset) -> Figure:
-    """Figures 6, 10 and 11."""
-    from ..figures import orbit_diagram
-
-    return orbit_diagram.draw(data)
-
-
-def curves(name: str, data: xr.Dataset) -> Figure:
-    """Figures 5, 7, 8, 9 and 12."""
-    from ..figures import phase_curves, phase_grid, time_histories
-
-    draw = {
-        "5": phase_curves.draw_states,
-        "7": time_histories.draw,
-        "12": phase_curves.draw_masses,
-    }
-    return draw.get(name, phase_grid.draw)(data)
-
-
-def exponents(name: str, *data: xr.Dataset) -> Figure:
-    """Exponents of the three cases."""
-    from ..figures import lyapunov
-
-    return lyapunov.draw(*data)
-
-
-def attractors(name: str, data: xr.Dataset) -> Figure:
-    """Coexisting attractors."""
-    from ..figures import attractors as figure
-
-    return figure.draw(data)
-
-
-def basin(name: str, data: xr.Dataset) -> Figure:
-    """The plane of starts."""
-    from ..figures import basin as figure
-    from ..figures.labels import title_from_attributes
-    from ..figures.style import XI_REL, XI_REL_RATE
-
-    replaced = "frequency", "amplitude"  # by what the job has found
+def draw_basin(data: xr.Dataset) -> Figure:
+    """Draw the plane of starts at the frequency that its job has chosen."""
+    replaced = "frequency", "amplitude"
     title = rf"{title_from_attributes(data, replaced)}, $\eta$ = {float(data.eta):.3f}"
-    return figure.draw(data, title, (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
+    return basin.draw(data, title, (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
 
 
-def maps(name: str, *data: xr.Dataset) -> Figure:
-    """The three maps."""
-    from ..figures import maps as figure
-
-    return figure.draw(*data)
-
-
-def spectra(name: str, data: xr.Dataset) -> Figure:
-    """Spectra at three frequencies."""
-    from ..figures import spectra as figure
-
-    return figure.draw(data)
-
-
-DRAW: Mapping[str, Callable[..., Figure]] = {
-    **dict.fromkeys(ORBITS, orbit),
-    **dict.fromkeys(("5", "7", "8", "9", "12"), curves),
-    "lyapunov": exponents,
-    "attractors": attractors,
-    "basin": basin,
-    "maps": maps,
-    "spectra": spectra,
+DRAW: Mapping[str, Callable[..., Figure]] = {  # from the results of a part to its picture
+    **dict.fromkeys(ORBITS, orbit_diagram.draw),
+    "5": phase_curves.draw_states,
+    "7": time_histories.draw,
+    **dict.fromkeys(("8", "9"), phase_grid.draw),
+    "12": phase_curves.draw_masses,
+    "lyapunov": lyapunov.draw,
+    "attractors": attractors.draw,
+    "basin": draw_basin,
+    "maps": maps.draw,
+    "spectra": spectra.draw,
 }
 
 
@@ -100,11 +64,9 @@ def is_current(part: Part, output: Path) -> bool:
 
 def draw_part(part: Part, output: Path) -> Path:
     """Draw a part from its data files, where it is not drawn yet; returns the path of its PNG."""
-    from ..figures.files import save
-
     if is_current(part, output):
         return output / f"{part.picture}.{FORMATS[0]}"
-    figure = DRAW[part.name](part.name, *[load(output / f"{job}.nc") for job in part.jobs])
+    figure = DRAW[part.name](*[load(output / f"{job}.nc") for job in part.jobs])
     return save(figure, output / part.picture, FORMATS)[0]
 
 

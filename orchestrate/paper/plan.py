@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from ..dynamics.attractors import AttractorsJob
 from ..dynamics.basins import Side
 from ..dynamics.clusters import AttractorSettings
+from ..dynamics.following import OnwardQuestion
 from ..dynamics.impact_statistics import ImpactStatisticsJob
 from ..dynamics.lyapunov import LyapunovJob
 from ..dynamics.parameter_map import MapJob
@@ -21,7 +22,7 @@ from ..structures import Drive, Excitation, Structure
 from ..weak_drive import averaged
 from ..weak_drive.couple import CoupleJob, couple_job, schedule_of, scheme_of
 from .basin import EvenBasinJob
-from .cases import CASES, MAP_ETAS, MAPS, RIG, map_values
+from .cases import CASES, MAP_ETAS, MAPS, ORBITS, RIG, map_values
 from .chattering import ChatteringJob
 from .curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
 from .gamma import GammaJob
@@ -29,12 +30,12 @@ from .largest import LargestJob
 from .limits import LimitsJob
 from .low_speed import LowSpeedJob
 from .map_peaks import MapPeakJob
-from .pictures import ORBITS
 from .resolution import Resolution
 from .settled import SettledJob
 from .spectra import PeakSpectraJob
 from .transients import LaterJob
 
+Followers = TypeVar("Followers", bound=OnwardQuestion)
 FIRST_REGION = (0.45, 0.49, 0.59, 0.63, 0.70, 0.80, 0.88, 1.047, 1.08, 1.13, 1.24, 1.31)
 FEW = 100  # frequencies at which responses are run on for longest
 SECOND_REGION = (2.60, 2.65, 2.69, 2.737, 2.83, 2.92, 3.05, 3.17, 3.30, 3.49, 3.56, 3.70)
@@ -104,15 +105,31 @@ def sweep_job(structure: Structure, direction: str, resolution: Resolution) -> S
     )
 
 
+def follow(kind: type[Followers], sweep: SweepJob, name: str, **fields: Any) -> Followers:
+    """Return a job that goes on from a sweep's responses, of another name."""
+    given: Any = {"structure": sweep.structure, "eta": sweep.eta, "follows": sweep.name, **fields}
+    return kind(name=sweep.name.replace("orbit", name), **given)
+
+
 def settled_job(sweep: SweepJob, resolution: Resolution) -> SettledJob:
     """What each fifth response of an up-sweep settles to; below 0.43 most have contact."""
-    return SettledJob(
-        name=sweep.name.replace("orbit", "settled"),
-        structure=sweep.structure,
-        eta=tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5],
-        follows=sweep.name,
-        settings=AttractorSettings(transient=0, settle=0.0, longest=resolution.longest),
-    )
+    etas = tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5]
+    settings = AttractorSettings(transient=0, settle=0.0, longest=resolution.longest)
+    return follow(SettledJob, sweep, "settled", eta=etas, settings=settings)
+
+
+def later_jobs(sweep: SweepJob, resolution: Resolution) -> list[LaterJob]:
+    """A sweep's responses later: of all frequencies, and of a few drawn by chance later still."""
+    done = sweep.transient + sweep.samples
+    few = np.random.default_rng(500).choice(np.array(resolution.etas()), FEW, replace=False)
+    asked = {
+        "later": (resolution.etas(), resolution.later),
+        "latest": (tuple(np.sort(few).tolist()), resolution.latest),
+    }
+    return [
+        follow(LaterJob, sweep, name, eta=etas, transient=first - 1 - done, samples=sweep.samples)
+        for name, (etas, first) in asked.items()
+    ]
 
 
 def exponent_job(settled: SettledJob, resolution: Resolution) -> LyapunovJob:
@@ -129,7 +146,7 @@ def exponent_job(settled: SettledJob, resolution: Resolution) -> LyapunovJob:
 
 def own_runs(sweep: SweepJob, settled: Sequence[SettledJob], resolution: Resolution) -> list[Job]:
     """Runs of their own of what is largest of many: exponents by region, impulses of the maps."""
-    found: list[Job] = [
+    jobs: list[Job] = [
         LargestJob(
             name=job.name.replace("settled", "largest").removesuffix("_up"),
             case=case,
@@ -141,7 +158,7 @@ def own_runs(sweep: SweepJob, settled: Sequence[SettledJob], resolution: Resolut
         )
         for case, job in zip(CASES, settled, strict=True)
     ]
-    found += [
+    jobs += [
         MapPeakJob(
             name=f"peak_{name}",
             map=f"map_{name}",
@@ -151,26 +168,7 @@ def own_runs(sweep: SweepJob, settled: Sequence[SettledJob], resolution: Resolut
         )
         for name in MAPS
     ]
-    return found
-
-
-def later_jobs(sweep: SweepJob, resolution: Resolution) -> list[LaterJob]:
-    """A sweep's responses later: of all frequencies, and of a few drawn by chance later still."""
-    done = sweep.transient + sweep.samples
-    etas = np.array(resolution.etas())
-    few = np.sort(np.random.default_rng(500).choice(etas, FEW, replace=False))
-    asked = {"later": (etas, resolution.later), "latest": (few, resolution.latest)}
-    return [
-        LaterJob(
-            name=sweep.name.replace("orbit", name),
-            structure=sweep.structure,
-            eta=tuple(values.tolist()),
-            follows=sweep.name,
-            transient=first - 1 - done,
-            samples=sweep.samples,
-        )
-        for name, (values, first) in asked.items()
-    ]
+    return jobs
 
 
 def ramp_jobs(resolution: Resolution) -> list[CoupleJob]:
@@ -187,32 +185,6 @@ def ramp_jobs(resolution: Resolution) -> list[CoupleJob]:
     ]
 
 
-def statistics_job(sweep: SweepJob, resolution: Resolution) -> ImpactStatisticsJob:
-    """A sweep's responses, impact by impact."""
-    return ImpactStatisticsJob(
-        name=sweep.name.replace("orbit", "steady"),
-        structure=sweep.structure,
-        eta=sweep.eta,
-        transient=0,
-        periods=resolution.steady,
-        follows=sweep.name,
-    )
-
-
-def attractors_job(sweep: SweepJob, resolution: Resolution) -> AttractorsJob:
-    """Random starts in boxes three times as wide as the sweep's largest gaps."""
-    return AttractorsJob(
-        name="attractors",
-        structure=sweep.structure,
-        eta=resolution.attractor_etas(),
-        starts=resolution.starts,
-        seed=2026,
-        width=3.0,
-        follows=sweep.name,
-        settings=AttractorSettings(transient=resolution.settle, longest=resolution.settle_most),
-    )
-
-
 def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution) -> EvenBasinJob:
     """Gap and gap velocity around the two attractors, up to three times the largest gap."""
     side = resolution.basin
@@ -225,19 +197,6 @@ def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution
         settings=attractors.settings,
         attractors=attractors.name,
         sweep=sweep.name,
-    )
-
-
-def map_job(parameter: str, structure: Structure, resolution: Resolution) -> MapJob:
-    """A map over a parameter and the frequency, from rest."""
-    etas = np.linspace(*MAP_ETAS, resolution.map_etas)
-    values = map_values(parameter, resolution.map_rows)
-    return MapJob(
-        name=f"map_{parameter}",
-        structure=structure,
-        given=((parameter, tuple(values.tolist())), ("eta", tuple(etas.tolist()))),
-        transient=resolution.map_settle,
-        samples=resolution.map_keep,
     )
 
 
@@ -269,7 +228,8 @@ def make(resolution: Resolution) -> Plan:
     """The plan at a resolution."""
     ups = [sweep_job(structure, "up", resolution) for structure in CASES.values()]
     downs = [sweep_job(structure, "down", resolution) for structure in CASES.values()]
-    statistics = [statistics_job(sweep, resolution) for sweep in ups]
+    counted: Any = {"transient": 0, "periods": resolution.steady}
+    statistics = [follow(ImpactStatisticsJob, sweep, "steady", **counted) for sweep in ups]
     curves = curve_jobs(ups, resolution)
     limits = LimitsJob(name="limits", sweeps=names_of(ups))
     own: list[Job] = [GammaJob(name="gamma"), limits, LowSpeedJob(name="low_speed")]
@@ -297,12 +257,32 @@ def further_jobs(
 ) -> dict[str, list[Job]]:
     """What goes beyond the paper's figures, by part."""
     first = ups[0]
-    attractors = attractors_job(first, resolution)
+    attractors = AttractorsJob(
+        name="attractors",
+        structure=first.structure,
+        eta=resolution.attractor_etas(),
+        follows=first.name,
+        settings=AttractorSettings(transient=resolution.settle, longest=resolution.settle_most),
+        starts=resolution.starts,
+        seed=2026,
+        width=3.0,
+    )
+    etas = tuple(np.linspace(*MAP_ETAS, resolution.map_etas).tolist())
+    values = {name: tuple(map_values(name, resolution.map_rows).tolist()) for name in MAPS}
+    kept: Any = {"transient": resolution.map_settle, "samples": resolution.map_keep}
     spectra = PeakSpectraJob(name="spectra", sweep=first.name, structure=first.structure)
     return {
         "lyapunov": [exponent_job(job, resolution) for job in settled],
         "attractors": [attractors],
         "basin": [basin_job(attractors, first, resolution)],
-        "maps": [map_job(parameter, first.structure, resolution) for parameter in MAPS],
+        "maps": [
+            MapJob(
+                name=f"map_{name}",
+                structure=first.structure,
+                given=((name, values[name]), ("eta", etas)),
+                **kept,
+            )
+            for name in MAPS
+        ],
         "spectra": [spectra],
     }

@@ -45,8 +45,8 @@ class Region(NamedTuple):
 
 def nearest_window(limits: xr.Dataset, case: str, orbit: str, inside: float) -> StableWindow:
     """The stable window of an orbit that holds a frequency, or is nearest to it."""
-    found = windows_of(limits, case, orbit)
-    return min(found, key=lambda one: max(one.low - inside, inside - one.high, 0.0))
+    windows = windows_of(limits, case, orbit)
+    return min(windows, key=lambda one: max(one.low - inside, inside - one.high, 0.0))
 
 
 def regions(limits: xr.Dataset, case: str) -> list[Region]:
@@ -67,10 +67,10 @@ def regions(limits: xr.Dataset, case: str) -> list[Region]:
         ``COUNT`` of them, upwards, also those without any frequency of the sweeps.
     """
     last, label = nearest_window(limits, case, *CONTACT).high, "contact"
-    found = []
+    listed = []
     for orbit, eta in WINDOWS.items():
         window = nearest_window(limits, case, orbit, eta)
-        found.append(Region(last, window.low, f"{label} to {orbit}"))
-        found.append(Region(window.low, min(window.high, LAST), orbit))
+        listed.append(Region(last, window.low, f"{label} to {orbit}"))
+        listed.append(Region(window.low, min(window.high, LAST), orbit))
         last, label = window.high, orbit
-    return found
+    return listed

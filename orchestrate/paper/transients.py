@@ -53,11 +53,11 @@ class LaterJob(OnwardQuestion):
         rows = []
         with Instance(fmus[OSCILLATOR]) as instance:
             for item in items:
-                found = respond(
+                response = respond(
                     instance, *item.point, item.start, self.transient, self.samples, self.tolerance
                 )
-                gap = found.x_rel_max / item.point.length
-                rows.append([found.multiplicity, found.impacts_per_period, gap])
+                gap = response.x_rel_max / item.point.length
+                rows.append([response.multiplicity, response.impacts_per_period, gap])
         return {"rows": np.array(rows)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:

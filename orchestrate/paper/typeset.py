@@ -45,9 +45,9 @@ def mathml(latex: str) -> Markup:
     return Markup(tex2mathml(latex).replace("\n", ""))
 
 
-def latex_of(found: re.Match[str]) -> str:
+def latex_of(match: re.Match[str]) -> str:
     """The LaTeX of a formula found in a sentence."""
-    return found.expand(LATEX[int(str(found.lastgroup).removeprefix("word"))])
+    return match.expand(LATEX[int(str(match.lastgroup).removeprefix("word"))])
 
 
 def typeset(text: str) -> Markup:

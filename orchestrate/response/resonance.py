@@ -207,17 +207,11 @@ def resonance(
     ----------
     structure : Structure
         Whether it is bonded does not matter: both kinds are answered.
-    eta : array_like, optional
-        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m.
-    frequency, amplitude : array_like, optional
-        The physical form instead: rad/s and m, one amplitude or one for each frequency.
+    eta, frequency, amplitude
+        As in :func:`orchestrate.sweep`.
     direction : {"up", "down", "both"}
         Order of the frequencies, each started from the end of the last.
-    transient, samples : int
-        Periods dropped, and looked at after them, at each frequency.
-    tolerance : float
-        Part of the motion's size within which a state counts as repeated.
-    peak_periods : int
+    transient, samples, tolerance, peak_periods
         As in :func:`orchestrate.sweep`.
     prominence : float
         By what part of itself a peak of the larger one of both displacements stands out at least.

@@ -45,18 +45,7 @@ IN_TIME = {  # units, long name
 
 @dataclass(frozen=True, kw_only=True)
 class SimulateJob(Question):
-    """One motion in time.
-
-    Attributes
-    ----------
-    excitation : Excitation
-    periods, transient : int
-        Periods kept, and dropped before them.
-    points : int
-        Points a period.
-    start : tuple of float
-        x1, x2 in m, v1, v2 in m/s.
-    """
+    """One motion in time; attributes are as in :func:`orchestrate.simulate`."""
 
     excitation: Excitation
     periods: int = 20
@@ -207,8 +196,10 @@ def simulate(
         Frequency ratio Omega/omega; the box's amplitude is 1/eta^2 m, so that xi of (3) is x in m.
     frequency, amplitude : float, optional
         The physical form instead: rad/s and m.
-    periods, transient : int
-        Excitation periods kept, and dropped before them.
+    periods : int
+        Excitation periods kept.
+    transient : int
+        Periods dropped before them.
     points : int
         Communication points a period.
     start : array_like of 4 floats, optional

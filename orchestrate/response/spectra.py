@@ -76,17 +76,7 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
 
 @dataclass(frozen=True, kw_only=True)
 class SpectraJob(SeriesQuestion):
-    """Spectra of steady-state responses.
-
-    Attributes
-    ----------
-    periods, points : int
-        Excitation periods in the span, and states a period.
-    transient : int
-        Periods dropped before.
-    highest : float
-        Highest line, as a multiple of the excitation frequency.
-    """
+    """Spectra of steady-state responses; attributes are as in :func:`orchestrate.spectra`."""
 
     periods: int = 64
     points: int = 1024
@@ -184,12 +174,12 @@ def spectra(
     ----------
     structure : Structure
         Whether it is bonded does not matter: both kinds are answered.
-    eta : array_like, optional
-        Frequency ratios Omega/omega; the box's amplitude is 1/eta^2 m.
-    frequency, amplitude : array_like, optional
-        The physical form instead: rad/s and m, one amplitude or one for each frequency.
-    periods, points : int
-        Excitation periods in the span, which make the lines' distance, and states a period.
+    eta, frequency, amplitude
+        As in :func:`orchestrate.sweep`.
+    periods : int
+        Excitation periods in the record, which make the lines' distance.
+    points : int
+        Samples a period.
     transient : int
         Periods dropped before, from rest.
     highest : float

@@ -50,21 +50,7 @@ HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a g
 
 @dataclass(frozen=True, kw_only=True)
 class SweepJob(SeriesQuestion):
-    """Responses along one parameter.
-
-    Attributes
-    ----------
-    direction : str
-        Of ``DIRECTIONS``.
-    transient, samples : int
-        Periods dropped, and stroboscopic samples kept after them, at each value.
-    tolerance : float
-        Of :func:`.multiplicity.decide`.
-    start : tuple of float
-        State that the first value starts from: x1, x2 in m, v1, v2 in m/s.
-    peak_periods : int
-        Periods over which amplitudes and accelerations are looked for, at most.
-    """
+    """Responses along one parameter; attributes are as in :func:`orchestrate.sweep`."""
 
     direction: Direction = "up"
     transient: int = 500
@@ -252,11 +238,14 @@ def sweep(
         Parameter that takes ``values``, such as ``"e"``, ``"D"``, ``"k2"``, ``"amplitude"``; by
         default what is given as a list.
     values : array_like, optional
+        Its values.
     direction : {"up", "down", "both", "given"}
         Order in which the values are computed; the result keeps the order in which they were
         given. ``"both"`` computes them upwards and downwards and adds a dimension ``direction``.
-    transient, samples : int
-        Periods dropped, and stroboscopic samples kept after them, at each value.
+    transient : int
+        Periods dropped at each value.
+    samples : int
+        Periods kept after them, a stroboscopic sample each.
     tolerance : float
         Part of the motion's size within which a state counts as repeated.
     start : array_like of 4 floats, optional

@@ -6,6 +6,7 @@ module              idea
 :mod:`.structure`   two oscillators and their contact
 :mod:`.excitation`  the harmonic motion of the box
 :mod:`.drive`       a motor with an unbalance, and the box that it shakes
+:mod:`.described`   that these can be read from a file
 :mod:`.ranges`      names, units, defaults and ranges, from the FMUs' variable tables
 :mod:`.files`       TOML files of these, and the sets that come with the package
 :mod:`.sections`    what stands in their sections

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from os import PathLike
 
 from ..errors import InputError
+from .described import Described
 from .ranges import DRIVE, RATIO_QUANTITIES, construct_or_explain, exact_inverse
 from .structure import Structure
 
 
 @dataclass(frozen=True, kw_only=True)
-class Drive:
+class Drive(Described):
     """Direct-current motor with an unbalance, and the box that it shakes.
 
     Parameters
@@ -202,11 +203,7 @@ class Drive:
         structure : Structure, optional
             What non-dimensional numbers refer to where the file has no ``[structure]``.
         """
-        from .files import read_section
-
-        drive = read_section(path, "drive", structure)
-        assert isinstance(drive, cls)
-        return drive
+        return cls._read(path, structure)
 
     @property
     def length(self) -> float:
@@ -261,10 +258,6 @@ def torque_line(
 ) -> tuple[float, float]:
     """Return K in N m/A and R_a in Ohm of the line between a datasheet's two points, V, rad/s and N
     m.
-
-    Raises
-    ------
-    InputError
     """
     checked = {
         "rated_voltage": rated_voltage,

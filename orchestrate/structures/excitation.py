@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from os import PathLike
 
 from ..errors import InputError
+from .described import Described
 from .ranges import EXCITATION, RATIO_QUANTITIES, construct_or_explain, exact_inverse
 from .structure import Structure
 
 
 @dataclass(frozen=True, kw_only=True)
-class Excitation:
+class Excitation(Described):
     """Harmonic motion of the box, ``a sin(Omega t + phase)``.
 
     Parameters
@@ -73,11 +74,7 @@ class Excitation:
         structure : Structure, optional
             What ``eta`` refers to where the file has no ``[structure]``.
         """
-        from .files import read_section
-
-        excitation = read_section(path, "excitation", structure)
-        assert isinstance(excitation, cls)
-        return excitation
+        return cls._read(path, structure)
 
     @property
     def period(self) -> float:

@@ -33,6 +33,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..files import read_text, write_whole
+from .described import Described
 from .drive import Drive
 from .excitation import Excitation
 from .ranges import DRIVE, STRUCTURE, expected_one_of
@@ -43,8 +44,6 @@ FOLDER = Path(__file__).parent / "sets"
 SETS = {name: FOLDER / f"{name}.toml" for name in ("paper", "quick", "beam", "rig")}
 MAX_BYTES = 1 << 16  # of a file: some twenty numbers and as many remarks as they need
 SECTIONS = ("structure", "excitation", "motor", "box")
-
-Described = Structure | Excitation | Drive
 
 
 def resolve(source: str | PathLike[str]) -> Path:
@@ -128,6 +127,9 @@ def read_section(
         expected = "[motor] and [box]" if name == "drive" else f"[{name}]"
         raise InputError(f"{source}: describes no {name}; expected {expected}")
     return contents[name]
+
+
+Described.reader = read_section
 
 
 def parse(path: Path) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from os import PathLike
 from typing import Any
 
 from ..errors import InputError
+from .described import Described
 from .ranges import (
     RATIO_QUANTITIES,
     STRUCTURE,
@@ -85,7 +86,7 @@ def short(value: float) -> str:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Structure:
+class Structure(Described):
     """Two masses on springs and dampers that touch without being glued (Figure 1 of the paper).
 
     Parameters
@@ -333,11 +334,7 @@ class Structure:
         >>> Structure.from_file("paper") == Structure.nondimensional()
         True
         """
-        from .files import read_section
-
-        structure = read_section(path, "structure")
-        assert isinstance(structure, cls)
-        return structure
+        return cls._read(path)
 
     @property
     def omega(self) -> float:

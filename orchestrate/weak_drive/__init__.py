@@ -12,6 +12,7 @@ module                  idea
 :mod:`.schedule`        the voltage over time
 :mod:`.controllers`     the voltage from the measured speed
 :mod:`.revolutions`     a run as one row per revolution of the motor
+:mod:`.run`             a run under way, step by step
 :mod:`.jumps`           where the speed jumps
 :mod:`.held`            held-voltage test: whether a motion is lost at the resonance
 :mod:`.verdicts`        jump, none or undecided in each direction, and why

@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access.exported import finder
-from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..checks import checked_integer
 from ..errors import InputError
@@ -31,8 +30,9 @@ from ..structures.ranges import DRIVE
 from ..structures.structure import Structure
 from . import averaged
 from .controllers import Controller
-from .couple import Run, couple_job, require_motor, scheme_of
+from .couple import couple_job, require_motor, scheme_of
 from .master import Scheme
+from .run import Run, begin_run
 from .schedule import Constant, check
 from .settling import (
     DECISIONS,
@@ -62,25 +62,16 @@ class System(NamedTuple):
 
 @dataclass(frozen=True)
 class CaptureJob(Job):
-    """Starts from rest; one item is one value of the parameter.
+    """Starts from rest, one item one value of the parameter; as in :func:`orchestrate.capture`.
 
     Attributes
     ----------
-    structure : Structure
-    drive : Drive
     over : str
-        Parameter of drive or structure that takes ``values``; empty for none.
-    values : tuple of float
+        Empty for none.
     voltages : tuple of float
         V, rising.
-    tolerance : float
-        Of the border, V.
     time : float
-        After which a start that has not settled is undecided, s; 0: by the system's time constants.
-    stay : int
-        Fewest revolutions on one side of the resonance before a speed counts as settled there.
-    scheme : Scheme
-    control : Controller, optional
+        0: by the system's time constants.
     """
 
     structure: Structure
@@ -124,12 +115,8 @@ class CaptureJob(Job):
             return Outcome(NO_LOAD)
         schedule = Constant(voltage, self.limit(system))
         job = couple_job(*system, schedule, self.scheme, 0.0, self.control)
-        with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
-            run = Run(job, oscillator, shaker)
-            try:
-                return run_until_settled(run, range(job.steps()), test.outcome)
-            finally:
-                run.master.close()
+        with begin_run(job, fmus) as run:
+            return run_until_settled(run, range(job.steps()), test.outcome)
 
     def limit(self, system: System) -> float:
         """Return the time after which a start that has not settled is undecided, s."""
@@ -272,12 +259,7 @@ def axis(over: str, values: ArrayLike) -> Variable:
 
 
 def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
-    """Return voltages at equal distances.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return voltages at equal distances."""
     try:
         low, high = (float(value) for value in voltage)
     except (TypeError, ValueError):
@@ -290,12 +272,7 @@ def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
 
 
 def values_of(over: str | None, values: ArrayLike | None, system: System) -> tuple[float, ...]:
-    """Return the parameter's values, each tried on the system.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the parameter's values, each tried on the system."""
     if (over is None) != (values is None):
         raise InputError(f"over = {over!r} and values = {values!r}: expected both, or none of them")
     if over is None:
@@ -341,9 +318,9 @@ def capture(
     count : int
         Voltages that are tried for each value before the border is sought between them.
     tolerance : float
-        Of the border, V.
+        Largest error of the border found by bisection, V.
     time : float, optional
-        After which a motor whose speed has not settled is undecided, s. By default 600 times the
+        Time after which a start that has not settled is undecided, s; by default 600 times the
         slowest time constant of motor and dampers, and ten times what the speed takes to creep
         past the fold, ``tolerance`` above it. A start ends as soon as it is decided.
     stay : int

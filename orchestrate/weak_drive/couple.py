@@ -7,8 +7,7 @@ and of the master, so an interrupted run goes on with the same bits.
 from __future__ import annotations
 
 import math
-from array import array
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -19,17 +18,17 @@ from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
 from ..response.labels import Variable, flags
-from ..running.job import Chunk, Inputs, Job, Table
+from ..running.job import Chunk, Inputs, Table
 from ..running.options import Running
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .compiled import master_of
-from .controllers import Controller, Measurement
+from .controllers import Controller
 from .held import MEANINGS, NOT_ASKED, HeldVoltageTest, Verdict, with_final_chunk
 from .jumps import Passing, SweepLeg, find_passing, stays_beyond, why_none
 from .master import Scheme
-from .revolutions import COLUMNS, Revolutions
+from .revolutions import COLUMNS
+from .run import CoupledRun, Run, begin_run
 from .schedule import Constant, Ramp, Schedule, check
 from .verdicts import check_against_theory, how_decided, is_doubtful, is_jump, reason, theories
 
@@ -44,41 +43,10 @@ UPWARD = (True, False)  # ways: whether the voltage rises
 HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
 
-def oscillator_start(structure: Structure) -> dict[str, float | bool]:
-    """Return the structure's start values in the coupled system: its own harmonic box motion is
-    off.
-    """
-    off = {"box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
-    return {**structure.parameters(), **off}
-
-
 @dataclass(frozen=True)
-class CoupleJob(Job):
-    """Run of the coupled system.
+class CoupleJob(CoupledRun):
+    """Run of the coupled system as a job, a chunk of steps after the other."""
 
-    Attributes
-    ----------
-    structure : Structure
-    drive : Drive
-    schedule : Schedule
-    scheme : Scheme
-    speed_start : float
-        Of the motor, rad/s.
-    hold: float
-        Time for which a voltage is held at most, where the record does not tell a jump, s.
-    control : Controller, optional
-        What takes the voltage from the schedule; the motor gets all of it where there is none.
-    """
-
-    structure: Structure
-    drive: Drive
-    schedule: Schedule
-    scheme: Scheme
-    speed_start: float
-    hold: float
-    control: Controller | None = None
-
-    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
     has_final_chunk: ClassVar[bool] = True
@@ -111,24 +79,36 @@ class CoupleJob(Job):
         return concatenate_tables(chunks)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Compute a chunk of steps, with all that the next one needs; or the verdicts at the
-        end.
+        """Compute a chunk of steps, or the verdicts at the end."""
+        return self.work_on(fmus, items, previous, self.chunk, lambda run: run.revolve(items))
+
+    def work_on(
+        self,
+        fmus: Mapping[str, Path],
+        items: Sequence[int],
+        previous: Table | None,
+        every: int,
+        revolve: Callable[[Run], Table],
+    ) -> Table:
+        """Compute a chunk of steps, with all that the next one needs; or the verdicts at the end.
+
+        Parameters
+        ----------
+        fmus, items, previous
+            As of :meth:`work`.
+        every : int
+            Steps of a chunk.
+        revolve : callable
+            Does the steps; gives what is kept of them.
         """
         if items[0] == self.steps():
             assert previous is not None
             nothing = {name: values[:0] for name, values in previous.items()}
-            return {**nothing, "verdicts": self.verdicts(fmus, previous, self.chunk)[np.newaxis]}
-        with (
-            Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
-            Instance(fmus[SHAKER], "shaker") as shaker,
-        ):
-            run = Run(self, oscillator, shaker)
-            try:
-                if previous is not None:
-                    run.set_state(previous)
-                return {**run.revolve(items), **run.get_state(), **no_verdicts()}
-            finally:
-                run.master.close()
+            return {**nothing, "verdicts": self.verdicts(fmus, previous, every)[np.newaxis]}
+        with begin_run(self, fmus) as run:
+            if previous is not None:
+                run.set_state(previous)
+            return {**revolve(run), **run.get_state(), **no_verdicts()}
 
     def progress_note(self, first: int) -> str:
         """Return a note for the verdicts: they are no step, and may take as long as many."""
@@ -365,97 +345,8 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
     return {**columns, "jump_rate": ("jump", rates, {"units": "V/s", "long_name": text})}
 
 
-class Run:
-    """Run under way: both instances, their master, and the present revolution.
-
-    Parameters
-    ----------
-    job : CoupleJob
-    oscillator, shaker : Instance
-        Not yet initialised.
-    """
-
-    def __init__(self, job: CoupleJob, oscillator: Instance, shaker: Instance) -> None:
-        self.job, self.oscillator, self.shaker = job, oscillator, shaker
-        oscillator.initialize(**oscillator_start(job.structure))
-        voltage = job.schedule.voltage(0.0)
-        shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
-        self.master = master_of(oscillator, shaker, job.structure, job.scheme)
-        self.revolutions = Revolutions(self.master, self.impact_count)
-        self.control_memory = job.control.begin(job.speed_start) if job.control else ()
-
-    def impact_count(self) -> float:
-        """Return the number of impacts so far."""
-        return float(self.oscillator.get("impact_count")[0])
-
-    def voltage(self, i: int) -> float:
-        """Return the voltage over a step, constant: the mean of a ramp, or a controller's part of
-        it.
-        """
-        h, control = self.job.scheme.h, self.job.control
-        available = self.job.schedule.voltage((i + 0.5) * h)
-        if control is None:
-            return available
-        seen = Measurement(self.master.time, self.master.shaking.speed, available, h)
-        voltage, self.control_memory = control.update(seen, self.control_memory)
-        return voltage
-
-    def revolve(self, steps: Sequence[int], kept: np.ndarray | None = None) -> Table:
-        """Do some steps; return the columns of their complete revolutions.
-
-        Parameters
-        ----------
-        steps : sequence of int
-        kept : ndarray, optional
-            Takes the master's memory after each step, a row each.
-        """
-        rows, begin = [], 0
-        for voltages in self.at_once(steps):
-            piece = None if kept is None else kept[begin : begin + len(voltages)]
-            done = 0
-            while done < len(voltages):
-                done = self.master.run(voltages, done, kept=piece)
-                row = self.revolutions.add()
-                if row:
-                    rows.append(row)
-            begin += done
-        table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
-        return dict(zip(COLUMNS, table.T.copy(), strict=True))
-
-    def at_once(self, steps: Sequence[int]) -> Iterator[array[float]]:
-        """Voltages of steps that follow each other unseen: all, or one where a controller looks."""
-        if self.job.control is None:
-            yield array("d", map(self.voltage, steps))
-        else:
-            yield from (array("d", (self.voltage(i),)) for i in steps)
-
-    def get_state(self) -> Table:
-        """Return everything that a run goes on from, one row."""
-        states = {
-            "oscillator_state": np.frombuffer(self.oscillator.save_state(), dtype=np.uint8),
-            "shaker_state": np.frombuffer(self.shaker.save_state(), dtype=np.uint8),
-            "master_memory": np.array(self.master.get_state()),
-            "revolution_memory": np.array(self.revolutions.get_state()),
-            "control_memory": np.array(self.control_memory),
-        }
-        return {name: state[np.newaxis] for name, state in states.items()}
-
-    def set_state(self, table: Table) -> None:
-        """Return to a state that :meth:`get_state` gave."""
-        self.oscillator.restore_state(table["oscillator_state"][-1].tobytes())
-        self.shaker.restore_state(table["shaker_state"][-1].tobytes())
-        self.master.set_state(table["master_memory"][-1].tolist())
-        self.revolutions.set_state(table["revolution_memory"][-1].tolist())
-        self.control_memory = tuple(table["control_memory"][-1].tolist())
-
-
 def require_motor(drive: Drive) -> None:
-    """Check that a voltage turns the motor.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a voltage turns the motor."""
     if not drive.motor_constant > 0.0:
         raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
 
@@ -471,12 +362,7 @@ def schedule_of(
     back: bool = True,
     spin_up: float | None = None,
 ) -> Schedule:
-    """Return a schedule from the arguments of :func:`couple`.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return a schedule from the arguments of :func:`couple`."""
     if isinstance(voltage, Schedule):
         return voltage
     try:
@@ -512,10 +398,6 @@ def scheme_of(
 ) -> Scheme:
     """Return a scheme from the arguments of :func:`couple`; ``sampled`` where each step is a
     sample.
-
-    Raises
-    ------
-    InputError
     """
     omega = structure.omega
     if tolerance is None:
@@ -538,12 +420,7 @@ def couple_job(
     control: Controller | None = None,
     hold: float | None = None,
 ) -> CoupleJob:
-    """Return the job of a run with this schedule.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the job of a run with this schedule."""
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
     if speed_start is None:

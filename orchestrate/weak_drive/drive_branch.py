@@ -69,25 +69,7 @@ Leg = BranchSegment[Motion]
 
 @dataclass(frozen=True)
 class DriveBranchJob(Job):
-    """The branches of both structures over the same range of speeds.
-
-    Attributes
-    ----------
-    structure : Structure
-    drive : Drive
-    speeds : (float, float)
-        rad/s, rising.
-    longest : float
-        Longest step, in unknowns.
-    most : int
-        Points in one direction.
-    period : int
-        Most revolutions after which the delaminated motion repeats.
-    steps : int
-        Communication steps in a revolution.
-    settle : float
-        Time in which the first motion is approached by simulation, s.
-    """
+    """Branches of both structures; attributes are as in :func:`orchestrate.drive_branch`."""
 
     structure: Structure
     drive: Drive
@@ -282,8 +264,8 @@ def drive_branch(
     speed : (float, float), optional
         Range of the mean speed, rad/s; by default 0.95 and 1.25 times the resonance.
     longest : float
-        Longest step along the branch, displacements over the averaged theory's largest amplitude,
-        voltage over K omega and speed over omega: 0.05 makes about 70 points.
+        Longest step along the branch, without a unit: displacements over the averaged theory's
+        largest amplitude, voltage over K omega and speed over omega: 0.05 makes about 70 points.
     most : int
         Most points in one direction.
     period : int

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access.exported import finder
-from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..checks import checked_integer
 from ..constants import TURN
@@ -27,8 +26,9 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import Run, couple_job, scheme_of
+from .couple import couple_job, scheme_of
 from .master import parts_of
+from .run import Run, begin_run
 from .schedule import Ramp, check
 
 if TYPE_CHECKING:
@@ -43,22 +43,12 @@ SHARES = (0.6, 0.45, 0.3, 0.15)  # of the way from the jump down to the jump up:
 
 @dataclass(frozen=True)
 class DriveSpectraJob(Job):
-    """Spectra of the coupled system at one voltage, bonded and delaminated.
+    """Spectra of both structures; what is not said here as in :func:`orchestrate.drive_spectra`.
 
     Attributes
     ----------
-    structure : Structure
-    drive : Drive
     approach : Ramp
         How the voltage gets where it is held.
-    hold : float
-        Time at that voltage before the record, s.
-    step : float
-        Communication step until then, s.
-    revolutions, points : int
-        Of the record, and samples in each.
-    highest : float
-        Highest line, as a multiple of the motor's speed.
     """
 
     structure: Structure
@@ -102,21 +92,16 @@ class DriveSpectraJob(Job):
         """Return displacements of both masses in space, shape (2, samples), and the mean speed."""
         scheme = scheme_of(structure, self.step, "rollback", 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
-        with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
-            run = Run(job, oscillator, shaker)
-            try:
-                ends = run.revolve(
-                    range(math.ceil((self.approach.duration + self.hold) / self.step))
-                )["time"][-self.revolutions - 1 :]
-                if len(ends) < 2:
-                    raise InputError(
-                        f"not two revolutions of the motor at {self.approach.last:g} V: expected "
-                        "a voltage that turns it, and time"
-                    )
-                speed = TURN * (len(ends) - 1) / (ends[-1] - ends[0])
-                return self.sample(run, TURN / speed / self.points), float(speed)
-            finally:
-                run.master.close()
+        steps = range(math.ceil((self.approach.duration + self.hold) / self.step))
+        with begin_run(job, fmus) as run:
+            ends = run.revolve(steps)["time"][-self.revolutions - 1 :]
+            if len(ends) < 2:
+                raise InputError(
+                    f"not two revolutions of the motor at {self.approach.last:g} V: expected a "
+                    "voltage that turns it, and time"
+                )
+            speed = TURN * (len(ends) - 1) / (ends[-1] - ends[0])
+            return self.sample(run, TURN / speed / self.points), float(speed)
 
     def sample(self, run: Run, interval: float) -> np.ndarray:
         """Return displacements of both masses in space at equal times."""

@@ -18,16 +18,14 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..running.job import Chunk, Table
 from .jumps import Passing
+from .run import Run
 from .schedule import Constant, Schedule
-
-if TYPE_CHECKING:
-    from .couple import Run
 
 MEMORY = (
     "oscillator_state",

@@ -260,12 +260,7 @@ def jump_voltages(
 
 
 def ramp(schedule: Schedule) -> Ramp:
-    """Return the schedule as a ramp; raise if it is none.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the schedule as a ramp; raise if it is none."""
     if not isinstance(schedule, Ramp):
         raise InputError("voltage: expected (first, last) in V, the ends of ramps")
     return schedule

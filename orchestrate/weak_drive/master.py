@@ -120,10 +120,6 @@ class Scheme:
     beginning : tuple of int
         Relative lengths of the parts of the first step, for algorithms that cannot go back: nothing
         is known yet to extrapolate from.
-
-    Raises
-    ------
-    InputError
     """
 
     algorithm: str = "rollback"

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..access.exported import finder
-from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..checks import checked_integer
 from ..constants import TURN
@@ -27,10 +26,11 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from .controllers import Controller
-from .couple import CoupleJob, Run, couple_job, no_verdicts, require_motor, schedule_of, scheme_of
+from .couple import CoupleJob, couple_job, require_motor, schedule_of, scheme_of
 from .held import with_final_chunk
 from .master import STATE_INDEX, Master, parts_of
 from .revolutions import COLUMNS
+from .run import Run
 from .schedule import Schedule, check
 
 if TYPE_CHECKING:
@@ -94,26 +94,15 @@ class PassageJob(Job):
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Compute some steps, with all that the next chunk needs; or the verdicts at the end."""
-        if items[0] == self.run.steps():
-            assert previous is not None
-            nothing = {name: values[:0] for name, values in previous.items()}
-            return {
-                **nothing,
-                "verdicts": self.run.verdicts(fmus, previous, self.chunk)[np.newaxis],
-            }
-        with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
-            run = Run(self.run, oscillator, shaker)
-            try:
-                if previous is not None:
-                    run.set_state(previous)
-                kept = np.empty((len(items), len(run.master.get_state())))
-                revolutions = run.revolve(items, kept)
-                columns = samples(run.master, kept)
-                names = (KEPT + name for name in SAMPLES)
-                samples_table = dict(zip(names, columns, strict=True))
-                return {**revolutions, **samples_table, **run.get_state(), **no_verdicts()}
-            finally:
-                run.master.close()
+
+        def revolve(run: Run) -> Table:
+            kept = np.empty((len(items), len(run.master.get_state())))
+            revolutions = run.revolve(items, kept)
+            columns = samples(run.master, kept)
+            names = (KEPT + name for name in SAMPLES)
+            return {**revolutions, **dict(zip(names, columns, strict=True))}
+
+        return self.run.work_on(fmus, items, previous, self.chunk, revolve)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return samples over time, and the jumps."""
@@ -334,12 +323,7 @@ def hann_lines(pieces: np.ndarray) -> np.ndarray:
 
 
 def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:
-    """Check that spectra over revolutions can be made.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that spectra over revolutions can be made."""
     if mass not in (1, 2):
         raise InputError(f"mass = {mass!r}: expected 1 or 2")
     checked_integer("revolutions", revolutions, 1)

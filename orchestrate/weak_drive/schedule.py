@@ -26,12 +26,7 @@ def check(
     high: float = math.inf,
     exclusive: bool = False,
 ) -> None:
-    """Check that a number is finite and in a range, both ends included, or not the lower one.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a number is finite and in a range, both ends included, or not the lower one."""
     number = isinstance(value, numbers.Real) and not isinstance(value, bool)
     if not (number and math.isfinite(value) and low <= value <= high) or (
         exclusive and value == low
@@ -72,10 +67,6 @@ class Constant(Schedule):
         V.
     time : float
         s.
-
-    Raises
-    ------
-    InputError
     """
 
     value: float
@@ -239,10 +230,6 @@ class Course(Schedule):
         """Read a file with time in s and voltage in V, separated by a comma, one row each.
 
         Rows that begin with ``#``, and one with names, are passed over.
-
-        Raises
-        ------
-        InputError
         """
         try:
             lines = read_text(path, MAX_BYTES).splitlines()

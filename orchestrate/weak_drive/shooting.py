@@ -21,9 +21,9 @@ from ..errors import FmuError
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from .compiled import master_of
-from .couple import oscillator_start
 from .extremes import Revolution
 from .master import STATE_INDEX, Master, Scheme
+from .run import oscillator_start
 
 STARTS = {  # start values of the shaker and of the structure by the outputs that they are
     **{"box_position": "position_start", "box_velocity": "velocity_start", "speed": "speed_start"},

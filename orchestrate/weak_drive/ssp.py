@@ -22,7 +22,7 @@ from ..access.models import OSCILLATOR, SHAKER
 from ..files import write_whole
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from .couple import oscillator_start
+from .run import oscillator_start
 from .schedule import check
 
 NAMESPACES = {

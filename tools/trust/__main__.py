@@ -15,7 +15,8 @@ from orchestrate.files import write_whole
 from orchestrate.running.runner import answer
 
 from . import page, records
-from .campaign import Campaign, CampaignJob, sources
+from .campaign import Campaign
+from .job import CampaignJob, sources
 from .registry import CAMPAIGNS
 
 STORE = Path(__file__).resolve().parents[2] / "results" / "trust"
@@ -40,8 +41,8 @@ def run(
         sources=sources(),
     )
     place = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
-    found = answer(job, {"store": place, **running}, finder(running))
-    return records.record_of(campaign.name, seed, budget, found)
+    result = answer(job, {"store": place, **running}, finder(running))
+    return records.record_of(campaign.name, seed, budget, result)
 
 
 def write_page() -> None:

@@ -57,27 +57,27 @@ def decade(rng: np.random.Generator, low: float, high: float) -> float:
 
 
 class Motion:
-    """A periodic attractor as it is told, and its motion by the FMU.
+    """A periodic attractor as it is reported, and its motion by the FMU.
 
     Parameters
     ----------
     fmu : Path
     structure : Structure
     eta : float
-    told : xarray.Dataset
+    reported : xarray.Dataset
         Of :func:`orchestrate.attractors`, at one value and one attractor.
     """
 
-    def __init__(self, fmu: Path, structure: Structure, eta: float, told: xr.Dataset) -> None:
-        self.fmu, self.structure, self.eta, self.told = fmu, structure, eta, told
+    def __init__(self, fmu: Path, structure: Structure, eta: float, reported: xr.Dataset) -> None:
+        self.fmu, self.structure, self.eta, self.reported = fmu, structure, eta, reported
         self.excitation = Excitation.nondimensional(eta, structure)
-        self.periods = int(told.multiplicity)
-        self.impacts = float(told.impacts_per_period) * self.periods
-        self.state: Floats = told.state.values
+        self.periods = int(reported.multiplicity)
+        self.impacts = float(reported.impacts_per_period) * self.periods
+        self.state: Floats = reported.state.values
         self.states = self.strobed()
         lengths = self.states / (1.0, 1.0, self.excitation.frequency, self.excitation.frequency)
         self.size = float(np.abs(lengths).max())
-        self.gap = float(told.xi_rel_max) * self.excitation.length(structure)
+        self.gap = float(reported.xi_rel_max) * self.excitation.length(structure)
 
     def strobed(self) -> Floats:
         """States at phase 0 after 0, 1, ... periods."""
@@ -97,7 +97,7 @@ class Motion:
         return float(max(abs(np.array([x1, x2, v1, v2])).max() / size, abs(x2 - x1) / gap))
 
     def wrong(self) -> Iterator[str]:
-        """What is wrong with what is told of it."""
+        """What is wrong with what is reported of it."""
         n = self.periods
         closes = self.away(self.states[n], self.states[0])
         if closes > RETURNS:
@@ -128,7 +128,7 @@ class Motion:
 
     def wrong_by_orbit(self) -> Iterator[str]:
         """What Newton's method from its state at phase 0 does not confirm."""
-        if not math.isfinite(float(self.told.multiplier)):
+        if not math.isfinite(float(self.reported.multiplier)):
             return
         quiet: Any = {"progress": False, "jobs": 1, "fmu": self.fmu}
         asked: Any = {"eta": self.eta, "period": self.periods, "guess": self.state}
@@ -140,8 +140,8 @@ class Motion:
         largest = float(np.hypot(*orbit.multipliers.transpose("part", "multiplier").values).max())
         if not bool(orbit.stable):
             yield f"orbit: unstable, a multiplier of {largest:.6g}"
-        elif abs(largest - float(self.told.multiplier)) > 1e-6:
-            yield f"orbit: a multiplier of {largest:.6g}, not {float(self.told.multiplier):.6g}"
+        elif abs(largest - float(self.reported.multiplier)) > 1e-6:
+            yield f"orbit: a multiplier of {largest:.6g}, not {float(self.reported.multiplier):.6g}"
         impacts = int(np.isfinite(orbit.impact_time.values).sum())
         if impacts != round(self.impacts):
             yield f"orbit: {impacts} impacts, not {self.impacts:g}"
@@ -182,22 +182,22 @@ class Attractors(Campaign):
 def findings(fmu: Path, drawn: Drawn, seed: int, counts: Counter[str]) -> Iterator[str]:
     """What is wrong with the attractors of one structure."""
     quiet: Any = {"progress": False, "jobs": 1, "fmu": fmu}
-    found = orchestrate.attractors(
+    answer = orchestrate.attractors(
         drawn.structure, eta=list(drawn.etas), starts=STARTS, seed=seed, **quiet
     )
-    words = found.decided_by.attrs["flag_meanings"].split()
+    words = answer.decided_by.attrs["flag_meanings"].split()
     for place, eta in enumerate(drawn.etas):
         motions: list[Motion] = []
-        for attractor in range(found.sizes["attractor"]):
-            told = found.isel(eta=place, attractor=attractor)
-            word = words[int(told.decided_by)]
+        for attractor in range(answer.sizes["attractor"]):
+            reported = answer.isel(eta=place, attractor=attractor)
+            word = words[int(reported.decided_by)]
             if word == "absent":
                 continue
             counts[f"{word}:"] += 1
-            counts["found by carrying alone:"] += not float(told.share) > 0.0
+            counts["found by carrying alone:"] += not float(reported.share) > 0.0
             if word not in ("orbit", "repeated"):
                 continue
-            motion = Motion(fmu, drawn.structure, eta, told)
+            motion = Motion(fmu, drawn.structure, eta, reported)
             yield from (f"eta {eta:.6g}, attractor {attractor}: {line}" for line in motion.wrong())
             if any(motion.is_same(other) for other in motions):
                 yield f"eta {eta:.6g}, attractor {attractor}: is there twice"

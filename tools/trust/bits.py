@@ -136,12 +136,12 @@ def reachable(start: float, grid: Sequence[float]) -> list[float]:
 
 def differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
     """Where one motion has other bits than another: a line each."""
-    found: list[str] = []
+    wrong: list[str] = []
     grids = [reachable(drawn.start_time, grid) for grid in drawn.grids()]
     first = [by_fmu(find(OSCILLATOR).path, drawn, grid) for grid in grids]
     for i, bits in enumerate(first[1:], 1):
         if bits[: len(STATE)] != first[0][: len(STATE)]:
-            found.append(f"grid {i}: {different(bits, first[0])}")
+            wrong.append(f"grid {i}: {different(bits, first[0])}")
     last = len(grids) - 1
     others = {form: by_fmu(find(OSCILLATOR, form).path, drawn, grids[last]) for form in FORMS[1:]}
     others["wasm"] = by_web(drawn, grids[last])
@@ -149,8 +149,8 @@ def differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
         others["aarch64-linux"] = by_arm(drawn, grids[last])
     for name, bits in others.items():
         if bits != first[last] and not (name == "wasm" and NOT in (*bits, *first[last])):
-            found.append(f"{name}: {different(bits, first[last])}")
-    return found
+            wrong.append(f"{name}: {different(bits, first[last])}")
+    return wrong
 
 
 def different(one: Bits, other: Bits) -> str:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from .trials import Disturbances, Trial, in_a_line, told
+from .trials import Disturbances, Trial, format_end, in_a_line
 
 START = 60.0  # s
 CONNECTING = 1.0  # s
@@ -131,7 +131,7 @@ def worker_killed(trial: OnCluster) -> str:
     trial.nodes.kill(trial.nodes.workers.pop(trial.chance.randrange(2)))
     trial.nodes.workers.append(trial.nodes.start_worker())
     ended = child.wait()
-    return told(ended) if ended.code else trial.verdict()
+    return format_end(ended) if ended.code else trial.verdict()
 
 
 def scheduler_killed(trial: OnCluster) -> str:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
-from .trials import COMMANDS, Disturbances, Trial, in_a_line, told
+from .trials import COMMANDS, Disturbances, Trial, format_end, in_a_line
 
 # -- faults ---------------------------------------------------------------------------------------
 
@@ -34,7 +34,7 @@ def interrupted(trial: Trial) -> str:
     """Ctrl-C at any moment: a line, and exit code 130."""
     ended = trial.struck(signal.SIGINT)
     if ended.code not in (0, 130, -signal.SIGINT) or (ended.code == 130 and len(ended.lines) > 1):
-        return told(ended)
+        return format_end(ended)
     return trial.goes_on()
 
 
@@ -61,7 +61,7 @@ def read_only(trial: Trial) -> str:
         trial.output.write_text("mine")
         ended = trial.start().wait()
         if ended.code == 0 or in_a_line(ended) or trial.output.read_text() != "mine":
-            return told(ended)
+            return format_end(ended)
         trial.output.unlink()
         return trial.goes_on()
     trial.output.mkdir()
@@ -69,7 +69,7 @@ def read_only(trial: Trial) -> str:
     ended = trial.start(as_nobody).wait()
     trial.output.chmod(0o755)
     if ended.code == 0 or in_a_line(ended):
-        return told(ended)
+        return format_end(ended)
     return trial.goes_on()
 
 
@@ -92,7 +92,7 @@ def twice(trial: Trial) -> str:
     second = trial.start()
     ends = first.wait(), second.wait()
     if 0 not in [end.code for end in ends]:
-        return " and ".join(map(told, ends))
+        return " and ".join(map(format_end, ends))
     return in_a_line(ends[0]) or in_a_line(ends[1]) or trial.goes_on()
 
 
@@ -105,7 +105,7 @@ def damaged_journal(trial: Trial) -> str:
     ended = trial.start().wait()
     if ended.code:
         if in_a_line(ended):
-            return told(ended)
+            return format_end(ended)
         for path in trial.output.glob("*.journal*"):
             path.unlink()  # the remedy
     return trial.goes_on()
@@ -118,7 +118,7 @@ def damaged_result(trial: Trial) -> str:
         spoil(path, trial.chance)
     ended = trial.start().wait()
     if in_a_line(ended):
-        return told(ended)
+        return format_end(ended)
     if ended.code == 0 and not same_content(trial):
         return "a damaged result is taken as it is"
     for path in trial.output.glob("*.nc"):

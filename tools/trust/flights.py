@@ -59,8 +59,8 @@ class Roots(Campaign):
         counts, done, findings, notes = {}, 0, 0, []
         for line in programs.run(fmu, "roots", seed, count).splitlines():
             if line.startswith("FLIGHT"):
-                found = Flight.read(line)
-                notes.append(f"seed {seed}: {WRONG[found.verdict]}: {found.values}")
+                flight = Flight.read(line)
+                notes.append(f"seed {seed}: {WRONG[flight.verdict]}: {flight.values}")
                 continue
             right, *wrong, left_out, kind = line.split(maxsplit=5)
             counts[f"{kind}:"] = int(right)
@@ -131,12 +131,12 @@ class Impacts(Campaign):
 
 def flights(fmu: Path, seed: int, count: int) -> Iterator[Flight]:
     """So many flights, contacts left out."""
-    found = 0
+    checked = 0
     for line in programs.run(fmu, "roots", seed, 2 * count, "show").splitlines():
-        if line.startswith("FLIGHT") and found < count:
+        if line.startswith("FLIGHT") and checked < count:
             flight = Flight.read(line)
             if flight.kind != CONTACT:
-                found += 1
+                checked += 1
                 yield flight
 
 

@@ -53,11 +53,11 @@ class Fuzzing(Campaign):
             program = importer(fmu, version, model, importers.SANITIZE)
             number = max(1, count // len(pairs) // PER_INPUT)
             ended = program.run("random", seed % 2**31, number, timeout=36_000, success=False)
-            found = re.search(r"CHECKS (\d+) FAILURES (\d+)", ended.stdout)
-            calls = int(found[1]) if found else 0
+            match = re.search(r"CHECKS (\d+) FAILURES (\d+)", ended.stdout)
+            calls = int(match[1]) if match else 0
             done += calls
             counts[f"{version} {model}:"] = calls
-            if not found or found[2] != "0" or ended.returncode or ended.stderr:
+            if not match or match[2] != "0" or ended.returncode or ended.stderr:
                 text = (ended.stdout + ended.stderr)[:300]
                 notes.append(f"seed {seed}, {version} {model}, {number} sequences: {text}")
         return Outcome(done, len(notes), left_out(fmu, seed), counts, tuple(notes))

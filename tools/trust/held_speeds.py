@@ -7,20 +7,30 @@ and the speed is read at the end of each hold.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 
-from orchestrate import couple
+from orchestrate import Drive, Structure, couple
 from orchestrate.weak_drive.schedule import Course
-
-if TYPE_CHECKING:
-    from .verdicts import System
 
 RATE = 5e-5  # of eta0 in a time 1/omega, between holds
 BEGIN = 600.0  # time over omega at the first voltage
 LONG, LONG_OF_ROTOR = 4000.0, 200.0  # of a hold, in 1/omega and in the rotor's time 1/b
 SETTLED = 1e-3  # of omega: mean speeds of the last two quarters of a hold
+
+
+class System(NamedTuple):
+    """A structure and what shakes it."""
+
+    structure: Structure
+    drive: Drive
+
+    def of_kind(self, kind: str) -> System:
+        """The same, bonded or delaminated."""
+        bonded = kind == "bonded"
+        structure = self.structure.as_bonded() if bonded else self.structure.as_delaminated()
+        return self._replace(structure=structure)
 
 
 def held_speeds(

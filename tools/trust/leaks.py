@@ -67,9 +67,9 @@ def peak(fmu: Path, number: int) -> int:
             os._exit(0)
     os.close(writer)
     with os.fdopen(reader) as told:
-        found = told.read()
+        size = told.read()
     os.waitpid(child, 0)
-    return int(found)
+    return int(size)
 
 
 def sweep(fmu: Path, number: int) -> None:

@@ -144,11 +144,11 @@ class Mutants(Campaign):
                 source = (ROOT / name).read_text("utf-8")
                 changed, note = mutant(source, chance)
                 (folder / name).write_text(changed, "utf-8")
-                found = noticed(folder, (TESTS[name],))
-                if not found and name.startswith("fmu_src"):
-                    found = noticed(folder, (*ALL, f"--ignore={TESTS[name]}"))
+                was_noticed = noticed(folder, (TESTS[name],))
+                if not was_noticed and name.startswith("fmu_src"):
+                    was_noticed = noticed(folder, (*ALL, f"--ignore={TESTS[name]}"))
                 (folder / name).write_text(source, "utf-8")
-                counts["noticed:" if found else "survived:"] += 1
-                if not found:
+                counts["noticed:" if was_noticed else "survived:"] += 1
+                if not was_noticed:
                     notes.append(f"survived: `{name}`, {note}")
         return Outcome(count, len(notes), counts=counts, notes=tuple(notes))

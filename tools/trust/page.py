@@ -57,8 +57,8 @@ def findings(records: Sequence[Record]) -> int:
 
 def longest(records: Sequence[Record]) -> list[Record]:
     """Of each seed, on what was attacked, the run that has the batches of the others."""
-    found = {batches(r): r for r in sorted(records, key=lambda one: one.budget)}
-    return [record for record in records if any(record is other for other in found.values())]
+    latest = {batches(r): r for r in sorted(records, key=lambda one: one.budget)}
+    return [record for record in records if any(record is other for other in latest.values())]
 
 
 def same(one: Record, other: Record) -> bool:
@@ -81,10 +81,10 @@ def summary(records: Sequence[Record]) -> list[str]:
     lines = list(TABLE)
     for campaign in CAMPAIGNS.values():
         done = sum(r.done for r in together(records, campaign))
-        found = findings(all_of(records, campaign))
+        count_of_findings = findings(all_of(records, campaign))
         target = f"{number(campaign.target)} {campaign.unit}"
         link = f"[{campaign.title}](#trust-{campaign.name})"
-        lines.append(f"| {link} | {target} | {number(done)} | {number(found)} |")
+        lines.append(f"| {link} | {target} | {number(done)} | {number(count_of_findings)} |")
     return lines
 
 
@@ -92,10 +92,10 @@ def reached(campaign: Campaign, every: Sequence[Record], before: Sequence[Record
     """How much was done, what was found, and how long what is missing would take."""
     runs = longest(every)
     done, seconds = sum(r.done for r in runs), sum(r.seconds for r in runs)
-    found = findings(every)
+    count_of_findings = findings(every)
     lines = [
         f"{number(done)} {campaign.unit} of {number(campaign.target)} wanted; "
-        f"{number(found)} findings.",
+        f"{number(count_of_findings)} findings.",
         f"Rate: {number(3600.0 * done / max(seconds, 1e-9))} {campaign.unit} an hour of one core.",
     ]
     if done < campaign.target:

@@ -65,8 +65,8 @@ _kept: list[tempfile.TemporaryDirectory[str]] = []
 
 def library(fmu: Path) -> Path:
     """The FMU's binary for this machine, unpacked."""
-    found = describe(fmu)
-    return unpacked(found) / "binaries" / "x86_64-linux" / f"{found.identifier}.so"
+    description = describe(fmu)
+    return unpacked(description) / "binaries" / "x86_64-linux" / f"{description.identifier}.so"
 
 
 def run(fmu: Path, name: str, *arguments: object, success: bool = True) -> str:

@@ -88,9 +88,9 @@ class Record:
         return {**asdict(self), "date": ""} == {**asdict(other), "date": ""}
 
 
-def record_of(campaign: str, seed: int, budget: int, found: xr.Dataset) -> Record:
+def record_of(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> Record:
     """A finished run's record."""
-    told = [json.loads(str(text)) for text in found.told.values]
+    told = [json.loads(str(text)) for text in answer.told.values]
     counts: Counter[str] = Counter()
     for part in told:
         counts.update(part["counts"])
@@ -98,29 +98,29 @@ def record_of(campaign: str, seed: int, budget: int, found: xr.Dataset) -> Recor
         campaign=campaign,
         seed=seed,
         budget=budget,
-        done=int(found.done.sum()),
-        findings=int(found.findings.sum()),
-        worst=float(f"{float(found.worst.max()):.3g}"),
-        worst_seed=int(found.seed[int(found.worst.values.argmax())]),
+        done=int(answer.done.sum()),
+        findings=int(answer.findings.sum()),
+        worst=float(f"{float(answer.worst.max()):.3g}"),
+        worst_seed=int(answer.seed[int(answer.worst.values.argmax())]),
         counts=dict(sorted(counts.items())),
         notes=[note for part in told for note in part["notes"]],
-        seconds=round(float(found.seconds.sum()), 2),
+        seconds=round(float(answer.seconds.sum()), 2),
         date=time.strftime("%Y-%m-%d", time.gmtime()),
         version=__version__,
-        fmu=str(found.attrs["fmu_guid"]),
+        fmu=str(answer.attrs["fmu_guid"]),
         package=digest(PACKAGE),
         machine=machine(),
-        campaigns=str(found.attrs["sources"]),
+        campaigns=str(answer.attrs["sources"]),
     )
 
 
 def digest(folder: Path) -> str:
     """A digest of a program's sources, with their names."""
-    found = hashlib.sha256()
+    hashed = hashlib.sha256()
     for path in sorted(path for path in folder.rglob("*") if path.suffix in SOURCES):
         content = path.read_bytes()
-        found.update(f"{path.relative_to(folder).as_posix()} {len(content)}\n".encode() + content)
-    return found.hexdigest()[:16]
+        hashed.update(f"{path.relative_to(folder).as_posix()} {len(content)}\n".encode() + content)
+    return hashed.hexdigest()[:16]
 
 
 def machine() -> str:

@@ -240,9 +240,9 @@ def disturbed(
         if not stops:
             here.step(time, target)
         names = POINT[course.model] if stops else course.names
-        found = outputs(here, names)
-        if found != row[: len(names)]:
-            wrong = [name for name, a, b in zip(names, found, row, strict=False) if a != b]
+        row_here = outputs(here, names)
+        if row_here != row[: len(names)]:
+            wrong = [name for name, a, b in zip(names, row_here, row, strict=False) if a != b]
             return restored, f"step {number}: {', '.join(wrong)}"
         time = target
     return restored, ""
@@ -254,10 +254,10 @@ def pools(course: Course, number: int, rows: Sequence[Bits]) -> list[list[tuple[
     if course.model == OSCILLATOR:
         impacts = float.fromhex(rows[-1][STATE.index("impact_count")])
         native += [(EventInstance, "fmi3")] * (impacts < MANY)
-    found = [native]
+    forms = [native]
     if number % PYTHON_EVERY == 1:
-        found.append([(Instance, "fmi2-python")] * 2)
-    return found
+        forms.append([(Instance, "fmi2-python")] * 2)
+    return forms
 
 
 class Restores(Campaign):

@@ -119,7 +119,7 @@ class Trial:
     def goes_on(self) -> str:
         """See that the same command ends well with the same bytes; else what is wrong."""
         ended = self.start().wait()
-        return f"the same command again: {told(ended)}" if ended.code else self.verdict()
+        return f"the same command again: {format_end(ended)}" if ended.code else self.verdict()
 
     def verdict(self) -> str:
         """What is wrong with the results of a command that ended well."""
@@ -132,7 +132,7 @@ class Trial:
 KINDS = (".nc", ".png", ".pdf", ".html")  # of files that a command leaves
 
 
-def told(ended: Ended) -> str:
+def format_end(ended: Ended) -> str:
     """How a command ended, in a line."""
     return f"exit code {ended.code}: {' / '.join(ended.lines)[:300]}"
 
@@ -146,7 +146,7 @@ def in_a_line(ended: Ended) -> str:
     """What is wrong with how a command gave up; empty where it did not, or in one line."""
     if ended.code == 0 and "Traceback" not in ended.err:
         return ""
-    return "" if ended.code > 0 and len(ended.lines) == 1 else told(ended)
+    return "" if ended.code > 0 and len(ended.lines) == 1 else format_end(ended)
 
 
 def undisturbed(name: str, holder: Path) -> tuple[dict[str, bytes], float]:
@@ -155,12 +155,12 @@ def undisturbed(name: str, holder: Path) -> tuple[dict[str, bytes], float]:
     if name in BEFORE:
         before = [*BEFORE[name], "--store", str(holder / GIVEN), "--output", str(folder)]
         ended = Child(before, folder).wait(600.0)
-        assert ended.code == 0, f"before {name}: {told(ended)}"
+        assert ended.code == 0, f"before {name}: {format_end(ended)}"
     ended = Trial(name, folder, {}, 0.0, random.Random()).start().wait(600.0)
-    found = results(folder / "results")
-    assert ended.code == 0 and found, f"{name}: {told(ended)}"
+    expected = results(folder / "results")
+    assert ended.code == 0 and expected, f"{name}: {format_end(ended)}"
     shutil.rmtree(folder)
-    return found, ended.seconds
+    return expected, ended.seconds
 
 
 class Disturbances(Campaign):

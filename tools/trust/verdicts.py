@@ -16,7 +16,7 @@ from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, UNDECIDED
 
 from .campaign import Campaign, Outcome
-from .held_speeds import held_speeds
+from .held_speeds import System, held_speeds
 
 RATES = (2e-4, 1e-4, 5e-5, 2e-5)  # of eta0 in a time 1/omega
 FEW_RATES = RATES[::3]  # for drives near the edge of folds
@@ -33,19 +33,6 @@ GRID = 4e-3  # of eta0: between voltages that are held there and back
 AROUND = (0.06, 0.04)  # of eta0: of them, below the lowest fold and above the highest
 SHORT = 0.25  # of a hold, on that grid
 SLOPES = (-0.6, 0.3)  # least slopes d eta0 / d Omega of drives that nearly have, or lack, folds
-
-
-class System(NamedTuple):
-    """A structure and what shakes it."""
-
-    structure: Structure
-    drive: Drive
-
-    def of_kind(self, kind: str) -> System:
-        """The same, bonded or delaminated."""
-        bonded = kind == "bonded"
-        structure = self.structure.as_bonded() if bonded else self.structure.as_delaminated()
-        return self._replace(structure=structure)
 
 
 class Truth(NamedTuple):

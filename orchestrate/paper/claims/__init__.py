@@ -7,16 +7,10 @@ from collections.abc import Mapping
 import xarray as xr
 
 from . import section1, section2, section3, section3_influence, section4, section5
+from .claim import CLAIMS
 from .results import Results
 
-CLAIMS = (
-    *section1.CLAIMS,
-    *section2.CLAIMS,
-    *section3.CLAIMS,
-    *section3_influence.CLAIMS,
-    *section4.CLAIMS,
-    *section5.CLAIMS,
-)
+SECTIONS = (section1, section2, section3, section3_influence, section4, section5)  # enter claims
 
 
 def table(datasets: Mapping[str, xr.Dataset], full: bool = True) -> list[dict[str, str]]:

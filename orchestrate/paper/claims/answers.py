@@ -23,13 +23,13 @@ def regions(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
     """
     results = Results(datasets)
     return [
-        {"case": f"e = {case.e:g}, D = {case.get('D'):g}", **told(results, name, region)}
+        {"case": f"e = {case.e:g}, D = {case.get('D'):g}", **region_row(results, name, region)}
         for name, case in CASES.items()
         for region in results.regions(name)
     ]
 
 
-def told(results: Results, case: str, region: Region) -> dict[str, str]:
+def region_row(results: Results, case: str, region: Region) -> dict[str, str]:
     """One region; the largest exponent by a run of its own, with one standard error."""
     low, high, name = region
     chaotic, neutral = shares(results, case, low, high)
@@ -58,7 +58,7 @@ def sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
             for parameter in MAPS
         ),
         coexisting(datasets["basin"]),
-        heard(datasets["spectra"]),
+        compare_spectra(datasets["spectra"]),
     ]
 
 
@@ -108,7 +108,7 @@ def coexisting(data: xr.Dataset) -> str:
     )
 
 
-def heard(data: xr.Dataset) -> str:
+def compare_spectra(data: xr.Dataset) -> str:
     """How much of the delaminated structure's acceleration lies above the excitation."""
     shown = data.acceleration.sel(mass=1).isel(eta=0)
     above = shown.where(shown.order > 1.5, drop=True)

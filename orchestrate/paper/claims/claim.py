@@ -95,6 +95,21 @@ class Claim:
         }
 
 
+CLAIMS: list[Claim] = []  # in the order in which their checks stand
+
+
+def claim(
+    section: str, text: str, printed: str, how: str, tolerance: str = "-", full: bool = False
+) -> Callable[[Check], Check]:
+    """Enter a claim with the check that stands below; arguments as of :class:`Claim`."""
+
+    def enter(check: Check) -> Check:
+        CLAIMS.append(Claim(section, text, printed, how, tolerance, check, full))
+        return check
+
+    return enter
+
+
 def half_unit(printed: str) -> float:
     """Half a unit of the last digit of a printed number: what rounds to it lies that near."""
     return 0.5 * 10.0 ** -len(printed.partition(".")[2])

@@ -74,18 +74,18 @@ class Results:
 
     def begins(self, case: str, orbit: str, inside: float) -> Limit:
         """The lower limit of the window that holds a frequency."""
-        found = self.window(case, orbit, inside)
-        return Limit(found.low, found.below, orbit)
+        window = self.window(case, orbit, inside)
+        return Limit(window.low, window.below, orbit)
 
     def ends(self, case: str, orbit: str, inside: float) -> Limit:
         """The upper one."""
-        found = self.window(case, orbit, inside)
-        return Limit(found.high, found.above, orbit)
+        window = self.window(case, orbit, inside)
+        return Limit(window.high, window.above, orbit)
 
     def regions(self, case: str) -> list[Region]:
         """Those of :func:`..regions.regions` that hold frequencies of the sweep."""
-        found = regions(self.get("limits"), case)
-        return [one for one in found if between(self.exponent(case), *one[:2]).sizes["eta"] > 1]
+        listed = regions(self.get("limits"), case)
+        return [one for one in listed if between(self.exponent(case), *one[:2]).sizes["eta"] > 1]
 
     def largest(self, case: str, region: Region) -> Largest:
         """The largest exponent of a region, by a run of its own."""

@@ -9,17 +9,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...response.curves import CONTACT, FLIGHT
-from .claim import NO, PARTLY, YES, Claim, Finding
+from .claim import NO, PARTLY, YES, Check, Finding, claim
 from .results import Results
 
 if TYPE_CHECKING:
     import xarray as xr
-
 ETA, D, STIFFNESS, BEGAN = 1.3, 0.02, 1.2, 0.7  # of an oscillator (6), and its separation time
 START = (0.4, -0.3)
 TAUS = np.linspace(0.1, 9.0, 40)
 ROUNDING = 1e-6
 RATIO = 1e-6  # of successive times between impacts, against e
+
+
+def misprint(equation: str, text: str) -> Callable[[Check], Check]:
+    """Enter a misprinted equation with the check that stands below."""
+    how = "put into what it must fulfil"
+    return claim("2", f"{equation}: {text}", "as printed", how, "1e-6")
 
 
 def compared(what: str, printed: float, right: float, form: str) -> Finding:
@@ -55,6 +60,7 @@ def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndar
     return motion
 
 
+@misprint("(3)", "xi = x/a eta^2")
 def scale(results: Results) -> Finding:
     """(3): x over a, times eta^2, or x over a eta^2."""
     steady = 1.0 / math.hypot(1.0 - ETA**2, 2.0 * D * ETA)  # amplitude of (6), unit forcing
@@ -63,6 +69,7 @@ def scale(results: Results) -> Finding:
     return compared("steady amplitude less that of (6)", printed, right, "x/(a eta^2)")
 
 
+@misprint("(10)", "cos kappa_i tau, e^(-D tau)")
 def free_part(results: Results) -> Finding:
     """(10): kappa_i, or nu_i of (11)."""
     nu = math.sqrt(STIFFNESS - D * D)
@@ -70,6 +77,7 @@ def free_part(results: Results) -> Finding:
     return compared("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
 
 
+@misprint("(12)", "xi_2 - xi_1 unequal 0")
 def one_sided(results: Results) -> Finding:
     """(12): unequal, or larger than zero."""
     data = results.get("figure5")
@@ -81,6 +89,7 @@ def one_sided(results: Results) -> Finding:
     return Finding(text, NO if (inside > 0.0).all() else YES, why)
 
 
+@misprint("(15)", "(1 + e) mu/(1 + mu) in the second line")
 def momentum(results: Results) -> Finding:
     """(15): the factor of its second line."""
     e, mu, v1, v2 = 0.7, 0.5, 0.8, -0.4
@@ -93,6 +102,14 @@ def momentum(results: Results) -> Finding:
     return compared(what, change(mu), change(1.0), "(1 + e)/(1 + mu) in the second line")
 
 
+@claim(
+    "2",
+    "(16): for all non-vanishing restitution coefficients a sequence of infinitely many "
+    "impacts, with time intervals tending to zero",
+    "all e > 0",
+    "the FMU's impacts after one kick, for e from 0.01 to 1 and gamma from 1e-3 to 1e-9",
+    "ratios of times 1e-6; counts one impact",
+)
 def chattering(results: Results) -> Finding:
     """(16): whether impacts go on without end for each restitution, their times tending to zero."""
     data = results.get("chattering")
@@ -138,6 +155,7 @@ def endless(rows: xr.Dataset, e: float) -> bool:
     return bool(grows.all() and near and rows.sticks.values.all())
 
 
+@misprint("(17)", "contact follows by the velocity alone")
 def pulling(results: Results) -> Finding:
     """(17): slow impacts after which the masses would have to pull each other."""
     data = results.get("low_speed")
@@ -150,6 +168,7 @@ def pulling(results: Results) -> Finding:
     return Finding(text, NO if pulled else YES, why)
 
 
+@misprint("(20)", "initial conditions of the (k+i)th state")
 def next_state(results: Results) -> Finding:
     """(20): the state that begins where contact ends."""
     data = results.get("figure5")
@@ -169,6 +188,7 @@ def next_state(results: Results) -> Finding:
     return Finding(text, YES if abs(later) < first * largest else NO, why)
 
 
+@misprint("(22)", "T = eta/2 pi")
 def period(results: Results) -> Finding:
     """(22): eta/2 pi, or 2 pi/eta."""
 
@@ -177,29 +197,3 @@ def period(results: Results) -> Finding:
 
     what = "change of sin(eta tau) after T"
     return compared(what, change(ETA / (2.0 * np.pi)), change(2.0 * np.pi / ETA), "2 pi/eta")
-
-
-def misprint(equation: str, text: str, check: Callable[[Results], Finding]) -> Claim:
-    """The row of an equation."""
-    how = "put into what it must fulfil"
-    return Claim("2", f"{equation}: {text}", "as printed", how, "1e-6", check)
-
-
-CLAIMS = (
-    misprint("(3)", "xi = x/a eta^2", scale),
-    misprint("(10)", "cos kappa_i tau, e^(-D tau)", free_part),
-    misprint("(12)", "xi_2 - xi_1 unequal 0", one_sided),
-    misprint("(15)", "(1 + e) mu/(1 + mu) in the second line", momentum),
-    Claim(
-        "2",
-        "(16): for all non-vanishing restitution coefficients a sequence of infinitely many "
-        "impacts, with time intervals tending to zero",
-        "all e > 0",
-        "the FMU's impacts after one kick, for e from 0.01 to 1 and gamma from 1e-3 to 1e-9",
-        "ratios of times 1e-6; counts one impact",
-        chattering,
-    ),
-    misprint("(17)", "contact follows by the velocity alone", pulling),
-    misprint("(20)", "initial conditions of the (k+i)th state", next_state),
-    misprint("(22)", "T = eta/2 pi", period),
-)

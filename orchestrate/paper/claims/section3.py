@@ -10,27 +10,22 @@ from ...response.curves import CONTACT, FLIGHT, SEQUENCE
 from ..cases import CASES
 from ..transients import changed
 from ..windows import relative_peak, runs, window
-from .claim import LIMIT, NO, NUMBER, PARTLY, YES, Claim, Finding, border, holds, rounds_to
+from .claim import LIMIT, NO, NUMBER, PARTLY, YES, Finding, border, claim, holds, rounds_to
 from .results import Results, between, impacts_in_response, kind, lower_edge, upper_edge
 
 if TYPE_CHECKING:
     import xarray as xr
-
 NOTHING = 1e-6  # of the largest gap or velocity
 CHANGE = 0.01  # of the largest gap: what the paper's diagrams resolve
 FEW = 0.01  # share of the frequencies
 
 
-def detuning(results: Results) -> Finding:
-    """Natural frequencies of both subsystems, (7)."""
-    case = CASES["elastic"]
-    second = (case.kappa / case.mu) ** 0.5
-    return Finding(
-        f"{second:.4f}, {100 * (second - 1):.1f} % apart",
-        YES if rounds_to(second, "1.095") else NO,
-    )
-
-
+@claim(
+    "3",
+    "only for m_1 = m_2, k_1 = k_2, d_1 = d_2 do both masses vibrate without influence",
+    "only then",
+    "the FMU from rest: impacts in 2,000 periods at eta = 1.3",
+)
 def only_equal(results: Results) -> Finding:
     """Whether masses vibrate without influencing each other for equal oscillators only."""
     data = results.get("low_speed")
@@ -50,6 +45,26 @@ def only_equal(results: Results) -> Finding:
     )
 
 
+@claim(
+    "3", "natural frequencies of both subsystems", "1 and 1.095, about 10 % apart", "(7)", NUMBER
+)
+def detuning(results: Results) -> Finding:
+    """Natural frequencies of both subsystems, (7)."""
+    case = CASES["elastic"]
+    second = (case.kappa / case.mu) ** 0.5
+    return Finding(
+        f"{second:.4f}, {100 * (second - 1):.1f} % apart",
+        YES if rounds_to(second, "1.095") else NO,
+    )
+
+
+@claim(
+    "3",
+    "natural frequencies that differ by about 10 % seem to be the most unfavourable situation",
+    "k_2/k_1 = 1.2",
+    "map over (eta, kappa): the largest impulse, which a test has to see",
+    "10 % of the least",
+)
 def most_unfavourable(results: Results) -> Finding:
     """Impulses over the detuning: whether those of the paper's are the least."""
     largest = results.get("map_kappa").impulse_max.max("eta")
@@ -65,17 +80,29 @@ def most_unfavourable(results: Results) -> Finding:
     return Finding(text, YES if here <= 1.1 * least else NO, why if here > 1.1 * least else "")
 
 
+@claim(
+    "3",
+    "eta = 0.4: separate motion, a sequence of impacts, permanent contact in each T",
+    "three states",
+    "Figure 5's data",
+)
 def three_states(results: Results) -> Finding:
     """Figure 5's three states."""
     kinds = results.get("figure5").kind.values
     steady = results.steady("elastic").sel(eta=0.4, method="nearest")
-    found = (
+    text = (
         f"{float(steady.contacts):.0f} permanent contact and {float(steady.impacts):.0f} impacts "
         "per T"
     )
-    return holds([bool((kinds == state).any()) for state in (SEQUENCE, CONTACT, FLIGHT)], found)
+    return holds([bool((kinds == state).any()) for state in (SEQUENCE, CONTACT, FLIGHT)], text)
 
 
+@claim(
+    "3",
+    "Figure 5(a): the phase plot for each mass gives two closed loops",
+    "two loops",
+    "Figure 5's data: crossings of each curve with itself",
+)
 def two_loops(results: Results) -> Finding:
     """How often the phase curves of Figure 5(a) cross themselves, and whether they close."""
     data = results.get("figure5")
@@ -90,6 +117,14 @@ def two_loops(results: Results) -> Finding:
     return holds([closed, *(count == 1 for count in counts)], text, why)
 
 
+@claim(
+    "3",
+    "Figure 5(b): many loops in one response period, each begins and ends at an impact; "
+    "contact is a point at the origin",
+    "many loops",
+    "Figure 5's data: jumps of the velocity, and the gap there",
+    "1e-6 of the largest gap and velocity",
+)
 def many_loops(results: Results) -> Finding:
     """Figure 5(b): loops of the relative motion, and where each begins and ends."""
     data = results.get("figure5")
@@ -115,55 +150,13 @@ def many_loops(results: Results) -> Finding:
     return holds([loops > 10, at_zero, point, released == 0], text, why if released else "")
 
 
-def enough_periods(results: Results) -> Finding:
-    """Responses of the sweep after n = 500 that are others long after."""
-    up, end = results.up("elastic"), results.ends("elastic", "T/1", 2.0).value
-    later, latest = (results.of(name, "elastic", "_up") for name in ("later", "latest"))
-    text, parts = [], []
-    for low, high in ((float(up.eta.min()), end), (end, float(up.eta.max()))):
-        others, count, which = told_apart(up, between(later, low, high))
-        text.append(f"{others} of {count} frequencies from {low:.3f} to {high:.3f}{which}")
-        parts.append(others <= FEW * count)
-    others, count, which = told_apart(up, latest)
-    late = f"after n = {first_sample(up, latest):,} {others} of {count} drawn by chance{which}"
-    why = (
-        "Each response was run on from where the sweep left it. A deviation decays as e^(-D tau), "
-        f"and 500 periods are {500.0 * 2.0 * np.pi / end:.0f} of tau at {end:.2f}, but "
-        f"{500.0 * 2.0 * np.pi / 8.0:.0f} at 8: there many a response nears its orbit still."
-    )
-    value = f"after n = {first_sample(up, later):,} others at {'; at '.join(text)}; {late}"
-    return holds(parts, value, why if not all(parts) else "")
-
-
-def first_sample(up: xr.Dataset, later: xr.Dataset) -> int:
-    """The number n of the period at which a sweep's responses are looked at again."""
-    done = int(up.attrs["transient"]) + up.sizes["sample"]
-    return done + int(later.attrs["transient"]) + 1
-
-
-def told_apart(up: xr.Dataset, later: xr.Dataset) -> tuple[int, int, str]:
-    """How many responses of a sweep are others later, of how many, and what they are."""
-    kinds = {what: int(part.sum()) for what, part in changed(up, later, CHANGE).items()}
-    named = ", ".join(f"{count} {what}" for what, count in kinds.items() if count)
-    return sum(kinds.values()), later.sizes["eta"], f" ({named})" if named else ""
-
-
-def crossings(x: np.ndarray, y: np.ndarray) -> int:
-    """How often a closed curve of short straight pieces crosses itself."""
-    points = x + 1j * y
-    begin, piece = points[:-1], np.diff(points)
-    count = 0
-    for i in range(len(piece) - 2):
-        way = begin[i + 2 :] - begin[i]
-        turn = (piece[i].conjugate() * piece[i + 2 :]).imag
-        with np.errstate(divide="ignore", invalid="ignore"):
-            here = (way.conjugate() * piece[i + 2 :]).imag / turn
-            there = (way.conjugate() * piece[i]).imag / turn
-        inside = (here > 0.0) & (here < 1.0) & (there > 0.0) & (there < 1.0)
-        count += int(inside[: -1 if i == 0 else None].sum())
-    return count
-
-
+@claim(
+    "3",
+    "transition to permanent contact at gamma = 1e-4 max xi'_Rel",
+    "1e-4",
+    "Figure 5's data; short sweeps with other gamma",
+    "1 % of T; one step of the sweep",
+)
 def gamma_scale(results: Results) -> Finding:
     """Where the paper's gamma ends chattering at eta = 0.4, and where the FMU does."""
     data = results.get("figure5")
@@ -186,6 +179,72 @@ def gamma_scale(results: Results) -> Finding:
     return holds([abs(parting - begins) < 0.01 * tau[-1], spread <= 0.001 + 1e-9], text, why)
 
 
+@claim(
+    "3.1",
+    "n = 500 periods eliminate transient effects",
+    "500",
+    "the sweep's responses run on to n = 5,000, and to 50,000 at 100 frequencies drawn by "
+    "chance: multiplicity, impacts, largest gap",
+    "others at 1 % of the frequencies up to the end of the window T, and beyond it",
+    full=True,
+)
+def enough_periods(results: Results) -> Finding:
+    """Responses of the sweep after n = 500 that are others long after."""
+    up, end = results.up("elastic"), results.ends("elastic", "T/1", 2.0).value
+    later, latest = (results.of(name, "elastic", "_up") for name in ("later", "latest"))
+    text, parts = [], []
+    for low, high in ((float(up.eta.min()), end), (end, float(up.eta.max()))):
+        others, count, which = count_changed(up, between(later, low, high))
+        text.append(f"{others} of {count} frequencies from {low:.3f} to {high:.3f}{which}")
+        parts.append(others <= FEW * count)
+    others, count, which = count_changed(up, latest)
+    late = f"after n = {first_sample(up, latest):,} {others} of {count} drawn by chance{which}"
+    why = (
+        "Each response was run on from where the sweep left it. A deviation decays as e^(-D tau), "
+        f"and 500 periods are {500.0 * 2.0 * np.pi / end:.0f} of tau at {end:.2f}, but "
+        f"{500.0 * 2.0 * np.pi / 8.0:.0f} at 8: there many a response nears its orbit still."
+    )
+    value = f"after n = {first_sample(up, later):,} others at {'; at '.join(text)}; {late}"
+    return holds(parts, value, why if not all(parts) else "")
+
+
+def first_sample(up: xr.Dataset, later: xr.Dataset) -> int:
+    """The number n of the period at which a sweep's responses are looked at again."""
+    done = int(up.attrs["transient"]) + up.sizes["sample"]
+    return done + int(later.attrs["transient"]) + 1
+
+
+def count_changed(up: xr.Dataset, later: xr.Dataset) -> tuple[int, int, str]:
+    """How many responses of a sweep are others later, of how many, and what they are."""
+    kinds = {what: int(part.sum()) for what, part in changed(up, later, CHANGE).items()}
+    named = ", ".join(f"{count} {what}" for what, count in kinds.items() if count)
+    return sum(kinds.values()), later.sizes["eta"], f" ({named})" if named else ""
+
+
+def crossings(x: np.ndarray, y: np.ndarray) -> int:
+    """How often a closed curve of short straight pieces crosses itself."""
+    points = x + 1j * y
+    begin, piece = points[:-1], np.diff(points)
+    count = 0
+    for i in range(len(piece) - 2):
+        way = begin[i + 2 :] - begin[i]
+        turn = (piece[i].conjugate() * piece[i + 2 :]).imag
+        with np.errstate(divide="ignore", invalid="ignore"):
+            here = (way.conjugate() * piece[i + 2 :]).imag / turn
+            there = (way.conjugate() * piece[i]).imag / turn
+        inside = (here > 0.0) & (here < 1.0) & (there > 0.0) & (there < 1.0)
+        count += int(inside[: -1 if i == 0 else None].sum())
+    return count
+
+
+@claim(
+    "3.1",
+    "permanent contact vanishes",
+    "0.43",
+    "up-sweep, last eta with contact; branch",
+    LIMIT,
+    full=True,
+)
 def contact_limit(results: Results) -> Finding:
     """Where permanent contact ends on the way up."""
     up, gammas = results.up("elastic"), results.get("gamma").last_contact.sel(case="elastic").values
@@ -203,6 +262,7 @@ def contact_limit(results: Results) -> Finding:
     return border((low, high), results.ends("elastic", "T, contact", 0.4), "0.43", why)
 
 
+@claim("3.1", "T-periodic below", "0.43", "up-sweep, multiplicity 1; branch", LIMIT, full=True)
 def periodic_limit(results: Results) -> Finding:
     """Where T-periodicity ends on the way up."""
     up = results.up("elastic")
@@ -220,6 +280,7 @@ def periodic_limit(results: Results) -> Finding:
     return border(upper_edge(up, up.multiplicity.values == 1, 0.41), limit, "0.43", why)
 
 
+@claim("3.1", "permanent contact vanishes for all larger eta", "none", "up-sweep", full=True)
 def no_contact_above(results: Results) -> Finding:
     """Whether contact occurs again above."""
     up = results.up("elastic")
@@ -239,25 +300,33 @@ def no_contact_above(results: Results) -> Finding:
     )
 
 
+@claim(
+    "3.1",
+    "windows between irregular regions, multiplicity rising by one T",
+    "steps of one T",
+    "up-sweep: longest window of each; exact limits of one-impact orbits",
+    full=True,
+)
 def windows_in_order(results: Results) -> Finding:
     """Windows nT with one impact, in order."""
     up = results.up("elastic")
-    found = [window(up, n) for n in range(1, 5)]
+    windows = [window(up, n) for n in range(1, 5)]
     exact = [
         results.window("elastic", f"{n if n > 1 else ''}T/1", 0.5 * (w[0] + w[1]))
-        for n, w in enumerate(found, 1)
+        for n, w in enumerate(windows, 1)
         if w
     ]
-    text = "; ".join(f"{n}T: {w[0]:.3f} to {w[1]:.3f}" for n, w in enumerate(found, 1) if w)
+    text = "; ".join(f"{n}T: {w[0]:.3f} to {w[1]:.3f}" for n, w in enumerate(windows, 1) if w)
     text += "; exact: " + "; ".join(f"{w.low:.5f} to {w.high:.5f}" for w in exact)
     before: tuple[float, float] | None = None
     ordered = []
-    for limits in found:
+    for limits in windows:
         ordered.append(limits is not None and (before is None or before[1] < limits[0]))
         before = limits
     return holds(ordered, text)
 
 
+@claim("3.1", "one impact in a response period at the relative peaks", "one", "Figure 7's data")
 def one_impact_at_peaks(results: Results) -> Finding:
     """Impacts at the peaks of Figure 7."""
     data = results.get("figure7")
@@ -274,6 +343,13 @@ def one_impact_at_peaks(results: Results) -> Finding:
     return holds([abs(count - 20 / n) <= 1 for n, count in enumerate(counts, 1)], text)
 
 
+@claim(
+    "3.1",
+    "all periodic responses show one impact in a response period",
+    "one",
+    "settled responses above 1.37",
+    full=True,
+)
 def one_impact_everywhere(results: Results) -> Finding:
     """Whether all periodic responses above 1.37 have one impact."""
     settled = between(results.settled("elastic"), 1.37, 8.0)
@@ -295,10 +371,17 @@ def one_impact_everywhere(results: Results) -> Finding:
     )
 
 
+@claim(
+    "3.1",
+    "the time between impacts grows by one T from window to window",
+    "by one T",
+    "impact by impact",
+    "0.01 T",
+)
 def impact_distance(results: Results) -> Finding:
     """Times between impacts at the peaks of the windows."""
     up, steady = results.up("elastic"), results.steady("elastic")
-    found, parts = [], []
+    texts, parts = [], []
     for n in range(1, 4):
         eta = relative_peak(up, n)
         if eta is None:
@@ -306,11 +389,17 @@ def impact_distance(results: Results) -> Finding:
             continue
         row = steady.sel(eta=eta, method="nearest")
         low, high = float(row.distance_min), float(row.distance_max)
-        found.append(f"{low:.3f} to {high:.3f} T at {eta:.3f}")
+        texts.append(f"{low:.3f} to {high:.3f} T at {eta:.3f}")
         parts.append(abs(low - n) < 0.01 and abs(high - n) < 0.01)
-    return holds(parts, "; ".join(found))
+    return holds(parts, "; ".join(texts))
 
 
+@claim(
+    "3.1",
+    "relative resonance peaks within the windows (Figure 7)",
+    "no numbers",
+    "found in the sweep",
+)
 def relative_peaks(results: Results) -> Finding:
     """Where the relative peaks are."""
     data = results.get("figure7")
@@ -326,6 +415,13 @@ def relative_peaks(results: Results) -> Finding:
     )
 
 
+@claim(
+    "3.2",
+    "further irregular regions, each shifting one window to the next",
+    "no numbers",
+    "up-sweep",
+    full=True,
+)
 def other_regions(results: Results) -> Finding:
     """The irregular regions beyond the second."""
     up = results.up("elastic")
@@ -337,152 +433,3 @@ def other_regions(results: Results) -> Finding:
         f"{a:.3f} to {d:.3f}, from {n}T to {n + 1}T" for n, (a, _, _, d) in enumerate(edges, 2)
     )
     return holds([bool(np.isfinite(edge).all()) for edge in edges], text)
-
-
-CLAIMS = (
-    Claim(
-        "3",
-        "only for m_1 = m_2, k_1 = k_2, d_1 = d_2 do both masses vibrate without influence",
-        "only then",
-        "the FMU from rest: impacts in 2,000 periods at eta = 1.3",
-        "-",
-        only_equal,
-    ),
-    Claim(
-        "3",
-        "natural frequencies of both subsystems",
-        "1 and 1.095, about 10 % apart",
-        "(7)",
-        NUMBER,
-        detuning,
-    ),
-    Claim(
-        "3",
-        "natural frequencies that differ by about 10 % seem to be the most unfavourable situation",
-        "k_2/k_1 = 1.2",
-        "map over (eta, kappa): the largest impulse, which a test has to see",
-        "10 % of the least",
-        most_unfavourable,
-    ),
-    Claim(
-        "3",
-        "eta = 0.4: separate motion, a sequence of impacts, permanent contact in each T",
-        "three states",
-        "Figure 5's data",
-        "-",
-        three_states,
-    ),
-    Claim(
-        "3",
-        "Figure 5(a): the phase plot for each mass gives two closed loops",
-        "two loops",
-        "Figure 5's data: crossings of each curve with itself",
-        "-",
-        two_loops,
-    ),
-    Claim(
-        "3",
-        "Figure 5(b): many loops in one response period, each begins and ends at an impact; "
-        "contact is a point at the origin",
-        "many loops",
-        "Figure 5's data: jumps of the velocity, and the gap there",
-        "1e-6 of the largest gap and velocity",
-        many_loops,
-    ),
-    Claim(
-        "3",
-        "transition to permanent contact at gamma = 1e-4 max xi'_Rel",
-        "1e-4",
-        "Figure 5's data; short sweeps with other gamma",
-        "1 % of T; one step of the sweep",
-        gamma_scale,
-    ),
-    Claim(
-        "3.1",
-        "n = 500 periods eliminate transient effects",
-        "500",
-        "the sweep's responses run on to n = 5,000, and to 50,000 at 100 frequencies drawn by "
-        "chance: multiplicity, impacts, largest gap",
-        "others at 1 % of the frequencies up to the end of the window T, and beyond it",
-        enough_periods,
-        full=True,
-    ),
-    Claim(
-        "3.1",
-        "permanent contact vanishes",
-        "0.43",
-        "up-sweep, last eta with contact; branch",
-        LIMIT,
-        contact_limit,
-        full=True,
-    ),
-    Claim(
-        "3.1",
-        "T-periodic below",
-        "0.43",
-        "up-sweep, multiplicity 1; branch",
-        LIMIT,
-        periodic_limit,
-        full=True,
-    ),
-    Claim(
-        "3.1",
-        "permanent contact vanishes for all larger eta",
-        "none",
-        "up-sweep",
-        "-",
-        no_contact_above,
-        full=True,
-    ),
-    Claim(
-        "3.1",
-        "windows between irregular regions, multiplicity rising by one T",
-        "steps of one T",
-        "up-sweep: longest window of each; exact limits of one-impact orbits",
-        "-",
-        windows_in_order,
-        full=True,
-    ),
-    Claim(
-        "3.1",
-        "one impact in a response period at the relative peaks",
-        "one",
-        "Figure 7's data",
-        "-",
-        one_impact_at_peaks,
-    ),
-    Claim(
-        "3.1",
-        "all periodic responses show one impact in a response period",
-        "one",
-        "settled responses above 1.37",
-        "-",
-        one_impact_everywhere,
-        full=True,
-    ),
-    Claim(
-        "3.1",
-        "the time between impacts grows by one T from window to window",
-        "by one T",
-        "impact by impact",
-        "0.01 T",
-        impact_distance,
-    ),
-    Claim(
-        "3.1",
-        "relative resonance peaks within the windows (Figure 7)",
-        "no numbers",
-        "found in the sweep",
-        "-",
-        relative_peaks,
-    ),
-    Claim(
-        "3.2",
-        "further irregular regions, each shifting one window to the next",
-        "no numbers",
-        "up-sweep",
-        "-",
-        other_regions,
-        full=True,
-    ),
-)

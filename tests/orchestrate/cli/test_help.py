@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from orchestrate import cli
-from orchestrate.cli.options import values_of
+from orchestrate.cli.grammar import values_of
 
 from .commands import ROOT
 

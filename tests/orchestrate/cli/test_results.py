@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import netCDF4
@@ -10,6 +11,7 @@ import pytest
 import xarray as xr
 from matplotlib import image
 
+import orchestrate
 from orchestrate.access import OSCILLATOR, find
 from orchestrate.version import __version__
 
@@ -159,6 +161,7 @@ def test_over_another_parameter_of_an_own_structure(ask, folder, tmp_path):
 def test_the_default_range_is_the_papers(ask, monkeypatch):
     asked = {}
 
+    @functools.wraps(orchestrate.sweep)  # whose options are its arguments
     def sweep(structure, **question):
         asked.update(question, structure=structure)
         raise KeyboardInterrupt

@@ -17,7 +17,7 @@ import pytest
 from orchestrate import cli
 from orchestrate.__main__ import run
 from orchestrate.cli import main, process
-from orchestrate.cli.options import plain_float, plain_int
+from orchestrate.cli.grammar import plain_float, plain_int
 from orchestrate.cli.process import SafeStream
 from tests.faults import Surroundings
 

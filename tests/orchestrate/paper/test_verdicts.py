@@ -9,12 +9,12 @@ import xarray as xr
 from orchestrate.dynamics.lyapunov import CHAOTIC, PERIODIC
 from orchestrate.paper.cases import CASES
 from orchestrate.paper.claims import (
+    CLAIMS,
     answers,
     section1,
     section2,
     section3,
     section3_influence,
-    section4,
     section5,
 )
 from orchestrate.paper.claims.claim import NO, PARTLY, YES
@@ -300,7 +300,7 @@ def test_amplitudes_like_those_of_one_oscillator(ratios, verdict):
 
 def test_one_printed_digit_does_not_make_a_limit_vacuous():
     """1.1 is the end of a window from 1.08 on; the next one begins at 1.11."""
-    (claim,) = (one for one in section4.CLAIMS if one.printed == "1.1")
+    (claim,) = (one for one in CLAIMS if one.printed == "1.1")
     etas = np.round(np.arange(1.05, 1.15, 0.001), 3)
 
     def verdict(end):

@@ -9,8 +9,8 @@ import numpy as np
 from orchestrate import Drive, Structure
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive.compiled import master_of
-from orchestrate.weak_drive.couple import oscillator_start
 from orchestrate.weak_drive.master import Scheme
+from orchestrate.weak_drive.run import oscillator_start
 
 GRID = 0.2  # of the comparisons
 ORDER = ("x1", "v1", "x2", "v2", "box_position", "box_velocity", "angle", "speed")

@@ -8,9 +8,10 @@ from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.errors import InputError
 from orchestrate.response.spectra import amplitude_spectrum
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.couple import Run, couple_job
+from orchestrate.weak_drive.couple import couple_job
 from orchestrate.weak_drive.drive_spectra import drive_spectra, voltage_at_resonance
 from orchestrate.weak_drive.master import Scheme
+from orchestrate.weak_drive.run import Run
 from orchestrate.weak_drive.schedule import Ramp
 
 from .coupled import BEAM, QUICK, state_of

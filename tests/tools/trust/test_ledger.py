@@ -10,7 +10,8 @@ import pytest
 
 from tools.trust import __main__ as ledger
 from tools.trust import page, records
-from tools.trust.campaign import HERE, Campaign, Outcome, batch_seed, sources
+from tools.trust.campaign import Campaign, Outcome
+from tools.trust.job import HERE, batch_seed, sources
 from tools.trust.registry import CAMPAIGNS
 
 

@@ -1,0 +1,64 @@
+"""An option as the signature and the docstring of its public function declare it."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable
+from typing import Any
+
+from .grammar import plain_float, plain_int
+
+LINK = re.compile(r"As in :func:`orchestrate\.(\w+)`")
+MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
+
+
+def described(function: Callable[..., Any], name: str) -> tuple[str, str]:
+    """Return type and meaning of an argument, as the numpydoc docstring has them.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> described(orchestrate.basin, "settle")
+    ('float', 'Periods dropped at least, over eta: a slow decay takes time, not periods.')
+    """
+    import orchestrate
+
+    text = inspect.getdoc(function) or ""
+    section = text.partition("\nParameters\n----------\n")[2].partition("\n\n")[0]
+    for entry in re.split(r"\n(?=\S)", section):
+        head, _, body = entry.partition("\n")
+        names, _, kind = head.partition(" : ")
+        if name in names.split(", "):
+            meaning = " ".join(body.split())
+            linked = LINK.match(meaning)
+            return described(getattr(orchestrate, linked[1]), name) if linked else (kind, meaning)
+    raise LookupError(f"{function.__name__}: no {name} in its docstring")
+
+
+def help_of(meaning: str) -> str:
+    """Return the first sentence of a meaning as a command's help says it.
+
+    Examples
+    --------
+    >>> help_of("Whether to compute :func:`orchestrate.lyapunov` too. More.")
+    'compute lyapunov too'
+    """
+    plain = MARKUP.sub(lambda match: match[1] or match[2], meaning).partition(". ")[0].rstrip(".")
+    plain = plain.removeprefix("Whether to ")
+    return (plain[:1].lower() + plain[1:]).replace("%", "%%")
+
+
+def option_of(function: Callable[..., Any], name: str) -> dict[str, Any]:
+    """Return what ``argparse`` needs to know of an argument: type, default, choices and help."""
+    default = inspect.signature(function).parameters[name].default
+    kind, meaning = described(function, name)
+    text = help_of(meaning)
+    if default is False:
+        return {"action": "store_true", "help": text}
+    if default is not None:
+        text += " (default: %(default)s)"
+    if kind.startswith("{"):
+        return {"choices": re.findall(r'"(\w+)"', kind), "default": default, "help": text}
+    reader, metavar = (plain_int, "N") if kind.startswith("int") else (plain_float, "X")
+    return {"type": reader, "default": default, "metavar": metavar, "help": text}

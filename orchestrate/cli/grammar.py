@@ -1,0 +1,242 @@
+"""The grammar of numbers in options: plain digits, lists, ranges, pairs, states, ``NAME=VALUE``.
+
+What is wrong is an :class:`InputError` that names the option, its text and what is expected.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection
+from decimal import Decimal, InvalidOperation
+from typing import TypeVar
+
+from ..errors import InputError
+
+Parsed = TypeVar("Parsed")
+Side = tuple[str, float, float, int]
+MAX_VALUES = 10_000_000
+RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
+
+# -- numbers --------------------------------------------------------------------------------------
+
+
+def check_digits(text: str) -> None:
+    """Check that a text has plain digits only: Python takes those of any script, and ``1_000``.
+
+    Raises
+    ------
+    ValueError
+    """
+    if not text.isascii() or "_" in text:
+        raise ValueError(text)
+
+
+def plain_float(text: str) -> float:
+    """Parse a number in plain digits."""
+    check_digits(text)
+    return float(text)
+
+
+def plain_int(text: str) -> int:
+    """Parse an integer in plain digits."""
+    check_digits(text)
+    return int(text)
+
+
+plain_float.__name__, plain_int.__name__ = "float", "int"  # what argparse calls them in its errors
+
+
+def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]) -> Parsed:
+    """Parse the text of an option by a function that raises ``ValueError`` where it is wrong.
+
+    Parameters
+    ----------
+    option, text, expected : str
+        For the message.
+    reader : callable
+    """
+    try:
+        return reader(text)
+    except ValueError:
+        raise InputError(f"{option} {text}: expected {expected}") from None
+
+
+def floats(
+    text: str, separator: str, counts: Collection[int] = (), positive: bool = False
+) -> tuple[float, ...]:
+    """Parse numbers between separators: as many as one of ``counts``, or any number of them.
+
+    Raises
+    ------
+    ValueError
+    """
+    numbers = tuple(plain_float(part) for part in text.split(separator))
+    if counts and len(numbers) not in counts:
+        raise ValueError(text)
+    if positive and not all(math.isfinite(number) and number > 0.0 for number in numbers):
+        raise ValueError(text)
+    return numbers
+
+
+def number_of(option: str, text: str) -> float:
+    """Parse a number > 0 where a range would make no sense."""
+    expected = f"a number > 0, such as {option} 0.5"
+    return parse(option, text, expected, lambda part: floats(part, ",", (1,), positive=True))[0]
+
+
+def whole_number_of(option: str, text: str) -> int:
+    """Parse a whole number."""
+    return parse(option, text, "a whole number >= 0", plain_int)
+
+
+def ends_of(option: str, text: str) -> tuple[float, float]:
+    """Parse both numbers of ``FIRST:LAST``."""
+    expected = "FIRST:LAST, two numbers such as 1.2:1.65"
+    first, last = parse(option, text, expected, lambda part: floats(part, ":", (2,)))
+    return first, last
+
+
+def number_or_ends(option: str, text: str) -> tuple[float, ...]:
+    """Parse ``VALUE`` or ``FIRST:LAST``."""
+    expected = "a number, or FIRST:LAST such as 1.2:1.65"
+    return parse(option, text, expected, lambda part: floats(part, ":", (1, 2)))
+
+
+def rates_of(option: str, text: str, one: bool = False) -> tuple[float, ...]:
+    """Parse rates > 0, a list, or one of them."""
+    several = "" if one else ", or several as A,B,..., such as 1e-4,5e-5,2.5e-5"
+    expected = f"a number > 0{several}"
+    rates = parse(option, text, expected, lambda part: floats(part, ",", positive=True))
+    if one and len(rates) > 1:
+        raise InputError(
+            f"{option} {text}: {len(rates)} rates; expected one (jump-voltages takes several)"
+        )
+    return rates
+
+
+def orders_of(option: str, text: str) -> float | tuple[float, ...]:
+    """Parse a number of orders, or a list of them."""
+    orders = parse(option, text, "a whole number, or 0.5,1,2", lambda part: floats(part, ","))
+    return orders if "," in text else orders[0]
+
+
+def state_of(option: str, text: str) -> tuple[float, ...]:
+    """Parse a state from ``X1,X2,V1,V2``."""
+    expected = "X1,X2,V1,V2, four numbers in m and m/s"
+    return parse(option, text, expected, lambda part: floats(part, ",", (4,)))
+
+
+def side_of(option: str, text: str) -> Side:
+    """Parse a side of a plane from ``NAME,FIRST,LAST,COUNT``."""
+
+    def read(text: str) -> Side:
+        name, first, last, count = (part.strip() for part in text.split(","))
+        return name, plain_float(first), plain_float(last), plain_int(count)
+
+    return parse(option, text, "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60", read)
+
+
+def breakpoints_of(option: str, text: str) -> tuple[tuple[float, float], ...]:
+    """Parse break points of ``HZ:VALUE,HZ:VALUE,...``."""
+
+    def read(text: str) -> tuple[tuple[float, float], ...]:
+        pairs = [floats(part, ":", (2,)) for part in text.split(",")]
+        if not all(math.isfinite(number) for pair in pairs for number in pair):
+            raise ValueError(text)
+        return tuple((first, last) for first, last in pairs)
+
+    return parse(option, text, "HZ:VALUE,HZ:VALUE,... such as 10:0.5,200:0.5", read)
+
+
+# -- ranges and lists -----------------------------------------------------------------------------
+
+
+def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, ...], bool]:
+    """Parse numbers from ``FIRST:LAST:STEP`` or ``A,B,...``; return them and whether they are a
+    range.
+
+    Parameters
+    ----------
+    option : str
+        Its name, for messages.
+    text : str
+    zero : bool
+        Whether a number may be 0.
+    """
+    is_range = ":" in text
+    try:
+        check_digits(text)
+        numbers = [Decimal(part.strip()) for part in text.split(":" if is_range else ",")]
+    except (InvalidOperation, ValueError):
+        raise InputError(f"{option} {text}: not numbers; {RANGE}") from None
+    finite = all(number.is_finite() for number in numbers)
+    if not finite or (is_range and len(numbers) != 3) or min(numbers) < 0:
+        raise InputError(f"{option} {text}: {RANGE}")
+    if not zero and min(numbers) == 0:
+        raise InputError(f"{option} {text}: {RANGE}")
+    if is_range:
+        first, last, step = numbers
+        if step == 0 or last < first or (last - first) > MAX_VALUES * step:
+            raise InputError(f"{option} {text}: {RANGE}, and at most {MAX_VALUES} values")
+        numbers = [first + i * step for i in range(int((last - first) / step) + 1)]
+    return tuple(map(float, numbers)), is_range
+
+
+def is_one(text: str) -> bool:
+    """Return whether a text is a single number, rather than a range or a list."""
+    return not (":" in text or "," in text)
+
+
+def one_or_more(option: str, text: str, one: bool = False) -> float | tuple[float, ...]:
+    """Parse a number, or those of a range or a list.
+
+    Parameters
+    ----------
+    option, text : str
+    one : bool
+        Whether it must be one number.
+    """
+    return one_value(option, text) if one or is_one(text) else values_of(option, text)[0]
+
+
+def one_value(option: str, text: str) -> float:
+    """Parse a single number > 0."""
+    values, _ = values_of(option, text)
+    if len(values) != 1:
+        raise InputError(
+            f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2"
+        )
+    return values[0]
+
+
+def level_of(option: str, text: str, several: bool = False) -> float | tuple[float, ...]:
+    """Parse a level of the excitation > 0; or ``several`` of a range or a list."""
+    return values_of(option, text)[0] if several and not is_one(text) else number_of(option, text)
+
+
+# -- names and values -----------------------------------------------------------------------------
+
+
+def changes_of(texts: list[str]) -> dict[str, float | bool]:
+    """Parse names and values of ``--set``."""
+    changes: dict[str, float | bool] = {}
+    for text in texts:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not (name and equals):
+            raise InputError(f"--set {text}: expected NAME=VALUE, such as e=0.3")
+        if name in changes:
+            raise InputError(f"--set {text}: {name} is set twice; expected once")
+        changes[name] = value_of(text, value)
+    return changes
+
+
+def value_of(text: str, value: str) -> float | bool:
+    """Parse a value of ``--set``."""
+    if value in ("true", "false"):
+        return value == "true"
+    try:
+        return plain_float(value)
+    except ValueError:
+        raise InputError(
+            f"--set {text}: {value or 'nothing'} is no number; expected one, or true or false"
+        ) from None

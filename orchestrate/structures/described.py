@@ -1,0 +1,28 @@
+"""What a TOML file describes can be read from one: how is said where all of its kinds are known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from os import PathLike
+from typing import Any, ClassVar, TypeVar
+
+Kind = TypeVar("Kind", bound="Described")
+
+
+class Described:
+    """Base of what sections of a TOML file describe; a class's name is what it is called there.
+
+    Attributes
+    ----------
+    reader : callable
+        :func:`orchestrate.structures.files.read_section`, which knows all the classes.
+    """
+
+    reader: ClassVar[Callable[..., Any]]
+
+    @classmethod
+    def _read(cls: type[Kind], path: str | PathLike[str], structure: Any = None) -> Kind:
+        """Read it from a file, or from a set that comes with the package."""
+        described = Described.reader(path, cls.__name__.lower(), structure)
+        assert isinstance(described, cls)
+        return described

@@ -1,0 +1,158 @@
+"""A run of the coupled system under way, step by step; each revolution of the motor is one row."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from ..access.instance import Instance
+from ..access.models import OSCILLATOR, SHAKER
+from ..running.job import Job, Table
+from ..structures.drive import Drive
+from ..structures.structure import Structure
+from .compiled import master_of
+from .controllers import Controller, Measurement
+from .master import Scheme
+from .revolutions import COLUMNS, Revolutions
+from .schedule import Schedule
+
+
+def oscillator_start(structure: Structure) -> dict[str, float | bool]:
+    """Return the structure's start values in the coupled system: its own harmonic box motion is
+    off.
+    """
+    off = {"box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
+    return {**structure.parameters(), **off}
+
+
+@dataclass(frozen=True)
+class CoupledRun(Job):
+    """Base of jobs that run the coupled system: what decides its steps.
+
+    Attributes
+    ----------
+    structure : Structure
+    drive : Drive
+    schedule : Schedule
+    scheme : Scheme
+    speed_start : float
+        Of the motor, rad/s.
+    hold: float
+        Time for which a voltage is held at most, where the record does not tell a jump, s.
+    control : Controller, optional
+        What takes the voltage from the schedule; the motor gets all of it where there is none.
+    """
+
+    structure: Structure
+    drive: Drive
+    schedule: Schedule
+    scheme: Scheme
+    speed_start: float
+    hold: float
+    control: Controller | None = None
+
+    models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+
+
+class Run:
+    """Run under way: both instances, their master, and the present revolution.
+
+    Parameters
+    ----------
+    job : CoupledRun
+    oscillator, shaker : Instance
+        Not yet initialised.
+    """
+
+    def __init__(self, job: CoupledRun, oscillator: Instance, shaker: Instance) -> None:
+        self.job, self.oscillator, self.shaker = job, oscillator, shaker
+        oscillator.initialize(**oscillator_start(job.structure))
+        voltage = job.schedule.voltage(0.0)
+        shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
+        self.master = master_of(oscillator, shaker, job.structure, job.scheme)
+        self.revolutions = Revolutions(self.master, self.impact_count)
+        self.control_memory = job.control.begin(job.speed_start) if job.control else ()
+
+    def impact_count(self) -> float:
+        """Return the number of impacts so far."""
+        return float(self.oscillator.get("impact_count")[0])
+
+    def voltage(self, i: int) -> float:
+        """Return the voltage over a step, constant: the mean of a ramp, or a controller's part of
+        it.
+        """
+        h, control = self.job.scheme.h, self.job.control
+        available = self.job.schedule.voltage((i + 0.5) * h)
+        if control is None:
+            return available
+        seen = Measurement(self.master.time, self.master.shaking.speed, available, h)
+        voltage, self.control_memory = control.update(seen, self.control_memory)
+        return voltage
+
+    def revolve(self, steps: Sequence[int], kept: np.ndarray | None = None) -> Table:
+        """Do some steps; return the columns of their complete revolutions.
+
+        Parameters
+        ----------
+        steps : sequence of int
+        kept : ndarray, optional
+            Takes the master's memory after each step, a row each.
+        """
+        rows, begin = [], 0
+        for voltages in self.at_once(steps):
+            piece = None if kept is None else kept[begin : begin + len(voltages)]
+            done = 0
+            while done < len(voltages):
+                done = self.master.run(voltages, done, kept=piece)
+                row = self.revolutions.add()
+                if row:
+                    rows.append(row)
+            begin += done
+        table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
+        return dict(zip(COLUMNS, table.T.copy(), strict=True))
+
+    def at_once(self, steps: Sequence[int]) -> Iterator[array[float]]:
+        """Voltages of steps that follow each other unseen: all, or one where a controller looks."""
+        if self.job.control is None:
+            yield array("d", map(self.voltage, steps))
+        else:
+            yield from (array("d", (self.voltage(i),)) for i in steps)
+
+    def get_state(self) -> Table:
+        """Return everything that a run goes on from, one row."""
+        states = {
+            "oscillator_state": np.frombuffer(self.oscillator.save_state(), dtype=np.uint8),
+            "shaker_state": np.frombuffer(self.shaker.save_state(), dtype=np.uint8),
+            "master_memory": np.array(self.master.get_state()),
+            "revolution_memory": np.array(self.revolutions.get_state()),
+            "control_memory": np.array(self.control_memory),
+        }
+        return {name: state[np.newaxis] for name, state in states.items()}
+
+    def set_state(self, table: Table) -> None:
+        """Return to a state that :meth:`get_state` gave."""
+        self.oscillator.restore_state(table["oscillator_state"][-1].tobytes())
+        self.shaker.restore_state(table["shaker_state"][-1].tobytes())
+        self.master.set_state(table["master_memory"][-1].tolist())
+        self.revolutions.set_state(table["revolution_memory"][-1].tolist())
+        self.control_memory = tuple(table["control_memory"][-1].tolist())
+
+
+@contextmanager
+def begin_run(job: CoupledRun, fmus: Mapping[str, Path]) -> Iterator[Run]:
+    """Begin a run on new instances of both FMUs; free them at the end."""
+    with (
+        Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
+        Instance(fmus[SHAKER], "shaker") as shaker,
+    ):
+        run = Run(job, oscillator, shaker)
+        try:
+            yield run
+        finally:
+            run.master.close()

@@ -1,0 +1,138 @@
+"""Options are declared once, by the public function; numbers are read by one grammar."""
+
+from __future__ import annotations
+
+import argparse
+import inspect
+import subprocess
+import sys
+
+import pytest
+
+import orchestrate
+from orchestrate import cli
+from orchestrate.cli import grammar
+from orchestrate.cli.declared import described, option_of
+from orchestrate.cli.options import excitation_of
+from orchestrate.errors import InputError
+
+from .commands import ROOT
+
+CONVERTED = {  # options in other units or words than the argument's, by their commands
+    **dict.fromkeys([("couple", "settle"), ("passage", "settle"), ("jump-voltages", "settle")]),
+    ("sweep", "direction"): "up for a range, a list as it stands",
+    ("border", "over"): "a text",
+    ("border", "bifurcation"): "required in Python",
+}
+
+
+def parsers():
+    (action,) = (
+        action
+        for action in cli.make_parser()._actions
+        if isinstance(action, argparse._SubParsersAction)
+    )
+    return action.choices
+
+
+def options():
+    """Command, option and parameter of each option that is an argument of its function."""
+    for command, parser in parsers().items():
+        function = getattr(orchestrate, command.replace("-", "_"), None)
+        parameters = inspect.signature(function).parameters if inspect.isfunction(function) else {}
+        for action in parser._actions:
+            if action.dest in parameters and action.dest not in ("structure", "drive"):
+                yield command, action, parameters[action.dest]
+
+
+def test_every_default_is_that_of_the_function():
+    compared = 0
+    for command, action, parameter in options():
+        if (command, action.dest) in CONVERTED or parameter.default is inspect.Parameter.empty:
+            continue
+        unset = action.default in (None, [])
+        assert (None if unset else action.default) == parameter.default, (command, action.dest)
+        compared += 1
+    assert compared > 80
+
+
+def test_every_declared_option_has_a_meaning_and_its_default_in_the_help():
+    for command, action, parameter in options():
+        assert action.help, (command, action.dest)
+        if parameter.default not in (None, False, inspect.Parameter.empty):
+            assert "(default: " in action.help, (command, action.dest)
+
+
+def test_a_function_is_imported_for_its_own_command_alone():
+    code = (
+        "import sys; from orchestrate.cli import make_parser; make_parser(sys.argv[1:]);"
+        "print('numpy' in sys.modules, 'orchestrate.dynamics.basins' in sys.modules)"
+    )
+    for words, expected in ((["--help"], "False False"), (["sweep", "--help"], "True False")):
+        command = [sys.executable, "-c", code, *words]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+        assert done.stdout.split() == expected.split(), words
+
+
+def test_a_meaning_that_is_told_elsewhere_is_followed():
+    assert described(orchestrate.basin, "settle") == described(orchestrate.attractors, "settle")
+    assert described(orchestrate.lyapunov, "eta")[1].startswith("Frequency ratio")
+    with pytest.raises(LookupError, match="sweep"):
+        described(orchestrate.sweep, "nothing")
+    details = option_of(orchestrate.resonance, "direction")
+    assert details["choices"] == ["up", "down", "both"] and details["default"] == "both"
+
+
+def test_every_number_is_read_by_the_grammar():
+    """Python's own ``float`` takes ``1_000`` and digits of any script."""
+    plain = {grammar.plain_float, grammar.plain_int}
+    for command, parser in parsers().items():
+        for action in parser._actions:
+            assert action.type not in (float, int), (command, action.dest)
+            assert (
+                action.type in plain
+                or not isinstance(action.default, (int, float))
+                or (isinstance(action.default, bool))
+            ), (command, action.dest)
+
+
+@pytest.mark.parametrize(
+    "reader, text, value",
+    [
+        (grammar.number_of, "0.5", 0.5),
+        (grammar.ends_of, "1.2:1.65", (1.2, 1.65)),
+        (grammar.number_or_ends, "1.5", (1.5,)),
+        (grammar.number_or_ends, "2:1", (2.0, 1.0)),
+        (grammar.rates_of, "1e-4,5e-5", (1e-4, 5e-5)),
+        (grammar.orders_of, "3", 3.0),
+        (grammar.orders_of, "0.5,1", (0.5, 1.0)),
+        (grammar.state_of, "0,0.5,-1,0", (0.0, 0.5, -1.0, 0.0)),
+        (grammar.side_of, "x_rel, 0,0.8,60", ("x_rel", 0.0, 0.8, 60)),
+        (grammar.breakpoints_of, "10:0.5,200:1", ((10.0, 0.5), (200.0, 1.0))),
+        (grammar.one_or_more, "1", 1.0),
+        (grammar.one_or_more, "1:2:0.5", (1.0, 1.5, 2.0)),
+    ],
+)
+def test_texts_of_options(reader, text, value):
+    assert reader("--x", text) == value
+    for wrong in (f"{text}_0", "", "abc", "1:2:3:4", "nan,,"):
+        with pytest.raises(InputError, match="--x"):
+            reader("--x", wrong)
+
+
+def motion(**given):
+    names = ("eta", "hz", "rpm", "frequency", "amplitude", "g")
+    return argparse.Namespace(**{**dict.fromkeys(names), "structure": "beam", **given})
+
+
+def test_a_range_of_levels_at_one_frequency():
+    """Held as peak accelerations; where a command does not take several, one is expected."""
+    beam = orchestrate.Structure.from_file("beam")
+    assert len(grammar.level_of("--g", "0.1:2:0.05", several=True)) == 39
+    asked = excitation_of(motion(hz="12", g="0.1:0.3:0.1"), beam, levels=True)
+    single = [excitation_of(motion(hz="12", g=g), beam)["amplitude"] for g in ("0.1", "0.2", "0.3")]
+    assert asked["amplitude"] == tuple(single) and isinstance(asked["frequency"], float)
+    with pytest.raises(InputError, match="--hz 12:14:1: 3 values; expected one"):
+        excitation_of(motion(hz="12:14:1", g="0.1,0.2"), beam, levels=True)
+    with pytest.raises(InputError, match="--g 0.1,0.2: expected a number > 0"):
+        excitation_of(motion(hz="12", g="0.1,0.2"), beam)
