@@ -83,19 +83,21 @@ class ShakeJob(Question):
         """The pieces."""
         return range(self.count())
 
-    def times(self) -> NDArray[np.float64]:
-        """When the motion is read, s."""
-        last = math.floor(self.pieces.duration * self.sample_rate * (1.0 + 1e-14))
-        times: NDArray[np.float64] = np.arange(last + 1) / self.sample_rate
-        return times[times <= self.pieces.duration]
+    def times(self, first: float = 0.0, end: float = math.inf) -> NDArray[np.float64]:
+        """When the motion is read from a time on, and before another, s."""
+        rate, duration = self.sample_rate, self.pieces.duration
+        last = math.floor(duration * rate * (1.0 + 1e-14))
+        stop = last if end == math.inf else min(last, math.ceil(end * rate) + 1)
+        times: NDArray[np.float64] = (
+            np.arange(max(0, math.floor(first * rate) - 1), stop + 1) / rate
+        )
+        return times[(times >= first) & (times < end) & (times <= duration)]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """The motion over some pieces, and the FMU's state to go on from."""
         pieces, first, last = self.pieces, items[0], items[-1] + 1
         nodes = pieces.nodes[first : last + 1]
-        times = self.times()
-        end = None if last == self.count() else np.searchsorted(times, nodes[-1])
-        samples = times[np.searchsorted(times, nodes[0]) : end]
+        samples = self.times(nodes[0], math.inf if last == self.count() else nodes[-1])
         with Player(fmus[OSCILLATOR]) as player:
             player.start(self.structure, self.start)
             if previous is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -225,3 +226,17 @@ def test_a_stored_run_goes_on_and_is_read_again(tmp_path):
     other = dataclasses.replace(SWEEP, last=53.0)
     with pytest.raises(InputError, match="last = 52.0 there, 53.0 here"):
         shake(BEAM, other, store=path, progress=False)
+
+
+@pytest.mark.parametrize("rate", [400.0, 1e3, 1234.5, 1e4 / 3.0, 20.0])
+def test_parts_of_the_record_are_the_whole_record(rate):
+    """Where a time of reading is a node of the pieces as well, or none lies in a piece."""
+    job = ShakeJob(
+        name="", structure=BEAM, excitation=SIGNALS["samples"], sample_rate=rate, accuracy=1e-6
+    )
+    nodes = job.pieces.nodes
+    cuts = [0.0, *nodes[[1, 2, 30, 31, len(nodes) // 2]], math.inf]
+    parts = [job.times(one, other) for one, other in pairwise(cuts)]
+    np.testing.assert_array_equal(np.concatenate(parts), job.times())
+    assert np.all(np.diff(job.times()) > 0.0) and job.times()[-1] <= job.pieces.duration
+    assert job.times()[-1] + 1.0 / rate > job.pieces.duration
