@@ -13,9 +13,10 @@ What is described
 What is asked
     :func:`simulate`, :func:`resonance`, :func:`sweep`, :func:`spectra`; :func:`map`,
     :func:`lyapunov`, :func:`attractors`, :func:`basin`, :func:`impact_statistics`;
-    :func:`shake` as in the laboratory, by a :class:`SweptSine`, :class:`Random` vibration, a
-    :class:`Shock` or :class:`Sampled` acceleration; :func:`measure` what a :class:`Sensor` reads
-    of it, :func:`record`, :func:`read_record` and :func:`write_record` what was measured;
+    :func:`shake` as in the laboratory, by a :class:`SweptSine` or :class:`SteppedSine`,
+    :class:`Random` vibration, a :class:`Shock` or :class:`Sampled` acceleration; :func:`measure`
+    what a :class:`Sensor` reads of it, :func:`record`, :func:`read_record` and
+    :func:`write_record` what was measured;
     :func:`frf`, :func:`psd`, :func:`track_orders`, :func:`harmonics`, :func:`spectrogram`,
     :func:`shock_spectrum` and :func:`probability_density` of such a record, or of a measured one;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
@@ -64,6 +65,7 @@ if TYPE_CHECKING:
     from .laboratory.sensors import Sensor, measure
     from .laboratory.shake import shake
     from .laboratory.shock import Shock
+    from .laboratory.stepped_sine import SteppedSine
     from .laboratory.swept_sine import SweptSine
     from .response.resonance import resonance
     from .response.simulate import simulate
@@ -94,6 +96,7 @@ __all__ = [
     "SpeedControl",
     "SpeedGradient",
     "StaleError",
+    "SteppedSine",
     "StoreError",
     "Structure",
     "SweptSine",
@@ -148,6 +151,7 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "laboratory.sampled": ("Sampled",),
     "laboratory.sensors": ("Sensor", "measure"),
     "laboratory.shock": ("Shock",),
+    "laboratory.stepped_sine": ("SteppedSine",),
     "laboratory.swept_sine": ("SweptSine",),
     "laboratory.shake": ("shake",),
     "laboratory.analysis.frf": ("frf",),

@@ -6,6 +6,7 @@ module                    idea
 :mod:`.pieces`            a box acceleration as cubic pieces, which the FMU takes exactly
 :mod:`.signals`           what every excitation is, and sums of them
 :mod:`.swept_sine`        a sine of moving frequency
+:mod:`.stepped_sine`      a sine that settles at one frequency after the other
 :mod:`.random_vibration`  a power spectral density
 :mod:`.shock`             a classical pulse
 :mod:`.sampled`           a record played again

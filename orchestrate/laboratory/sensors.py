@@ -165,7 +165,7 @@ def measure(
     sensor : Sensor or mapping of str to Sensor
         On all three; or by channel (``box_acceleration``, ``acceleration1``, ``acceleration2``),
         with one sample rate; channels left out are not recorded.
-    excitation : SweptSine, Random, Shock, Sampled or sum, optional
+    excitation : SweptSine, SteppedSine, Random, Shock, Sampled or sum, optional
         What the history was shaken by. Without it the box's acceleration between the history's
         samples is taken from the cubic spline through them.
 

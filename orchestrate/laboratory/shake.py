@@ -167,7 +167,7 @@ def shake(
     ----------
     structure : Structure
         Delaminated or bonded.
-    excitation : SweptSine, Random, Shock or Sampled
+    excitation : SweptSine, SteppedSine, Random, Shock or Sampled
         The box's acceleration; ``one + other`` is both together.
     sample_rate : float, optional
         Of the record, Hz; by default what the excitation needs. The motion does not depend on it.
@@ -210,7 +210,7 @@ def shake(
     (2001, 94)
     """
     if not isinstance(excitation, ExcitationSignal):
-        kinds = "expected a SweptSine, Random, Shock or Sampled, or a sum of them"
+        kinds = "expected a SweptSine, SteppedSine, Random, Shock or Sampled, or a sum"
         raise InputError(f"excitation = {excitation!r}: {kinds}")
     rate = positive("sample_rate", excitation.usual_rate if sample_rate is None else sample_rate)
     if rate * excitation.duration > MOST_SAMPLES:
