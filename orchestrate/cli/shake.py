@@ -48,6 +48,7 @@ OF_KINDS = {  # options that only one kind knows
     "delay": "shock",
     "unit": "record",
     "column": "record",
+    "scale": "record",
 }
 
 
@@ -74,7 +75,7 @@ def add_signals(parser: argparse.ArgumentParser) -> None:
     option("--stepped-sine", metavar="HZ", help=f"frequencies, {RANGE}")
     option("--random", metavar="PSD", help="density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz")
     option("--shock", metavar="SHAPE", help="half-sine, sawtooth or trapezoid")
-    option("--record", metavar="FILE", help="measured: .csv, .txt, .uff, .unv, .mat, .nc")
+    option("--record", metavar="FILE", help="measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc")
     level = "peak acceleration, {}; of sines a profile HZ:VALUE,HZ:VALUE,... too"
     option("--g", metavar="LEVEL", help=level.format("in 9.80665 m/s2"))
     option("--acceleration", metavar="LEVEL", help=level.format("m/s2"))
@@ -92,6 +93,7 @@ def add_signals(parser: argparse.ArgumentParser) -> None:
     option("--unit", metavar="UNIT", help="of a record: m/s2, g ... (default: what the file says)")
     text = "of a record: the box's, by name or number from 0 (default: by usual names, or 1)"
     option("--column", metavar="NAME", help=text)
+    option("--scale", metavar="X", help="of a record in a WAV file: m/s2 at its full scale")
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -158,7 +160,9 @@ def recorded(arguments: argparse.Namespace) -> Sampled:
     columns = None
     if column is not None:
         columns = {"box_acceleration": int(column) if column.isdecimal() else column}
-    return Sampled.from_record(read_record(arguments.record, unit=arguments.unit, columns=columns))
+    scale = None if arguments.scale is None else number_of("--scale", arguments.scale)
+    record = read_record(arguments.record, unit=arguments.unit, columns=columns, scale=scale)
+    return Sampled.from_record(record)
 
 
 def kind_of(arguments: argparse.Namespace) -> str:
