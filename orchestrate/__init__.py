@@ -16,7 +16,7 @@ What is asked
     :func:`shake` as in the laboratory, by a :class:`SweptSine` or :class:`SteppedSine`,
     :class:`Random` vibration, a :class:`Shock` or :class:`Sampled` acceleration; :func:`measure`
     what a :class:`Sensor` reads of it, :func:`record`, :func:`read_record` and
-    :func:`write_record` what was measured;
+    :func:`write_record` what was measured, :func:`record_of_run` of a weak drive's run;
     :func:`frf`, :func:`psd`, :func:`track_orders`, :func:`harmonics`, :func:`spectrogram`,
     :func:`shock_spectrum` and :func:`probability_density` of such a record, or of a measured one;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from .laboratory.random_vibration import Random
     from .laboratory.record import record
     from .laboratory.record_files import read_record, write_record
+    from .laboratory.run_up import record_of_run
     from .laboratory.sampled import Sampled
     from .laboratory.sensors import Sensor, measure
     from .laboratory.shake import shake
@@ -126,6 +127,7 @@ __all__ = [
     "psd",
     "read_record",
     "record",
+    "record_of_run",
     "resonance",
     "shake",
     "shock_spectrum",
@@ -148,6 +150,7 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "laboratory.random_vibration": ("Random",),
     "laboratory.record": ("record",),
     "laboratory.record_files": ("read_record", "write_record"),
+    "laboratory.run_up": ("record_of_run",),
     "laboratory.sampled": ("Sampled",),
     "laboratory.sensors": ("Sensor", "measure"),
     "laboratory.shock": ("Shock",),
