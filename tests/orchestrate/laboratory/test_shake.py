@@ -160,6 +160,7 @@ def check_impacts(seed, duration):
     data = shake(structure, signal, start=OPEN, accuracy=1e-10, progress=False)
     impacts, _ = event_driven(structure, signal, data.time.values)
     times = data.impact_time.values
+    times = times[times <= float(data.time[-1])]  # the excitation goes on to its end
     alike = min(len(times), len(impacts))
     away = np.abs(times[:alike] - impacts[:alike, 0]) * structure.f1
     chaos = np.flatnonzero(away > 1e-7)
@@ -196,9 +197,10 @@ def check_sticking(seed, duration, fewest):
     impacts, states = event_driven(structure, signal, data.time.values)
     found = np.stack([data[name].values for name in ("x1", "x2", "v1", "v2")], axis=1)
     away = float((np.abs(found - states) / np.abs(states).max(axis=0)).max())
-    assert (data.sticks.values == impacts[:, 2]).all() and impacts[:, 2].sum() >= fewest
+    whole = data.impact_time.values <= float(data.time[-1])  # the excitation goes on to its end
+    assert (data.sticks.values[whole] == impacts[:, 2]).all() and impacts[:, 2].sum() >= fewest
     assert away <= 1e-6
-    assert np.abs(data.impact_time.values - impacts[:, 0]).max() * structure.f1 <= 1e-6
+    assert np.abs(data.impact_time.values[whole] - impacts[:, 0]).max() * structure.f1 <= 1e-6
     return int(impacts[:, 2].sum()), len(impacts), away
 
 
