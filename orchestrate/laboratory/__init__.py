@@ -19,6 +19,7 @@ module                    idea
 :mod:`.columns`           which columns of a file are its channels, and their units
 :mod:`.record_csv`        columns of numbers as text
 :mod:`.record_uff`        universal files
+:mod:`.record_mat`        MATLAB's files, read in a process of its own
 :mod:`.record_files`      records read and written, of any kind of file
 :mod:`.analysis`          what an analyser shows of a record
 ========================  =========================================================================
