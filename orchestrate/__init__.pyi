@@ -28,11 +28,13 @@ from .laboratory.random_vibration import Random as Random
 from .laboratory.record import record as record
 from .laboratory.record_files import read_record as read_record
 from .laboratory.record_files import write_record as write_record
+from .laboratory.run_up import record_of_run as record_of_run
 from .laboratory.sampled import Sampled as Sampled
 from .laboratory.sensors import Sensor as Sensor
 from .laboratory.sensors import measure as measure
 from .laboratory.shake import shake as shake
 from .laboratory.shock import Shock as Shock
+from .laboratory.stepped_sine import SteppedSine as SteppedSine
 from .laboratory.swept_sine import SweptSine as SweptSine
 from .response.resonance import resonance as resonance
 from .response.simulate import simulate as simulate

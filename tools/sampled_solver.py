@@ -2,64 +2,105 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from orchestrate.structures import Structure
+
 Motion = Callable[[float, np.ndarray], list[float]]
 Event = Callable[[float, np.ndarray], float]
+Acceleration = Callable[[float], float]
 APART = 1e-12  # put between the masses after an impact, or it is found again
+CREEP = 1e-7  # the slowest parting
+SLOW = 1e-4  # closing speed below which contact begins; all over the scale
 
 
-def motions(eta: float, D: float, kappa: float) -> tuple[Motion, Motion]:
-    """The equations of motion, (3) to (6): apart, and in contact."""
+def motions(structure: Structure, acceleration: Acceleration) -> tuple[Motion, Motion]:
+    """The equations of motion, (3) to (6): apart, and in contact; x1, v1, x2, v2 in the box."""
+    m1, m2, k1, k2, d1, d2 = (getattr(structure, n) for n in ("m1", "m2", "k1", "k2", "d1", "d2"))
+    m, k, d = m1 + m2, k1 + k2, d1 + d2
 
     def flight(t: float, y: np.ndarray) -> list[float]:
-        force = math.sin(eta * t)
-        return [y[1], force - 2 * D * y[1] - y[0], y[3], force - 2 * D * y[3] - kappa * y[2]]
+        box = acceleration(t)
+        one = -box - (d1 * y[1] + k1 * y[0]) / m1
+        return [y[1], one, y[3], -box - (d2 * y[3] + k2 * y[2]) / m2]
 
     def contact(t: float, y: np.ndarray) -> list[float]:
-        pull = math.sin(eta * t) - 2 * D * y[1] - 0.5 * (1 + kappa) * y[0]
+        pull = -acceleration(t) - (d * y[1] + k * y[0]) / m
         return [y[1], pull, y[1], pull]
 
     return flight, contact
 
 
-def events(kappa: float) -> tuple[Event, Event]:
-    """Where the gap closes, and where the contact force vanishes."""
+def events(structure: Structure) -> tuple[Event, Event]:
+    """Where the gap closes, and where the contact force vanishes (18)."""
+    s = structure
+    spring, damper = s.m2 * s.k1 - s.m1 * s.k2, s.m2 * s.d1 - s.m1 * s.d2
 
     def gap(t: float, y: np.ndarray) -> float:
         return float(y[2] - y[0])
 
     def pressed(t: float, y: np.ndarray) -> float:
-        return float((1.0 - kappa) * y[0])
+        return float(spring * y[0] + damper * y[1])
 
     for event, direction in ((gap, -1), (pressed, 1)):
         event.terminal, event.direction = True, direction  # type: ignore[attr-defined]
     return gap, pressed
 
 
-def after(y: np.ndarray, touching: bool, e: float) -> np.ndarray:
-    """The state after an event: thrown apart, or together."""
-    closing, mean = y[1] - y[3], 0.5 * (y[1] + y[3])
-    half = 0.0 if touching else max(0.5 * e * closing, 1e-7)
-    return np.array([y[0], mean - half, y[0] + (0.0 if touching else APART), mean + half])
+def after(y: np.ndarray, touching: bool, structure: Structure, scale: float) -> np.ndarray:
+    """The state after an event: thrown apart (15), or together."""
+    mu, creep = structure.mu, CREEP * scale * structure.omega
+    mean = (y[1] + mu * y[3]) / (1.0 + mu)
+    parting = 0.0 if touching else max(structure.e * (y[1] - y[3]), creep)
+    apart = 0.0 if touching else APART * scale
+    one = mean - mu * parting / (1.0 + mu)
+    return np.array([y[0], one, y[0] + apart, one + parting])
 
 
-def seconds(eta: float, count: int, e: float = 0.7, D: float = 0.005, kappa: float = 1.2) -> float:
-    """Seconds that ``count`` periods from rest take."""
-    flight, contact = motions(eta, D, kappa)
-    gap, pressed = events(kappa)
-    begin = time.perf_counter()
-    t, stop, y, touching = 0.0, count * 2.0 * math.pi / eta, np.zeros(4), True
-    while t < stop:
+def run(
+    structure: Structure,
+    acceleration: Acceleration,
+    end: float,
+    scale: float = 1.0,
+    rate: float | None = None,
+) -> tuple[float, int]:
+    """Integrate from rest.
+
+    Parameters
+    ----------
+    structure : Structure
+    acceleration : callable
+        Of the box, m/s2, from the time in s.
+    end : float
+        s.
+    scale : float
+        Of the displacements, m: tolerances are over it.
+    rate : float, optional
+        At which the motion is recorded as well, Hz.
+
+    Returns
+    -------
+    seconds : float
+    impacts : int
+    """
+    flight, contact = motions(structure, acceleration)
+    gap, pressed = events(structure)
+    begin = time.process_time()
+    t, y, touching, impacts = 0.0, np.zeros(4), True, 0
+    while t < end:
         motion, event = (contact, pressed) if touching else (flight, gap)
-        solution = solve_ivp(motion, (t, stop), y, rtol=1e-8, atol=1e-10, events=event)
-        t, y = solution.t[-1], solution.y[:, -1].copy()
-        slow = e * (y[1] - y[3]) < 1e-4
+        grid = None if rate is None else np.arange(np.ceil(t * rate), end * rate) / rate
+        tolerances = {"rtol": 1e-8, "atol": 1e-10 * scale}
+        found = solve_ivp(motion, (t, end), y, events=event, t_eval=grid, **tolerances)
+        if not found.t_events[0].size:
+            break
+        t, y = found.t_events[0][0], found.y_events[0][0].copy()
+        impacts += not touching
+        slow = structure.e * (y[1] - y[3]) < SLOW * scale * structure.omega
         touching = not touching and slow and pressed(t, y) < 0.0
-        y = after(y, touching, e)
-    return time.perf_counter() - begin
+        y = after(y, touching, structure, scale)
+    return time.process_time() - begin, impacts

@@ -28,10 +28,12 @@ if TYPE_CHECKING:
 
 EXAMPLES = """  {program} analyse results/shake.nc --show frf,psd --resolution 0.5
   {program} analyse swept.nc --label delaminated --beside bonded=whole.nc --show orders,harmonics
-  {program} analyse record.nc --show spectrogram,density --from 2 --to 30
+  {program} analyse measured.csv --unit g --columns time=0,box_acceleration=3,acceleration1=4
+  {program} analyse run.wav --scale 500 --show spectrogram,density --from 2 --to 30
   {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv"""
 SPECTRAL = ("resolution", "window")
 SWEPT = ("orders", "periods")
+READING = ("unit", "columns", "sample_rate", "scale")
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ def add_parser(commands: Commands) -> None:
     """Declare the command."""
     text = "what an analyser shows of a record: responses, spectra, orders, shock spectra"
     parser = commands.add("analyse", run, text, EXAMPLES)
-    record = "NetCDF file: a result of shake, or box_acceleration and acceleration1 over time"
+    record = "a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .wav, .nc"
     parser.add_argument("record", type=Path, metavar="FILE", help=record)
     shown = ", ".join(f"{name} ({one.text})" for name, one in ANALYSES.items())
     parser.add_argument(
@@ -82,11 +84,24 @@ def add_parser(commands: Commands) -> None:
     option("--beside", action="append", default=[], metavar="LABEL=FILE", help=beside)
     option("--from", dest="begin", type=plain_float, metavar="S", help="time it begins at, s")
     option("--to", dest="end", type=plain_float, metavar="S", help="time it ends at, s")
+    add_reading(parser)
     add_settings(parser)
     add_files(parser, store=False)
     option = parser.add_argument_group("results").add_argument
     place = "folder of the results (default: results)"
     option("--output", type=Path, default=Path("results"), metavar="FOLDER", help=place)
+
+
+def add_reading(parser: argparse.ArgumentParser) -> None:
+    """How measured records are read; NetCDF says all itself."""
+    group = parser.add_argument_group("how to read records", "what files but NetCDF may not say")
+    option = group.add_argument
+    option("--unit", metavar="UNIT", help="of accelerations: m/s2, g, mg ...")
+    columns = "columns by name or number from 0: CHANNEL=COLUMN,... with the channels time, {}"
+    names = ", ".join(MASSES)
+    option("--columns", metavar="A=X,B=Y", help=columns.format(names))
+    option("--sample-rate", type=plain_float, metavar="HZ", help="where there is no time")
+    option("--scale", type=plain_float, metavar="X", help="m/s2 at the full scale of WAV files")
 
 
 def add_settings(parser: argparse.ArgumentParser) -> None:
@@ -122,9 +137,14 @@ def run(arguments: argparse.Namespace) -> None:
         }
         report(name, results)
         read = {label: str(path) for label, path in paths.items()}
-        told = digest(read, settings[name], arguments.begin, arguments.end)
+        told = digest(read, settings[name], *part_and_reading(arguments))
         stem = f"analyse_{name}_{arguments.record.stem}_{told}"
         write(arguments.output / f"{stem}.nc", results, formats, plots)
+
+
+def part_and_reading(arguments: argparse.Namespace) -> list[Any]:
+    """All options that decide what a record is."""
+    return [getattr(arguments, name) for name in ("begin", "end", *READING)]
 
 
 def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
@@ -160,7 +180,7 @@ def paths_of(arguments: argparse.Namespace) -> dict[str, Path]:
 
 def part_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     """A record, between ``--from`` and ``--to``."""
-    record = read_stored("FILE" if path == arguments.record else "--beside", path)
+    record = record_of(arguments, path)
     if "time" not in record.coords or arguments.begin is arguments.end is None:
         return record
     part = record.sel(time=slice(arguments.begin, arguments.end))
@@ -168,6 +188,38 @@ def part_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
         ends = f"{float(record.time[0]):.6g} to {float(record.time[-1]):.6g} s"
         raise InputError(f"{path}: nothing between --from and --to; it has {ends}")
     return part
+
+
+def record_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
+    """A record of any kind of file; NetCDF says all itself."""
+    from .. import read_record
+
+    if path.suffix.lower() == ".nc":
+        stored = read_stored("FILE" if path == arguments.record else "--beside", path)
+        units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
+        return stored if units <= {"m/s2"} else read_record(path)
+    if not path.is_file():
+        raise InputError(f"{path}: no such file; expected a record")
+    reading = {n: getattr(arguments, n) for n in READING if getattr(arguments, n) is not None}
+    if path.suffix.lower() != ".wav":  # the scale is of the others
+        reading.pop("scale", None)
+    if "columns" in reading:
+        reading["columns"] = columns_of(reading["columns"])
+    return read_record(path, **reading)
+
+
+def columns_of(text: str) -> dict[str, str | int]:
+    """Columns of ``--columns``, by channel.
+
+    Raises
+    ------
+    InputError
+    """
+    pairs = [part.partition("=") for part in text.split(",")]
+    if not all(name.strip() and equals and column.strip() for name, equals, column in pairs):
+        raise InputError(f"--columns {text}: expected CHANNEL=COLUMN,... such as acceleration1=4")
+    plain = ((name.strip(), column.strip()) for name, _, column in pairs)
+    return {name: int(column) if column.isdecimal() else column for name, column in plain}
 
 
 def analyse(

@@ -1,4 +1,6 @@
-"""``shake``: time histories and impacts under a swept sine, random vibration, a shock, a record."""
+"""``shake``: time histories and impacts under swept and stepped sines, random vibration, shocks and
+records.
+"""
 
 from __future__ import annotations
 
@@ -6,36 +8,48 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .grammar import breakpoints_of, ends_of, number_of, state_of, whole_number_of
-from .options import Commands, add_beside, add_structure, options, structure_of
+from .grammar import (
+    RANGE,
+    breakpoints_of,
+    ends_of,
+    number_of,
+    state_of,
+    values_of,
+    whole_number_of,
+)
+from .options import Commands, add_beside, add_structure, option_name, options, structure_of
 from .output import add_results
 from .question import carry_out_beside
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from .. import Random, Sampled, Shock, SweptSine
+    from .. import Random, Sampled, Shock, SteppedSine, SweptSine
 
 EXAMPLES = """  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
+  {program} shake --structure beam --stepped-sine 10:14:0.1 --settle-cycles 150 --g 0.02
   {program} shake --structure beam --random 5:0.1,100:0.1 --duration 30 --seed 1
   {program} shake --structure beam --shock half-sine --length 0.011 --g 5
   {program} shake --structure beam --record base.csv --unit g"""
-KINDS = ("swept_sine", "random", "shock", "record")
+KINDS = ("swept_sine", "stepped_sine", "random", "shock", "record")
 OF_KINDS = {  # options that only one kind knows
     "rate": "swept_sine",
     "spacing": "swept_sine",
+    "settle_cycles": "stepped_sine",
+    "measured_cycles": "stepped_sine",
     "seed": "random",
     "length": "shock",
     "delay": "shock",
     "unit": "record",
     "column": "record",
+    "scale": "record",
 }
 
 
 def add_parser(commands: Commands) -> None:
     """Declare the command."""
-    text = "as in the laboratory: motion and impacts under swept sine, random, shock or a record"
+    text = "as in the laboratory: motion and impacts under sines, random, shock or a record"
     parser = commands.add("shake", run, text, EXAMPLES)
     add_structure(parser)
     add_signals(parser)
@@ -51,13 +65,14 @@ def add_parser(commands: Commands) -> None:
 
 def add_signals(parser: argparse.ArgumentParser) -> None:
     """The excitation."""
-    group = parser.add_argument_group("the box's acceleration", "one of the first four")
+    group = parser.add_argument_group("the box's acceleration", "one of the first five")
     option = group.add_argument
     option("--swept-sine", metavar="FIRST:LAST", help="frequencies, Hz; downwards too")
+    option("--stepped-sine", metavar="HZ", help=f"frequencies, {RANGE}")
     option("--random", metavar="PSD", help="density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz")
     option("--shock", metavar="SHAPE", help="half-sine, sawtooth or trapezoid")
-    option("--record", metavar="FILE", help="measured: .csv, .txt, .uff, .unv, .mat, .nc")
-    level = "peak acceleration, {}; of a swept sine a profile HZ:VALUE,HZ:VALUE,... too"
+    option("--record", metavar="FILE", help="measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc")
+    level = "peak acceleration, {}; of sines a profile HZ:VALUE,HZ:VALUE,... too"
     option("--g", metavar="LEVEL", help=level.format("in 9.80665 m/s2"))
     option("--acceleration", metavar="LEVEL", help=level.format("m/s2"))
     option("--duration", metavar="S", help="of all, s")
@@ -65,12 +80,16 @@ def add_signals(parser: argparse.ArgumentParser) -> None:
         "--rate", metavar="RATE", help="of a swept sine: Hz/s, or octaves/min where --spacing log"
     )
     option("--spacing", metavar="WORD", help="of a swept sine: linear or log (default: linear)")
+    cycles = "of a stepped sine: cycles at each frequency {} (default: {})"
+    option("--settle-cycles", metavar="N", help=cycles.format("before it is measured", 100))
+    option("--measured-cycles", metavar="N", help=cycles.format("that are measured", 50))
     option("--seed", metavar="N", help="of random vibration (default: 0)")
     option("--length", metavar="S", help="of a shock's pulse, s")
     option("--delay", metavar="S", help="quiet before a shock, s (default: 0)")
     option("--unit", metavar="UNIT", help="of a record: m/s2, g ... (default: what the file says)")
     text = "of a record: the box's, by name or number from 0 (default: by usual names, or 1)"
     option("--column", metavar="NAME", help=text)
+    option("--scale", metavar="X", help="of a record in a WAV file: m/s2 at its full scale")
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -82,9 +101,16 @@ def run(arguments: argparse.Namespace) -> None:
     carry_out_beside(arguments, structure, question, report)
 
 
-def signal_of(arguments: argparse.Namespace) -> Random | Sampled | Shock | SweptSine:
-    """The excitation that the options describe."""
-    from .. import Random, Shock, SweptSine
+def signal_of(
+    arguments: argparse.Namespace,
+) -> Random | Sampled | Shock | SteppedSine | SweptSine:
+    """The excitation that the options describe.
+
+    Raises
+    ------
+    InputError
+    """
+    from .. import Random, Shock, SteppedSine, SweptSine
 
     kind = kind_of(arguments)
     if kind == "record":
@@ -102,6 +128,14 @@ def signal_of(arguments: argparse.Namespace) -> Random | Sampled | Shock | Swept
         if not isinstance(level, float):
             raise InputError("--shock: expected one number for its peak, no profile")
         return Shock(peak=level, shape=arguments.shock, **numbers)
+    if kind == "stepped_sine":
+        frequencies, _ = values_of("--stepped-sine", arguments.stepped_sine)
+        cycles = {
+            name: whole_number_of(option_name(name), getattr(arguments, name))
+            for name in ("settle_cycles", "measured_cycles")
+            if getattr(arguments, name) is not None
+        }
+        return SteppedSine(frequencies=frequencies, acceleration=level_of(arguments), **cycles)
     first, last = ends_of("--swept-sine", arguments.swept_sine)
     spacing = arguments.spacing or "linear"
     return SweptSine(
@@ -117,7 +151,9 @@ def recorded(arguments: argparse.Namespace) -> Sampled:
     columns = None
     if column is not None:
         columns = {"box_acceleration": int(column) if column.isdecimal() else column}
-    return Sampled.from_record(read_record(arguments.record, unit=arguments.unit, columns=columns))
+    scale = None if arguments.scale is None else number_of("--scale", arguments.scale)
+    record = read_record(arguments.record, unit=arguments.unit, columns=columns, scale=scale)
+    return Sampled.from_record(record)
 
 
 def kind_of(arguments: argparse.Namespace) -> str:
@@ -130,13 +166,16 @@ def kind_of(arguments: argparse.Namespace) -> str:
     (kind,) = given
     for name, owner in OF_KINDS.items():
         if getattr(arguments, name) is not None and owner != kind:
-            raise InputError(f"--{name}: expected with --{owner.replace('_', '-')} alone")
+            option, kinds = (word.replace("_", "-") for word in (name, owner))
+            raise InputError(f"--{option}: expected with --{kinds} alone")
     levelled = arguments.g is not None or arguments.acceleration is not None
     if kind == "random" and levelled:
         raise InputError("--random: its density has the level; expected no --g, --acceleration")
     if kind == "record" and (levelled or arguments.duration is not None):
         text = "the file has level and time; expected no --g, --acceleration, --duration"
         raise InputError(f"--record: {text}")
+    if kind == "stepped_sine" and arguments.duration is not None:
+        raise InputError("--stepped-sine: its cycles have the time; expected no --duration")
     needed = {"random": "duration", "shock": "length"}.get(kind)
     if needed and getattr(arguments, needed) is None:
         raise InputError(f"--{kind}: expected --{needed} with it, in s")

@@ -6,6 +6,7 @@ module                    idea
 :mod:`.pieces`            a box acceleration as cubic pieces, which the FMU takes exactly
 :mod:`.signals`           what every excitation is, and sums of them
 :mod:`.swept_sine`        a sine of moving frequency
+:mod:`.stepped_sine`      a sine that settles at one frequency after the other
 :mod:`.random_vibration`  a power spectral density
 :mod:`.shock`             a classical pulse
 :mod:`.sampled`           a record played again
@@ -14,9 +15,11 @@ module                    idea
 :mod:`.analog_filter`     the exact response of an analogue filter
 :mod:`.sensors`           what accelerometers read of a history
 :mod:`.record`            the one dataset of channels, measured or simulated
+:mod:`.run_up`            the run of a weak drive as a record
 :mod:`.columns`           which columns of a file are its channels, and their units
 :mod:`.record_csv`        columns of numbers as text
 :mod:`.record_uff`        universal files
+:mod:`.record_mat`        MATLAB's files, read in a process of its own
 :mod:`.record_files`      records read and written, of any kind of file
 :mod:`.analysis`          what an analyser shows of a record
 ========================  =========================================================================

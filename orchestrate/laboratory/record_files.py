@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ..structures.ranges import Quantity
 from .columns import Column, Columns, channels_of
 from .record import CHANNELS, checked_record
 from .record_csv import read_csv, write_csv
+from .record_mat import read_mat, write_mat
 from .record_uff import read_uff, write_uff
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ ENDINGS = {
     **dict.fromkeys((".uff", ".unv", ".uf", ".58"), "uff"),
     **{".mat": "mat", ".nc": "netcdf", ".wav": "wav"},
 }
-RATES = ("sample_rate", "samplerate", "fs")  # what a MAT file calls it
 
 
 def read_record(
@@ -74,8 +74,9 @@ def read_record(
 
     Notes
     -----
-    MAT and NetCDF files are read by libraries in C (of SciPy and HDF5) that a damaged or forged
-    file may end together with the process: read those that you trust.
+    MAT files are read in a process of its own, which a damaged file may end. NetCDF files are read
+    by a library in C (HDF5) that a forged file may end together with the process: read those that
+    you trust.
 
     Examples
     --------
@@ -182,49 +183,6 @@ def check_file(path: Path) -> None:
     if not 0 < status.st_size <= MOST_BYTES:
         text = f"expected 1 to {MOST_BYTES}: cut it, or write it as .nc"
         raise InputError(f"{path}: {status.st_size} bytes; {text}")
-
-
-def read_mat(path: Path) -> Columns:
-    """Vectors of a MAT file, and columns of matrices as ``name[0]``, ``name[1]`` ..."""
-    from scipy.io import loadmat
-
-    try:
-        found = loadmat(path)
-    except NotImplementedError:
-        text = "a MAT file of version 7.3; expected an earlier one: save with '-v7'"
-        raise InputError(f"{path}: {text}") from None
-    except Exception as error:  # what damaged files raise is not said
-        text = (str(error).splitlines() or [type(error).__name__])[0][:120]
-        raise InputError(f"{path}: {text}; expected a MAT file that is whole") from None
-    arrays = {name: np.asarray(one) for name, one in found.items() if not name.startswith("__")}
-    units = {name.lower(): one for name, one in arrays.items()}.get("units", np.array([""]))
-    unit = str(units.ravel()[0]) if units.dtype.kind == "U" and units.size else ""
-    rate, columns = None, []
-    for name, one in arrays.items():
-        if one.dtype.kind not in "iuf":
-            continue
-        if one.size == 1 and name.lower() in RATES:
-            rate = float(one.ravel()[0])
-        elif one.ndim == 2 and min(one.shape) == 1 and one.size > 1:
-            columns.append((name, one.ravel()))
-        elif one.ndim == 2 and one.shape[0] > one.shape[1]:
-            columns += [(f"{name}[{i}]", column) for i, column in enumerate(one.T)]
-    made = [
-        Column(name, "" if name in ("time", "t") else unit, np.asarray(values, float))
-        for name, values in columns
-    ]
-    if not made:
-        raise InputError(f"{path}: no vectors of numbers; expected some")
-    return Columns(str(path), made, rate)
-
-
-def write_mat(path: Path, columns: list[Column], sample_rate: float) -> None:
-    """Write vectors by name, ``sample_rate`` and ``units``."""
-    from scipy.io import savemat
-
-    vectors: dict[str, Any] = {column.name: column.values for column in columns}
-    with path.open("wb") as file:
-        savemat(file, {**vectors, "sample_rate": sample_rate, "units": columns[-1].unit})
 
 
 def read_netcdf(path: Path) -> Columns:

@@ -165,7 +165,7 @@ def measure(
     sensor : Sensor or mapping of str to Sensor
         On all three; or by channel (``box_acceleration``, ``acceleration1``, ``acceleration2``),
         with one sample rate; channels left out are not recorded.
-    excitation : SweptSine, Random, Shock, Sampled or sum, optional
+    excitation : SweptSine, SteppedSine, Random, Shock, Sampled or sum, optional
         What the history was shaken by. Without it the box's acceleration between the history's
         samples is taken from the cubic spline through them.
 
@@ -266,8 +266,8 @@ def sensors_of(sensor: Sensor | Mapping[str, Sensor]) -> dict[str, Sensor]:
     return dict(sensor)
 
 
-def structure_of(history: xr.Dataset) -> Structure:
-    """The structure that moves in a history.
+def structure_of(history: xr.Dataset, needed: tuple[str, ...] = NEEDED) -> Structure:
+    """The structure that moves in a history with the variables ``needed``.
 
     Raises
     ------
@@ -276,7 +276,7 @@ def structure_of(history: xr.Dataset) -> Structure:
     """
     names = ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma")
     attributes, variables = getattr(history, "attrs", {}), getattr(history, "variables", {})
-    known = all(name in attributes for name in names) and all(name in variables for name in NEEDED)
+    known = all(name in attributes for name in names) and all(name in variables for name in needed)
     if not known or history.sizes.get("time", 0) < 4:
         raise InputError("history: expected an answer of shake or simulate, of 4 samples or more")
     numbers = {name: float(attributes[name]) for name in names}

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, PLAYED, REST, EventInstance, begin, finder, play
+from ..access import OSCILLATOR, PLAYED, REST, Player, finder
 from ..errors import InputError
 from ..response.equations import absolute_accelerations
 from ..response.labels import variable, yes_or_no
@@ -20,7 +20,7 @@ from ..response.questions import Question, checked_structure, positive, state
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Inputs, Table
 from ..running.runner import answer
-from ..structures import Excitation, Structure
+from ..structures import Structure
 from .pieces import Pieces
 from .signals import ExcitationSignal
 
@@ -83,26 +83,27 @@ class ShakeJob(Question):
         """The pieces."""
         return range(self.count())
 
-    def times(self) -> NDArray[np.float64]:
-        """When the motion is read, s."""
-        last = math.floor(self.pieces.duration * self.sample_rate * (1.0 + 1e-14))
-        times: NDArray[np.float64] = np.arange(last + 1) / self.sample_rate
-        return times[times <= self.pieces.duration]
+    def times(self, first: float = 0.0, end: float = math.inf) -> NDArray[np.float64]:
+        """When the motion is read from a time on, and before another, s."""
+        rate, duration = self.sample_rate, self.pieces.duration
+        last = math.floor(duration * rate * (1.0 + 1e-14))
+        stop = last if end == math.inf else min(last, math.ceil(end * rate) + 1)
+        times: NDArray[np.float64] = (
+            np.arange(max(0, math.floor(first * rate) - 1), stop + 1) / rate
+        )
+        return times[(times >= first) & (times < end) & (times <= duration)]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """The motion over some pieces, and the FMU's state to go on from."""
         pieces, first, last = self.pieces, items[0], items[-1] + 1
         nodes = pieces.nodes[first : last + 1]
-        times = self.times()
-        end = None if last == self.count() else np.searchsorted(times, nodes[-1])
-        samples = times[np.searchsorted(times, nodes[0]) : end]
-        at_rest = Excitation(frequency=self.structure.omega, amplitude=0.0)
-        with EventInstance(fmus[OSCILLATOR]) as instance:
-            begin(instance, self.structure, at_rest, self.start)
+        samples = self.times(nodes[0], math.inf if last == self.count() else nodes[-1])
+        with Player(fmus[OSCILLATOR]) as player:
+            player.start(self.structure, self.start)
             if previous is not None:
-                instance.restore_state(previous["fmu_state"][-1].tobytes())
-            played = play(instance, nodes, pieces.derivatives[first:last], samples)
-            kept = np.frombuffer(instance.save_state(), dtype=np.uint8)[np.newaxis]
+                player.restore_state(previous["fmu_state"][-1].tobytes())
+            played = player.play(nodes, pieces.derivatives[first:last], samples)
+            kept = np.frombuffer(player.save_state(), dtype=np.uint8)[np.newaxis]
         one, two = absolute_accelerations(played.rows[:, :4], self.structure, played.touching).T
         return {
             **dict(zip(PLAYED, played.rows.T, strict=True)),
@@ -166,7 +167,7 @@ def shake(
     ----------
     structure : Structure
         Delaminated or bonded.
-    excitation : SweptSine, Random, Shock or Sampled
+    excitation : SweptSine, SteppedSine, Random, Shock or Sampled
         The box's acceleration; ``one + other`` is both together.
     sample_rate : float, optional
         Of the record, Hz; by default what the excitation needs. The motion does not depend on it.
@@ -209,7 +210,7 @@ def shake(
     (2001, 94)
     """
     if not isinstance(excitation, ExcitationSignal):
-        kinds = "expected a SweptSine, Random, Shock or Sampled, or a sum of them"
+        kinds = "expected a SweptSine, SteppedSine, Random, Shock or Sampled, or a sum"
         raise InputError(f"excitation = {excitation!r}: {kinds}")
     rate = positive("sample_rate", excitation.usual_rate if sample_rate is None else sample_rate)
     if rate * excitation.duration > MOST_SAMPLES:

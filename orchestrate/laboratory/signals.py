@@ -50,6 +50,22 @@ def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
     return tuple(pairs)
 
 
+def checked_level(name: str, given: object, low: float, high: float) -> float | Profile:
+    """A peak acceleration in m/s2, or its profile, which has to reach from ``low`` to ``high`` Hz.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(given, (tuple, list, np.ndarray)):
+        return checked(LEVEL, name, given)
+    profile = checked_profile(name, given, LEVEL)
+    if not profile[0][0] <= low <= high <= profile[-1][0]:
+        ends = f"{profile[0][0]:g} to {profile[-1][0]:g} Hz"
+        raise InputError(f"{name}: its profile is of {ends}; expected {low:g} to {high:g}")
+    return profile
+
+
 def along_profile(profile: Profile, frequency: Floats) -> Floats:
     """A profile's values, straight between break points in log-log scales; 0 outside."""
     corners, values = np.log(np.array(profile)).T

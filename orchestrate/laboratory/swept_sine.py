@@ -15,14 +15,13 @@ from ..structures.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, divided, phase_step, subdivided
 from .signals import (
     HERTZ,
-    LEVEL,
     MOST_PIECES,
     SECONDS,
     ExcitationSignal,
     Profile,
     along_profile,
     checked,
-    checked_profile,
+    checked_level,
 )
 
 
@@ -72,7 +71,8 @@ class SweptSine(ExcitationSignal):
         checked_word("spacing", self.spacing, ("linear", "log"))
         if self.first == self.last:
             raise InputError(f"last = {self.last!r} Hz: expected another frequency than first")
-        put(self, "acceleration", self._checked_acceleration())
+        low, high = sorted((self.first, self.last))
+        put(self, "acceleration", checked_level("acceleration", self.acceleration, low, high))
         given = [name for name in ("duration", "rate") if getattr(self, name)]
         if len(given) != 1:
             said = " and ".join(f"{name} = {getattr(self, name)!r}" for name in given)
@@ -88,18 +88,6 @@ class SweptSine(ExcitationSignal):
         if self.spacing == "linear":
             return abs(self.last - self.first)
         return 60.0 * abs(math.log2(self.last / self.first))
-
-    def _checked_acceleration(self) -> float | Profile:
-        if not isinstance(self.acceleration, (tuple, list, np.ndarray)):
-            return checked(LEVEL, "acceleration", self.acceleration)
-        profile = checked_profile("acceleration", self.acceleration, LEVEL)
-        low, high = sorted((self.first, self.last))
-        if not profile[0][0] <= low <= high <= profile[-1][0]:
-            ends = f"{profile[0][0]:g} to {profile[-1][0]:g} Hz"
-            raise InputError(
-                f"acceleration: its profile is of {ends}; expected {low:g} to {high:g}"
-            )
-        return profile
 
     @property
     def label(self) -> str:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sys
+from functools import partial
 
 import pytest
 
 from orchestrate.access import OSCILLATOR, find
-from tools import benchmark, sampled_solver
+from orchestrate.structures import Structure
+from tools import benchmark, sampled_solver, shake_benchmark
 
 
 def test_periods_and_impacts(exported):
@@ -26,8 +28,24 @@ def test_one_measurement_in_a_process_of_its_own(exported, capsys, monkeypatch):
     assert float(capsys.readouterr().out) > 0.0
 
 
+PAPER = Structure.nondimensional(e=0.7, D=0.005, kappa=1.2)
+
+
 def test_the_sampled_solver_moves_as_the_fmu_does(exported):
-    flight, contact = sampled_solver.motions(0.4, 0.005, 1.2)
+    flight, contact = sampled_solver.motions(PAPER, partial(benchmark.harmonic, 0.4))
     assert flight(0.0, [1.0, 0.0, 1.0, 0.0]) == pytest.approx([0.0, -1.0, 0.0, -1.2])
     assert contact(0.0, [1.0, 0.0, 1.0, 0.0]) == pytest.approx([0.0, -1.1, 0.0, -1.1])
-    assert sampled_solver.seconds(1.2, 1) > 0.0
+
+
+def test_the_sampled_solver_finds_the_impacts_of_a_shaken_beam(exported):
+    """Up to where a chaotic motion forgets the start, by their number."""
+    seconds, impacts = shake_benchmark.solver_seconds(0.3)
+    ours, expected = shake_benchmark.our_seconds(0.3)
+    assert seconds > 0.0 and ours > 0.0
+    assert impacts == pytest.approx(expected, rel=0.3) and expected > 10
+
+
+def test_the_shaking_benchmark_prints_ratios(exported, capsys, monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["shake_benchmark", "--duration", "0.5", "--solver", "0.1"])
+    shake_benchmark.main()
+    assert "times as long as shake" in capsys.readouterr().out

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...response.labels import variable
+from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
 from .channels import attributes, checked_number
 from .orders import MOST_ORDERS, track_orders
@@ -20,7 +21,7 @@ def harmonics(
     record: xr.Dataset,
     *,
     highest: int = 5,
-    phase: SweptSine | ArrayLike | None = None,
+    phase: SweptSine | SteppedSine | ArrayLike | None = None,
     periods: float = 16.0,
     overlap: float = 0.5,
 ) -> xr.Dataset:
@@ -32,7 +33,7 @@ def harmonics(
         As for :func:`orchestrate.frf`.
     highest : int
         Order up to which harmonics count, 2 to 50.
-    phase : SweptSine or array_like, optional
+    phase : SweptSine, SteppedSine or array_like, optional
         As for :func:`orchestrate.track_orders`.
     periods, overlap : float
         As for :func:`orchestrate.track_orders`.

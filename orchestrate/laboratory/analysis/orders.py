@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from ...errors import InputError
 from ...response.labels import variable
+from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
 from .channels import (
     BOX,
@@ -65,7 +66,7 @@ def track_orders(
     record: xr.Dataset,
     *,
     orders: int | Sequence[float] = 3,
-    phase: SweptSine | ArrayLike | None = None,
+    phase: SweptSine | SteppedSine | ArrayLike | None = None,
     periods: float = 16.0,
     overlap: float = 0.5,
 ) -> xr.Dataset:
@@ -77,11 +78,12 @@ def track_orders(
         As for :func:`orchestrate.frf`.
     orders : int or sequence of float
         Orders 1 to this one, or the orders themselves, as ``(0.5, 1, 1.5, 2)``.
-    phase : SweptSine or array_like, optional
-        The phase of order 1: of the swept sine, or in rad at each sample. By default it is measured
-        from the box's acceleration.
+    phase : SweptSine, SteppedSine or array_like, optional
+        The phase of order 1: of the swept or stepped sine, or in rad at each sample. By default it
+        is measured from the box's acceleration.
     periods : float
-        Of the excitation, in a window.
+        Of the excitation, in a window. A stepped sine has a window at each frequency instead: what
+        is measured there.
     overlap : float
         Part of a window that the next one shares, 0 to 0.95.
 
@@ -123,7 +125,10 @@ def track_orders(
     part = checked_number("overlap", overlap, 0.0, 0.95)
     measured = phase is None
     angle = measured_phase(channels) if measured else given_phase(channels, phase)
-    windows = list(divide(channels, angle, length, part, smooth=measured))
+    if isinstance(phase, SteppedSine):
+        windows = list(dwells(channels, phase, angle))
+    else:
+        windows = list(divide(channels, angle, length, part, smooth=measured))
     if not windows:
         turns = abs(float(angle[-1] - angle[0])) / TURN
         raise InputError(
@@ -181,14 +186,14 @@ def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:
 # -- phase ----------------------------------------------------------------------------------------
 
 
-def given_phase(channels: Channels, phase: SweptSine | ArrayLike | None) -> Floats:
+def given_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike | None) -> Floats:
     """The phase at each sample as the caller knows it, rad.
 
     Raises
     ------
     InputError
     """
-    if isinstance(phase, SweptSine):
+    if isinstance(phase, (SweptSine, SteppedSine)):
         return phase.phase(channels.time)
     try:
         angle = np.asarray(phase, dtype=float)
@@ -272,6 +277,26 @@ def divide(
     ends = np.searchsorted(grown, starts + length + 1e-9, side="right")
     for begin, end in zip(begins, ends, strict=True):
         yield window(channels, phase, slice(int(begin), int(end)), smooth)
+
+
+def dwells(channels: Channels, stepped: SteppedSine, phase: Floats) -> Iterator[Window]:
+    """The windows of a stepped sine: what is measured at each frequency that the record has whole.
+
+    Raises
+    ------
+    InputError
+        Where it has none.
+    """
+    step = 0.5 / channels.sample_rate
+    ends = stepped.measured_times()
+    inside = (ends[:, 0] >= channels.time[0] - step) & (ends[:, 1] <= channels.time[-1] + step)
+    if not inside.any():
+        span = f"{channels.time[0]:.6g} to {channels.time[-1]:.6g} s"
+        raise InputError(f"record: it has {span}; expected all of what is measured at a frequency")
+    begins = np.searchsorted(channels.time, ends[inside, 0] - 1e-3 * step)
+    lasts = np.searchsorted(channels.time, ends[inside, 1] + 1e-3 * step, side="right")
+    for begin, last in zip(begins, lasts, strict=True):
+        yield window(channels, phase, slice(int(begin), int(last)), smooth=False)
 
 
 def window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Window:

@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.image import imread
+from scipy.io import wavfile
+
+from orchestrate import write_record
 
 RATE = 1000.0
 
@@ -140,3 +143,70 @@ def test_mistakes_are_one_line(ask, tmp_path, files, options, words):
 def test_a_file_that_is_no_record(ask, tmp_path):
     xr.Dataset({"x": ("y", [1.0, 2.0])}).to_netcdf(tmp_path / "other.nc")
     ask("analyse", tmp_path / "other.nc").complaint("other.nc: record", "without time")
+
+
+def in_g(record, path):
+    """An export of an analyser: g, a decimal comma, channels by the names of its inputs."""
+    rows = zip(record.time.values, *(record[name].values / 9.80665 for name in record), strict=True)
+    lines = [";".join(f"{value:.9f}" for value in row).replace(".", ",") for row in rows]
+    path.write_text("\n".join(["Zeit [s];AI 1;AI 2", *lines]) + "\n")
+
+
+def said(done):
+    """The numbers that a command prints, without the names of files."""
+    return [line for line in done.out.splitlines() if line.startswith("  ")]
+
+
+@pytest.mark.parametrize("kind", ["csv", "uff", "mat", "wav", "nc"])
+def test_records_of_all_kinds_of_files(ask, tmp_path, files, kind):
+    """What is said of a file is what is said of the same record in NetCDF."""
+    record, options = sweep(0.5, second=False), []
+    path = tmp_path / f"of_the_bench.{kind}"
+    if kind == "csv":
+        in_g(record, path)
+        options = ["--unit", "g", "--columns", "time=0, box_acceleration=AI 1,acceleration1=2"]
+    elif kind == "wav":
+        values = np.stack([record[name].values for name in record], axis=1) / 10.0
+        wavfile.write(path, int(RATE), values)
+        options = ["--scale", "10"]
+    elif kind == "nc":
+        (record / 9.80665).assign_attrs(record.attrs).assign(
+            {name: (record[name] / 9.80665).assign_attrs(units="g") for name in record}
+        ).to_netcdf(path)
+    else:
+        pytest.importorskip("pyuff") if kind == "uff" else None
+        write_record(record, path)
+    show = ("--show", "psd,orders", "--orders", "2", "--plot", "none")
+    done = ask("analyse", path, *options, *show).success()
+    record.to_netcdf(tmp_path / "plain.nc")
+    assert said(done) == said(ask("analyse", tmp_path / "plain.nc", *show).success())
+    assert any("order 2 0.5 at" in line for line in said(done))
+
+
+def test_measured_beside_simulated(ask, tmp_path, files):
+    in_g(sweep(0.5, second=False), tmp_path / "bench.csv")
+    columns = "box_acceleration=1,acceleration1=2"
+    done = ask(
+        *("analyse", files["parted"], "--beside", f"measured={tmp_path / 'bench.csv'}"),
+        *("--unit", "g", "--columns", columns, "--show", "orders"),
+    ).success()
+    lines = [line for line in said(done) if "mass 1" in line]
+    assert len(lines) == 2 and all("order 1 6 at" in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["lost.csv"], ["lost.csv: no such file; expected a record"]),
+        (["bench.csv"], ["bench.csv", "no unit", "unit="]),
+        (["bench.csv", "--unit", "stone"], ["unit = 'stone'"]),
+        (["bench.csv", "--unit", "g", "--columns", "AI 1"], ["--columns AI 1: expected CHANNEL="]),
+        (["bench.csv", "--unit", "g", "--columns", "acceleration1=9"], ["no column 9"]),
+        (["bench.csv", "--unit", "g", "--columns", "mass=1"], ["columns: 'mass'"]),
+        (["bench.doc"], ["bench.doc"]),
+    ],
+)
+def test_mistakes_in_reading_are_one_line(ask, tmp_path, options, words):
+    in_g(sweep(second=False), tmp_path / "bench.csv")
+    (tmp_path / "bench.doc").write_text("a")
+    ask("analyse", tmp_path / options[0], *options[1:]).complaint(*words)

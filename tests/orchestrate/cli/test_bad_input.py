@@ -214,7 +214,7 @@ PAPER = [
 ]
 SWEPT = ["--swept-sine", "8:20", "--g", "1"]
 LABORATORY = [
-    ([], ["nothing given", "--swept-sine, --random, --shock, --record"]),
+    ([], ["nothing given", "--swept-sine, --stepped-sine, --random, --shock, --record"]),
     ([*SWEPT, "--shock", "trapezoid"], ["--swept-sine and --shock given", "one of"]),
     (SWEPT, ["nothing given", "one of duration and rate"]),
     (["--swept-sine", "8:20", "--duration", "2"], ["level", "--g and --acceleration"]),
@@ -223,6 +223,9 @@ LABORATORY = [
     ([*SWEPT, "--duration", "2", "--spacing", "cubic"], ["spacing = 'cubic'", "linear, log"]),
     ([*SWEPT, "--duration", "2", "--accuracy", "1"], ["accuracy = 1.0", "<= 0.01"]),
     (["--swept-sine", "8", "--g", "1", "--duration", "2"], ["--swept-sine 8", "FIRST:LAST"]),
+    (["--stepped-sine", "8:20", "--g", "1"], ["--stepped-sine 8:20", "FIRST:LAST:STEP"]),
+    (["--stepped-sine", "8,9", "--g", "1", "--duration", "2"], ["--stepped-sine", "no --dur"]),
+    (["--stepped-sine", "8,9", "--g", "1", "--settle-cycles", "x"], ["--settle-cycles x", "whole"]),
     (["--random", "5-9", "--duration", "2"], ["--random 5-9", "HZ:VALUE"]),
     (["--random", "5:1,9:nan", "--duration", "2"], ["--random 5:1,9:nan", "HZ:VALUE"]),
     (["--random", "5:1,9:1"], ["--random", "--duration"]),
@@ -232,6 +235,7 @@ LABORATORY = [
     (["--record", "no.csv"], ["no.csv", "a file to read"]),
     (["--record", "a.csv", "--g", "1"], ["--record", "expected no --g"]),
     ([*SWEPT, "--unit", "g"], ["--unit", "with --record alone"]),
+    ([*SWEPT, "--settle-cycles", "3"], ["--settle-cycles", "with --stepped-sine alone"]),
 ]
 MISTAKES = [
     (command, options, words)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from orchestrate import InputError, Random, Sampled, Shock, SweptSine
+from orchestrate import InputError, Random, Sampled, Shock, SteppedSine, SweptSine
 from orchestrate.laboratory.pieces import Pieces
 
 ACCURACY = st.floats(-8.0, -2.0).map(lambda power: 10.0**power)
@@ -69,6 +69,58 @@ def test_profile_of_a_sweep_is_straight_in_logarithms():
     sweep = SweptSine(first=10, last=40, duration=3.0, acceleration=[(5.0, 1.0), (50.0, 10.0)])
     for f in (10.0, 25.0, 40.0):
         assert math.isclose(float(sweep.level(sweep.time_of(f))), f / 5.0, rel_tol=1e-9)
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.lists(HERTZ, min_size=1, max_size=6), st.booleans(), st.integers(0, 30), ACCURACY)
+def test_stepped_sine_within_its_bound(frequencies, profile, settle, accuracy):
+    level = ((0.05, 1.0), (3.0, 8.0), (600.0, 2.0)) if profile else 3.0
+    stepped = SteppedSine(
+        frequencies=frequencies, acceleration=level, settle_cycles=settle, measured_cycles=5
+    )
+    pieces = stepped.pieces(accuracy)
+    times = times_within(stepped.duration)
+    peak = 8.0 if profile else 3.0
+    phase_rounding = 1e-15 * float(stepped.phase(stepped.duration))
+    distance = np.abs(pieces(times) - stepped(times)).max()
+    assert distance <= pieces.error + (1e-13 + phase_rounding) * peak
+    assert pieces.error <= 1.02 * accuracy * peak
+    assert pieces.duration == stepped.duration == stepped.measured_times()[-1, 1]
+
+
+STEPPED = SteppedSine(
+    frequencies=(20.0, 31.0, 25.0), acceleration=4.0, settle_cycles=7, measured_cycles=5
+)
+
+
+def test_stepped_sine_is_a_sine_of_each_frequency_for_its_cycles():
+    ends = np.cumsum([12.25 / 20.0, 12.0 / 31.0, 12.0 / 25.0])
+    np.testing.assert_allclose(STEPPED.measured_times()[:, 1], ends, rtol=1e-14)
+    np.testing.assert_allclose(
+        STEPPED.measured_times()[:, 0], ends - 5.0 / np.array([20.0, 31.0, 25.0]), rtol=1e-14
+    )
+    for begin, f, end in zip([0.0, *ends[:-1]], STEPPED.frequencies, ends, strict=True):
+        t = np.linspace(begin, end, 50)[1:-1]
+        turns = f * (t - begin) + (0.25 if begin else 0.0)
+        np.testing.assert_allclose(STEPPED(t), 4.0 * np.sin(2.0 * math.pi * turns), atol=1e-11)
+        assert (STEPPED.frequency(t) == f).all()
+
+
+def test_a_stepped_sine_neither_jumps_nor_drifts():
+    """Acceleration and velocity go on where the frequency changes; the place stays bounded."""
+    pieces = STEPPED.pieces(1e-8)
+    for change in STEPPED.measured_times()[:-1, 1]:
+        before, after = pieces.taylor(np.array([change - 1e-9, change + 1e-9]))
+        assert abs(before[0] - 4.0) < 1e-6 and abs(after[0] - 4.0) < 1e-6
+    h = np.diff(pieces.nodes)
+    a, b, c, d = pieces.derivatives.T
+    gained = h * (a + h * (b / 2.0 + h * (c / 6.0 + h * d / 24.0)))
+    start = -4.0 / (2.0 * math.pi * 20.0)  # of a box that has long moved as the first sine does
+    velocity = start + np.concatenate([[0.0], np.cumsum(gained)])
+    moved = h * velocity[:-1] + h**2 * (a / 2.0 + h * (b / 6.0 + h * (c / 24.0 + h * d / 120.0)))
+    place = np.cumsum(moved)
+    assert np.abs(velocity).max() < 1.001 * abs(start)
+    assert np.abs(place).max() < 2.001 * 4.0 / (2.0 * math.pi * 20.0) ** 2
 
 
 PROFILE = ((20.0, 0.5), (80.0, 2.0), (200.0, 0.1))
@@ -188,6 +240,16 @@ SWEEP = {"first": 20.0, "last": 90.0, "duration": 2.0, "acceleration": 4.9}
         (SweptSine, {"acceleration": [(30, 1), (90, 1)]}, "is of 30 to 90 Hz; expected 20 to 90"),
         (SweptSine, {"acceleration": [(30, 1), (10, 1)]}, "with ascending frequencies"),
         (SweptSine, {"acceleration": float("nan")}, "acceleration = nan m/s2: expected"),
+        (SteppedSine, {"frequencies": ()}, "frequencies: 0 of them; expected 1 to 100000"),
+        (SteppedSine, {"frequencies": 40.0}, "frequencies: 40.0; expected 1 to"),
+        (SteppedSine, {"frequencies": (4.0, -1.0)}, "frequencies[1] = -1.0 Hz: expected 1e-09 <="),
+        (SteppedSine, {"settle_cycles": 1.5}, "settle_cycles = 1.5: expected a whole number >= 0"),
+        (
+            SteppedSine,
+            {"measured_cycles": 0},
+            "measured_cycles = 0.0: expected a whole",
+        ),
+        (SteppedSine, {"acceleration": [(9, 1), (20, 1)]}, "is of 9 to 20 Hz; expected 8 to 40"),
         (Random, {"psd": 3.0}, "psd = 3.0: expected pairs (Hz, value)"),
         (Random, {"psd": [(20, 0.0), (30, 1.0)]}, "psd at 20 Hz = 0.0: expected a number > 0"),
         (Random, {"seed": -1}, "seed = -1: expected a whole number >= 0"),
@@ -204,6 +266,7 @@ SWEEP = {"first": 20.0, "last": 90.0, "duration": 2.0, "acceleration": 4.9}
 def test_mistakes_are_one_line(kind, changes, words):
     usual = {
         SweptSine: SWEEP,
+        SteppedSine: {"frequencies": (8.0, 40.0), "acceleration": 1.0},
         Random: {"psd": PROFILE, "duration": 2.0},
         Shock: {"peak": 1.0, "length": 0.01},
         Sampled: {"acceleration": [0.0, 1.0, 0.0, 1.0], "sample_rate": 100.0},

@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.io import wavfile
 
 from orchestrate import InputError, Sampled, read_record, record, write_record
-from orchestrate.laboratory import record_files
+from orchestrate.laboratory import record_files, record_mat
 
 G = 9.80665
 RATE = 5120.0
@@ -307,6 +307,28 @@ def test_huge_files_and_unknown_ones_are_refused(tmp_path, monkeypatch):
         write_record(drawn(), tmp_path / "a.wav")
     with pytest.raises(InputError, match="data: expected a record"):
         write_record(xr.Dataset(), tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("seed", [51, 156, 258])
+def test_a_mat_file_that_ends_its_reader_is_one_line(tmp_path, seed):
+    """Bytes that SciPy 1.17 reads out of bounds: this process lives on."""
+    path, time = tmp_path / "a.mat", np.arange(50) / 1000.0
+    known = {"time": time, "box_acceleration": np.sin(time)}
+    scipy.io.savemat(path, {**known, "sample_rate": 1000.0, "units": "m/s2"})
+    damaged, draw = bytearray(path.read_bytes()), np.random.default_rng(seed)
+    for _ in range(draw.integers(1, 4)):
+        damaged[int(draw.integers(0, len(damaged)))] = int(draw.integers(256))
+    path.write_bytes(damaged)
+    with pytest.raises(InputError, match="expected a MAT file that is whole") as error:
+        read_record(path)
+    assert "\n" not in str(error.value)
+
+
+def test_a_reader_that_aborts_is_one_line(tmp_path, monkeypatch):
+    path = write_record(drawn(), tmp_path / "a.mat")
+    monkeypatch.setattr(record_mat, "READER", "import os; os.abort()")
+    with pytest.raises(InputError, match=r"a\.mat: its reader broke down; expected a MAT file"):
+        read_record(path)
 
 
 def test_matlabs_matrices_and_rates(tmp_path):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
-from orchestrate import InputError, SweptSine, harmonics, track_orders
+from orchestrate import InputError, SteppedSine, SweptSine, harmonics, track_orders
 from orchestrate.laboratory.analysis.channels import Channels
 from orchestrate.laboratory.analysis.orders import against_box
 
@@ -68,6 +70,44 @@ def test_the_phase_is_measured(name):
             assert np.abs(turned).max() < 0.01 * n
     expected = sweep.frequency(answer.time.values - 7.0)
     assert np.abs(answer.frequency / expected - 1.0).max() < 1e-3
+
+
+STEPPED = SteppedSine(
+    frequencies=(30.0, 52.0, 45.0), acceleration=3.0, settle_cycles=60, measured_cycles=20
+)
+
+
+def test_a_settled_stepped_sine_has_the_steady_state():
+    """Bonded: the transfer function at each frequency; the free vibration is exp(-15) of it."""
+    record = swept_record(DAMPED.as_bonded(), STEPPED)
+    answer = track_orders(record, phase=STEPPED)
+    assert np.allclose(answer.frequency, STEPPED.frequencies, rtol=1e-9)
+    assert np.allclose(answer.time, STEPPED.measured_times().mean(axis=1), atol=1e-3)
+    amplitude = (answer.amplitude * np.exp(1j * answer.phase)).sel(order=1.0)
+    box, first = (amplitude.sel(channel=name) for name in ("box_acceleration", "acceleration1"))
+    expected = transfer(DAMPED.as_bonded(), STEPPED.frequencies)
+    assert np.abs((first / box).values / expected - 1.0).max() < 2e-5
+    assert float(answer.amplitude.sel(channel="acceleration1", order=2.0).max()) < 1e-3
+    distortion = harmonics(record, phase=STEPPED).distortion.sel(channel="acceleration1")
+    assert distortion.sizes["time"] == 3 and float(distortion.max()) < 1e-3
+
+
+def test_a_stepped_sine_without_settling_has_not():
+    hasty = dataclasses.replace(STEPPED, settle_cycles=0)
+    answer = track_orders(swept_record(DAMPED.as_bonded(), hasty), phase=hasty)
+    shown = answer.amplitude.sel(channel="acceleration1", order=1.0) / 3.0
+    expected = np.abs(transfer(DAMPED.as_bonded(), STEPPED.frequencies))
+    assert np.abs(shown / expected - 1.0).max() > 1e-2
+
+
+def test_only_frequencies_that_the_record_has_whole():
+    record = swept_record(DAMPED.as_bonded(), STEPPED)
+    end = float(STEPPED.measured_times()[1, 1])
+    part = record.sel(time=slice(None, end + 0.01))
+    assert track_orders(part, phase=STEPPED).frequency.values.round(6).tolist() == [30.0, 52.0]
+    begin = record.sel(time=slice(0.0, 1.0))
+    with pytest.raises(InputError, match="expected all of what is measured at a frequency"):
+        track_orders(begin, phase=STEPPED)
 
 
 def test_phases_count_from_the_box():

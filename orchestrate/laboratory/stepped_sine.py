@@ -1,0 +1,157 @@
+"""A sine that dwells on one frequency after the other, long enough to settle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..constants import TURN
+from ..errors import InputError
+from ..structures.ranges import Quantity
+from .pieces import ERROR, Floats, Pieces, phase_step, subdivided
+from .signals import (
+    HERTZ,
+    MOST_PIECES,
+    ExcitationSignal,
+    Profile,
+    along_profile,
+    checked,
+    checked_level,
+)
+
+CYCLES = Quantity("cycles", "", "", 0.0, 1e6)
+MOST_FREQUENCIES = 100_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class SteppedSine(ExcitationSignal):
+    """A sine of one frequency after the other: at each the structure settles, then it is measured.
+
+    The frequency changes at a peak of the acceleration, where the box's velocity passes zero: the
+    sine goes on without a jump while its level stays, and the box does not drift. The first one
+    begins at zero and has a quarter of a cycle more.
+
+    Parameters
+    ----------
+    frequencies : sequence of float
+        Hz, in the order in which they are played.
+    acceleration : float or sequence of (float, float)
+        Peak acceleration, m/s2, or its profile as break points (Hz, m/s2), as for
+        :class:`orchestrate.SweptSine`.
+    settle_cycles, measured_cycles : int
+        At each frequency: cycles before what is measured, and those measured. A free vibration with
+        a damping ratio of zeta falls to a thousandth within ``1.1/zeta`` cycles.
+
+    Raises
+    ------
+    InputError
+
+    Examples
+    --------
+    >>> stepped = SteppedSine(frequencies=(40.0, 41.0, 42.0), acceleration=4.9, settle_cycles=150)
+    >>> round(stepped.duration, 2), stepped.measured_times()[0].round(3).tolist()
+    (14.65, [3.756, 5.006])
+    """
+
+    frequencies: tuple[float, ...]
+    acceleration: float | Profile
+    settle_cycles: int = 100
+    measured_cycles: int = 50
+    duration: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        put(self, "frequencies", checked_frequencies(self.frequencies))
+        low, high = min(self.frequencies), max(self.frequencies)
+        put(self, "acceleration", checked_level("acceleration", self.acceleration, low, high))
+        for name, least in (("settle_cycles", 0), ("measured_cycles", 1)):
+            cycles = checked(CYCLES, name, getattr(self, name))
+            if cycles != int(cycles) or cycles < least:
+                raise InputError(f"{name} = {cycles!r}: expected a whole number >= {least}")
+            put(self, name, int(cycles))
+        put(self, "duration", float(self._changes()[0][-1]))
+
+    def _changes(self) -> tuple[Floats, Floats]:
+        """Times in s and phases in rad at which the frequency changes, with beginning and end."""
+        cycles = np.full(len(self.frequencies), self.settle_cycles + self.measured_cycles, float)
+        cycles[0] += 0.25
+        times = np.cumsum([0.0, *(cycles / np.array(self.frequencies))])
+        return times, TURN * np.cumsum([0.0, *cycles])
+
+    @property
+    def label(self) -> str:
+        """Its frequencies and duration."""
+        first, last, count = self.frequencies[0], self.frequencies[-1], len(self.frequencies)
+        over = f"{first:g} to {last:g} Hz in {count} steps" if count > 1 else f"{first:g} Hz"
+        return f"stepped sine {over} and {self.duration:.4g} s"
+
+    @property
+    def usual_rate(self) -> float:
+        """Twenty samples in the shortest period, Hz."""
+        return 20.0 * max(self.frequencies)
+
+    def measured_times(self) -> Floats:
+        """Beginning and end of what is measured at each frequency, s; shape (n, 2)."""
+        ends = self._changes()[0][1:]
+        return np.stack([ends - self.measured_cycles / np.array(self.frequencies), ends], axis=1)
+
+    def _step_at(self, time: ArrayLike) -> NDArray[np.int_]:
+        """Which frequency is played at a time."""
+        changes = self._changes()[0][1:-1]
+        return np.searchsorted(changes, np.asarray(time, dtype=float), side="right")
+
+    def frequency(self, time: ArrayLike) -> Floats:
+        """The frequency at a time, Hz."""
+        return np.array(self.frequencies)[self._step_at(time)]
+
+    def phase(self, time: ArrayLike) -> Floats:
+        """The phase at a time, rad."""
+        t = np.asarray(time, dtype=float)
+        times, phases = self._changes()
+        step = self._step_at(t)
+        return np.asarray(phases[step] + TURN * self.frequency(t) * (t - times[step]))
+
+    def level(self, time: ArrayLike) -> Floats:
+        """The peak acceleration at a time, m/s2."""
+        return self._levels()[self._step_at(time)]
+
+    def _levels(self) -> Floats:
+        """Peak acceleration of each frequency, m/s2."""
+        if isinstance(self.acceleration, float):
+            return np.full(len(self.frequencies), self.acceleration)
+        return along_profile(self.acceleration, np.array(self.frequencies))
+
+    def __call__(self, time: ArrayLike) -> Floats:
+        """The acceleration at a time, m/s2."""
+        return np.asarray(self.level(time) * np.sin(self.phase(time)))
+
+    def pieces(self, accuracy: float = 1e-6) -> Pieces:
+        """Pieces of equal phase at each frequency."""
+        times, phases = self._changes()
+        longest = phase_step(accuracy)
+        if phases[-1] > MOST_PIECES * longest:
+            text = f"expected less than {MOST_PIECES * longest / TURN:.3g}"
+            raise InputError(f"the stepped sine has {phases[-1] / TURN:.3g} oscillations: {text}")
+        nodes = subdivided(times, np.ceil(np.diff(phases) / longest).astype(int))
+        angles = TURN * self.frequency(nodes[:-1]) * np.diff(nodes)
+        error = float((self.level(nodes[:-1]) * angles**4).max() / ERROR)
+        return Pieces.interpolate(nodes, self, error)
+
+
+def checked_frequencies(given: Any) -> tuple[float, ...]:
+    """Frequencies in Hz, one at least.
+
+    Raises
+    ------
+    InputError
+    """
+    several = isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str)
+    values = tuple(given) if several else ()
+    if not 1 <= len(values) <= MOST_FREQUENCIES:
+        text = f"{len(values)} of them" if several else repr(given)
+        raise InputError(f"frequencies: {text}; expected 1 to {MOST_FREQUENCIES} numbers in Hz")
+    return tuple(checked(HERTZ, f"frequencies[{i}]", value) for i, value in enumerate(values))

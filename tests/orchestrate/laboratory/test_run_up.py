@@ -1,0 +1,101 @@
+"""The run of a weak drive as a record, against the motion that it comes from."""
+
+from __future__ import annotations
+
+import warnings
+from functools import cache
+
+import numpy as np
+import pytest
+
+from orchestrate import (
+    Drive,
+    InputError,
+    Sensor,
+    Structure,
+    SweptSine,
+    couple,
+    measure,
+    passage,
+    psd,
+    record_of_run,
+    shake,
+    track_orders,
+    write_record,
+)
+
+QUICK = Structure.from_file("quick"), Drive.from_file("quick")
+
+
+@cache
+def run(bonded=False, voltage=1.4, duration=200.0):
+    """A run at constant voltage."""
+    structure, drive = QUICK
+    chosen = structure.as_bonded() if bonded else structure
+    return passage(chosen, drive, voltage=voltage, duration=duration, progress=False)
+
+
+def test_velocities_of_the_masses_in_space_are_integrals_of_the_record():
+    """Bonded, where no impulse is left out: Simpson's rule over every two steps."""
+    data = run(bonded=True)
+    made = record_of_run(data)
+    assert made.sizes["time"] == data.sizes["time"] and made.attrs["sample_rate"] == 10.0
+    for name, velocity in (
+        ("box_acceleration", data.box_velocity),
+        ("acceleration1", data.box_velocity + data.v1),
+        ("acceleration2", data.box_velocity + data.v2),
+    ):
+        a, v = made[name].values, velocity.values
+        gained = 0.1 / 3.0 * (a[:-2:2] + 4.0 * a[1:-1:2] + a[2::2])
+        np.testing.assert_allclose(np.diff(v[::2]), gained, atol=2e-5 * np.abs(a).max())
+
+
+def test_mass_times_acceleration_of_the_box_is_the_force_on_it():
+    """Newton's law for all that moves, delaminated: masses, box and unbalance (M_t is with it)."""
+    data, (structure, drive) = run(), QUICK
+    made = record_of_run(data)
+    s, w = drive.unbalance_mass * drive.unbalance_radius, data.speed.values
+    angle = data.angle.values
+    turning = np.gradient(w, data.time.values)
+    unbalance = s * (w**2 * np.sin(angle) - turning * np.cos(angle))
+    spring = -drive.box_stiffness * data.box_position - drive.box_damping * data.box_velocity
+    total = drive.box_mass * made.box_acceleration.values
+    total = total + structure.m1 * made.acceleration1.values
+    total = total + structure.m2 * made.acceleration2.values
+    inner = slice(2, -2)  # of the differences
+    peak = np.abs(total).max()
+    away = np.abs(total - spring.values - unbalance)[inner] / peak
+    assert np.median(away) < 1e-3 and len(made.time) == 2000
+
+
+def test_a_run_is_analysed_like_any_record(tmp_path):
+    made = record_of_run(run())
+    orders = track_orders(made, phase=run().angle)
+    assert float(orders.amplitude.sel(channel="box_acceleration", order=1.0).min()) > 0.0
+    assert psd(made).sizes["channel"] == 3
+    assert write_record(made, tmp_path / "run.csv").is_file()
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [None, lambda: couple(*QUICK, voltage=1.4, duration=50.0, progress=False)],
+    ids=["nothing", "couple"],
+)
+def test_other_answers_are_refused(answer):
+    with pytest.raises(InputError, match="run: no box_acceleration and angle over the time"):
+        record_of_run(answer and answer())
+
+
+def test_parts_that_do_not_join_are_refused():
+    data = run().isel(time=[*range(100), *range(200, 300)])
+    with pytest.raises(InputError, match="time, row 100: a step of 10.1 s where others are 0.1 s"):
+        record_of_run(data)
+
+
+def test_simulated_numbers_have_their_unit():
+    """No question whether they are in g, however small."""
+    sweep = SweptSine(first=10.0, last=14.0, duration=1.0, acceleration=1e-4)
+    history = shake(Structure.from_file("beam"), sweep, progress=False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        measure(history, Sensor(bandwidth=200.0), excitation=sweep)
