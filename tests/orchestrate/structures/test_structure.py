@@ -26,7 +26,8 @@ def near(value, expected):
 
 @given(STRUCTURES)
 def test_si_to_numbers_and_back(structure):
-    numbers = {name: structure.get(name) for name in ("mu", "kappa", "D1", "D2", "e", "gamma")}
+    names = ("mu", "kappa", "D1", "D2", "e", "gamma", "clearance")
+    numbers = {name: structure.get(name) for name in names}
     scale = {"m1": structure.m1, "omega": structure.omega, "bonded": structure.bonded}
     back = Structure.nondimensional(**numbers, **scale)
     for name in STRUCTURE:
