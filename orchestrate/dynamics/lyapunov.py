@@ -20,7 +20,7 @@ from ..access import Impacts, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import Point, positive, series_arguments
+from ..response.questions import Point, positive, series_arguments, without_clearance
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -321,6 +321,7 @@ def lyapunov(
     >>> float(found.kaplan_yorke_dimension[0].round(1))
     0.0
     """
+    without_clearance(structure, "lyapunov", over)
     question = series_arguments(structure, eta, frequency, amplitude, over, values)
     name = f"exponent_{structure.label()}"
     job = LyapunovJob(
