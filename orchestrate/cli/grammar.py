@@ -209,11 +209,6 @@ def one_value(option: str, text: str) -> float:
     return values[0]
 
 
-def level_of(option: str, text: str, several: bool = False) -> float | tuple[float, ...]:
-    """Parse a level of the excitation > 0; or ``several`` of a range or a list."""
-    return values_of(option, text)[0] if several and not is_one(text) else number_of(option, text)
-
-
 # -- names and values -----------------------------------------------------------------------------
 
 

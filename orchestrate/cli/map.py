@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from .grammar import values_of
-from .options import Commands, add_over, check_over, excitation_of, structure_of
+from .options import (
+    Commands,
+    add_over,
+    check_over,
+    excitation_by_level,
+    excitation_of,
+    structure_of,
+)
 from .question import carry_out, format_parameter, is_flag, picture_of
 
 if TYPE_CHECKING:
@@ -19,6 +26,7 @@ EXAMPLES = """\
   {program} map --eta 0.4:2.2:0.05 --over e --values 0.1:0.9:0.05
   {program} map --eta 1.2 --over e --values 0.1:0.9:0.1 --over D --values 0.005,0.02,0.05
   {program} map --structure beam --hz 8:20:0.25 --amplitude 1e-4 --over e --values 0.3,0.5,0.7
+  {program} map --structure beam --set clearance=2e-5 --hz 8:20:0.25 --g 0.002:0.05:0.002
 Each point starts from rest. The picture has impacts per period, multiplicity and largest gap."""
 MAX_KINDS = 4  # multiplicities that are told
 
@@ -50,20 +58,17 @@ def map_arguments(arguments: argparse.Namespace, structure: Structure) -> dict[s
     for name in arguments.over:
         check_over(name, arguments)
     twice = len(arguments.over) == 2
-    excitation = excitation_of(arguments, structure, one=twice, level=twice)
-    if isinstance(excitation.get("amplitude"), tuple):
-        raise InputError(
-            "--g: a map over the frequency has one amplitude; expected --amplitude in m (what it "
-            "shows does not depend on the level)"
-        )
+    by_level = arguments.g is not None
+    chosen = excitation_by_level if by_level else excitation_of
+    excitation = chosen(arguments, structure, one=twice)
     for name, text in zip(arguments.over, arguments.values, strict=True):
-        if name in excitation:
+        if name in excitation or (name == "level" and "amplitude" in excitation):
             raise InputError(f"--over {name}: twice; expected two parameters")
         excitation[name] = values_of("--values", text, zero=True)[0]
     if sum(isinstance(value, tuple) for value in excitation.values()) != 2:
         raise InputError(
-            "map: expected two parameters that vary: a range of frequencies and --over with "
-            "--values, or --over with --values twice at one frequency"
+            "map: expected two parameters that vary: a range of frequencies and one of levels "
+            "(--g) or --over with --values, or --over with --values twice at one frequency"
         )
     return excitation
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from .declared import option_of
-from .grammar import changes_of, level_of, one_or_more, plain_float, values_of
+from .grammar import changes_of, is_one, number_of, one_or_more, plain_float, values_of
 from .output import add_results
 
 if TYPE_CHECKING:
@@ -306,6 +306,7 @@ def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual:
         What is asked where no frequency is given.
     """
     values = "VALUES" if several else "VALUE"
+    levels = "; several levels at one frequency" if several else ""
     form = ", FIRST:LAST:STEP with both ends or a list A,B,..." if several else ""
     group = parser.add_argument_group(
         "the box's motion",
@@ -318,7 +319,8 @@ def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual:
     option("--frequency", metavar=values, help="the same as Omega in rad/s")
     option("--eta", metavar=values, help=f"the same as frequency ratio Omega/omega{default}")
     option("--amplitude", metavar="A", help="amplitude a in m (default with --eta: 1/eta^2 m)")
-    option("--g", metavar="G", help="the same as peak acceleration in g, held at all frequencies")
+    text = "the same as peak acceleration in g, held at all frequencies"
+    option("--g", metavar="G", help=f"{text}{levels}")
 
 
 def excitation_of(
@@ -327,7 +329,6 @@ def excitation_of(
     si: bool = False,
     one: bool = False,
     level: bool = True,
-    levels: bool = False,
 ) -> dict[str, Any]:
     """Return the box's motion as keywords of the public API.
 
@@ -342,21 +343,19 @@ def excitation_of(
         Whether it must be one frequency.
     level : bool
         Whether ``--g`` may tell the amplitude.
-    levels : bool
-        Whether amplitude or level may be a range or a list, at one frequency.
     """
     from ..constants import GRAVITY
     from ..structures.sections import TO_RAD_S
 
     name = frequency_option(arguments)
-    amplitude = amplitude_of(arguments, levels)
+    amplitude = amplitude_of(arguments)
     described_too = described_excitation(arguments) if name is None and amplitude is None else None
     if described_too:
         return described_too
     if name is None:
         raise InputError(f"frequency: nothing given; expected one of {options(FREQUENCIES)}")
     text = getattr(arguments, name)
-    values = one_or_more(f"--{name}", text, one or isinstance(amplitude, tuple))
+    values = one_or_more(f"--{name}", text, one)
     if name == "eta" and amplitude is None:
         if si and not math.isclose(structure.omega, 1.0):
             raise InputError(
@@ -371,10 +370,7 @@ def excitation_of(
     turns = each(TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values)
     if arguments.g is None:
         return {"frequency": turns, "amplitude": amplitude}
-    if isinstance(amplitude, tuple):
-        held = each(lambda peak: peak * GRAVITY / turns**2, amplitude)
-    else:
-        held = each(lambda value: amplitude * GRAVITY / value**2, turns)
+    held = each(lambda value: amplitude * GRAVITY / value**2, turns)
     return {"frequency": turns, "amplitude": held}
 
 
@@ -400,14 +396,19 @@ def frequency_option(arguments: argparse.Namespace) -> str | None:
     return present[0] if present else None
 
 
-def amplitude_of(arguments: argparse.Namespace, several: bool = False) -> Any:
-    """Return the amplitude in m, or in g if that is given, or several; None if neither is."""
+def check_one_level(arguments: argparse.Namespace) -> None:
+    """Check that amplitude and level are not both given."""
     if arguments.amplitude is not None and arguments.g is not None:
         raise InputError("--amplitude and --g: expected one of them")
+
+
+def amplitude_of(arguments: argparse.Namespace) -> float | None:
+    """Return the amplitude in m, or in g if that is given; None if neither is."""
+    check_one_level(arguments)
     for name in ("amplitude", "g"):
         text = getattr(arguments, name)
         if text is not None:
-            return level_of(f"--{name}", text, several)
+            return number_of(f"--{name}", text)
     return None
 
 
@@ -449,6 +450,10 @@ def varied_arguments(
         Of ``--eta``, where no frequency is given.
     """
     over, values = arguments.over, arguments.values
+    if over is None and arguments.g is not None and not is_one(arguments.g):
+        box = excitation_by_level(arguments, structure, one=True)
+        levels = {"over": "level", "values": box["level"]}
+        return {"frequency": box["frequency"], **levels}, ":" in arguments.g
     if (over is None) != (values is None):
         raise InputError("--over and --values: expected both, or none of them")
     if over is not None:
@@ -466,6 +471,25 @@ def varied_arguments(
     return excitation, ":" in str(getattr(arguments, frequency_option(arguments) or "eta"))
 
 
+def excitation_by_level(
+    arguments: argparse.Namespace, structure: Structure, one: bool = False
+) -> dict[str, Any]:
+    """Return frequency and level of the box, each a number or several; of ``--g``.
+
+    Parameters
+    ----------
+    arguments, structure, one
+        As in :func:`excitation_of`.
+    """
+    from ..constants import GRAVITY
+
+    check_one_level(arguments)
+    levels = one_or_more("--g", arguments.g)
+    plain = argparse.Namespace(**{**vars(arguments), "g": None, "amplitude": "1"})
+    frequency = excitation_of(plain, structure, one=one)["frequency"]
+    return {"frequency": frequency, "level": each(lambda peak: peak * GRAVITY, levels)}
+
+
 def add_beside(question: Question) -> None:
     """Add ``--beside``, see :func:`.question.carry_out_beside`."""
     text = "the same of the bonded structure, beside it"
@@ -476,11 +500,8 @@ def check_over(over: str, arguments: argparse.Namespace) -> None:
     """Check that what varies is the structure, and that ``--eta`` means one frequency then."""
     if over in FREQUENCIES:
         raise InputError(f"--over {over}: expected --{over} VALUES instead")
-    if over in ("amplitude", "g"):
-        raise InputError(
-            f"--over {over}: a response over a eta^2 is the same at every amplitude; expected a "
-            "parameter of the structure"
-        )
+    if over in ("amplitude", "g", "level"):
+        raise InputError(f"--over {over}: expected --g VALUES at one frequency instead")
     scaled = amplitude_of(arguments) is not None and arguments.eta is not None
     if scaled and over in ("m1", "k1", "omega"):
         expected = options(UNITS, " or ")

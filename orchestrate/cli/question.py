@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..constants import TURN
+from ..constants import GRAVITY, TURN
 from ..errors import InputError, StoreError
 from .output import Files, name_of, preparing_a_picture, running_of
 
@@ -68,7 +68,7 @@ def carry_out(
     print_frequency_notes(arguments, structure, question)
     with preparing_a_picture(draw is not None and files.lacks_pictures()):
         data: xr.Dataset = ask(structure, **question, **running_of(arguments, files.result))
-    for line in trivial_notes(structure):
+    for line in trivial_notes(structure, question):
         print(line)
     report(data)
     files.write(data, partial(draw, data) if draw else None)
@@ -118,8 +118,13 @@ def print_table(data: xr.Dataset, name: str) -> None:
             print(f"  {key:20} {values} {unit}".rstrip())
 
 
-def trivial_notes(structure: Structure) -> list[str]:
+def trivial_notes(structure: Structure, question: Question) -> list[str]:
     """Return remarks on what makes an answer trivial."""
+    if structure.clearance == 0.0 and "level" in (question.get("over"), *question):
+        return [
+            "clearance = 0: the model is homogeneous, at twice the level it moves twice as far; "
+            "one level is enough"
+        ]
     if structure.bonded:
         return ["bonded: both masses move as one, there are no impacts"]
     if structure.alike:
@@ -164,6 +169,8 @@ def format_parameter(name: str, value: float) -> str:
     """Format a value of a parameter: frequencies in Hz."""
     if name == "frequency":
         return f"{value / TURN:.6g} Hz"
+    if name == "level":
+        return f"{value / GRAVITY:.6g} g"
     return f"{name} = {value:.6g}"
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from .options import Commands, excitation_of, structure_of
+from ..constants import GRAVITY
+from .grammar import is_one
+from .options import Commands, excitation_by_level, excitation_of, structure_of
 from .question import carry_out, format_parameter, is_curve, parameter_of, picture_of, print_table
 
 if TYPE_CHECKING:
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
 
 EXAMPLES = """  {program} resonance --structure beam --hz 8:20:0.05 --g 0.02
   {program} resonance --structure beam --rpm 500:1200:5 --amplitude 3e-5 --format nc,csv
+  {program} resonance --set f1=42 --set f2=55 --set zeta1=0.007 --set zeta2=0.007 \\
+      --set clearance=-2e-5 --hz 30:60:0.2 --g 0.3:1.5:0.3      pressed by 20 um, five levels
   {program} resonance --eta 0.3:4:0.005 --set e=0.3             the paper's structure"""
 COLUMNS = {  # of a printed peak: title, format
     "x1_max": ("|x1| m", "11.4g"),
@@ -33,9 +37,13 @@ def add_parser(commands: Commands) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
-    excitation = excitation_of(arguments, structure, si=True)
+    if arguments.g is not None and not is_one(arguments.g):
+        arguments.command = "resonance_levels"
+        excitation, told = excitation_by_level(arguments, structure), report_levels
+    else:
+        excitation, told = excitation_of(arguments, structure, si=True), report
     question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
+    carry_out(arguments, structure, question, told, picture_of if is_curve(excitation) else None)
 
 
 def report(data: xr.Dataset) -> None:
@@ -46,6 +54,23 @@ def report(data: xr.Dataset) -> None:
         return
     print_peaks(data, name)
     print_jumps(data, name)
+
+
+def report_levels(data: xr.Dataset) -> None:
+    """Print the largest response at each level, and the threshold, a line each."""
+    parted = data.sel(structure="delaminated")
+    print(f"{'level':>10}{'|x1| m':>11}{'|x2| m':>11}{'gap m':>11}   largest gap at")
+    for level in data.level.values:
+        at = parted.sel(level=level)
+        sizes = [float(at[name].max()) for name in ("x1_max", "x2_max", "x_rel_max")]
+        top = at.isel(at.x_rel_max.argmax(...))
+        numbers = "".join(f"{size:11.4g}" for size in sizes)
+        print(f"{format_parameter('level', level):>10}{numbers}   {float(top.hertz):.6g} Hz")
+    if "threshold_acceleration" in data:
+        lowest = data.isel(frequency=int(data.threshold_acceleration.argmin()))
+        event = "opens" if float(data.attrs["clearance"]) < 0.0 else "touches"
+        level = float(lowest.threshold_acceleration) / GRAVITY
+        print(f"it first {event} at {level:.4g} g, at {float(lowest.hertz):.6g} Hz")
 
 
 def print_peaks(data: xr.Dataset, name: str) -> None:

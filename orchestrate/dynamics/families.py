@@ -119,7 +119,10 @@ def require_delaminated(structure: Structure) -> Structure:
 
 def check_parameters(over: tuple[str, ...]) -> None:
     """Check that these are parameters that can vary."""
-    known = (*EXCITATION_PARAMETERS, *PARAMETERS, ACCELERATION)
+    box = (
+        name for name in EXCITATION_PARAMETERS if name != "level"
+    )  # the amplitude varies instead
+    known = (*box, *PARAMETERS, ACCELERATION)
     for name in over:
         if name == "clearance":
             raise InputError("clearance: branches do not vary it; expected another parameter")

@@ -78,6 +78,7 @@ class Parameters(Running, total=False):
     D: ArrayLike
     D1: ArrayLike
     D2: ArrayLike
+    clearance: ArrayLike
     omega: ArrayLike
 
 
@@ -231,6 +232,7 @@ def map(
     eta: ArrayLike | None = None,
     frequency: ArrayLike | None = None,
     amplitude: ArrayLike | None = None,
+    level: ArrayLike | None = None,
     transient: int = 300,
     settle: float = 300.0,
     samples: int = 60,
@@ -248,6 +250,8 @@ def map(
     structure : Structure
     eta, frequency, amplitude
         As in :func:`orchestrate.sweep`.
+    level : array_like, optional
+        In place of the amplitude: peak acceleration a Omega^2 of the box, m/s2.
     transient, settle
         As in :func:`orchestrate.attractors`.
     samples : int
@@ -304,7 +308,8 @@ def map(
             raise InputError(
                 f"{name}: no parameter; {expected_one_of(name, (*PARAMETERS, *known))}"
             )
-    asked: dict[str, Any] = {"eta": eta, "frequency": frequency, "amplitude": amplitude, **others}
+    box = {"eta": eta, "frequency": frequency, "amplitude": amplitude, "level": level}
+    asked: dict[str, Any] = {**box, **others}
     arguments = {name: numbers(name, asked[name]) for name in asked if name not in running}
     job = MapJob(
         structure=without_clearance(structure, "map", *arguments),

@@ -22,6 +22,8 @@ SYMBOLS = {
     "omega": r"$\omega$ in rad/s",
     "frequency": r"$\Omega$ in rad/s",
     "amplitude": "$a$ in m",
+    "level": r"$a\,\Omega^2$ in m/s$^2$",
+    "clearance": "clearance in m",
     "m1": "$m_1$ in kg",
     "m2": "$m_2$ in kg",
     "k1": "$k_1$ in N/m",
@@ -94,8 +96,23 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
     )
     if by_halves:
         text = ", ".join(filter(None, [format_halves(known), text]))
+    if known.get("clearance") and "clearance" not in shown and not known.get("bonded"):
+        text = ", ".join(filter(None, [text, clearance_text(known["clearance"])]))
     shaken = [words for name, words in excitation_texts(data, known).items() if name not in shown]
     return ", ".join(filter(None, [text, "bonded" if known.get("bonded") else "", *shaken]))
+
+
+def clearance_text(clearance: float) -> str:
+    """Format a gap or a preload.
+
+    Examples
+    --------
+    >>> clearance_text(1.5e-3), clearance_text(-2e-5)
+    ('clearance 1.5 mm', 'pressed together by 20 µm')
+    """
+    factor, letter = prefix(abs(clearance))
+    words = "clearance" if clearance > 0.0 else "pressed together by"
+    return f"{words} {abs(clearance) / factor:.4g} {letter}m"
 
 
 def excitation_texts(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:

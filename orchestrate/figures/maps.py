@@ -11,7 +11,7 @@ from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from .labels import symbol, title_from_attributes
+from .labels import title_from_attributes
 from .scales import along
 from .style import (
     BLACK,
@@ -65,19 +65,18 @@ def draw(*maps: xr.Dataset, title: str = "") -> Figure:
         up, right = (second, first) if first in FREQUENCIES else (first, second)
         for column, name in enumerate(columns):
             plane = axes[row * len(columns) + column]
-            draw_map(plane, data[name].transpose(up, right), along(data, right).values)
+            sides = along(data, right), along(data, up)
+            draw_map(plane, data[name].transpose(up, right), sides[0].values, sides[1].values)
             words = "" if column or title or len(maps) == 1 else title_from_attributes(data)
             plane.set_title("\n".join(filter(None, [words, COLUMNS[name]])))
-            label = along(data, right).label
-            plane.set(ylabel="" if column else symbol(up), xlabel=label)
+            plane.set(ylabel="" if column else sides[1].label, xlabel=sides[0].label)
     return figure
 
 
-def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray) -> None:
+def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> None:
     """Draw one map with its colour bar; a parameter in equal ratios on a logarithmic axis."""
-    parameter = str(data.dims[0])
     values, shades = colour_scale(str(data.name), data.values)
-    picture = plane.pcolormesh(x, data[parameter], values, rasterized=True, **shades)
+    picture = plane.pcolormesh(x, y, values, rasterized=True, **shades)
     bar = plane.figure.colorbar(picture, ax=plane)
     if data.name == "multiplicity":
         bar.set_ticks(range(1, 10), labels=KINDS)
@@ -89,7 +88,7 @@ def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray) -> None:
     if np.ma.is_masked(values):
         plane.set_facecolor(NOTHING)
         bar.ax.set_xlabel("grey: none", fontsize=7)
-    plane.set_yscale("log" if is_geometric(data[parameter].values) else "linear")
+    plane.set_yscale("log" if is_geometric(y) else "linear")
     plane.grid(False)
 
 

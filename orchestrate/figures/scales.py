@@ -8,10 +8,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from ..constants import GRAVITY
 from .labels import is_number, prefix, symbol
 from .style import XI_REL
 
 HERTZ = r"frequency $\Omega/2\pi$ in Hz"
+LEVEL = "peak acceleration of the box in g"
 
 
 class Along(NamedTuple):
@@ -46,6 +48,8 @@ def along(data: xr.Dataset, parameter: str) -> Along:
     """Return the parameter's values: frequencies of a structure in SI in hertz."""
     if parameter in ("eta", "frequency") and "frequency" in data.coords and in_si(data):
         return Along(data.frequency.values / (2.0 * np.pi), HERTZ)
+    if parameter == "level":
+        return Along(data.level.values / GRAVITY, LEVEL)
     return Along(data[parameter].values, symbol(parameter))
 
 

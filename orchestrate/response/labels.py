@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..structures.ranges import EXCITATION, RATIO_QUANTITIES, STRUCTURE
+from ..structures.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, STRUCTURE
 
 Dims = str | tuple[str, ...]
 Variable = tuple[Dims, Any, dict[str, Any]]
@@ -35,7 +35,7 @@ def yes_or_no(dims: Dims, values: Any, long_name: str) -> Variable:
 
 def parameter(name: str, dims: Dims, values: Any) -> Variable:
     """Return a parameter of a structure or an excitation as a variable, by its name."""
-    quantity = {**STRUCTURE, **RATIO_QUANTITIES, **EXCITATION}[name]
+    quantity = {**STRUCTURE, **RATIO_QUANTITIES, **EXCITATION, "level": LEVEL}[name]
     return variable(dims, np.asarray(values, dtype=float), quantity.unit, quantity.description)
 
 

@@ -1,7 +1,8 @@
 """Arguments of a question: structures and excitations, at one point or along one parameter.
 
 An excitation is given as ``eta``: frequency ``eta omega`` and amplitude ``1/eta^2`` m, so that x is
-the xi of (3) in metres; or as ``frequency`` in rad/s with ``amplitude`` in m.
+the xi of (3) in metres; or as ``frequency`` in rad/s with ``amplitude`` in m, or with ``level``,
+the peak acceleration in m/s2, where that varies.
 """
 
 from __future__ import annotations
@@ -21,14 +22,16 @@ from ..checks import MAX_COUNT
 from ..errors import InputError
 from ..running.job import Job, brief
 from ..structures import PARAMETERS, Excitation, Structure
-from ..structures.ranges import EXCITATION, RATIO_QUANTITIES, expected_one_of
+from ..structures.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from .labels import Variable, parameter, variable
 
 Numbers = float | tuple[float, ...]
 EXCITATION_PARAMETERS = {
     "eta": RATIO_QUANTITIES["eta"],
     **{name: EXCITATION[name] for name in ("frequency", "amplitude")},
+    "level": LEVEL,
 }
+COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 FORMS = "expected eta=, or frequency= with amplitude="
 
 
@@ -169,8 +172,8 @@ def values_along(
 
 
 def check_form(names: Any) -> None:
-    """Check that an excitation is given completely in one of the two forms."""
-    if set(names) not in ({"eta"}, {"frequency", "amplitude"}):
+    """Check that an excitation is given completely in one of its forms."""
+    if set(names) not in COMPLETE:
         present = (
             " and ".join(f"{name}=" for name in EXCITATION_PARAMETERS if name in names) or "nothing"
         )
@@ -199,7 +202,10 @@ def point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
     if "eta" in arguments:
         excitation = Excitation.nondimensional(arguments["eta"], changed)
     else:
-        excitation = Excitation(frequency=arguments["frequency"], amplitude=arguments["amplitude"])
+        frequency, amplitude = arguments["frequency"], arguments.get("amplitude", 0.0)
+        if "level" in arguments:
+            amplitude = arguments["level"] / frequency**2
+        excitation = Excitation(frequency=frequency, amplitude=amplitude)
     return Point(changed, excitation)
 
 

@@ -124,6 +124,8 @@ EXCITATION = {
     )
 }
 
+LEVEL = Quantity("level", "m/s2", "Peak acceleration a Omega^2 of the box", SMALLEST, LARGEST)
+
 
 def positive_quantity(name: str, description: str) -> Quantity:
     """Return a dimensionless quantity above zero."""

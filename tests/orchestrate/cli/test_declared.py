@@ -13,7 +13,7 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
 from orchestrate.cli.declared import described, option_of
-from orchestrate.cli.options import excitation_of
+from orchestrate.cli.options import excitation_by_level, excitation_of
 from orchestrate.errors import InputError
 
 from .commands import ROOT
@@ -125,14 +125,16 @@ def motion(**given):
     return argparse.Namespace(**{**dict.fromkeys(names), "structure": "beam", **given})
 
 
-def test_a_range_of_levels_at_one_frequency():
+def test_levels_of_the_box_are_a_number_or_several():
     """Held as peak accelerations; where a command does not take several, one is expected."""
     beam = orchestrate.Structure.from_file("beam")
-    assert len(grammar.level_of("--g", "0.1:2:0.05", several=True)) == 39
-    asked = excitation_of(motion(hz="12", g="0.1:0.3:0.1"), beam, levels=True)
-    single = [excitation_of(motion(hz="12", g=g), beam)["amplitude"] for g in ("0.1", "0.2", "0.3")]
-    assert asked["amplitude"] == tuple(single) and isinstance(asked["frequency"], float)
+    asked = excitation_by_level(motion(hz="12", g="0.1:2:0.05"), beam)
+    assert isinstance(asked["frequency"], float) and len(asked["level"]) == 39
+    single = excitation_of(motion(hz="12", g="0.1"), beam)
+    assert asked["level"][0] == pytest.approx(single["amplitude"] * single["frequency"] ** 2)
     with pytest.raises(InputError, match="--hz 12:14:1: 3 values; expected one"):
-        excitation_of(motion(hz="12:14:1", g="0.1,0.2"), beam, levels=True)
+        excitation_by_level(motion(hz="12:14:1", g="0.1,0.2"), beam, one=True)
     with pytest.raises(InputError, match="--g 0.1,0.2: expected a number > 0"):
         excitation_of(motion(hz="12", g="0.1,0.2"), beam)
+    with pytest.raises(InputError, match="--amplitude and --g"):
+        excitation_by_level(motion(hz="12", g="0.1", amplitude="1"), beam)

@@ -1,0 +1,90 @@
+"""Resonance curves at several levels of the shaking, and the level at which it opens."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from ..constants import GRAVITY
+from .labels import prefix, title_from_attributes
+from .scales import HERTZ
+from .style import BLACK, GREY, panels, set_title, styled
+
+FEW = 8  # levels that have a legend entry each; more have a colour bar
+THRESHOLD = "threshold_acceleration"
+
+
+@styled
+def draw(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw acceleration over level, gap, and the threshold, over the frequency.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.resonance_levels`.
+    title : str
+        What is shaken; by default the structure.
+    """
+    rows = ["acceleration", "gap", *(["threshold"] if THRESHOLD in data else [])]
+    figure, axes = panels(len(rows), 1, (8.4, 1.2 + 2.5 * len(rows)), sharex=True)
+    plane = dict(zip(rows, axes, strict=True))
+    set_title(figure, title or title_from_attributes(data, ("amplitude", "frequency")))
+    draw_accelerations(plane["acceleration"], data)
+    draw_gaps(plane["gap"], data)
+    if "threshold" in plane:
+        draw_threshold(plane["threshold"], data)
+    axes[-1].set_xlabel(HERTZ)
+    axes[0].margins(x=0.0)
+    return figure
+
+
+def colours(data: xr.Dataset) -> list[Any]:
+    """Return a colour for each level, light for low ones."""
+    levels = data.level.values
+    shades = mpl.colormaps["viridis_r"].resampled(256)
+    low, high = float(levels.min()), float(levels.max())
+    part = np.zeros(len(levels)) if low == high else LogNorm(low, high)(levels)
+    return [shades(0.1 + 0.85 * float(each)) for each in part]
+
+
+def draw_accelerations(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the larger acceleration of both masses over the level: one curve where it is linear."""
+    size = np.maximum(data.a1_max, data.a2_max).max("direction") / data.level
+    for level, colour in zip(data.level.values, colours(data), strict=True):
+        label = f"{level / GRAVITY:.4g} g" if data.sizes["level"] <= FEW else None
+        curve = size.sel(level=level, structure="delaminated")
+        axes.plot(data.hertz, curve, color=colour, linewidth=1.4, label=label)
+    glued = size.isel(level=0).sel(structure="bonded")
+    style: Any = {"color": GREY, "linewidth": 1.0, "linestyle": "--"}
+    axes.plot(data.hertz, glued, label="bonded, at each level", **style)
+    axes.set(yscale="log", ylabel="largest acceleration between\nimpacts over level, in g/g")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
+
+
+def draw_gaps(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the largest gap; of up and down the larger one."""
+    gaps = data.x_rel_max.sel(structure="delaminated").max("direction")
+    factor, letter = prefix(float(gaps.max()) or 1.0)
+    for level, colour in zip(data.level.values, colours(data), strict=True):
+        axes.plot(data.hertz, gaps.sel(level=level) / factor, color=colour, linewidth=1.4)
+    axes.set_ylabel(f"largest gap in {letter}m")
+    axes.set_ylim(bottom=0.0)
+
+
+def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the level at which the structure first opens or touches, and the levels asked for."""
+    event = "opens" if float(data.attrs["clearance"]) < 0.0 else "touches"
+    threshold = data[THRESHOLD].values / GRAVITY
+    threshold = np.where(np.isfinite(threshold), threshold, np.nan)
+    axes.plot(data.hertz, threshold, color=BLACK, label=f"level at which it first {event}")
+    for level, colour in zip(data.level.values, colours(data), strict=True):
+        axes.axhline(level / GRAVITY, color=colour, linewidth=1.0)
+    axes.set(yscale="log", ylabel="level of the box in g")
+    axes.legend(loc="lower right", fontsize=8)

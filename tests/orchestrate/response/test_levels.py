@@ -1,0 +1,96 @@
+"""The level of the shaking as a parameter: sweeps, maps and resonance curves over it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate import InputError, Structure
+
+PRESSED = Structure.from_halves(
+    m1=1.0, m2=1.2, f1=42.0, f2=55.0, zeta1=0.01, zeta2=0.01, clearance=-2e-5
+)
+HERTZ = math.tau * 47.0
+LEVELS = [0.05, 1.0, 6.0]
+SHORT = {"transient": 60, "samples": 6, "progress": False}
+
+
+def test_a_sweep_over_the_level_is_one_over_the_amplitude(exported):
+    over = {"over": "level", "values": LEVELS}
+    by_level = orchestrate.sweep(PRESSED, frequency=HERTZ, **over, **SHORT)
+    amplitudes = [level / HERTZ**2 for level in LEVELS]
+    by_amplitude = orchestrate.sweep(PRESSED, frequency=HERTZ, amplitude=amplitudes, **SHORT)
+    assert by_level.xi_rel.dims == ("level", "sample")
+    assert by_level.level.attrs["units"] == "m/s2"
+    np.testing.assert_array_equal(by_level.xi_rel.values, by_amplitude.xi_rel.values)
+    np.testing.assert_array_equal(by_level.amplitude.values, amplitudes)
+    gaps = by_level.xi_rel_max.values
+    assert gaps[0] == 0.0 and (gaps[1:] > 0.0).all()  # it opens between the first two
+
+
+def test_a_map_over_frequency_and_level(exported):
+    """A point is the response at that frequency and level."""
+    frequency = np.array([0.98, 1.0]) * HERTZ
+    found = orchestrate.map(
+        PRESSED, frequency=frequency, level=LEVELS, transient=60, samples=8, progress=False
+    )
+    assert found.xi_rel_max.dims == ("frequency", "level")
+    alone = orchestrate.map(
+        PRESSED,
+        frequency=frequency,
+        amplitude=LEVELS[2] / frequency[1] ** 2,
+        e=[0.5, PRESSED.e],
+        transient=60,
+        samples=8,
+        progress=False,
+    )
+    assert float(found.xi_rel_max[1, 2]) == float(alone.xi_rel_max.sel(e=PRESSED.e)[1])
+    assert orchestrate.plot(found).axes[0].get_ylabel() == "peak acceleration of the box in g"
+
+
+@pytest.mark.parametrize("direction", ["up", "both"])
+def test_resonance_at_levels_is_resonance_at_each(exported, direction):
+    frequency = math.tau * np.arange(44.0, 52.0, 1.0)
+    shared = {"frequency": frequency, "direction": direction, **SHORT}
+    family = orchestrate.resonance_levels(PRESSED, level=LEVELS, **shared)
+    for level in LEVELS:
+        alone = orchestrate.resonance(PRESSED, amplitude=level / frequency**2, **shared)
+        for name in ("x1_max", "a2_max", "x_rel_max", "multiplicity", "permanent_contact"):
+            assert family[name].dims == ("level", *alone[name].dims)
+            np.testing.assert_array_equal(family[name].sel(level=level), alone[name])
+        peaks = family.peak_hertz.values[family.peak_level.values == level]
+        np.testing.assert_array_equal(peaks, alone.peak_hertz.values)
+    assert family.amplitude.dims == ("level", "frequency")
+    figure = orchestrate.plot(family)
+    assert figure.axes[0].get_legend().get_texts()[1].get_text() == "0.102 g"
+
+
+def test_without_a_clearance_levels_are_in_proportion(exported):
+    frequency = math.tau * np.arange(46.0, 49.0, 1.0)
+    open_ = PRESSED.replace(clearance=0.0)
+    found = orchestrate.resonance_levels(
+        open_, frequency=frequency, level=[1.0, 4.0], direction="up", **SHORT
+    )
+    np.testing.assert_array_equal(found.x_rel_max[1].values, 4.0 * found.x_rel_max[0].values)
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({"frequency": [300.0], "level": [1.0, 1.0]}, "level: expected numbers, each once"),
+        ({"frequency": [300.0], "level": -1.0}, "level = -1.0"),
+        ({"frequency": [300.0], "level": []}, "level"),
+        ({"frequency": "fast", "level": 1.0}, "frequency"),
+    ],
+)
+def test_wrong_levels_are_named(given, named):
+    with pytest.raises(InputError, match=named):
+        orchestrate.resonance_levels(PRESSED, **given)
+
+
+def test_a_branch_does_not_vary_the_level():
+    with pytest.raises(InputError, match="over = 'level'"):
+        orchestrate.branch(Structure.nondimensional(), eta=2.0, over="level", limits=(1.0, 2.0))
