@@ -96,8 +96,11 @@ class Amplitudes:
     @classmethod
     def from_orbit(cls, orbit: PeriodicOrbit, turns: TurningPoints) -> Amplitudes:
         """Return those of an orbit; a displacement may also be largest at an impact."""
-        ends = np.abs(orbit.arrivals[:, :2]).max(axis=0)
-        inside = [np.abs(turns.value[turns.quantity == which]) for which in range(3)]
+        places = np.array([0.0, orbit.form.gap_offset, 0.0])  # of unloaded springs, and no gap
+        ends = np.abs(orbit.arrivals[:, :2] - places[:2]).max(axis=0)
+        inside = [
+            np.abs(turns.value[turns.quantity == which] - places[which]) for which in range(3)
+        ]
         largest = [max(values, default=0.0) for values in inside]
         return cls(max(ends[0], largest[0]), max(ends[1], largest[1]), float(largest[GAP]))
 
@@ -154,8 +157,8 @@ def pressing_force(
     jerk -= form.stiffness[2] * velocity
     return (
         -form.force(position, velocity),
-        -form.force(velocity, acceleration),
-        -form.force(acceleration, jerk),
+        -form.force_rate(velocity, acceleration),
+        -form.force_rate(acceleration, jerk),
     )
 
 

@@ -55,6 +55,31 @@ class Point(NamedTuple):
         speed = self.structure.omega * length
         return np.array([length, length, speed, speed])
 
+    def faces(self, states: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return states in units of xi, with the faces' places for displacements.
+
+        That of mass 2 is ``xi_2`` and the clearance over a eta^2: the gap is the difference of
+        both, 0 in contact.
+
+        Parameters
+        ----------
+        states : ndarray, shape (..., 4)
+            x1, x2 in m from the unloaded springs, v1, v2 in m/s.
+        """
+        offset = self.structure.gap_offset
+        if offset != 0.0:
+            states = np.array(states, dtype=float)
+            states[..., 1] = states[..., 0] + gap_between(states, offset)
+        faces: NDArray[np.float64] = states / self.scale
+        return faces
+
+    def from_faces(self, faces: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the states, SI, of :meth:`faces`."""
+        states: NDArray[np.float64] = faces * self.scale
+        if self.structure.gap_offset != 0.0:
+            states[..., 1] -= self.structure.gap_offset
+        return states
+
 
 @dataclass(frozen=True)
 class Series:
