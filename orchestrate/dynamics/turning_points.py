@@ -37,13 +37,18 @@ class TurningPoints:
 
 
 def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
-    """Return segments and phases at which a motion is sampled, in order, inside segments."""
+    """Return segments and phases at which a motion is sampled, in order, inside segments.
+
+    Without nodes the only segment is sampled all around.
+    """
     counts = MIN_SAMPLES + np.ceil(
         SAMPLES_PER_PERIOD * np.abs(orbit.durations) * orbit.form.fastest / TURN
     ).astype(int)
     segment = np.repeat(np.arange(len(counts)), counts)
     place = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     part = (place + 0.5) / counts[segment]
+    if not orbit.count:  # a segment that closes: once around, and to the first sample again
+        segment, part = np.append(segment, 0), np.append(part, part[0] + 1.0)
     return segment, orbit.begins[segment] + part * (orbit.ends - orbit.begins)[segment]
 
 

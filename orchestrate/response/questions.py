@@ -260,16 +260,8 @@ def checked_structure(structure: object) -> Structure:
     return structure
 
 
-def without_clearance(structure: object, question: str, *varied: object) -> Structure:
-    """Return the structure; raise if it has a clearance, which the question does not know yet.
-
-    Parameters
-    ----------
-    structure : object
-    question : str
-        Name of the function asked.
-    *varied : object
-        Names of parameters that take values.
+def without_clearance(structure: object, question: str) -> Structure:
+    """Return the structure; raise if it has a clearance, which the question does not know.
 
     Raises
     ------
@@ -279,8 +271,6 @@ def without_clearance(structure: object, question: str, *varied: object) -> Stru
     checked = checked_structure(structure)
     if checked.clearance != 0.0:
         raise InputError(f"clearance = {checked.clearance!r} m: {question} expects clearance = 0")
-    if "clearance" in varied:
-        raise InputError(f"clearance: {question} does not vary it; expected another parameter")
     return checked
 
 
