@@ -41,6 +41,7 @@ from .response.resonance_levels import resonance_levels as resonance_levels
 from .response.simulate import simulate as simulate
 from .response.spectra import spectra as spectra
 from .response.sweep import sweep as sweep
+from .response.threshold import contact_threshold as contact_threshold
 from .structures import Drive as Drive
 from .structures import Excitation as Excitation
 from .structures import Structure as Structure
