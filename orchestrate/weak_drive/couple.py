@@ -19,7 +19,6 @@ from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
 from ..response.labels import Variable, flags
-from ..response.questions import without_clearance
 from ..running.job import Chunk, Inputs, Job, Table
 from ..running.options import Running
 from ..structures.drive import Drive
@@ -50,17 +49,7 @@ def oscillator_start(structure: Structure) -> dict[str, float | bool]:
     off.
     """
     off = {"box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
-    return {**require_no_clearance(structure).parameters(), **off}
-
-
-def require_no_clearance(structure: Structure) -> Structure:
-    """Return a structure; raise if it has a clearance.
-
-    Raises
-    ------
-    InputError
-    """
-    return without_clearance(structure, "the weak drive")
+    return {**structure.parameters(), **off}
 
 
 @dataclass(frozen=True)
@@ -555,7 +544,6 @@ def couple_job(
     ------
     InputError
     """
-    require_no_clearance(structure)
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
     if speed_start is None:
