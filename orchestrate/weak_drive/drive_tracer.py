@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..dynamics.bifurcations import FLIP, FOLD, KINDS, TORUS, BifurcationKind
+from ..dynamics.bifurcations import CONTACT_LOST, FLIP, FOLD, KINDS, TORUS, BifurcationKind
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import (
     ArclengthStepper,
@@ -41,12 +41,14 @@ NO_START = "no motion at the start"
 NOT_BEGUN = "not begun: the other leg has gone all the way"
 HALVED = "meets the motion of half its period"
 ENDS = (LIMIT, NO_CONVERGENCE, MAX_POINTS, NO_START, NOT_BEGUN, HALVED, FLIGHT, IMPACT)
+ENDS += (KINDS[CONTACT_LOST],)
 AT_GRAZING = 1e-4  # of voltage over K omega and speed over omega: so near, a grazing is located
 AWAY = (3e-3, 1e-3, 3e-4)  # of the unit: how far from a doubling twice the period is begun
 ON_CIRCLE = 1e-4  # of a located pair of multipliers: how far its size may be from 1
 COMPLEX = 1e-6  # imaginary part from which multipliers are a pair
 NARROW = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere;
 # or of the largest force in contact
+STUCK = 12  # motions before an end: had one a contact phase, it is that which is lost
 TOLERANCE = 1e-5  # of a step by secants, from which on the derivative at the root is worth its cost
 ACCURACY = 1e-6  # of a step: how exactly a bifurcation is located
 SHORTEST = 1e-5  # of the longest step: round a fold whose radius is 1e-4 of the amplitude too
@@ -191,6 +193,9 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
 
         Steps are short there: one motion stands for all that are too near to be seen in a plot.
         """
+        if any(motion.period.sticks for motion in segment.points[-STUCK:]):
+            segment.end = KINDS[CONTACT_LOST]  # a chattering does not come to its end any more
+            return
         motions = [each for each in segment.points if each.together == segment.points[-1].together]
         kind, distance = next_grazing(
             self.shooter, [(motion.root.unknowns, motion.angle) for motion in motions]

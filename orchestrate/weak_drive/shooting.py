@@ -53,6 +53,8 @@ class Period(NamedTuple):
         The gap at the start over the widest one, or that of the forces; 1 where bonded.
     together : bool
         Whether the period of a preloaded structure is to begin in contact.
+    sticks : bool
+        Whether the masses of a preloaded structure are in contact at a communication point.
     """
 
     amplitude: float
@@ -61,6 +63,7 @@ class Period(NamedTuple):
     clear: int
     share: float
     together: bool = False
+    sticks: bool = False
 
 
 class Shot(NamedTuple):
@@ -282,25 +285,27 @@ class Shooter:
         master.close()
         impacts = int(self.fmus[0].get("impact_count")[0])
         amplitude = 0.5 * (revolution.x1_high - revolution.x1_low)
-        return Period(amplitude, impacts, self.turns, *self.best_start(kept))
+        return Period(amplitude, impacts, self.turns, *self.best_start(kept[:-1]))
 
-    def best_start(self, kept: Floats) -> tuple[int, float, bool]:
-        """Return where a period is best begun, as :class:`Period` has it: ``clear``, ``share`` and
-        ``together``.
+    def best_start(self, kept: Floats) -> tuple[int, float, bool, bool]:
+        """Return where a period is best begun, as :class:`Period` has it: ``clear``, ``share``,
+        ``together``; and ``sticks``.
 
         Parameters
         ----------
         kept : ndarray, shape (n, memory)
-            A master's memory at each communication point.
+            A master's memory at the communication points of a period.
         """
         sizes = kept[:, STATE_INDEX["x_rel"]]
-        together = self.together and not sizes.any()
+        together, sticks = self.together and not sizes.any(), False
         if self.structure.preload > 0.0:
+            sticks = bool((sizes == 0.0).any())
             forces = self.contact_forces(kept)
             together = together or bool(forces.any())
             sizes = forces if together else sizes
         clear = int(np.argmax(sizes))
-        return clear, float(sizes[0] / sizes[clear]) if sizes[clear] > 0.0 else 1.0, together
+        share = float(sizes[0] / sizes[clear]) if sizes[clear] > 0.0 else 1.0
+        return clear, share, together, sticks
 
     def contact_forces(self, kept: Floats) -> Floats:
         """Return the contact force at communication points, N; 0 by the ends of contact phases."""
