@@ -672,6 +672,10 @@ def couple(
     the rate. Of a bonded structure none is given that the averaged theory contradicts by more than
     its own error: it is undecided then.
 
+    Whatever the clearance, a passage of the resonance is one past the speed that divides the
+    motions of the bonded structure, by the averaged theory. Halves that hardly touch swing freely,
+    with resonances of their own near it.
+
     Examples
     --------
     >>> from orchestrate import Drive, Structure, couple

@@ -330,6 +330,12 @@ def drive_branch(
     where none agree, 2e-6 of the amplitude from where an impact vanishes, the branch is not
     followed further. ``stable`` is false within 1e-7 of the unit circle.
 
+    Under a preload (``clearance`` below 0) the delaminated structure moves as the bonded one while
+    the contact force lasts, and its branch goes on from there without a gap: the masses part for a
+    moment in each revolution, chatter, and stick. Such motions are begun in contact. ``impacts``
+    counts all of a chattering. Where a chattering no longer comes to its end, a branch ends with
+    ``"loss of permanent contact"``.
+
     Examples
     --------
     >>> from orchestrate import Drive, Structure, drive_branch

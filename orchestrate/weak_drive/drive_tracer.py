@@ -40,8 +40,8 @@ from .shooting import Period, Shooter
 NO_START = "no motion at the start"
 NOT_BEGUN = "not begun: the other leg has gone all the way"
 HALVED = "meets the motion of half its period"
-ENDS = (LIMIT, NO_CONVERGENCE, MAX_POINTS, NO_START, NOT_BEGUN, HALVED, FLIGHT, IMPACT)
-ENDS += (KINDS[CONTACT_LOST],)
+UNFINISHED = KINDS[CONTACT_LOST]  # of a chattering that no longer comes to its end
+ENDS = (LIMIT, NO_CONVERGENCE, MAX_POINTS, NO_START, NOT_BEGUN, HALVED, FLIGHT, IMPACT, UNFINISHED)
 AT_GRAZING = 1e-4  # of voltage over K omega and speed over omega: so near, a grazing is located
 AWAY = (3e-3, 1e-3, 3e-4)  # of the unit: how far from a doubling twice the period is begun
 ON_CIRCLE = 1e-4  # of a located pair of multipliers: how far its size may be from 1
@@ -194,7 +194,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         Steps are short there: one motion stands for all that are too near to be seen in a plot.
         """
         if any(motion.period.sticks for motion in segment.points[-STUCK:]):
-            segment.end = KINDS[CONTACT_LOST]  # a chattering does not come to its end any more
+            segment.end = UNFINISHED
             return
         motions = [each for each in segment.points if each.together == segment.points[-1].together]
         kind, distance = next_grazing(

@@ -234,7 +234,8 @@ def jump_voltages(
     Voltages are fitted with a constant and terms in rate^(2/3) and in the rate. The error is made
     of the scatter around the fit, half of what the last term changes, and how far the ramps of the
     bonded structure end from the folds of the averaged theory: the delaminated one's lag nearly
-    as much. A slow loss of stability, which a ramp does not see, is not in it.
+    as much. A slow loss of stability, which a ramp does not see, is not in it. With a clearance
+    the voltages of the delaminated structure depend on how large it is beside the amplitude.
 
     Examples
     --------

@@ -195,7 +195,9 @@ class Shooter:
             values |= {"x2": values["x1"] - self.structure.gap_offset, "v2": values["v1"]}
         masses = ("x1", "x2", "v1", "v2")
         positions = from_rest(self.structure, [values.pop(name) for name in masses])
-        structure_starts = {STARTS[name]: value for name, value in zip(masses, positions)}
+        structure_starts = {
+            STARTS[name]: value for name, value in zip(masses, positions, strict=True)
+        }
         starts = {STARTS[name]: value for name, value in values.items()}
         oscillator.initialize(**oscillator_start(self.structure), **structure_starts)
         more = {"angle_start": self.angle, "voltage": voltage}
