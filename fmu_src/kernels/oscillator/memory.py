@@ -20,7 +20,6 @@ D1 = slot()
 D2 = slot()
 E = slot()  # the paper's letter, and the variable's name
 GAMMA = slot()
-CLEARANCE = slot()
 BONDED = slot()
 X1_START = slot()
 X2_START = slot()
@@ -62,6 +61,7 @@ V1_SAMPLE = slot(SAMPLES)
 V2_SAMPLE = slot(SAMPLES)
 EVALUATIONS = slot()
 EVALUATION_LIMIT = slot()
+CLEARANCE = slot()
 TIME = slot()  # communication point reached, s (the independent variable)
 
 # -- constants derived from the parameters ---------------------------------------------------------

@@ -93,16 +93,6 @@ SCALARS = (
         maximum=1.0,
     ),
     parameter(
-        "clearance",
-        "m",
-        0.0,
-        "Gap between the faces where both springs are unloaded; below 0: the masses are pressed "
-        "together by so much, with the preload F = -clearance k1 k2/(k1 + k2) at rest; "
-        "ignored where bonded",
-        minimum=-HUGE,
-        maximum=HUGE,
-    ),
-    parameter(
         "bonded", "", 0.0, "true: the undamaged structure, both masses glued for good", type=BOOLEAN
     ),
     start(
@@ -281,6 +271,17 @@ VARIABLES = numbered(
             **COUNT,
         ),
         evaluation_limit("event function"),
+        # the last one: value references are given out for good
+        parameter(
+            "clearance",
+            "m",
+            0.0,
+            "Gap between the faces where both springs are unloaded; below 0 the masses are "
+            "pressed together, at rest with the preload F = -clearance k1 k2/(k1 + k2); "
+            "ignored where bonded",
+            minimum=-HUGE,
+            maximum=HUGE,
+        ),
     ),
     memory,
 )
