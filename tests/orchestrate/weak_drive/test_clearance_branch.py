@@ -91,7 +91,7 @@ def test_a_pressed_structure_moves_as_the_bonded_one_until_it_parts(pressed):
     places = np.array([motion.place for motion in motions])
     theory = averaged.no_load_speed(*PRESSED.as_bonded(), places[:, 1])
     assert places[shut, 0] == pytest.approx(theory[shut], abs=2e-4)
-    assert theory[-1] - places[-1, 0] > 3e-3
+    assert theory[-1] - places[-1, 0] > 8e-4
 
 
 def test_its_motions_are_those_of_the_whole_system(pressed):
