@@ -26,6 +26,7 @@ ENDS = {
     "grazing of a flight": "it ends where the masses touch once more (grazing of a flight)",
     "grazing of an impact": "it ends where an impact vanishes (grazing of an impact)",
     "meets the motion of half its period": "it meets the motion of half its period",
+    "loss of permanent contact": "it ends where a chattering no longer ends in contact",
 }
 EXAMPLES = """\
   {program} drive-branch                              quick, bonded and delaminated

@@ -19,7 +19,7 @@ EXPORT const char token[] = TOKEN;  /* of these sources: tells their library fro
 
 typedef double Cubic[4];
 
-typedef struct { double x1, x2, v1, v2, box_force, box_impulse, box_impulse_moment, impact_energy, impact_time; } Motion;
+typedef struct { double x1, x2, v1, v2, box_force, box_impulse, box_impulse_moment, impact_energy, impact_time, x_rel; } Motion;
 typedef struct {
     double box_position, box_velocity, box_acceleration, box_jerk, angle, speed, motor_energy, box_damper_energy, box_force_work, stored_energy;
 } Shaking;
@@ -50,6 +50,7 @@ typedef struct {
 typedef struct {
     Side oscillator, shaker;
     double m1, m2, k1, k2, d1, d2;
+    double preload, rest_1, rest_2, balance;
     double tolerance, easy, converged;
     int passes, terms, iterations, matched, halvings;
     int part_count;
@@ -144,7 +145,9 @@ static void quartic(double f[5], double p0, double p1, double d0, double d1, dou
 /* -- energy_balance.py -- */
 
 static double relative_energy(const Pair *p, const Motion *m) {
-    return 0.5 * (p->m1 * m->v1 * m->v1 + p->m2 * m->v2 * m->v2 + p->k1 * m->x1 * m->x1 + p->k2 * m->x2 * m->x2);
+    double x1 = m->x1 - p->rest_1, x2 = m->x2 - p->rest_2;
+    double own = 0.5 * (p->m1 * m->v1 * m->v1 + p->m2 * m->v2 * m->v2 + p->k1 * x1 * x1 + p->k2 * x2 * x2);
+    return own + p->preload * m->x_rel;
 }
 
 static void enter(const Pair *p, Memory *now, const Step *done, double defect, double h) {
@@ -180,13 +183,17 @@ static double value(const double *series, int count, double time, int order) {
 }
 
 static void taylor_coefficients(double series[TERMS + 1], const Pair *p, const Motion *m, const Cubic told) {
-    double mass = p->m1, stiffness = p->k1, damping = p->d1;
-    if (m->x1 == m->x2 && m->v1 == m->v2) mass = mass + p->m2, stiffness = stiffness + p->k2, damping += p->d2;
-    series[0] = m->x1, series[1] = m->v1;
+    double mass = p->m1, stiffness = p->k1, damping = p->d1, balance = 0.0;
+    if (m->x_rel == 0.0 && m->v1 == m->v2) {
+        mass = mass + p->m2, stiffness = stiffness + p->k2, damping += p->d2;
+        balance = p->balance;
+    }
+    series[0] = m->x1 - balance, series[1] = m->v1;
     for (int order = 0; order < TERMS - 1; order++) {
         double pull = (damping * series[order + 1] + stiffness * series[order]) / mass;
         series[order + 2] = -pull - (order < 4 ? told[order] : 0.0);
     }
+    series[0] = m->x1;
 }
 
 static void extrema(Range *r, const double *series, int count, double first, double last) {

@@ -23,7 +23,7 @@ from ..access.channel import Channel
 from ..access.instance import Instance
 from ..errors import FmuError
 from ..structures.structure import Structure
-from .extremes import Revolution
+from .extremes import Revolution, position_in_balance
 from .master import ALGORITHMS, Master, Scheme
 
 log = logging.getLogger(__name__)
@@ -51,6 +51,7 @@ class Pair(ctypes.Structure):
         ("oscillator", Side),
         ("shaker", Side),
         *((name, c_double) for name in ("m1", "m2", "k1", "k2", "d1", "d2")),
+        *((name, c_double) for name in ("preload", "rest_1", "rest_2", "balance")),
         *((name, c_double) for name in ("tolerance", "easy", "converged")),
         *((name, c_int) for name in ("passes", "terms", "iterations", "matched", "halvings")),
         ("part_count", c_int),
@@ -164,8 +165,10 @@ def address(numbers: array[float]) -> int:
 def pair_of(oscillator: Channel, shaker: Channel, structure: Structure, scheme: Scheme) -> Pair:
     """Return both instances as the library takes them."""
     pair = Pair(side_of(oscillator), side_of(shaker))
-    for name in ("m1", "m2", "k1", "k2", "d1", "d2"):
+    for name in ("m1", "m2", "k1", "k2", "d1", "d2", "preload"):
         setattr(pair, name, getattr(structure, name))
+    pair.rest_1, pair.rest_2 = structure.at_rest
+    pair.balance = position_in_balance(structure)
     for name in ("tolerance", "easy", "converged", "passes", "matched", "halvings"):
         setattr(pair, name, getattr(scheme, name))
     pair.terms = ALGORITHMS[scheme.algorithm].terms

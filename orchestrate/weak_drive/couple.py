@@ -18,7 +18,6 @@ from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
 from ..response.labels import Variable, flags
-from ..response.questions import without_clearance
 from ..running.job import Chunk, Inputs, Table
 from ..running.options import Running
 from ..structures.drive import Drive
@@ -42,16 +41,6 @@ TOLERANCE = 1e-8  # of the step control: errors of the displacements are about t
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 UPWARD = (True, False)  # ways: whether the voltage rises
 HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
-
-
-def require_no_clearance(structure: Structure) -> Structure:
-    """Return a structure; raise if it has a clearance.
-
-    Raises
-    ------
-    InputError
-    """
-    return without_clearance(structure, "the weak drive")
 
 
 @dataclass(frozen=True)
@@ -437,7 +426,6 @@ def couple_job(
     ------
     InputError
     """
-    require_no_clearance(structure)
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
     if speed_start is None:
@@ -565,6 +553,10 @@ def couple(
     last at one voltage, see :mod:`orchestrate.weak_drive.held`. Such a verdict does not depend on
     the rate. Of a bonded structure none is given that the averaged theory contradicts by more than
     its own error: it is undecided then.
+
+    Whatever the clearance, a passage of the resonance is one past the speed that divides the
+    motions of the bonded structure, by the averaged theory. Halves that hardly touch swing freely,
+    with resonances of their own near it.
 
     Examples
     --------

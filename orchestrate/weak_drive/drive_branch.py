@@ -29,7 +29,7 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import require_motor, require_no_clearance
+from .couple import require_motor
 from .drive_tracer import (
     ENDS,
     HALVED,
@@ -312,6 +312,12 @@ def drive_branch(
     where none agree, 2e-6 of the amplitude from where an impact vanishes, the branch is not
     followed further. ``stable`` is false within 1e-7 of the unit circle.
 
+    Under a preload (``clearance`` below 0) the delaminated structure moves as the bonded one while
+    the contact force lasts, and its branch goes on from there without a gap: the masses part for a
+    moment in each revolution, chatter, and stick. Such motions are begun in contact. ``impacts``
+    counts all of a chattering. Where a chattering no longer comes to its end, a branch ends with
+    ``"loss of permanent contact"``.
+
     Examples
     --------
     >>> from orchestrate import Drive, Structure, drive_branch
@@ -324,7 +330,6 @@ def drive_branch(
     [1.5831]
     """
     require_motor(drive)
-    require_no_clearance(structure)
     omega = structure.omega
     resonance = averaged.resonance(structure, drive) * omega
     first, last = (0.95 * resonance, 1.25 * resonance) if speed is None else map(float, speed)

@@ -104,13 +104,17 @@ class DriveSpectraJob(Job):
             return self.sample(run, TURN / speed / self.points), float(speed)
 
     def sample(self, run: Run, interval: float) -> np.ndarray:
-        """Return displacements of both masses in space at equal times."""
+        """Return displacements of both masses in space at equal times, from rest: a preload's own
+        would leak into the lowest lines.
+        """
         count = self.revolutions * self.points
         kept = np.empty((count, len(run.master.get_state())))
         run.master.revolution = None
         run.master.run([self.approach.last] * count, h=interval, kept=kept)
         _, motion, shaking, _ = parts_of(kept.T)
-        return np.array([motion.x1 + shaking.box_position, motion.x2 + shaking.box_position])
+        rest_1, rest_2 = run.job.structure.at_rest
+        box = shaking.box_position
+        return np.array([motion.x1 - rest_1 + box, motion.x2 - rest_2 + box])
 
     def hangs(self, fmus: Mapping[str, Path]) -> bool:
         """Return whether the delaminated structure, which jumps earlier, is still at the

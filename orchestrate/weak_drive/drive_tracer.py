@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..dynamics.bifurcations import FLIP, FOLD, KINDS, TORUS, BifurcationKind
+from ..dynamics.bifurcations import CONTACT_LOST, FLIP, FOLD, KINDS, TORUS, BifurcationKind
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import (
     ArclengthStepper,
@@ -40,12 +40,15 @@ from .shooting import Period, Shooter
 NO_START = "no motion at the start"
 NOT_BEGUN = "not begun: the other leg has gone all the way"
 HALVED = "meets the motion of half its period"
-ENDS = (LIMIT, NO_CONVERGENCE, MAX_POINTS, NO_START, NOT_BEGUN, HALVED, FLIGHT, IMPACT)
+UNFINISHED = KINDS[CONTACT_LOST]  # of a chattering that no longer comes to its end
+ENDS = (LIMIT, NO_CONVERGENCE, MAX_POINTS, NO_START, NOT_BEGUN, HALVED, FLIGHT, IMPACT, UNFINISHED)
 AT_GRAZING = 1e-4  # of voltage over K omega and speed over omega: so near, a grazing is located
 AWAY = (3e-3, 1e-3, 3e-4)  # of the unit: how far from a doubling twice the period is begun
 ON_CIRCLE = 1e-4  # of a located pair of multipliers: how far its size may be from 1
 COMPLEX = 1e-6  # imaginary part from which multipliers are a pair
-NARROW = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere
+NARROW = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere;
+# or of the largest force in contact
+STUCK = 12  # motions before an end: had one a contact phase, it is that which is lost
 TOLERANCE = 1e-5  # of a step by secants, from which on the derivative at the root is worth its cost
 ACCURACY = 1e-6  # of a step: how exactly a bifurcation is located
 SHORTEST = 1e-5  # of the longest step: round a fold whose radius is 1e-4 of the amplitude too
@@ -65,6 +68,8 @@ class Motion(NamedTuple):
     period : Period
     angle : float
         Of the motor where the period begins, rad.
+    together : bool
+        Whether it begins with the masses in contact.
     """
 
     root: Root
@@ -72,6 +77,7 @@ class Motion(NamedTuple):
     multipliers: np.ndarray
     period: Period
     angle: float
+    together: bool
 
     @property
     def place(self) -> Floats:
@@ -142,8 +148,8 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return self.shooter.size + 1, [self.speeds]
 
     def go_on_from(self, point: Motion) -> Motion:
-        """Put the stepper to a motion, begun where the gap is wide."""
-        motion = start_in_wide_gap(self.shooter, point)
+        """Put the stepper to a motion, begun far from impacts."""
+        motion = start_far_from_impacts(self.shooter, point)
         self.stepper.put_to(motion)
         self.shot = self.shooter.shoot(motion.root.unknowns)
         self.half_period_change = half_period_change(self.shooter, motion.root)
@@ -187,13 +193,16 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
 
         Steps are short there: one motion stands for all that are too near to be seen in a plot.
         """
-        motions = segment.points
+        if any(motion.period.sticks for motion in segment.points[-STUCK:]):
+            segment.end = UNFINISHED
+            return
+        motions = [each for each in segment.points if each.together == segment.points[-1].together]
         kind, distance = next_grazing(
             self.shooter, [(motion.root.unknowns, motion.angle) for motion in motions]
         )
         segment.end = NO_CONVERGENCE if kind is None else KINDS[kind]
         last = motions[-1]
-        kept = [each for each in motions[:-1] if distance_between(each, last) > AT_GRAZING]
+        kept = [each for each in segment.points[:-1] if distance_between(each, last) > AT_GRAZING]
         segment.points = [*kept, last]
         if kind is not None and distance < AT_GRAZING:
             segment.add_bifurcation(kind, last, 0.0)
@@ -211,7 +220,7 @@ def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
     along = root if root.tangent @ direction > 0.0 else root.reversed()
     values = shooter.multipliers()
     period = shooter.observe_period(root.unknowns)
-    return Motion(along, shooter.matrix, values, period, shooter.angle)
+    return Motion(along, shooter.matrix, values, period, shooter.angle, shooter.together)
 
 
 def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
@@ -237,6 +246,7 @@ def double_period(shooter: Shooter, flip: Motion) -> Motion:
         Where there is none.
     """
     for distance in AWAY:
+        shooter.begin_together(flip.together)
         shooter.repeat_after(flip.period.revolutions)
         shooter.angle, shooter.matrix = flip.angle, flip.matrix
         away = np.append(shooter.flip_direction(), [0.0, 0.0])
@@ -248,20 +258,24 @@ def double_period(shooter: Shooter, flip: Motion) -> Motion:
     raise NoConvergenceError("no motion of twice the period near a period doubling")
 
 
-def start_in_wide_gap(shooter: Shooter, motion: Motion) -> Motion:
-    """Return the same motion begun where the gap is wide.
+def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
+    """Return the same motion begun where the gap is wide, or under a preload, if it is ever in
+    contact, where the masses are pressed hard.
 
     A motion that begins with an impact has no derivative.
     """
-    if motion.period.share > NARROW:
+    period, together = motion.period, motion.period.together
+    if period.share > NARROW and together == motion.together:
         return motion
     root = motion.root
-    unknowns = shooter.begin_later(root.unknowns, motion.period.clear)
+    unknowns = shooter.begin_later(root.unknowns, period.clear, together)
     matrix = shooter.renew_jacobian(unknowns)
     direction = np.append(np.zeros(shooter.size), root.tangent[-2:])  # of voltage and speed
     tangent = unit_tangent(np.vstack([matrix, direction]))
     moved = replace(root, unknowns=unknowns, tangent=tangent)
-    return motion._replace(root=moved, matrix=matrix, angle=shooter.angle)
+    return motion._replace(
+        root=moved, matrix=matrix, angle=shooter.angle, together=shooter.together
+    )
 
 
 def half_period_change(shooter: Shooter, root: Root) -> Floats:

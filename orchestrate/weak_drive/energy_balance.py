@@ -70,14 +70,21 @@ class EnergyBalance:
     ) -> None:
         self._masses = structure.m1, structure.m2
         self._stiffnesses = structure.k1, structure.k2
+        self._rest, self._preload = structure.at_rest, structure.preload
         self.lost = self.defect = self.defect_sizes = 0.0
         self.start = self._accounts(motion, shaking)
 
     def relative_energy(self, motion: OscillatorOutputs) -> float:
-        """Return the energy of the structure, seen from the box."""
+        """Return the energy of the structure, seen from the box: 0 at rest.
+
+        A preload F adds F times the gap to the springs' energy by the displacements from rest; so
+        little is lost of a motion that is small beside it.
+        """
         (m1, m2), (k1, k2) = self._masses, self._stiffnesses
-        x1, x2, v1, v2 = motion[:4]
-        return 0.5 * (m1 * v1 * v1 + m2 * v2 * v2 + k1 * x1 * x1 + k2 * x2 * x2)
+        (rest_1, rest_2), (v1, v2) = self._rest, motion[2:4]
+        x1, x2 = motion.x1 - rest_1, motion.x2 - rest_2
+        own = 0.5 * (m1 * v1 * v1 + m2 * v2 * v2 + k1 * x1 * x1 + k2 * x2 * x2)
+        return own + self._preload * motion.x_rel
 
     def energy(self, motion: OscillatorOutputs, velocity: float) -> float:
         """Return the energy of the structure in space, the box moving with ``velocity``."""

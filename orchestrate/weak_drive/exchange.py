@@ -19,7 +19,9 @@ class OscillatorInputs(NamedTuple):
 
 
 class OscillatorOutputs(NamedTuple):
-    """Outputs of the structure at a communication point, SI."""
+    """Outputs of the structure at a communication point, SI: displacements from the unloaded
+    springs, and the gap, which is 0 in contact.
+    """
 
     x1: float
     x2: float
@@ -30,6 +32,7 @@ class OscillatorOutputs(NamedTuple):
     box_impulse_moment: float
     impact_energy: float
     impact_time: float
+    x_rel: float
 
 
 class ShakerInputs(NamedTuple):

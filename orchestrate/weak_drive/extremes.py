@@ -45,14 +45,23 @@ def taylor_coefficients(
     there.
     """
     mass, stiffness, damping = structure.m1, structure.k1, structure.d1
-    if motion.x1 == motion.x2 and motion.v1 == motion.v2:  # in contact
+    balance = 0.0  # where the springs' forces are
+    if motion.x_rel == 0.0 and motion.v1 == motion.v2:  # in contact
         mass, stiffness = mass + structure.m2, stiffness + structure.k2
         damping += structure.d2
-    derivatives = [motion.x1, motion.v1]
+        balance = position_in_balance(structure)
+    derivatives = [motion.x1 - balance, motion.v1]
     for order in range(TERMS - 1):
         pull = (damping * derivatives[-1] + stiffness * derivatives[-2]) / mass
         derivatives.append(-pull - (acceleration[order] if order < len(acceleration) else 0.0))
-    return tuple(derivatives)
+    return (motion.x1, *derivatives[1:])
+
+
+def position_in_balance(structure: Structure) -> float:
+    """Return the x1 at which the springs balance with the masses in contact, m: 0 without a
+    clearance.
+    """
+    return structure.gap_offset * structure.k2 / (structure.k1 + structure.k2)
 
 
 def end_derivatives(cubic: Cubic, h: float) -> Cubic:

@@ -78,7 +78,7 @@ def turning_gap(
     for at in (before, after):
         first = (structure.k1 * at.x1 + structure.d1 * at.v1) / structure.m1
         second = (structure.k2 * at.x2 + structure.d2 * at.v2) / structure.m2
-        ends.append([at.x2 - at.x1, at.v2 - at.v1, first - second])
+        ends.append([at.x_rel, at.v2 - at.v1, first - second])
     gap = PPoly.from_bernstein_basis(BPoly.from_derivatives([0.0, h], ends))
     return float(gap(gap.derivative().roots(extrapolate=False)).min())
 

@@ -23,7 +23,7 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import couple_job, require_motor, require_no_clearance, schedule_of, scheme_of
+from .couple import couple_job, require_motor, schedule_of, scheme_of
 from .master import Scheme
 from .schedule import Ramp, Schedule
 
@@ -234,7 +234,8 @@ def jump_voltages(
     Voltages are fitted with a constant and terms in rate^(2/3) and in the rate. The error is made
     of the scatter around the fit, half of what the last term changes, and how far the ramps of the
     bonded structure end from the folds of the averaged theory: the delaminated one's lag nearly
-    as much. A slow loss of stability, which a ramp does not see, is not in it.
+    as much. A slow loss of stability, which a ramp does not see, is not in it. With a clearance
+    the voltages of the delaminated structure depend on how large it is beside the amplitude.
 
     Examples
     --------
@@ -246,7 +247,6 @@ def jump_voltages(
     True
     """
     require_motor(drive)
-    require_no_clearance(structure)
     unit = drive.volts(structure) * structure.omega
     volt_rates = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
     if len(set(volt_rates)) < 2:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..access.begin import from_rest
 from ..access.instance import Instance
 from ..constants import TURN
 from ..dynamics.closed_form import Floats
@@ -46,9 +47,14 @@ class Period(NamedTuple):
     impacts : int
     revolutions : int
     clear : int
-        Steps from the start to where the gap is widest.
+        Steps from the start to where the gap is widest, or with ``together`` the masses are
+        pressed hardest.
     share : float
-        The gap at the start over the widest one; 1 where bonded.
+        The gap at the start over the widest one, or that of the forces; 1 where bonded.
+    together : bool
+        Whether the period of a preloaded structure is to begin in contact.
+    sticks : bool
+        Whether the masses of a preloaded structure are in contact at a communication point.
     """
 
     amplitude: float
@@ -56,6 +62,8 @@ class Period(NamedTuple):
     revolutions: int
     clear: int
     share: float
+    together: bool = False
+    sticks: bool = False
 
 
 class Shot(NamedTuple):
@@ -96,6 +104,9 @@ class Shooter:
     to 1e-13, times the largest multiplier; the end of a period is continuous, also where an impact
     passes from one communication step to the next.
 
+    A structure under a preload may stay in contact for good, or part for a short time only: its
+    periods begin in contact then, with the state of one mass, and have to end in contact.
+
     Parameters
     ----------
     fmus : tuple of Instance
@@ -111,6 +122,8 @@ class Shooter:
 
     Attributes
     ----------
+    together : bool
+        Whether periods begin with the masses in contact; always where bonded.
     size : int
         Quantities of the state; the voltage's place among the unknowns.
     angle : float
@@ -133,15 +146,22 @@ class Shooter:
         self.fmus, self.structure, self.drive = fmus, structure, drive
         self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
         self.used = False
+        self.volts, self.length = drive.volts(structure), length
+        self.begin_together(structure.bonded)
+
+    def begin_together(self, together: bool) -> None:
+        """Set whether periods begin with the masses in contact from now on."""
+        self.together = together
+        structure, drive, length = self.structure, self.drive, self.length
         omega = structure.omega
-        masses = ("x1", "v1") if structure.bonded else ("x1", "v1", "x2", "v2")
-        self.names = (*masses, "box_position", "box_velocity", "speed")
+        masses = ("x1", "v1") if together else ("x1", "v1", "x2", "v2")
+        self.names: tuple[str, ...] = (*masses, "box_position", "box_velocity", "speed")
         units = {"x1": length, "x2": length, "box_position": length, "speed": omega}
         units["motor_current"] = drive.volts(structure) / drive.armature_resistance
         if drive.armature_inductance > 0.0:
             self.names = (*self.names, "motor_current")
         self.units = np.array([units.get(name, length * omega) for name in self.names])
-        self.volts, self.size = drive.volts(structure), len(self.names)
+        self.size = len(self.names)
         self.scale: Floats = np.ones(self.size + 2)
         self.matrix: Floats = np.empty((0, 0))
         self._last: tuple[Floats, Floats] | None = None
@@ -171,12 +191,14 @@ class Shooter:
             shaker.reset()
         self.used = True
         values = dict(zip(self.names, (state * self.units).tolist(), strict=True))
-        if self.structure.bonded:
-            values |= {"x2": values["x1"], "v2": values["v1"]}
-        starts = {STARTS[name]: value for name, value in values.items()}
+        if self.together:
+            values |= {"x2": values["x1"] - self.structure.gap_offset, "v2": values["v1"]}
+        masses = ("x1", "x2", "v1", "v2")
+        positions = from_rest(self.structure, [values.pop(name) for name in masses])
         structure_starts = {
-            name: starts.pop(name) for name in ("x1_start", "v1_start", "x2_start", "v2_start")
+            STARTS[name]: value for name, value in zip(masses, positions, strict=True)
         }
+        starts = {STARTS[name]: value for name, value in values.items()}
         oscillator.initialize(**oscillator_start(self.structure), **structure_starts)
         more = {"angle_start": self.angle, "voltage": voltage}
         shaker.initialize(**self.drive.parameters(), **starts, **more)
@@ -196,10 +218,13 @@ class Shooter:
         return np.array([values[name] for name in self.names]) / self.units
 
     def settle(self, voltage: float, speed: float, time: float) -> Floats:
-        """Return the state after a time at a speed, with the masses apart unless they are bonded.
+        """Return the state after a time at a speed, with the masses apart unless they are bonded,
+        or a preload presses them together.
 
         The speed is held by a heavy rotor: so motions are found that a motor would not stay on.
         """
+        self.begin_together(self.structure.bonded)
+        longest = time + (self.turns + 1) * TURN / speed
         own_drive = self.drive
         self.drive = own_drive.replace(rotor_inertia=HEAVY * own_drive.rotor_inertia)
         state = np.zeros(self.size)
@@ -209,17 +234,23 @@ class Shooter:
             state[-1] = current / self.units[-1]
         try:
             master = self.start_master(state, voltage, 0.1 / self.structure.omega)
-            while master.time < time or self._touching(master):
+            while master.time < time or (self._touching(master) and master.time < longest):
                 master.step(voltage)
+            if self.structure.preload > 0.0:  # once more round, to where a period is best begun
+                kept = np.empty((self.count, len(master.get_state())))
+                h = self.turns * TURN / speed / self.count
+                master.run([voltage] * self.count, h=h, kept=kept)
+                master.run([voltage] * (1 + self.best_start(kept)[0]), h=h)
         finally:
             self.drive = own_drive
         self.angle = master.shaking.angle % TURN
+        self.begin_together(self._touching(master) or self.structure.bonded)
         found = self.state(master)
         master.close()
         return found
 
     def _touching(self, master: Master) -> bool:
-        return not self.structure.bonded and master.motion.x1 == master.motion.x2
+        return not self.structure.bonded and master.motion.x_rel == 0.0
 
     def shoot(self, unknowns: Floats) -> Shot:
         """Run both FMUs over a period.
@@ -227,7 +258,8 @@ class Shooter:
         Raises
         ------
         NoConvergenceError
-            Where the FMUs cannot begin there, as with masses through each other.
+            Where the FMUs cannot begin there, as with masses through each other, or do not end
+            with them together though the period began so.
         """
         try:
             master, voltage = self.begin_period(unknowns)
@@ -237,8 +269,11 @@ class Shooter:
             raise NoConvergenceError(str(error)) from None
         turned = master.shaking.angle - self.angle - self.turns * TURN
         end = np.append(self.state(master), turned)
+        apart = self.together and master.motion.x_rel > 0.0
         master.close()
-        contact = bool((kept[:, STATE_INDEX["x1"]] == kept[:, STATE_INDEX["x2"]]).any())
+        if apart:
+            raise NoConvergenceError("the masses are apart at the end of a period")
+        contact = bool((kept[:, STATE_INDEX["x_rel"]] == 0.0).any())
         return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
 
     def observe_period(self, unknowns: Floats) -> Period:
@@ -249,20 +284,51 @@ class Shooter:
         kept = np.empty((self.count + 1, len(master.get_state())))
         kept[0] = master.get_state()
         master.run([voltage] * self.count, kept=kept[1:])
-        gaps = kept[:, STATE_INDEX["x2"]] - kept[:, STATE_INDEX["x1"]]
         master.close()
         impacts = int(self.fmus[0].get("impact_count")[0])
-        clear = int(np.argmax(gaps))
-        share = gaps[0] / gaps[clear] if gaps[clear] > 0.0 else 1.0
-        return Period(
-            0.5 * (revolution.x1_high - revolution.x1_low), impacts, self.turns, clear, share
-        )
+        amplitude = 0.5 * (revolution.x1_high - revolution.x1_low)
+        return Period(amplitude, impacts, self.turns, *self.best_start(kept[:-1]))
 
-    def begin_later(self, unknowns: Floats, steps: int) -> Floats:
-        """Begin periods some steps later from now on; the unknowns of the same motion there."""
+    def best_start(self, kept: Floats) -> tuple[int, float, bool, bool]:
+        """Return where a period is best begun, as :class:`Period` has it: ``clear``, ``share``,
+        ``together``; and ``sticks``.
+
+        Parameters
+        ----------
+        kept : ndarray, shape (n, memory)
+            A master's memory at the communication points of a period.
+        """
+        sizes = kept[:, STATE_INDEX["x_rel"]]
+        together, sticks = self.together and not sizes.any(), False
+        if self.structure.preload > 0.0:
+            sticks = bool((sizes == 0.0).any())
+            forces = self.contact_forces(kept)
+            together = together or bool(forces.any())
+            sizes = forces if together else sizes
+        clear = int(np.argmax(sizes))
+        share = float(sizes[0] / sizes[clear]) if sizes[clear] > 0.0 else 1.0
+        return clear, share, together, sticks
+
+    def contact_forces(self, kept: Floats) -> Floats:
+        """Return the contact force at communication points, N; 0 by the ends of contact phases."""
+        s = self.structure
+        x1, v1, x2, v2, gap = (
+            kept[:, STATE_INDEX[name]] for name in ("x1", "v1", "x2", "v2", "x_rel")
+        )
+        parting = (s.k1 * x1 + s.d1 * v1) / s.m1 - (s.k2 * x2 + s.d2 * v2) / s.m2
+        touching = (gap == 0.0) & (v1 == v2)
+        inside = touching & np.roll(touching, 1) & np.roll(touching, -1)
+        force = -parting * s.m1 * s.m2 / (s.m1 + s.m2)
+        return np.where(inside, np.maximum(force, 0.0), 0.0)
+
+    def begin_later(self, unknowns: Floats, steps: int, together: bool) -> Floats:
+        """Begin periods some steps later from now on, together or apart; the unknowns of the same
+        motion there.
+        """
         master, voltage = self.begin_period(unknowns)
         master.run([voltage] * steps)
         self.angle = master.shaking.angle % TURN
+        self.begin_together(together)
         shifted = np.append(self.state(master), unknowns[-2:])
         master.close()
         return shifted

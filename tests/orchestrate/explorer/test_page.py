@@ -218,24 +218,28 @@ def test_without_a_sweep_the_page_computes_its_own(window, tmp_path, exported):
     assert window.console() == []
 
 
-def test_the_weak_drive_is_the_masters(browser):
+@pytest.mark.parametrize("clearance", [0.0, 3.0, -1.0])
+def test_the_weak_drive_is_the_masters(browser, clearance):
     structure, drive = (
         kind.from_file("quick") for kind in (orchestrate.Structure, orchestrate.Drive)
     )
+    structure = structure.replace(clearance=clearance)
     fixed = {"step": 0.1 / structure.omega, "tolerance": 0.0}
     found = orchestrate.couple(structure, drive, voltage=1.3, duration=300.0, **fixed)
     browser.run(
         """
-        const { drive, ...rest } = explorer.table.drive;
+        const { drive, structure, ...rest } = explorer.table.drive;
         const motor = { ...drive, voltage: 1.3, speed_start: 1.3 / drive.motor_constant };
         const voltages = new Array(1500).fill(1.3);
-        const asked = { run: null, start: { ...rest, drive: motor }, voltages };
+        const halves = { ...structure, clearance: arguments[0] };
+        const asked = { run: null, start: { ...rest, drive: motor, structure: halves }, voltages };
         explorer.told = null;
         explorer.crew.ask("drive", asked, ([first]) =>
           explorer.crew.ask("drive", { ...asked, run: first.run }, ([last]) => {
             explorer.told = [...first.rows, ...last.rows];
           }));
-        """
+        """,
+        clearance,
     )
     browser.until("return explorer.told")
     count = found.sizes["revolution"]

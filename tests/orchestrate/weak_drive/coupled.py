@@ -57,15 +57,22 @@ def drawn(seed, number):
     return System(structure, Drive.nondimensional(**motor, **box, structure=structure))
 
 
-def rest(speed=0.0):
-    """Everything at rest but the rotor."""
-    return [0.0] * 7 + [speed, 0.0]
+def rest(speed=0.0, structure=None):
+    """Everything at rest but the rotor; with a preload the structure's springs are loaded."""
+    x1, x2 = structure.at_rest if structure else (0.0, 0.0)
+    return [x1, 0.0, x2, 0.0, 0.0, 0.0, 0.0, speed, 0.0]
 
 
-def starts_of(state):
-    """Start values of the structure and of the shaker for a state."""
+def starts_of(system, state):
+    """Start values of the structure and of the shaker for a state; the masses' from rest, as the
+    FMU counts them.
+    """
+    x1, v1, x2, v2 = state[:4]
+    (rest_1, rest_2), offset = system.structure.at_rest, system.structure.gap_offset
+    touching = abs(x2 - x1 + offset) <= 4e-16 * (abs(x1) + abs(offset))
+    x1, x2 = x1 - rest_1, x2 - rest_2
     return (
-        dict(zip(STARTS, state[:4], strict=True)),
+        dict(zip(STARTS, (x1, v1, x1 if touching and offset <= 0.0 else x2, v2), strict=True)),
         dict(zip(SHAKER_STARTS, state[4:], strict=True)),
     )
 
@@ -74,7 +81,7 @@ def starts_of(state):
 def master(system, scheme, state, form="fmi3", kind=master_of):
     """A master from a state as :mod:`.monolithic` has it."""
     oscillator, shaker = (find(model, form).path for model in (OSCILLATOR, SHAKER))
-    starts, shaker_starts = starts_of(state)
+    starts, shaker_starts = starts_of(system, state)
     with Instance(oscillator) as one, Instance(shaker) as other:
         one.initialize(**oscillator_start(system.structure), **starts)
         other.initialize(**system.drive.parameters(), **shaker_starts)
@@ -91,8 +98,8 @@ def state_of(m):
 
 def settled(system, voltage, speed, time=600.0):
     """A state of the settled motion, in flight unless bonded, with the angle in the first turn."""
-    with master(system, Scheme("rollback", 0.2), rest(speed)) as m:
-        while m.time < time or (m.motion.x1 == m.motion.x2 and not system.structure.bonded):
+    with master(system, Scheme("rollback", 0.2), rest(speed, system.structure)) as m:
+        while m.time < time or (m.motion.x_rel == 0.0 and not system.structure.bonded):
             m.step(voltage)
         state = state_of(m)
     return [*state[:6], state[6] % (2.0 * np.pi), *state[7:]]

@@ -138,7 +138,7 @@ def measured(case, state, kind, scheme, **options):
     truth, _ = Monolith(*system, case[1]).solve(state, np.arange(0.0, TIME + GRID / 2, GRID))
     first = EventInstance if options else Instance
     with first(find(OSCILLATOR).path) as one, Instance(find(SHAKER).path) as other:
-        own, others = starts_of(state)
+        own, others = starts_of(system, state)
         one.initialize(**oscillator_start(system.structure), **own)
         other.initialize(**system.drive.parameters(), **others)
         master = kind(one, other, system.structure, scheme, **options)

@@ -39,16 +39,22 @@ def run(tool, path, step):
 
 def truth(system):
     """The same by our own master."""
-    with master(system, Scheme("iterated", 0.1), rest(SPEED)) as m:
+    with master(system, Scheme("iterated", 0.1), rest(SPEED, system.structure)) as m:
         for _ in range(round(TIME / 0.1)):
             m.step(VOLTAGE)
         return [m.motion.x1, m.motion.x2, m.shaking.speed]
 
 
-@pytest.fixture(scope="module", params=["bonded", "delaminated"])
+SYSTEMS = {
+    **{"bonded": QUICK.as_bonded(), "delaminated": QUICK},
+    "pressed": QUICK.with_structure(clearance=-1.0),
+}
+
+
+@pytest.fixture(scope="module", params=SYSTEMS)
 def case(request, tmp_path_factory):
     """A package, and what is true of it."""
-    system = QUICK.as_bonded() if request.param == "bonded" else QUICK
+    system = SYSTEMS[request.param]
     return write(tmp_path_factory.mktemp("ssp"), system), truth(system)
 
 

@@ -1,0 +1,174 @@
+"""Branches of the drive with a gap or a preload: what they follow, and against what holds."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from orchestrate import couple
+from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.dynamics.bifurcations import FOLD
+from orchestrate.weak_drive import averaged
+from orchestrate.weak_drive.couple import Run, couple_job, scheme_of
+from orchestrate.weak_drive.drive_tracer import motion_near
+from orchestrate.weak_drive.held import LOST, HeldVoltageTest
+from orchestrate.weak_drive.jumps import Passing
+from orchestrate.weak_drive.schedule import Ramp
+from orchestrate.weak_drive.shooting import Shooter
+
+from .coupled import QUICK
+from .monolithic import Monolith
+from .validation import branch_of
+
+APART = QUICK.with_structure(clearance=100.0)  # never touch
+OPEN = QUICK.with_structure(clearance=3.0)
+PRESSED = QUICK.with_structure(clearance=-3.0)  # part from an amplitude of about 16 on
+LESS_PRESSED = QUICK.with_structure(clearance=-1.0)
+
+
+def leg_of(system, range_, most=40):
+    """The first leg's motions, its end, and the unit of length."""
+    legs, length = branch_of(system, most, range_)
+    return legs[0].points, legs[0].end, length
+
+
+def held_verdict(system, ramp):
+    """What held voltages say of a ramp up."""
+    job = couple_job(*system, ramp, scheme_of(system.structure, None), 0.0)
+    fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
+    table = job.work(fmus, range(job.steps()), None)
+    passing, (_, rows) = job.passing(table, up=True), job.sweep_leg(table, up=True)
+    times = table["time"][[*passing[:3], rows[0], rows[-1]]]
+    row, before, after, *ends = (math.ceil(time / job.scheme.h) for time in times)
+    with Instance(fmus[OSCILLATOR]) as one, Instance(fmus[SHAKER]) as other:
+
+        def begin(schedule):
+            one.reset()
+            other.reset()
+            return Run(replace(job, schedule=schedule), one, other)
+
+        test = HeldVoltageTest(begin, ramp, job.scheme.h, 1.0, 1.0, 6000.0)
+        steps = Passing(row, before, after, passing.look, float(row))
+        return test.classify(steps, tuple(ends), averaged.dividing_speed(*system), up=True)
+
+
+def motion_of(system, speed):
+    """The motion of a speed."""
+    with Instance(find(OSCILLATOR).path) as one, Instance(find(SHAKER).path) as other:
+        shooter = Shooter((one, other), *system, revolutions=1, steps=48, length=20.0)
+        volts = float(averaged.no_load_speed(*system, speed))
+        state = shooter.settle(volts, speed, 600.0)
+        return motion_near(shooter, np.append(state, [volts, speed]), up=True)
+
+
+def whole_state(system, motion, length):
+    """The state at the begin of a motion's period as :mod:`.monolithic` has it."""
+    unit = length * system.structure.omega
+    state = motion.root.unknowns[:-2]
+    x1, v1, *box = state
+    x2, v2 = (x1, v1) if motion.together else box[:2]
+    x2 -= system.structure.clearance / length if motion.together else 0.0
+    y, v, w = state[-3:]
+    return np.array([x1, v1 / length * unit, x2, v2, y, v, motion.angle, w, 0.0]) * [
+        *(length, length, length, unit, length, unit, 1.0, system.structure.omega, 1.0)
+    ]
+
+
+def assert_repeats(system, motion, length):
+    """The motion is one of the whole system, with as many impacts."""
+    start, turns = whole_state(system, motion, length), motion.period.revolutions
+    voltage, speed = motion.place
+    times = np.linspace(0.0, turns * 2.0 * np.pi / speed, 200)
+    exact = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
+    rows, impacts = Monolith(*system, voltage, exact).solve(start, times)
+    turned = start + np.array([0, 0, 0, 0, 0, 0, turns * 2.0 * np.pi, 0, 0])
+    assert rows[-1] == pytest.approx(turned, abs=2e-5)
+    assert impacts == motion.period.impacts
+
+
+def assert_held(system, motion):
+    """A motor whose voltage is held settles at that speed and amplitude."""
+    voltage, speed = motion.place
+    asked = {"speed_start": 0.0, "duration": 900.0, "jobs": 1, "progress": False}
+    run = couple(*system, voltage=float(voltage), **asked).isel(revolution=slice(-10, None))
+    assert run.speed.mean() == pytest.approx(speed, abs=1e-4)
+    assert run.amplitude.max() == pytest.approx(motion.period.amplitude, rel=1e-3)
+
+
+def is_stable(motion):
+    return np.abs(motion.multipliers).max() < 1.0
+
+
+@pytest.fixture(scope="module")
+def pressed():
+    return leg_of(PRESSED, (0.98, 1.0))
+
+
+def test_a_pressed_structure_moves_as_the_bonded_one_until_it_parts(pressed):
+    """On one branch: without impacts by the averaged theory, then with a flight a revolution."""
+    motions, end, _ = pressed
+    assert end == "limit"
+    impacts = np.array([motion.period.impacts for motion in motions])
+    shut = impacts == 0
+    assert 2 <= shut.sum() <= len(shut) - 2 and (np.diff(shut.astype(int)) <= 0).all()
+    sizes = np.array([motion.period.amplitude for motion in motions])
+    kappa, mu = PRESSED.structure.kappa, PRESSED.structure.mu  # f of (18) is 0 at this amplitude
+    opening = 3.0 * kappa / mu * (1.0 + mu) / (1.0 + kappa) / (kappa / mu - 1.0)
+    assert sizes[shut].max() < opening < sizes[~shut].min()
+    places = np.array([motion.place for motion in motions])
+    theory = averaged.no_load_speed(*PRESSED.as_bonded(), places[:, 1])
+    assert places[shut, 0] == pytest.approx(theory[shut], abs=2e-4)
+    assert theory[-1] - places[-1, 0] > 8e-4
+
+
+def test_its_motions_are_those_of_the_whole_system(pressed):
+    motions, _, length = pressed
+    assert motions[0].together and motions[-1].together
+    for motion in (motions[0], motions[-1]):
+        assert is_stable(motion)
+        assert_repeats(PRESSED, motion, length)
+    assert_held(PRESSED, next(motion for motion in motions if motion.period.impacts > 20))
+
+
+def test_with_a_gap():
+    """Impacts of two halves that are apart at rest."""
+    motions, end, length = leg_of(OPEN, (0.975, 0.98))
+    assert end == "limit" and motions[-1].period.impacts == motions[-1].period.revolutions == 1
+    assert is_stable(motions[-1]) and not motions[-1].together
+    assert_repeats(OPEN, motions[-1], length)
+    assert_held(OPEN, motions[-1])
+
+
+def test_held_voltages_find_the_fold_of_the_branch():
+    """Of a structure with a gap, from states of a ramp that are restored."""
+    legs, _ = branch_of(OPEN, 30, (0.995, 1.002))
+    (fold,) = legs[0].bifurcations
+    verdict = held_verdict(OPEN, Ramp(1.52, 1.62, 4e-4, settle=600.0, back=False))
+    assert fold.kind == FOLD and verdict.what == LOST
+    assert verdict.low - 2e-5 < fold.point.place[0] < verdict.high + 2e-5
+    assert verdict.high - verdict.low < 2e-4
+
+
+def test_halves_that_never_touch_are_two_oscillators():
+    """By the averaged torque of two masses in one box, each on its own spring."""
+    structure, drive = APART
+    speeds = np.array([1.0, 1.033, 1.1, 1.26])  # the second: both halves against each other
+    motions = [motion_of(APART, speed) for speed in speeds.tolist()]
+    s = 1j * speeds
+    box = s**2 + 2.0 * drive.D_b(structure) * s + drive.Omega_b(structure) ** 2
+    for m, k, d in ((1.0, 1.0, structure.D1), (structure.mu, structure.kappa, structure.D2)):
+        pull = drive.beta(structure) * (k + 2.0 * d * m * s)
+        inertia = drive.beta(structure) * m * s**2
+        box = box + pull * inertia / (pull + inertia)
+    torque = 0.5 * drive.epsilon * speeds**4 * (1.0 / box).imag
+    expected = speeds - torque / drive.b(structure)
+    assert [motion.place[0] for motion in motions] == pytest.approx(expected, abs=2e-4)
+    assert not any(motion.period.impacts for motion in motions)
+
+
+def test_a_branch_ends_where_a_chattering_no_longer_ends_in_contact():
+    motions, end, _ = leg_of(LESS_PRESSED, (0.946, 0.98))
+    assert end == "loss of permanent contact"
+    assert motions[0].together and not motions[-1].together
+    assert motions[-1].period.impacts > motions[2].period.impacts > 0
