@@ -27,14 +27,14 @@ SERIES = re.compile(r"\[(?!1\])\d+\]$")  # of a series, the first stands for all
 
 
 def marks(reference: Reference) -> tuple[str, str]:
-    """The lines between which a model's variable table stands."""
+    """Return the lines between which a model's variable table stands."""
     source = f"fmu_src/models/{reference.folder}/variables.py"
     begin = f"<!-- variables: generated from {source}, kept so by a test -->"
     return begin, "<!-- end of variables -->"
 
 
 def variable_table(path: str | PathLike[str]) -> str:
-    """A model's variables as a table, from the FMU's own description."""
+    """Return a model's variables as a table, from the FMU's own description."""
     lines = ["| name | causality | unit | start | meaning |", "|---|---|---|---|---|"]
     for v in describe(path).variables.values():
         if SERIES.search(v.name):
@@ -47,7 +47,7 @@ def variable_table(path: str | PathLike[str]) -> str:
 
 
 def with_table(page: str, reference: Reference, table: str) -> str:
-    """The page with a model's variable table replaced."""
+    """Return the page with a model's variable table replaced."""
     begin, end = marks(reference)
     head, rest = page.split(begin + "\n")
     _, tail = rest.split(end, 1)

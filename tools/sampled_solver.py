@@ -15,7 +15,7 @@ APART = 1e-12  # put between the masses after an impact, or it is found again
 
 
 def motions(eta: float, D: float, kappa: float) -> tuple[Motion, Motion]:
-    """The equations of motion, (3) to (6): apart, and in contact."""
+    """Return the equations of motion, (3) to (6): apart, and in contact."""
 
     def flight(t: float, y: np.ndarray) -> list[float]:
         force = math.sin(eta * t)
@@ -29,7 +29,7 @@ def motions(eta: float, D: float, kappa: float) -> tuple[Motion, Motion]:
 
 
 def events(kappa: float) -> tuple[Event, Event]:
-    """Where the gap closes, and where the contact force vanishes."""
+    """Return where the gap closes, and where the contact force vanishes."""
 
     def gap(t: float, y: np.ndarray) -> float:
         return float(y[2] - y[0])
@@ -43,14 +43,14 @@ def events(kappa: float) -> tuple[Event, Event]:
 
 
 def after(y: np.ndarray, touching: bool, e: float) -> np.ndarray:
-    """The state after an event: thrown apart, or together."""
+    """Return the state after an event: thrown apart, or together."""
     closing, mean = y[1] - y[3], 0.5 * (y[1] + y[3])
     half = 0.0 if touching else max(0.5 * e * closing, 1e-7)
     return np.array([y[0], mean - half, y[0] + (0.0 if touching else APART), mean + half])
 
 
 def seconds(eta: float, count: int, e: float = 0.7, D: float = 0.005, kappa: float = 1.2) -> float:
-    """Seconds that ``count`` periods from rest take."""
+    """Return the seconds that ``count`` periods from rest take."""
     flight, contact = motions(eta, D, kappa)
     gap, pressed = events(kappa)
     begin = time.perf_counter()
