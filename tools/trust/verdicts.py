@@ -183,7 +183,7 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
 
 
 def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
-    """Return the voltages over K omega and speeds over omega of delaminated folds that end one way."""
+    """Return voltages over K omega and speeds over omega of delaminated folds that end one way."""
     structure, drive = system
     units = drive.volts(structure), structure.omega
     legs = branch.sel(structure="delaminated")
