@@ -18,8 +18,10 @@ from typing import Any
 import numpy as np
 
 from orchestrate.access import Instance, describe, find
-from orchestrate.figures import files, fmu_pictures, icon, shaker_pictures
+from orchestrate.figures import files
 
+from .pictures import icon, oscillator
+from .pictures import shaker as shaker_pictures
 from .references import MODELS, REFERENCES, SHAKER, Reference, reference_rows, write_reference
 
 TABLES = Path(__file__).resolve().parents[1] / "docs" / "variables.md"
@@ -78,7 +80,7 @@ def draw(reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence
     """The pictures of a model: its scheme, large and small, and an example run."""
     folder = MODELS / reference.folder
     shaker = reference is SHAKER
-    scheme = shaker_pictures.draw_shaker if shaker else fmu_pictures.draw_scheme
+    scheme = shaker_pictures.draw_shaker if shaker else oscillator.draw_scheme
     tight: Any = {"dpi": 100, "bbox_inches": "tight"}
     files.save(scheme(), folder / "documentation" / "scheme", **tight)
     files.save(icon.draw_icon(shaker), folder / "model", dpi=96)
@@ -86,7 +88,7 @@ def draw(reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence
         values = dict(zip(("time", *reference.outputs), np.array(rows).T, strict=True))
         plot = shaker_pictures.draw_run_up(values["time"], values["speed"], values["box_position"])
     else:
-        plot = fmu_pictures.draw_example(*example(fmu))
+        plot = oscillator.draw_example(*example(fmu))
     files.save(plot, folder / "documentation" / "plot", ("svg",))
 
 
