@@ -61,7 +61,7 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
 DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them
     "fmpy": "orchestrate/access/",
-    "matplotlib": ("orchestrate/figures/", "tools/trust/"),
+    "matplotlib": ("orchestrate/figures/", "tools/pictures/", "tools/trust/"),
     "loky": "orchestrate/running/",
     "distributed": ("orchestrate/running/", "tools/trust/"),
     "sqlite3": "orchestrate/running/",

@@ -18,8 +18,10 @@ from typing import Any
 import numpy as np
 
 from orchestrate.access import Instance, describe, find
-from orchestrate.figures import files, fmu_pictures, icon, shaker_pictures
+from orchestrate.figures import files
 
+from .pictures import icon, oscillator
+from .pictures import shaker as shaker_pictures
 from .references import MODELS, REFERENCES, SHAKER, Reference, reference_rows, write_reference
 
 TABLES = Path(__file__).resolve().parents[1] / "docs" / "variables.md"
@@ -27,14 +29,14 @@ SERIES = re.compile(r"\[(?!1\])\d+\]$")  # of a series, the first stands for all
 
 
 def marks(reference: Reference) -> tuple[str, str]:
-    """The lines between which a model's variable table stands."""
+    """Return the lines between which a model's variable table stands."""
     source = f"fmu_src/models/{reference.folder}/variables.py"
     begin = f"<!-- variables: generated from {source}, kept so by a test -->"
     return begin, "<!-- end of variables -->"
 
 
 def variable_table(path: str | PathLike[str]) -> str:
-    """A model's variables as a table, from the FMU's own description."""
+    """Return a model's variables as a table, from the FMU's own description."""
     lines = ["| name | causality | unit | start | meaning |", "|---|---|---|---|---|"]
     for v in describe(path).variables.values():
         if SERIES.search(v.name):
@@ -47,7 +49,7 @@ def variable_table(path: str | PathLike[str]) -> str:
 
 
 def with_table(page: str, reference: Reference, table: str) -> str:
-    """The page with a model's variable table replaced."""
+    """Return the page with a model's variable table replaced."""
     begin, end = marks(reference)
     head, rest = page.split(begin + "\n")
     _, tail = rest.split(end, 1)
@@ -78,7 +80,7 @@ def draw(reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence
     """The pictures of a model: its scheme, large and small, and an example run."""
     folder = MODELS / reference.folder
     shaker = reference is SHAKER
-    scheme = shaker_pictures.draw_shaker if shaker else fmu_pictures.draw_scheme
+    scheme = shaker_pictures.draw_shaker if shaker else oscillator.draw_scheme
     tight: Any = {"dpi": 100, "bbox_inches": "tight"}
     files.save(scheme(), folder / "documentation" / "scheme", **tight)
     files.save(icon.draw_icon(shaker), folder / "model", dpi=96)
@@ -86,7 +88,7 @@ def draw(reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence
         values = dict(zip(("time", *reference.outputs), np.array(rows).T, strict=True))
         plot = shaker_pictures.draw_run_up(values["time"], values["speed"], values["box_position"])
     else:
-        plot = fmu_pictures.draw_example(*example(fmu))
+        plot = oscillator.draw_example(*example(fmu))
     files.save(plot, folder / "documentation" / "plot", ("svg",))
 
 

@@ -39,7 +39,7 @@ def harmonic(eta: float, time: float) -> float:
 
 
 def periods(fmu: str | PathLike[str], eta: float, count: int) -> tuple[float, int]:
-    """Seconds and impacts of ``count`` periods in one step, after some to settle."""
+    """Return the seconds and impacts of ``count`` periods in one step, after some to settle."""
     period = 2.0 * math.pi / eta
     drive = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
     with Instance(fmu) as instance:
@@ -52,7 +52,7 @@ def periods(fmu: str | PathLike[str], eta: float, count: int) -> tuple[float, in
 
 
 def quiet_step(fmu: str | PathLike[str], count: int = 100_000) -> float:
-    """Seconds a call of doStep where no impact falls, through FMPy."""
+    """Return the seconds a call of doStep where no impact falls, through FMPy."""
     with Instance(fmu) as instance:
         instance.initialize(bonded=True, x_rel_max_on=False)
         step = Channel(instance, (), ()).step
@@ -63,7 +63,7 @@ def quiet_step(fmu: str | PathLike[str], count: int = 100_000) -> float:
 
 
 def pure_python(fmu: str | PathLike[str], eta: float, count: int) -> float:
-    """Seconds of ``count`` periods in the Python kernel, in a process of its own."""
+    """Return the seconds of ``count`` periods in the Python kernel, in a process of its own."""
     environment = {**os.environ, "VIBROIMPACT_PURE_PYTHON": "1"}
     command = [sys.executable, "-m", "tools.benchmark", "--once", str(fmu), str(eta), str(count)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
@@ -99,7 +99,7 @@ def figure_6(
 def best_of_both(
     measure: Callable[[Path], float], fmus: Sequence[Path], rounds: int
 ) -> list[float]:
-    """The least of some measurements of each FMU, in turn."""
+    """Return the least of some measurements of each FMU, in turn."""
     return [
         min(row) for row in zip(*([measure(f) for f in fmus] for _ in range(rounds)), strict=True)
     ]

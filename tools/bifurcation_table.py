@@ -61,7 +61,7 @@ NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_clos
 
 
 def run(instance: EventInstance, eta: float, state: np.ndarray, periods: int) -> np.ndarray:
-    """The FMU's state after some periods."""
+    """Return the FMU's state after some periods."""
     excitation = Excitation.nondimensional(eta, PAPER)
     begin(instance, PAPER, excitation, state)
     instance.advance(0.0, periods * excitation.period)
@@ -69,7 +69,7 @@ def run(instance: EventInstance, eta: float, state: np.ndarray, periods: int) ->
 
 
 def growth(instance: EventInstance, answer: xr.Dataset) -> float:
-    """How much a small deviation from an orbit has grown after ``PERIODS``."""
+    """Return how much a small deviation from an orbit has grown after ``PERIODS``."""
     states = answer.state.values
     nudged = states[0] + NUDGE * np.array([-1.0, 1.0, 1.0, -1.0])
     ended = run(instance, float(answer.eta), nudged, PERIODS // len(states) * len(states))
@@ -87,7 +87,7 @@ def outside(instance: EventInstance, answer: xr.Dataset) -> int:
 
 
 def beside(answer: xr.Dataset, at: xr.Dataset, eta: float) -> list[xr.Dataset]:
-    """The branch's orbits at an eta beside a bifurcation: one, none, or two at a fold."""
+    """Return the branch's orbits at an eta beside a bifurcation: one, none, or two at a fold."""
     place, value = float(at.bifurcation_place), float(at.bifurcation_value)
     count = answer.sizes["point"]
     orbits = []
@@ -104,7 +104,7 @@ def beside(answer: xr.Dataset, at: xr.Dataset, eta: float) -> list[xr.Dataset]:
 
 
 def corrected(guess: xr.Dataset, eta: float) -> xr.Dataset | None:
-    """The orbit at an eta near another one, if there is one that the FMU runs through."""
+    """Return the orbit at an eta near another one, if there is one that the FMU runs through."""
     periods = guess.sizes["sample"]
     try:
         answer = orbit(PAPER, eta=eta, period=periods, guess=guess, progress=False)
@@ -114,7 +114,7 @@ def corrected(guess: xr.Dataset, eta: float) -> xr.Dataset | None:
 
 
 def format_orbit(instance: EventInstance, answer: xr.Dataset) -> str:
-    """What the FMU does near an orbit."""
+    """Return what the FMU does near an orbit."""
     largest, grown = float(np.hypot(*answer.multipliers.values[0])), growth(instance, answer)
     as_said = grown < 1.0 / GROWTH if answer.stable else grown > GROWTH
     count = outside(instance, answer)
@@ -124,7 +124,7 @@ def format_orbit(instance: EventInstance, answer: xr.Dataset) -> str:
 
 
 def without_orbit(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
-    """What the FMU does where there is no such orbit: its impacts per period."""
+    """Return what the FMU does where there is no such orbit: its impacts per period."""
     run(instance, eta, at.bifurcation_state.values[0], PERIODS)
     impacts = instance.get("impact_count")[0] / PERIODS
     return f"none: {impacts:.3f} impacts a period"
@@ -137,7 +137,7 @@ def contacts(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
 
 
 def rows(instance: EventInstance, label: str, answer: xr.Dataset) -> Iterator[str]:
-    """Lines of the table for a branch, upwards."""
+    """Yield lines of the table for a branch, upwards."""
     values, names = answer.bifurcation_value.values, kind_names(answer)
     for i in np.argsort(values):
         at = answer.isel(bifurcation=int(i))
@@ -156,7 +156,7 @@ def rows(instance: EventInstance, label: str, answer: xr.Dataset) -> Iterator[st
 
 
 def table(answer: dict[str, xr.Dataset]) -> list[str]:
-    """All lines."""
+    """Return all lines."""
     lines = ["| branch | eta | kind | ± | below | above |", "|---|---|---|---|---|---|"]
     with EventInstance(find(OSCILLATOR).path) as instance:
         for label, one in answer.items():
@@ -165,7 +165,7 @@ def table(answer: dict[str, xr.Dataset]) -> list[str]:
 
 
 def windows(answer: dict[str, xr.Dataset]) -> list[xr.Dataset]:
-    """The borders of T/1 to 4T/1 over eta and e."""
+    """Return the borders of T/1 to 4T/1 over eta and e."""
     curves = []
     for label in ("T/1", "2T/1", "3T/1", "4T/1"):
         for i in range(answer[label].sizes["bifurcation"]):
@@ -175,7 +175,7 @@ def windows(answer: dict[str, xr.Dataset]) -> list[xr.Dataset]:
 
 
 def window_line(case: str, label: str, window: StableWindow) -> str:
-    """A line of the table of windows; the loss of contact depends on gamma from 1e-6 on."""
+    """Return a line of the table of windows; the loss of contact depends on gamma from 1e-6 on."""
     ends = [
         f"{value:g}, limit"
         if kind == "limit"
@@ -186,7 +186,7 @@ def window_line(case: str, label: str, window: StableWindow) -> str:
 
 
 def all_windows() -> list[str]:
-    """The table of windows of the paper's three cases."""
+    """Return the table of windows of the paper's three cases."""
     lines = ["| case | orbit | stable from | to |", "|---|---|---|---|"]
     for case, structure in CASES.items():
         for label, (eta, period, limits) in WINDOWS.items():

@@ -16,7 +16,7 @@ APART = {"x1_start": -1.0, "x2_start": 1e4, "box_amplitude": 1.0, "box_frequency
 
 
 def quiet_step(fmu: Path, watched: bool = False, step: float = 1e-3) -> float:
-    """Seconds a step of an FMI 3.0 FMU without an impact, called from C.
+    """Return the seconds a step of an FMI 3.0 FMU without an impact, called from C.
 
     Parameters
     ----------

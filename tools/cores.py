@@ -29,7 +29,7 @@ Done = tuple[bytes, Table]
 
 
 def figure_6(step: float) -> SweepJob:
-    """The paper's sweep, at every so manyth frequency."""
+    """Return the paper's sweep, at every so manyth frequency."""
     etas = np.round(np.arange(0.1, 8.0 + 0.5 * step, step), 3)
     return SweepJob(
         **series_arguments(Structure.nondimensional(), etas, None, None), name="figure 6"
@@ -43,7 +43,7 @@ class Clockwork:
     known: dict[tuple[int, bytes], tuple[Done, float]] = field(default_factory=dict)
 
     def run(self, job: SweepJob, task: Task) -> tuple[Done, float]:
-        """A chunk's result, and its seconds."""
+        """Return a chunk's result, and its seconds."""
         begun = (
             job.boundary_state(task.previous)
             if task.previous is not None
@@ -59,7 +59,7 @@ class Clockwork:
 
 
 def elapsed(job: SweepJob, workers: int, clockwork: Clockwork, each: float) -> tuple[float, int]:
-    """Seconds that so many workers take, and values that were guessed in vain.
+    """Return the seconds that so many workers take, and values that were guessed in vain.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ LEFT_OUT = ("identity", "history")  # of every source: the stamp tells what deci
 
 
 def figure6() -> xr.Dataset:
-    """The sweep, of it what the page needs."""
+    """Return the sweep, of it what the page needs."""
     etas = np.arange(100, 8001) / 1000
     answer = orchestrate.sweep(orchestrate.Structure(), eta=etas, direction="up")
     answer = answer[KEPT].drop_vars("period")

@@ -8,7 +8,7 @@ MARK = "<!-- {}: {} -->\n"
 
 
 def put(text: str, name: str, lines: Sequence[str]) -> str:
-    """A page's text with lines between two marks."""
+    """Return a page's text with lines between two marks."""
     before, rest = text.split(MARK.format(name, "begin"))
     after = rest.split(MARK.format(name, "end"))[1]
     own = "\n".join(lines)

@@ -23,7 +23,7 @@ PAGE, CLAIMS = DOCS / "paper.md", DOCS / "claims.json"
 
 
 def counts(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """How many claims are borne out."""
+    """Return how many claims are borne out."""
     number = {verdict: sum(row["verdict"] == verdict for row in rows) for verdict in WORDS}
     return [
         f"Of {len(rows)} statements of all sections {number['yes']} are borne out, "
@@ -32,12 +32,12 @@ def counts(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def cell(text: str) -> str:
-    """A text in a table's cell."""
+    """Return a text in a table's cell."""
     return text.replace("|", "\\|").replace("*", "\\*").replace("_", "\\_")
 
 
 def verdicts(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """The table of claims."""
+    """Return the table of claims."""
     names = ("section", "text", "printed", "found")
     lines = ["| section | the paper | its value | found | |", "|---|---|---|---|---|"]
     for row in rows:
@@ -47,7 +47,7 @@ def verdicts(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def regions(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """The table of regions."""
+    """Return the table of regions."""
     names = ("case", "region", "count", "chaotic", "neutral", "largest")
     heads = ("case", "from, to", "frequencies", "chaotic", "neutral", "largest exponent")
     lines = [f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
@@ -55,7 +55,7 @@ def regions(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def page(text: str, found: Mapping[str, Any]) -> str:
-    """The page's text with what was found."""
+    """Return the page's text with what was found."""
     text = put(text, "counts", counts(found["claims"]))
     text = put(text, "verdicts", verdicts(found["claims"]))
     text = put(text, "regions", regions(found["regions"]))

@@ -47,12 +47,12 @@ class Reference:
 
 
 def oscillator_inputs(time: float) -> tuple[float, ...]:
-    """The frequency jumps at 30 s, a constant acceleration sets in at 45 s."""
+    """Return the frequency jumps at 30 s, a constant acceleration sets in at 45 s."""
     return 1.0, 0.4 if time < 30.0 else 0.8, 0.0 if time < 45.0 else 0.05
 
 
 def shaker_inputs(time: float) -> tuple[float, ...]:
-    """The voltage jumps at 3 s, a force sets in at 4 s."""
+    """Return the voltage jumps at 3 s, a force sets in at 4 s."""
     return 3.0 if time < 3.0 else 8.0, 0.0 if time < 4.0 else 20.0
 
 

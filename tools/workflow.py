@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def interpreter(version: str) -> str:
-    """Python of a version, from the path or pyenv; else this one, which is said."""
+    """Return Python of a version, from the path or pyenv; else this one, which is said."""
     pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
     candidates = [
         *map(str, pyenv.glob(f"{version}.*/bin/python")),
@@ -36,7 +36,7 @@ def interpreter(version: str) -> str:
 
 
 def filled(text: str, matrix: dict[str, str]) -> str:
-    """Text with the matrix's values put in."""
+    """Return text with the matrix's values put in."""
     for name, value in matrix.items():
         text = text.replace("${{ matrix." + name + " }}", str(value))
     return text

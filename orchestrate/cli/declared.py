@@ -24,7 +24,10 @@ def described(function: Callable[..., Any], name: str) -> tuple[str, str]:
     """
     import orchestrate
 
-    text = inspect.getdoc(function) or ""
+    text = inspect.getdoc(function)
+    if text is None:  # python -OO leaves docstrings out
+        default = inspect.signature(function).parameters[name].default
+        return type(default).__name__, name.replace("_", " ")
     section = text.partition("\nParameters\n----------\n")[2].partition("\n\n")[0]
     for entry in re.split(r"\n(?=\S)", section):
         head, _, body = entry.partition("\n")
@@ -60,5 +63,6 @@ def option_of(function: Callable[..., Any], name: str) -> dict[str, Any]:
         text += " (default: %(default)s)"
     if kind.startswith("{"):
         return {"choices": re.findall(r'"(\w+)"', kind), "default": default, "help": text}
-    reader, metavar = (plain_int, "N") if kind.startswith("int") else (plain_float, "X")
+    readers = {"int": (plain_int, "N"), "str": (str, "WORD")}
+    reader, metavar = readers.get(kind.partition(",")[0], (plain_float, "X"))
     return {"type": reader, "default": default, "metavar": metavar, "help": text}

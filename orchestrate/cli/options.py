@@ -96,7 +96,7 @@ class Commands:
         examples: str,
         several: bool = True,
         usual: str = "",
-    ) -> Question:
+    ) -> FunctionOptions:
         """Add a command that asks for responses of a structure to a harmonic motion of the box.
 
         Parameters
@@ -127,17 +127,17 @@ class Commands:
         for parser in self.asked:
             add_results(parser)
 
-    def question(self, parser: argparse.ArgumentParser, title: str = "question") -> Question:
+    def question(self, parser: argparse.ArgumentParser, title: str = "question") -> FunctionOptions:
         """Add the group of a command's options that are arguments of its public function."""
         command = parser.get_default("command")
-        question = Question(command, self.wanted is None or command in self.wanted)
+        question = FunctionOptions(command, self.wanted is None or command in self.wanted)
         question.group = parser.add_argument_group(title)
         parser.set_defaults(question=question)
         return question
 
 
 @dataclass
-class Question:
+class FunctionOptions:
     """Options of a command that are arguments of the public function of its name.
 
     Attributes
@@ -425,7 +425,7 @@ def each(change: Callable[[float], float], values: float | tuple[float, ...]) ->
 # -- a parameter that varies ----------------------------------------------------------------------
 
 
-def add_over(question: Question, twice: bool = False) -> None:
+def add_over(question: FunctionOptions, twice: bool = False) -> None:
     """Add ``--over`` and ``--values``, once or twice."""
     option = question.group.add_argument
     action: dict[str, Any] = {"action": "append", "default": []} if twice else {}
@@ -490,7 +490,7 @@ def excitation_by_level(
     return {"frequency": frequency, "level": each(lambda peak: peak * GRAVITY, levels)}
 
 
-def add_beside(question: Question) -> None:
+def add_beside(question: FunctionOptions) -> None:
     """Add ``--beside``, see :func:`.question.carry_out_beside`."""
     text = "the same of the bonded structure, beside it"
     question.group.add_argument("--beside", action="store_true", help=text)

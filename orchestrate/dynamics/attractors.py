@@ -441,14 +441,16 @@ def attractors(
     transient : int
         Periods dropped at least.
     settle : float
-        Periods dropped at least, over eta: a slow decay takes time, not periods.
+        Periods dropped at least, over eta: a slow decay takes time, not periods. By default a decay
+        e^{-D tau} with D = 0.005 goes on for a factor of ten thousand.
     samples : int
         Periods kept: more where attractors repeat after more than half as many.
     converged : float
         Relative deviation within which a repeated state decides.
     longest : int
         Periods up to which a response is run on that does not repeat, or that Newton's method does
-        not confirm; beyond it is irregular, or undecided.
+        not confirm; beyond it is irregular, or undecided. More where transients are long, near
+        bifurcations.
     alike : float
         Distance over the motion's size within which responses that repeat are one attractor where
         Newton's method finds no stable orbit.

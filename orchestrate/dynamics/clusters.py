@@ -27,29 +27,17 @@ class AttractorSettings:
 
     Parameters
     ----------
-    transient : int
-        Periods dropped, at least: more where damping is weak and periods are long.
-    settle : float
-        At least ``settle * eta`` periods are dropped: more where damping is weak. By default a
-        decay e^{-D tau} with D = 0.005 goes on for a factor of ten thousand.
-    samples : int
-        Periods kept: more where attractors repeat after more than half as many.
-    converged : float
-        Relative deviation within which a repeated state decides.
+    transient, settle, samples, converged
+        As in :func:`orchestrate.attractors`.
     apart : float
         Over ``converged``: within so much a state nearly repeats; states differ by more after fewer
         periods than those of the response.
-    longest : int
-        Periods after which a response that does not repeat is irregular: more where transients are
-        long, near bifurcations.
+    longest
+        As in :func:`orchestrate.attractors`.
     irregular_samples : int
         Periods kept of an irregular response.
-    alike : float
-        Distance over the motion's size within which responses that repeat are one attractor where
-        Newton's method finds no stable orbit.
-    alike_irregular : float
-        Features of one irregular attractor differ by less, relatively: means are taken over few
-        periods.
+    alike, alike_irregular
+        As in :func:`orchestrate.attractors`.
     count_weight : float
         Weight of the impacts per period of irregular responses, a mean over the samples.
     """

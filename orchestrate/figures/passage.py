@@ -12,8 +12,9 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from ..constants import TURN
+from .powers import ACCOUNTS, draw_powers
 from .style import GREY, panels, styled
-from .weak_drive import COLOURS, SINKS
+from .weak_drive import COLOURS, jump_texts, outcome
 
 MAX_REPETITION = 4  # revolutions after which a motion is seen to repeat
 CALM_SHARE = 0.9  # of the revolutions: the others belong to the jump
@@ -80,21 +81,7 @@ def time_origin(data: xr.Dataset) -> tuple[float, str]:
 
 def format_jumps(data: xr.Dataset) -> str:
     """Format the jumps, or whether the resonance is passed."""
-    texts = [
-        f"jump {direction} at {float(data.jumps.sel(jump=direction)):.4f} V"
-        for direction in data.jump.values
-        if np.isfinite(float(data.jumps.sel(jump=direction)))
-    ]
-    pairs = zip(data.jump.values, data.decided.values, strict=True)
-    texts += [
-        f"jump {direction} undecided" for direction, decision in pairs if decision == "undecided"
-    ]
-    if texts:
-        return ", ".join(texts)
-    passed = float(data.passage_time)
-    if np.isfinite(passed):
-        return f"beyond the resonance from {passed:.4g} s on"
-    return "the resonance is not passed"
+    return ", ".join(f"jump {text}" for text in jump_texts(data)) or outcome(data)
 
 
 def repeats_after(data: xr.Dataset) -> int:
@@ -146,7 +133,7 @@ def means_over(data: xr.Dataset, count: int) -> dict[str, np.ndarray]:
     complete = (angle - half > distance[0]) & (angle + half < distance[-1])
     turned = np.interp(after, time, angle) - np.interp(before, time, angle)
     means = {"speed": turned / span}
-    for account in ("motor", *SINKS, "stored"):
+    for account in ACCOUNTS:
         values = data[account].values
         means[account] = (np.interp(after, time, values) - np.interp(before, time, values)) / span
     return {name: np.where(complete, values, np.nan) for name, values in means.items()}
@@ -160,14 +147,6 @@ def draw_speed(
     axes.plot(time, np.abs(data.speed), **instant)
     mean: Any = {"color": "k", "linewidth": 1.2, "label": "mean of a revolution"}
     axes.plot(time, revolution["speed"], **mean)
-
-
-def draw_powers(axes: Axes, time: np.ndarray, means: Mapping[str, np.ndarray]) -> None:
-    """Draw where the motor's power goes, as means over the motion's period."""
-    axes.plot(time, means["motor"], "k", linewidth=1.6, label="motor")
-    for account, label in SINKS.items():
-        axes.plot(time, means[account], linewidth=1.0, label=label)
-    axes.plot(time, means["stored"], color=GREY, linewidth=1.0, label="stored")
 
 
 def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, top: float) -> Any:

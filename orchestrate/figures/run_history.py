@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from .powers import POWER_REVOLUTIONS, draw_powers, mean_powers
 from .style import GREY, panels, styled
-from .weak_drive import COLOURS, POWER_REVOLUTIONS, SINKS
+from .weak_drive import COLOURS, outcome
 
 ROWS = {
     "speed": "mean speed in rad/s",
@@ -46,7 +45,9 @@ def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> F
             resonance, color=GREY, linewidth=1.0, linestyle="--", label="resonance"
         )
         column_axes[0].set_title(f"{name}: {outcome(data)}")
-        draw_powers(column_axes[-1], data)
+        time = data.time.values
+        middle = 0.5 * (time[POWER_REVOLUTIONS:] + time[:-POWER_REVOLUTIONS])
+        draw_powers(column_axes[-1], middle, mean_powers(data))
         column_axes[-1].set_xlabel("time in s")
     for panel, label in zip(axes[::count], (*ROWS.values(), "power in W"), strict=True):
         panel.set_ylabel(label)
@@ -55,29 +56,3 @@ def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> F
     if title:
         figure.suptitle(title)
     return figure
-
-
-def outcome(data: xr.Dataset) -> str:
-    """Format whether the resonance is passed."""
-    passed = float(data.passage_time)
-    if np.isfinite(passed):
-        return f"beyond the resonance from {passed:.4g} s on"
-    return "the resonance is not passed"
-
-
-def draw_powers(axes: Axes, data: xr.Dataset) -> None:
-    """Draw where the motor's power goes."""
-    time = data.time.values
-    span, middle = (
-        time[POWER_REVOLUTIONS:] - time[:-POWER_REVOLUTIONS],
-        0.5 * (time[POWER_REVOLUTIONS:] + time[:-POWER_REVOLUTIONS]),
-    )
-
-    def power(account: str) -> np.ndarray:
-        values = data[account].values
-        return np.asarray((values[POWER_REVOLUTIONS:] - values[:-POWER_REVOLUTIONS]) / span)
-
-    axes.plot(middle, power("motor"), "k", linewidth=1.6, label="motor")
-    for account, label in SINKS.items():
-        axes.plot(middle, power(account), linewidth=1.0, label=label)
-    axes.plot(middle, power("stored"), color=GREY, linewidth=1.0, label="stored")

@@ -10,19 +10,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from .powers import POWER_REVOLUTIONS, draw_powers, mean_powers
 from .style import panels, styled
 
 COLOURS = {"bonded": "C0", "delaminated": "C3"}
 COLOUR_OF_RETURN = "C1"  # impacts on the way back
-SINKS = {
-    "dampers": "dampers of the masses",
-    "box_damper": "damper of the box",
-    "impact_loss": "impacts",
-}
 IMPACT_REVOLUTIONS = 10  # revolutions that impacts are averaged over
-POWER_REVOLUTIONS = (
-    2  # revolutions that powers are averaged over, twice: a motion may repeat after two
-)
 TIME_AROUND_JUMP = 500.0  # time shown before and after a jump, in 1/omega
 THEORY = "averaged theory, bonded"
 MARKS = {  # of bifurcations
@@ -80,7 +73,7 @@ def draw(
     if title:
         figure.suptitle(title)
     name = list(runs)[-1]
-    draw_powers(axes[3], shown[name], name)
+    draw_powers_way_there(axes[3], shown[name], name)
     axes[0].set_title("\n".join(filter(None, (format_jumps(*item) for item in runs.items()))))
     label_axes(axes)
     limit_axes(axes, list(shown.values()))
@@ -107,15 +100,27 @@ def jumped(data: xr.Dataset, direction: str) -> bool:
     return bool(np.isfinite(float(data.jumps.sel(jump=direction))))
 
 
-def format_jumps(name: str, data: xr.Dataset) -> str:
-    """Format the jumps of a run."""
-    texts = [
+def jump_texts(data: xr.Dataset) -> list[str]:
+    """Format each jump of a run, and each direction that is undecided."""
+    jumps = [
         f"{direction} at {float(data.jumps.sel(jump=direction)):.4f} V"
         for direction in ("up", "down")
         if jumped(data, direction)
     ]
-    texts += [f"{direction} undecided" for direction in undecided_directions(data)]
-    return f"{name}: jump {', '.join(texts)}" if texts else f"{name}: no jump"
+    return jumps + [f"{direction} undecided" for direction in undecided_directions(data)]
+
+
+def format_jumps(name: str, data: xr.Dataset) -> str:
+    """Format the jumps of a run."""
+    return f"{name}: jump {', '.join(jump_texts(data))}" if jump_texts(data) else f"{name}: no jump"
+
+
+def outcome(data: xr.Dataset) -> str:
+    """Format whether the resonance is passed."""
+    passed = float(data.passage_time)
+    if np.isfinite(passed):
+        return f"beyond the resonance from {passed:.4g} s on"
+    return "the resonance is not passed"
 
 
 def undecided_directions(data: xr.Dataset) -> list[str]:
@@ -230,25 +235,19 @@ def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str, what: 
     axes.set(xlabel=f"time from the jump {jump} in s", ylabel=HISTORIES[what])
 
 
-def draw_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
+def draw_powers_way_there(axes: Axes, data: xr.Dataset, name: str) -> None:
     """Draw the mean power of the motor and where it goes, against the speed, one way."""
     outward = split_directions(data)[0][0]
     if len(outward) < 3 * POWER_REVOLUTIONS:
         return
-    time, ends = data.time.values[outward], data.speed.values[outward]
-    span = time[POWER_REVOLUTIONS:] - time[:-POWER_REVOLUTIONS]
-    speed = running_mean(running_mean(ends[1:], POWER_REVOLUTIONS), POWER_REVOLUTIONS)
-
-    def power(account: str) -> np.ndarray:
-        values = data[account].values[outward]
-        return running_mean(
-            (values[POWER_REVOLUTIONS:] - values[:-POWER_REVOLUTIONS]) / span, POWER_REVOLUTIONS
-        )
-
-    axes.plot(speed, power("motor"), "k", linewidth=1.5, label="motor")
-    for account, label in SINKS.items():
-        axes.plot(speed, power(account), linewidth=1.0, label=label)
-    axes.plot(speed, power("stored"), color="0.7", linewidth=0.8, label="stored")
+    part = data.isel(revolution=outward)
+    ends = part.speed.values[1:]
+    speed = running_mean(running_mean(ends, POWER_REVOLUTIONS), POWER_REVOLUTIONS)
+    twice = {
+        account: running_mean(values, POWER_REVOLUTIONS)
+        for account, values in mean_powers(part).items()
+    }
+    draw_powers(axes, speed, twice)
     axes.set_title(
         f"power, {name}, on the way there, means of {POWER_REVOLUTIONS} revolutions, twice"
     )

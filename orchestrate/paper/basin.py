@@ -37,16 +37,16 @@ class EvenBasinJob(BasinJob):
     apart: float = 0.2
 
     def needs(self) -> tuple[str, ...]:
-        """Both results."""
+        """Return the names of both results."""
         return self.attractors, self.sweep
 
     def frequency(self, inputs: Inputs) -> float:
-        """The frequency ratio."""
+        """Return the frequency ratio."""
         data = inputs[self.attractors].sel(eta=slice(self.low, self.high))
         frequent = np.argsort(-data.share.values, axis=1, kind="stable")[:, :2]
 
         def two(name: str) -> NDArray[np.float64]:
-            """A quantity of the two most frequent attractors at each frequency."""
+            """Return a quantity of the two most frequent attractors at each frequency."""
             values: NDArray[np.float64] = np.take_along_axis(data[name].values, frequent, axis=1)
             return values
 
@@ -56,7 +56,7 @@ class EvenBasinJob(BasinJob):
         return float(data.eta.values[(clear if clear.max() > 0.0 else share).argmax()])
 
     def plane(self, inputs: Inputs) -> Plane:
-        """What is looked at, at that frequency and to its scale."""
+        """Return what is looked at, at that frequency and to its scale."""
         eta = self.frequency(inputs)
         scale = float(inputs[self.sweep].xi_rel_max.sel(eta=eta, method="nearest"))
         x, y = (

@@ -18,6 +18,6 @@ MAP_ETAS = (0.4, 2.2)
 
 
 def map_values(parameter: str, count: int) -> np.ndarray:
-    """Values of a parameter along the side of its map."""
+    """Return the values of a parameter along the side of its map."""
     low, high = MAPS[parameter]
     return (np.geomspace if parameter == "D" else np.linspace)(low, high, count)

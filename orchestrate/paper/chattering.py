@@ -60,11 +60,11 @@ class ChatteringJob(Job):
     item: ClassVar[str] = "sequence"
 
     def count(self) -> int:
-        """Number of sequences."""
+        """Return the number of sequences."""
         return len(self.restitutions) * len(self.gammas)
 
     def items(self, inputs: Inputs) -> Sequence[Structure]:
-        """The structures."""
+        """Return the structures."""
         return [
             self.structure.replace(e=e, gamma=gamma)
             for e in self.restitutions
@@ -74,7 +74,7 @@ class ChatteringJob(Job):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
-        """One sequence."""
+        """Compute one sequence."""
         (structure,) = items
         with EventInstance(fmus[OSCILLATOR]) as instance:
             impacts, point = self.sequence(instance, structure)
@@ -94,7 +94,7 @@ class ChatteringJob(Job):
         return {"rows": np.array([row], dtype=float)}
 
     def sequence(self, instance: EventInstance, structure: Structure) -> tuple[Impacts, Point]:
-        """The impacts from the kick until the masses stick, or for a quarter of a period."""
+        """Return the impacts from the kick until the masses stick, or for a quarter of a period."""
         crest = 0.5 * np.pi
         point = Point(structure, Excitation.nondimensional(self.eta, structure, crest))
         middle = point.length * (1.0 + structure.mu) / (1.0 + structure.kappa)  # (6) without rates
@@ -112,7 +112,7 @@ class ChatteringJob(Job):
         return cut, point
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Over restitution and gamma."""
+        """Return the results over restitution and gamma."""
         import xarray as xr
 
         dims = "e", "gamma"

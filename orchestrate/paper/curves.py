@@ -53,12 +53,12 @@ class Panel:
         return Point(self.structure, excitation)
 
     def numbers(self) -> list[float]:
-        """In the order of ``NUMBERS``."""
+        """Return what a panel is, in the order of ``NUMBERS``."""
         return [self.structure.e, self.structure.get("D"), self.eta, self.multiplicity]
 
 
 def panel_at(sweep: xr.Dataset, structure: Structure, eta: float) -> Panel:
-    """A sweep's response at one of its frequencies, found to within half a step."""
+    """Return a sweep's response at one of its frequencies, found to within half a step."""
     row = sweep.sel(eta=eta, method="nearest")
     start = tuple(map(float, row.end_state.values))
     return Panel(structure, float(row.eta), start, int(row.multiplicity))
@@ -88,12 +88,12 @@ class CurvesJob(Job):
     item: ClassVar[str] = "curve"
 
     def needs(self) -> tuple[str, ...]:
-        """The sweeps."""
+        """Return the name of the sweeps."""
         return self.sweeps
 
     @abstractmethod
     def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """The responses."""
+        """Return the responses."""
 
     def settled(self, fmu: Path, panel: Panel) -> Panel:
         """The response that a panel shows, in a worker, with the multiplicity that it has then."""
@@ -103,13 +103,13 @@ class CurvesJob(Job):
         return replace(panel, multiplicity=response.multiplicity)
 
     def items(self, inputs: Inputs) -> list[tuple[int, Panel]]:
-        """The panels with their numbers."""
+        """Return the panels with their numbers."""
         return list(enumerate(self.panels([inputs[name] for name in self.sweeps])))
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[tuple[int, Panel]], previous: Table | None
     ) -> Table:
-        """One panel."""
+        """Compute one panel."""
         ((index, panel),) = items
         panel = self.settled(fmus[OSCILLATOR], panel)
         settings = self.skip, self.keep, self.points
@@ -123,7 +123,7 @@ class CurvesJob(Job):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Points one after the other, with their panels."""
+        """Return points one after the other, with their panels."""
         import xarray as xr
 
         time = "non-dimensional time from the first period shown"
@@ -156,11 +156,11 @@ class CurvesAtFrequencies(CurvesJob):
     etas: tuple[float, ...]
 
     def count(self) -> int:
-        """Number of frequencies."""
+        """Return the number of frequencies."""
         return len(self.etas)
 
     def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """The responses nearest to them."""
+        """Return the responses nearest to them."""
         return [panel_at(sweeps[0], self.structures[0], eta) for eta in self.etas]
 
 
@@ -169,11 +169,11 @@ class CurvesAtPeaks(CurvesJob):
     """Figure 12: each sweep's response at its largest gap."""
 
     def count(self) -> int:
-        """Number of sweeps."""
+        """Return the number of sweeps."""
         return len(self.sweeps)
 
     def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """The response at each sweep's main peak."""
+        """Return the response at each sweep's main peak."""
         return [
             panel_at(sweep, structure, float(sweep.xi_rel_max.idxmax()))
             for sweep, structure in zip(sweeps, self.structures, strict=True)
@@ -192,11 +192,11 @@ class CurvesInWindows(CurvesJob):
     windows: int = 4
 
     def count(self) -> int:
-        """Number of windows."""
+        """Return the number of windows."""
         return self.windows
 
     def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """The peaks; where a window has none, its last response with the multiplicity -n."""
+        """Return the peaks; where a window has none, its last response with the multiplicity -n."""
         sweep, structure, panels = sweeps[0], self.structures[0], []
         for n in range(1, self.windows + 1):
             peak = relative_peak(sweep, n)
@@ -206,7 +206,7 @@ class CurvesInWindows(CurvesJob):
         return panels
 
     def settled(self, fmu: Path, panel: Panel) -> Panel:
-        """A panel without a peak is followed upwards to one beyond the sweep."""
+        """Follow a panel without a peak upwards to one beyond the sweep."""
         n = -panel.multiplicity
         if n <= 0:
             return super().settled(fmu, panel)

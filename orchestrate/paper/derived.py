@@ -23,20 +23,20 @@ class DerivedJob(Job):
 
     @abstractmethod
     def question(self, inputs: Inputs) -> Job:
-        """The job of the public API that is asked."""
+        """Return the job of the public API that is asked."""
 
     def items(self, inputs: Inputs) -> list[tuple[Job, Any]]:
-        """Its items, each with the job that computes it."""
+        """Return its items, each with the job that computes it."""
         job = self.question(inputs)
         return [(job, item) for item in job.items({})]
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[tuple[Job, Any]], previous: Table | None
     ) -> Table:
-        """Some of its items."""
+        """Compute some of its items."""
         job = items[0][0]
         return job.work(fmus, [item for _, item in items], previous)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Its result."""
+        """Return its result."""
         return self.question(inputs).dataset(table, {})

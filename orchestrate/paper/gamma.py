@@ -47,11 +47,11 @@ class GammaJob(Job):
     samples: int = 40
 
     def count(self) -> int:
-        """Number of short sweeps."""
+        """Return the number of short sweeps."""
         return len(self.structures) * len(self.gammas)
 
     def items(self, inputs: Inputs) -> list[tuple[Structure, tuple[float, float]]]:
-        """Structure and range of each."""
+        """Return the structure and range of each."""
         return [
             (structure.replace(gamma=gamma), ends)
             for structure, ends in zip(self.structures, self.ranges, strict=True)
@@ -64,7 +64,7 @@ class GammaJob(Job):
         items: Sequence[tuple[Structure, tuple[float, float]]],
         previous: Table | None,
     ) -> Table:
-        """One short sweep."""
+        """Compute one short sweep."""
         ((structure, ends),) = items
         etas = np.round(np.arange(*ends, self.step), 9)
         points = [Point(structure, Excitation.nondimensional(float(e), structure)) for e in etas]
@@ -77,7 +77,7 @@ class GammaJob(Job):
         return {"last": np.array([last])}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The limits over case and gamma."""
+        """Return the limits over case and gamma."""
         import xarray as xr
 
         text = "last eta with permanent contact on a short up-sweep from rest"

@@ -104,15 +104,15 @@ class LargestJob(Job):
     seed: int = 23
 
     def needs(self) -> tuple[str, ...]:
-        """All three."""
+        """Return the names of all three."""
         return self.exponents, self.settled, self.limits
 
     def count(self) -> int:
-        """Number of regions."""
+        """Return the number of regions."""
         return COUNT
 
     def items(self, inputs: Inputs) -> Sequence[Searched]:
-        """The regions, each with its candidates; none where it holds no frequency."""
+        """Return the regions, each with its candidates; none where it holds no frequency."""
         exponents = inputs[self.exponents].sortby("eta")
         ends = inputs[self.settled].sortby("eta").end_state
         searched = []
@@ -128,14 +128,14 @@ class LargestJob(Job):
         return searched
 
     def candidate(self, eta: float, end: np.ndarray, screened: float) -> Candidate:
-        """A candidate from a non-dimensional state on its response."""
+        """Return a candidate from a non-dimensional state on its response."""
         point = Point(self.structure, Excitation.nondimensional(eta, self.structure))
         return Candidate(point, tuple((end * point.scale).tolist()), screened)
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Searched], previous: Table | None
     ) -> Table:
-        """One region: its candidates in turn, until one is steady."""
+        """Compute one region: its candidates in turn, until one is steady."""
         ((number, candidates),) = items
         rows = np.full((self.candidates, len(NUMBERS)), np.nan)
         rows[:, -1] = NOT_RUN
@@ -151,7 +151,7 @@ class LargestJob(Job):
         return {"rows": rows[np.newaxis]}
 
     def judged(self, run: LongRun, screened: float, eta: float) -> int:
-        """The outcome of a run: ``LOST`` where less than half of the growth is left.
+        """Return the outcome of a run: ``LOST`` where less than half of the growth is left.
 
         Chaos may have ended before the first part that counts, or the other start may lead to
         another attractor.
@@ -160,7 +160,7 @@ class LargestJob(Job):
         return LOST if run.outcome == STEADY and screened > 0.0 and lost else run.outcome
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Over region and candidate."""
+        """Return the results over region and candidate."""
         import xarray as xr
 
         dims = "region", "candidate"
@@ -206,7 +206,7 @@ class Largest(NamedTuple):
 
 
 def largest_of(data: xr.Dataset, region: str) -> Largest:
-    """The largest exponent of a region, of those that were decided.
+    """Return the largest exponent of a region, of those that were decided.
 
     Parameters
     ----------

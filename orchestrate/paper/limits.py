@@ -89,15 +89,15 @@ class LimitsJob(Job):
     item: ClassVar[str] = "branch"
 
     def needs(self) -> tuple[str, ...]:
-        """The sweeps."""
+        """Return the name of the sweeps."""
         return self.sweeps
 
     def count(self) -> int:
-        """Number of branches."""
+        """Return the number of branches."""
         return len(self.branches)
 
     def items(self, inputs: Inputs) -> Sequence[tuple[int, Structure, tuple[float, ...]]]:
-        """Number, structure and first state of each."""
+        """Return number, structure and first state of each."""
         items = []
         for number, one in enumerate(self.branches):
             place = list(CASES).index(one.case)
@@ -112,7 +112,7 @@ class LimitsJob(Job):
         items: Sequence[tuple[int, Structure, tuple[float, ...]]],
         previous: Table | None,
     ) -> Table:
-        """One branch."""
+        """Compute one branch."""
         ((number, structure, state),) = items
         one = self.branches[number]
         given: Any = {"progress": False, "fmu": fmus[OSCILLATOR]}
@@ -125,7 +125,7 @@ class LimitsJob(Job):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The windows one after the other."""
+        """Return the windows one after the other."""
         import xarray as xr
 
         of = [self.branches[number] for number in table["branch"].tolist()]
@@ -147,7 +147,7 @@ class LimitsJob(Job):
 
 
 def windows_of(data: xr.Dataset, case: str, label: str) -> list[StableWindow]:
-    """The stable windows of one orbit of a case, upwards."""
+    """Return the stable windows of one orbit of a case, upwards."""
     which = (data.case.values == case) & (data.orbit.values == label)
     names = StableWindow._fields
     rows = zip(*(data[name].values[which].tolist() for name in names), strict=True)

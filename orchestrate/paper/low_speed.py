@@ -60,22 +60,22 @@ class LowSpeedJob(Job):
     chunk: ClassVar[int] = 10
 
     def count(self) -> int:
-        """Number of motions."""
+        """Return the number of motions."""
         return len(self.points)
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """The structures under their excitations."""
+        """Return the structures under their excitations."""
         return self.points
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Some motions."""
+        """Compute some motions."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return {"rows": np.array([self.counted(instance, point) for point in items])}
 
     def counted(self, instance: EventInstance, point: Point) -> list[int]:
-        """What is counted of one motion, by ``COUNTS``."""
+        """Return what is counted of one motion, by ``COUNTS``."""
         begin(instance, *point, REST)
         impacts = follow_impacts(instance, point, REST, self.periods)
         form = ClosedForm.from_structure(*point)

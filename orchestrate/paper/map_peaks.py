@@ -45,15 +45,15 @@ class MapPeakJob(DerivedJob):
     periods: int = 10_000
 
     def needs(self) -> tuple[str, ...]:
-        """The map."""
+        """Return the name of the map."""
         return (self.map,)
 
     def count(self) -> int:
-        """One response."""
+        """Return one response."""
         return 1
 
     def question(self, inputs: Inputs) -> ImpactStatisticsJob:
-        """Where the map's impulse is largest."""
+        """Return where the map's impulse is largest."""
         impulses = inputs[self.map].impulse_max
         best = impulses.where(impulses == impulses.max(), drop=True)
         changed = self.structure.replace(**{self.parameter: float(best[self.parameter][0])})
@@ -66,7 +66,7 @@ class MapPeakJob(DerivedJob):
         )
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Its statistics, its largest impulse (15), and what its exponent says."""
+        """Return its statistics, its largest impulse (15), and what its exponent says."""
         structure = self.question(inputs).structure
         answer = super().dataset(table, inputs)
         factor = (1.0 + structure.e) * structure.mu / (1.0 + structure.mu)

@@ -54,7 +54,7 @@ DRAW: Mapping[str, Callable[..., Figure]] = {  # from the results of a part to i
 
 
 def is_current(part: Part, output: Path) -> bool:
-    """Whether a part's pictures are there, and no older than its data."""
+    """Return whether a part's pictures are there, and no older than its data."""
     pictures = [output / f"{part.picture}.{ending}" for ending in FORMATS]
     if not all(picture.is_file() for picture in pictures):
         return False

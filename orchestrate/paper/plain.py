@@ -9,7 +9,7 @@ MEANT = {"nan": "not found", "True": "yes", "False": "no", "inf": "without bound
 
 
 def plain(text: str) -> str:
-    """A sentence for people.
+    """Return a sentence for people.
 
     Examples
     --------

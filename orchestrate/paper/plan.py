@@ -68,7 +68,7 @@ class Plan:
     parts: dict[str, Part]
 
     def needed(self, parts: Iterable[Part]) -> list[Job]:
-        """Jobs that parts need, in order."""
+        """Return jobs that parts need, in order."""
         wanted = {job for part in parts for job in part.jobs}
         for job in reversed(self.jobs.values()):
             if job.name in wanted:
@@ -76,7 +76,7 @@ class Plan:
         return [job for job in self.jobs.values() if job.name in wanted]
 
     def choose(self, names: Sequence[str] | None) -> list[Part]:
-        """Parts by their names, all by default.
+        """Return parts by their names, all by default.
 
         Raises
         ------
@@ -94,7 +94,7 @@ class Plan:
 
 
 def sweep_job(structure: Structure, direction: str, resolution: Resolution) -> SweepJob:
-    """The sweep of a structure, ``up`` or ``down``."""
+    """Return the sweep of a structure, ``up`` or ``down``."""
     return SweepJob(
         name=f"orbit_{structure.label()}_{direction}",
         structure=structure,
@@ -112,7 +112,7 @@ def follow(kind: type[Followers], sweep: SweepJob, name: str, **fields: Any) -> 
 
 
 def settled_job(sweep: SweepJob, resolution: Resolution) -> SettledJob:
-    """What each fifth response of an up-sweep settles to; below 0.43 most have contact."""
+    """Return what each fifth response of an up-sweep settles to; below 0.43 most have contact."""
     etas = tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5]
     settings = AttractorSettings(transient=0, settle=0.0, longest=resolution.longest)
     return follow(SettledJob, sweep, "settled", eta=etas, settings=settings)
@@ -133,7 +133,7 @@ def later_jobs(sweep: SweepJob, resolution: Resolution) -> list[LaterJob]:
 
 
 def exponent_job(settled: SettledJob, resolution: Resolution) -> LyapunovJob:
-    """Exponents of settled responses: chaos that dies out is gone."""
+    """Return exponents of settled responses: chaos that dies out is gone."""
     return LyapunovJob(
         name=f"exponent_{settled.structure.label()}",
         structure=settled.structure,
@@ -172,7 +172,7 @@ def own_runs(sweep: SweepJob, settled: Sequence[SettledJob], resolution: Resolut
 
 
 def ramp_jobs(resolution: Resolution) -> list[CoupleJob]:
-    """The set ``rig`` on a slow ramp up through its resonance, bonded and delaminated."""
+    """Return the set ``rig`` on a slow ramp up through its resonance, bonded and delaminated."""
     structure, drive = Structure.from_file(RIG), Drive.from_file(RIG)
     volts = drive.volts(structure)
     ends = tuple(share * averaged.folds(structure, drive)[0].eta0 * volts for share in (0.55, 1.02))
@@ -186,7 +186,7 @@ def ramp_jobs(resolution: Resolution) -> list[CoupleJob]:
 
 
 def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution) -> EvenBasinJob:
-    """Gap and gap velocity around the two attractors, up to three times the largest gap."""
+    """Return gap and gap velocity around the two attractors, up to three times the largest gap."""
     side = resolution.basin
     return EvenBasinJob(
         name="basin",
@@ -201,7 +201,7 @@ def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution
 
 
 def curve_jobs(ups: Sequence[SweepJob], resolution: Resolution) -> dict[str, Job]:
-    """The curves of Figures 5, 7, 8, 9 and 12, by number."""
+    """Return the curves of Figures 5, 7, 8, 9 and 12, by number."""
     skip, keep = resolution.skip, resolution.keep
     first: Any = {"sweeps": (ups[0].name,), "structures": (ups[0].structure,), "skip": skip}
     every: Any = {
@@ -220,12 +220,12 @@ def curve_jobs(ups: Sequence[SweepJob], resolution: Resolution) -> dict[str, Job
 
 
 def names_of(jobs: Iterable[Job]) -> tuple[str, ...]:
-    """Their names."""
+    """Return their names."""
     return tuple(job.name for job in jobs)
 
 
 def make(resolution: Resolution) -> Plan:
-    """The plan at a resolution."""
+    """Return the plan at a resolution."""
     ups = [sweep_job(structure, "up", resolution) for structure in CASES.values()]
     downs = [sweep_job(structure, "down", resolution) for structure in CASES.values()]
     counted: Any = {"transient": 0, "periods": resolution.steady}
@@ -255,7 +255,7 @@ def make(resolution: Resolution) -> Plan:
 def further_jobs(
     ups: Sequence[SweepJob], settled: Sequence[SettledJob], resolution: Resolution
 ) -> dict[str, list[Job]]:
-    """What goes beyond the paper's figures, by part."""
+    """Return what goes beyond the paper's figures, by part."""
     first = ups[0]
     attractors = AttractorsJob(
         name="attractors",

@@ -44,7 +44,7 @@ class Region(NamedTuple):
 
 
 def nearest_window(limits: xr.Dataset, case: str, orbit: str, inside: float) -> StableWindow:
-    """The stable window of an orbit that holds a frequency, or is nearest to it."""
+    """Return the stable window of an orbit that holds a frequency, or is nearest to it."""
     windows = windows_of(limits, case, orbit)
     return min(windows, key=lambda one: max(one.low - inside, inside - one.high, 0.0))
 

@@ -90,7 +90,7 @@ def write(
 
 
 def summary(claims: Sequence[Mapping[str, str]]) -> dict[str, Any]:
-    """How many claims have which verdict, and those that differ from the paper."""
+    """Return how many claims have which verdict, and those that differ from the paper."""
     numbered = [{**row, "number": number} for number, row in enumerate(claims, 1)]
     return {
         "counts": {verdict: sum(row["verdict"] == verdict for row in claims) for verdict in WORDS},
@@ -99,7 +99,7 @@ def summary(claims: Sequence[Mapping[str, str]]) -> dict[str, Any]:
 
 
 def entry(part: Part, picture: Path) -> dict[str, Any]:
-    """What the page shows of a part."""
+    """Return what the page shows of a part."""
     caption = CAPTIONS[part.name]
     content = picture.read_bytes()
     return {

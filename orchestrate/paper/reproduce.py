@@ -75,7 +75,7 @@ def reproduce(
 
 
 def check_claims(output: Path, names: Sequence[str], full: bool) -> dict[str, Any]:
-    """The claims, and what goes beyond them, kept beside the report as JSON too."""
+    """Return the claims, and what goes beyond them, kept beside the report as JSON too."""
     data = {name: load(output / f"{name}.nc") for name in names}
     found = {
         "claims": claims.table(data, full),

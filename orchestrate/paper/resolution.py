@@ -70,7 +70,7 @@ class Resolution:
     map_keep: int = 60
 
     def etas(self) -> tuple[float, ...]:
-        """The paper's 0.1 <= eta <= 8.0 by 0.001, upwards."""
+        """Return the paper's 0.1 <= eta <= 8.0 by 0.001, upwards."""
         return tuple(float(eta) for eta in np.arange(100, 8001) / 1000.0)
 
     def attractor_etas(self) -> tuple[float, ...]:

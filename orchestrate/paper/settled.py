@@ -46,7 +46,7 @@ class SettledJob(OnwardQuestion):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
     ) -> Table:
-        """Some responses."""
+        """Compute some responses."""
         rows, ends, contacts = [], [], []
         with Instance(fmus[OSCILLATOR]) as instance:
             for item in items:
@@ -62,7 +62,7 @@ class SettledJob(OnwardQuestion):
         return {"rows": np.array(rows), "end": np.array(ends), "contact": np.array(contacts)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """What they are, over the parameter."""
+        """Return what they are, over the parameter."""
         import xarray as xr
 
         along = self.series.name

@@ -28,14 +28,14 @@ class PeakSpectraJob(DerivedJob):
     others: tuple[float, ...] = (0.4, 1.13)
 
     def needs(self) -> tuple[str, ...]:
-        """The sweep."""
+        """Return the name of the sweep."""
         return (self.sweep,)
 
     def count(self) -> int:
-        """Number of frequencies."""
+        """Return the number of frequencies."""
         return 1 + len(self.others)
 
     def question(self, inputs: Inputs) -> SpectraJob:
-        """Their spectra."""
+        """Return their spectra."""
         peak = float(inputs[self.sweep].xi_rel_max.idxmax())
         return SpectraJob(name=self.name, structure=self.structure, eta=(peak, *self.others))

@@ -49,7 +49,7 @@ class LaterJob(OnwardQuestion):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
     ) -> Table:
-        """Some responses."""
+        """Compute some responses."""
         rows = []
         with Instance(fmus[OSCILLATOR]) as instance:
             for item in items:
@@ -61,7 +61,7 @@ class LaterJob(OnwardQuestion):
         return {"rows": np.array(rows)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """What they are then, over the parameter."""
+        """Return what they are then, over the parameter."""
         import xarray as xr
 
         along = self.series.name
@@ -74,7 +74,7 @@ class LaterJob(OnwardQuestion):
 
 
 def changed(swept: xr.Dataset, later: xr.Dataset, tolerance: float) -> dict[str, np.ndarray]:
-    """Which of a sweep's responses are others later, by what has become of them.
+    """Return which of a sweep's responses are others later, by what has become of them.
 
     Parameters
     ----------

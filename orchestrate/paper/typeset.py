@@ -41,17 +41,17 @@ LATEX = tuple(WORDS.values())
 
 @functools.cache
 def mathml(latex: str) -> Markup:
-    """A formula of LaTeX in a line of text."""
+    """Return a formula of LaTeX in a line of text."""
     return Markup(tex2mathml(latex).replace("\n", ""))
 
 
 def latex_of(match: re.Match[str]) -> str:
-    """The LaTeX of a formula found in a sentence."""
+    """Return the LaTeX of a formula found in a sentence."""
     return match.expand(LATEX[int(str(match.lastgroup).removeprefix("word"))])
 
 
 def typeset(text: str) -> Markup:
-    r"""A sentence as HTML, its formulas typeset.
+    r"""Return a sentence as HTML, its formulas typeset.
 
     Examples
     --------

@@ -7,7 +7,7 @@ import xarray as xr
 
 
 def runs(flags: np.ndarray) -> list[tuple[int, int]]:
-    """First and last index of each run of true values."""
+    """Return first and last index of each run of true values."""
     padded = np.concatenate([[False], np.asarray(flags, dtype=bool), [False]])
     edges = np.flatnonzero(padded[1:] != padded[:-1])
     return [
@@ -16,12 +16,12 @@ def runs(flags: np.ndarray) -> list[tuple[int, int]]:
 
 
 def longest(flags: np.ndarray) -> tuple[int, int] | None:
-    """The longest run, as a pair of indices; None where there is none."""
+    """Return the longest run, as a pair of indices; None where there is none."""
     return max(runs(flags), key=lambda run: run[1] - run[0], default=None)
 
 
 def simple(sweep: xr.Dataset, n: int) -> np.ndarray:
-    """Where responses have the period nT and one impact in it."""
+    """Return where responses have the period nT and one impact in it."""
     slack = 1.5 / sweep.sizes["sample"]  # of a count over a span that is no multiple of the period
     one = np.abs(sweep.impacts_per_period.values - 1.0 / n) <= slack
     return (sweep.multiplicity.values == n) & one
@@ -44,6 +44,6 @@ def relative_peak(sweep: xr.Dataset, n: int) -> float | None:
 
 
 def summit(etas: np.ndarray, gaps: np.ndarray) -> float | None:
-    """The eta of the largest local maximum that is not at an end, or None."""
+    """Return the eta of the largest local maximum that is not at an end, or None."""
     inside = np.flatnonzero((gaps[1:-1] > gaps[:-2]) & (gaps[1:-1] >= gaps[2:])) + 1
     return float(etas[inside[np.argmax(gaps[inside])]]) if len(inside) else None

@@ -10,19 +10,14 @@ Kind = TypeVar("Kind", bound="Described")
 
 
 class Described:
-    """Base of what sections of a TOML file describe; a class's name is what it is called there.
+    """Base of what sections of a TOML file describe; a class's name is what it is called there."""
 
-    Attributes
-    ----------
-    reader : callable
-        :func:`orchestrate.structures.files.read_section`, which knows all the classes.
-    """
-
-    reader: ClassVar[Callable[..., Any]]
+    # read_section of the module files, which knows all the classes
+    _reader: ClassVar[Callable[..., Any]]
 
     @classmethod
     def _read(cls: type[Kind], path: str | PathLike[str], structure: Any = None) -> Kind:
         """Read it from a file, or from a set that comes with the package."""
-        described = Described.reader(path, cls.__name__.lower(), structure)
+        described = Described._reader(path, cls.__name__.lower(), structure)
         assert isinstance(described, cls)
         return described

@@ -129,7 +129,7 @@ def read_section(
     return contents[name]
 
 
-Described.reader = read_section
+Described._reader = read_section
 
 
 def parse(path: Path) -> dict[str, Any]:

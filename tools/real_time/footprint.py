@@ -36,7 +36,7 @@ class CallGraph:
     called: dict[str, set[str]]
 
     def deepest(self, function: str, without: tuple[str, ...] = ()) -> int:
-        """Bytes of stack of a call, those of the C library not counted.
+        """Return the bytes of stack of a call, those of the C library not counted.
 
         Parameters
         ----------
@@ -74,12 +74,12 @@ class CallGraph:
 
 
 def plain_name(title: str) -> str:
-    """A function's name: without its file, and without what gcc adds to a part of it."""
+    """Return a function's name: without its file, and without what gcc adds to a part of it."""
     return title.rpartition(":")[2].partition(".")[0]
 
 
 def call_graph(sources: Path, compiler: str, *flags: str) -> CallGraph:
-    """The call graph of an FMU's sources.
+    """Return the call graph of an FMU's sources.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def call_graph(sources: Path, compiler: str, *flags: str) -> CallGraph:
 
 
 def stack_table(sources: Path, *flags: str) -> dict[str, dict[str, int]]:
-    """Bytes of stack by machine and by what a call is for; "a refusal" is a step with its
+    """Return bytes of stack by machine and by what a call is for; "a refusal" is a step with its
     message, but without what the C library's ``snprintf`` takes.
     """
     table = {}

@@ -15,7 +15,7 @@ CORTEX_M7 = ("-mcpu=cortex-m7", "-mthumb", "-mfpu=fpv5-d16", "-mfloat-abi=hard")
 
 
 def unpack(fmu: str | PathLike[str], folder: Path) -> Path:
-    """The FMU's ``sources/`` below a folder."""
+    """Return the FMU's ``sources/`` below a folder."""
     with zipfile.ZipFile(fmu) as archive:
         inside = [name for name in archive.namelist() if name.startswith("sources/")]
         archive.extractall(folder, inside)
@@ -23,17 +23,17 @@ def unpack(fmu: str | PathLike[str], folder: Path) -> Path:
 
 
 def c_files(sources: Path) -> list[Path]:
-    """What is compiled."""
+    """Return what is compiled."""
     return sorted(sources.glob("*.c"))
 
 
 def missing(*programs: str) -> list[str]:
-    """Those of some programs that this machine does not have."""
+    """Return those of some programs that this machine does not have."""
     return [program for program in programs if shutil.which(program) is None]
 
 
 def run(*command: str | PathLike[str], cwd: Path | None = None, timeout: float = 600.0) -> str:
-    """What a command prints.
+    """Return what a command prints.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def version_of(compiler: str) -> str:
 
 
 def build(sources: Path, programs: Sequence[str], target: Path, compiler: str, *flags: str) -> Path:
-    """The sources and C files of this folder as one program."""
+    """Return the sources and C files of this folder as one program."""
     own = [HERE / program for program in programs]
     run(compiler, *flags, f"-I{sources}", *c_files(sources), *own, "-lm", "-o", target)
     return target

@@ -49,7 +49,7 @@ class StepTimes:
         )
 
     def quantile(self, part: float) -> int:
-        """The time, ns, that a part of the steps does not exceed."""
+        """Return the time, ns, that a part of the steps does not exceed."""
         wanted, seen = part * self.histogram.total(), 0
         for time, count in sorted(self.histogram.items()):
             seen += count
@@ -82,7 +82,7 @@ def measure(fmu: str | PathLike[str], eta: float, steps: int) -> StepTimes:
 
 
 def row(name: str, times: StepTimes) -> str:
-    """A row of the manual's table, times in microseconds."""
+    """Return a row of the manual's table, times in microseconds."""
     parts = [f"{times.quantile(part) / 1000.0:.2f}" for part in PARTS.values()]
     counts = [f"{n:,}" for n in (times.impacts, times.contacts, times.evaluations)]
     return f"| {' | '.join([name, f'{times.histogram.total():,}', *parts, *counts])} |"

@@ -18,18 +18,18 @@ BOARD = ("-M", "mps2-an500", "-nographic", "-semihosting-config", "enable=on,tar
 
 
 def printed(text: str) -> dict[str, str]:
-    """What the program said, by its names."""
+    """Return what the program said, by its names."""
     return dict(line.split(maxsplit=1) for line in text.splitlines())
 
 
 def on_desktop(sources: Path, folder: Path, *flags: str) -> dict[str, str]:
-    """The trajectory on this machine."""
+    """Return the trajectory on this machine."""
     program = build(sources, [PROGRAM], folder / "desktop", "gcc", "-O2", *BITS, *flags)
     return printed(run(program))
 
 
 def on_cortex_m7(sources: Path, folder: Path, *flags: str) -> dict[str, str]:
-    """The trajectory on a bare Cortex-M7 under QEMU, and the bytes of the program."""
+    """Return the trajectory on a bare Cortex-M7 under QEMU, and the bytes of the program."""
     options = ("-O2", *CORTEX_M7, *BITS, *SMALL, *BARE, "-DSTACK_PAINTED", *flags)
     program = build(
         sources, [PROGRAM, "startup.c"], folder / "cortex-m7", "arm-none-eabi-gcc", *options
@@ -42,7 +42,7 @@ def on_cortex_m7(sources: Path, folder: Path, *flags: str) -> dict[str, str]:
 def on_riscv64(
     sources: Path, folder: Path, *flags: str, standard: tuple[str, ...] = BITS
 ) -> dict[str, str]:
-    """The trajectory on RISC-V 64 under QEMU."""
+    """Return the trajectory on RISC-V 64 under QEMU."""
     options = ("-O2", "-static", *standard, *flags)
     program = build(sources, [PROGRAM], folder / "riscv64", "riscv64-linux-gnu-gcc", *options)
     return printed(run("qemu-riscv64", program))
@@ -52,6 +52,6 @@ RUNS = {"desktop": on_desktop, "Cortex-M7": on_cortex_m7, "RISC-V 64": on_riscv6
 
 
 def all_targets(sources: Path, folder: Path) -> dict[str, dict[str, str]]:
-    """The trajectory on each target whose tools are here."""
+    """Return the trajectory on each target whose tools are here."""
     known = [name for name in RUNS if not missing(*TOOLS[name])]
     return {name: RUNS[name](sources, folder) for name in known}

@@ -19,7 +19,7 @@ CROWD = 70_000  # files
 
 
 def content(fmu: Path) -> dict[str, bytes]:
-    """Files of an FMU."""
+    """Return files of an FMU."""
     with zipfile.ZipFile(fmu) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 
@@ -72,7 +72,7 @@ def bomb(fmu: Path, place: Path, chance: random.Random) -> None:
 
 @functools.cache
 def made_bomb(fmu: Path, kind: int) -> bytes:
-    """One large file, many of them, or a large one that says it is small."""
+    """Return one large file, many of them, or a large one that says it is small."""
     zeros, stream = bytes(1 << 24), io.BytesIO()
     count = BOMB >> 24
     files, parts = (count, 1) if kind == 1 else (1, count)

@@ -52,7 +52,7 @@ def draw(rng: np.random.Generator) -> Drawn:
 
 
 def decade(rng: np.random.Generator, low: float, high: float) -> float:
-    """A number uniform in its logarithm."""
+    """Return a number uniform in its logarithm."""
     return float(np.exp(rng.uniform(math.log(low), math.log(high))))
 
 
@@ -97,7 +97,7 @@ class Motion:
         return float(max(abs(np.array([x1, x2, v1, v2])).max() / size, abs(x2 - x1) / gap))
 
     def wrong(self) -> Iterator[str]:
-        """What is wrong with what is reported of it."""
+        """Yield what is wrong with what is reported of it."""
         n = self.periods
         closes = self.away(self.states[n], self.states[0])
         if closes > RETURNS:
@@ -127,7 +127,7 @@ class Motion:
         return int(((times > begun) & (times <= begun + TURNS * span)).sum())
 
     def wrong_by_orbit(self) -> Iterator[str]:
-        """What Newton's method from its state at phase 0 does not confirm."""
+        """Yield what Newton's method from its state at phase 0 does not confirm."""
         if not math.isfinite(float(self.reported.multiplier)):
             return
         quiet: Any = {"progress": False, "jobs": 1, "fmu": self.fmu}
@@ -149,7 +149,7 @@ class Motion:
             yield "orbit: another one"
 
     def is_same(self, other: Motion) -> bool:
-        """Whether another motion has a state of this one at phase 0."""
+        """Return whether another motion has a state of this one at phase 0."""
         return any(self.away(row, other.state) < DIFFERS for row in self.states)
 
 
@@ -169,7 +169,7 @@ class Attractors(Campaign):
     unit, target, batch, package = "structures", 2_000, 20, True
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """One structure after the other."""
+        """Return one structure after the other."""
         rng, notes, counts, wrong = np.random.default_rng(seed), [], Counter[str](), 0
         for number in range(count):
             drawn = draw(rng)
@@ -180,7 +180,7 @@ class Attractors(Campaign):
 
 
 def findings(fmu: Path, drawn: Drawn, seed: int, counts: Counter[str]) -> Iterator[str]:
-    """What is wrong with the attractors of one structure."""
+    """Yield what is wrong with the attractors of one structure."""
     quiet: Any = {"progress": False, "jobs": 1, "fmu": fmu}
     answer = orchestrate.attractors(
         drawn.structure, eta=list(drawn.etas), starts=STARTS, seed=seed, **quiet

@@ -39,12 +39,12 @@ Bits = tuple[str, ...]
 
 
 def hexadecimal(values: Sequence[float]) -> Bits:
-    """Numbers to the last bit; all that are not numbers alike."""
+    """Return numbers to the last bit; all that are not numbers alike."""
     return tuple("nan" if math.isnan(value) else float(value).hex() for value in values)
 
 
 def by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Outputs at the end, by an FMU."""
+    """Return the outputs at the end, by an FMU."""
     values = {**drawn.values, "bonded": bool(drawn.values.get("bonded"))}
     with Instance(fmu) as instance:
         try:
@@ -60,7 +60,7 @@ def by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
 
 @functools.cache
 def web_module() -> Any:
-    """The kernel as WebAssembly under wasmtime."""
+    """Return the kernel as WebAssembly under wasmtime."""
     from orchestrate.access.webassembly import web_kernel
     from tests.orchestrate.explorer.kernels import Web
 
@@ -68,7 +68,7 @@ def web_module() -> Any:
 
 
 def by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Outputs at the end, by the WebAssembly module."""
+    """Return the outputs at the end, by the WebAssembly module."""
     web = web_module()
     size = 8 * web.slots["SIZE"]
     web.exports["memory"].write(web.store, bytes(size), web.address)
@@ -105,7 +105,7 @@ def arm() -> Any:
 
 
 def by_arm(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Outputs at the end, by the ARM binary under an emulator."""
+    """Return the outputs at the end, by the ARM binary under an emulator."""
     names, values = (*STATE, *STEP), {k: float(v) for k, v in drawn.values.items()}
     settings = [f"{name}={value.hex()}" for name, value in values.items()]
     program, times = arm(), [drawn.start_time, *grid]
@@ -119,7 +119,7 @@ def by_arm(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
 
 
 def reachable(start: float, grid: Sequence[float]) -> list[float]:
-    """Those of a grid's points that a step arrives at to the last bit, from the one before.
+    """Return those of a grid's points that a step arrives at to the last bit, from the one before.
 
     A master's step ends at ``time + (target - time)``, which may be the number beside the target;
     the end would then be another one on another grid.
@@ -135,7 +135,7 @@ def reachable(start: float, grid: Sequence[float]) -> list[float]:
 
 
 def differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
-    """Where one motion has other bits than another: a line each."""
+    """Return where one motion has other bits than another: a line each."""
     wrong: list[str] = []
     grids = [reachable(drawn.start_time, grid) for grid in drawn.grids()]
     first = [by_fmu(find(OSCILLATOR).path, drawn, grid) for grid in grids]
@@ -154,7 +154,7 @@ def differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
 
 
 def different(one: Bits, other: Bits) -> str:
-    """Names of the outputs that differ."""
+    """Return the names of the outputs that differ."""
     if NOT in (*one, *other):
         return "one of them does not get there"
     names = (*STATE, *STEP)

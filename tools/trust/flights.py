@@ -141,7 +141,7 @@ def flights(fmu: Path, seed: int, count: int) -> Iterator[Flight]:
 
 
 def deviation(flight: Flight) -> float:
-    """How far a flight's end is from the truth, in parts of what is allowed."""
+    """Return how far a flight's end is from the truth, in parts of what is allowed."""
     from mpmath import mp
 
     from tests.kernels.oscillator import truth
@@ -163,7 +163,7 @@ def deviation(flight: Flight) -> float:
 
 
 def size(signal: Any, t: float) -> float:
-    """The sum of a signal's terms, which rounding is a part of."""
+    """Return the sum of a signal's terms, which rounding is a part of."""
     size, power = sum(abs(complex(c)) for c, _ in signal.terms), 1.0
     for k, part in enumerate(signal.polynomial):
         size += abs(float(part)) * power

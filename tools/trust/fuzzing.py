@@ -19,7 +19,7 @@ COVERAGE = 400  # sequences of the build that counts branches
 
 @functools.cache
 def importer(fmu: Path, version: str, model: str, options: tuple[str, ...]) -> Any:
-    """The importer of the tests for a model, with options in it and in the shim."""
+    """Return the importer of the tests for a model, with options in it and in the shim."""
     from tests.native import test_fuzz
 
     folder = temporary() / f"{version}-{model}-{len(options)}{options[0][2:10]}"
@@ -64,7 +64,7 @@ class Fuzzing(Campaign):
 
 
 def left_out(fmu: Path, seed: int) -> float:
-    """Percent of the shim's branches that random calls of both versions do not take."""
+    """Return the percent of the shim's branches that random calls of both versions do not take."""
     from tests.native import importers, test_fuzz
 
     branches: dict[object, bool] = {}

@@ -27,7 +27,7 @@ class System(NamedTuple):
     drive: Drive
 
     def of_kind(self, kind: str) -> System:
-        """The same, bonded or delaminated."""
+        """Return the same, bonded or delaminated."""
         bonded = kind == "bonded"
         structure = self.structure.as_bonded() if bonded else self.structure.as_delaminated()
         return self._replace(structure=structure)
@@ -36,7 +36,7 @@ class System(NamedTuple):
 def held_speeds(
     system: System, first: float, voltages: Sequence[float], part: float = 1.0
 ) -> np.ndarray:
-    """Mean speeds at the ends of holds, one after the other.
+    """Return mean speeds at the ends of holds, one after the other.
 
     Parameters
     ----------

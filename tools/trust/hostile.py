@@ -65,7 +65,7 @@ class Hostile(Campaign):
 
 
 def good_results(folder: Path) -> tuple[Path, Path]:
-    """A sweep and a branch, to be damaged and forged."""
+    """Return a sweep and a branch, to be damaged and forged."""
     import orchestrate
 
     places = folder / "good.nc", folder / "branch.nc"
@@ -105,7 +105,7 @@ def opened(
 def prepare(
     folder: Path, fmu: Path, good: Path, chance: random.Random, number: int
 ) -> tuple[str, list[str]]:
-    """An input's kind, and the command that reads it."""
+    """Return an input's kind, and the command that reads it."""
     turn = number % 4
     if turn in (0, 1):
         kind = list(archives.KINDS)[(number // 2) % len(archives.KINDS)]
@@ -147,13 +147,13 @@ def hand(arguments: list[str], folder: Path) -> tuple[Ended, list[str]]:
 
 
 def outside(folder: Path) -> list[Path]:
-    """Where a file of the attacks would show, had it escaped."""
+    """Return where a file of the attacks would show, had it escaped."""
     places = (Path("/"), Path("/tmp"), *folder.parents, folder, Path.cwd(), *Path.cwd().parents)
     return [place / "escaped" for place in dict.fromkeys(places)]
 
 
 def verdict(ended: Ended, strays: list[str]) -> str:
-    """What is wrong with how a command ended; empty where nothing is."""
+    """Return what is wrong with how a command ended; empty where nothing is."""
     if strays:
         return f"left {', '.join(strays)}"
     if ended.seconds > SLOW:

@@ -25,12 +25,12 @@ TOLD = 20  # notes of a batch that are kept
 
 
 def batch_seed(seed: int, batch: int) -> int:
-    """The seed of a batch: those of neighbours have nothing in common."""
+    """Return the seed of a batch: those of neighbours have nothing in common."""
     return int.from_bytes(hashlib.sha256(f"{seed} {batch}".encode()).digest()[:6], "big")
 
 
 def sources() -> str:
-    """A digest of all campaigns' sources: other sources, another question."""
+    """Return a digest of all campaigns' sources: other sources, another question."""
     return digest(HERE)
 
 
@@ -47,11 +47,11 @@ class CampaignJob(Job):
     item: ClassVar[str] = "batch"
 
     def count(self) -> int:
-        """Number of batches."""
+        """Return the number of batches."""
         return -(-self.budget // self.size)
 
     def items(self, inputs: Inputs) -> Sequence[tuple[int, int]]:
-        """Seed and units of each batch."""
+        """Return seed and units of each batch."""
         left = [self.budget - i * self.size for i in range(self.count())]
         return [(batch_seed(self.seed, i), min(self.size, n)) for i, n in enumerate(left)]
 
@@ -71,7 +71,7 @@ class CampaignJob(Job):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Batches side by side."""
+        """Return batches side by side."""
         about = {
             "done": ("1", "units done"),
             "findings": ("1", "units where the promise did not hold"),
@@ -89,13 +89,13 @@ class CampaignJob(Job):
 
 
 def without_places(note: str) -> str:
-    """A note for a record: where things lie on this machine is nobody else's matter."""
+    """Return a note for a record: where things lie on this machine is nobody else's matter."""
     for folder in (HERE.parents[1], Path(sys.prefix), Path.home()):
         note = note.replace(f"{folder}{os.sep}", "")
     return note
 
 
 def processor_time() -> float:
-    """Seconds that this process and its ended children have used."""
+    """Return the seconds that this process and its ended children have used."""
     spent = os.times()
     return spent.user + spent.system + spent.children_user + spent.children_system

@@ -53,7 +53,7 @@ PATIENCE = 600.0  # s; who takes longer is noticed too
 
 
 def places(tree: ast.AST) -> Iterator[tuple[int, str]]:
-    """Nodes that can be changed, by their number in a walk, and how."""
+    """Yield nodes that can be changed, by their number in a walk, and how."""
     for number, node in enumerate(ast.walk(tree)):
         if isinstance(node, (ast.BinOp, ast.AugAssign)) and type(node.op) in OTHER:
             yield number, "operator"
@@ -83,14 +83,14 @@ def change(tree: ast.AST, number: int) -> str:
 
 
 def mutant(source: str, chance: random.Random) -> tuple[str, str]:
-    """A source with one change, and what was changed."""
+    """Return a source with one change, and what was changed."""
     tree = ast.parse(source)
     note = change(tree, chance.choice(list(places(tree)))[0])
     return ast.unparse(ast.fix_missing_locations(tree)), note
 
 
 def copied(folder: Path) -> Path:
-    """A copy of the sources and tests, to be changed."""
+    """Return a copy of the sources and tests, to be changed."""
     for name in TREES:
         place = ROOT / name
         if place.is_dir():
@@ -102,7 +102,7 @@ def copied(folder: Path) -> Path:
 
 
 def noticed(folder: Path, tests: tuple[str, ...]) -> bool:
-    """Whether some test fails, or does not end."""
+    """Return whether some test fails, or does not end."""
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider"]
     surroundings = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     try:

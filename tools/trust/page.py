@@ -32,23 +32,23 @@ TABLE = ["| campaign | target | reached | findings |", "|---|---|---|---|"]
 
 
 def together(records: Sequence[Record], campaign: Campaign) -> list[Record]:
-    """A campaign's runs on what it attacked last, of each seed the longest."""
+    """Return a campaign's runs on what it attacked last, of each seed the longest."""
     return longest(all_of(records, campaign))
 
 
 def all_of(records: Sequence[Record], campaign: Campaign) -> list[Record]:
-    """All of a campaign's runs on what it attacked last."""
+    """Return all of a campaign's runs on what it attacked last."""
     own = [record for record in records if record.campaign == campaign.name]
     return [record for record in own if same(record, own[-1])]
 
 
 def batches(record: Record) -> tuple[str, int, str, str]:
-    """What decides on the batches of a run, but for how many there are."""
+    """Return what decides on the batches of a run, but for how many there are."""
     return record.campaign, record.seed, subject(record), record.campaigns
 
 
 def findings(records: Sequence[Record]) -> int:
-    """What was found, of runs of the same batches the most that one of them has found."""
+    """Return what was found, of runs of the same batches the most that one of them has found."""
     most: dict[tuple[str, int, str, str], int] = {}
     for record in records:
         most[batches(record)] = max(most.get(batches(record), 0), record.findings)
@@ -62,22 +62,22 @@ def longest(records: Sequence[Record]) -> list[Record]:
 
 
 def same(one: Record, other: Record) -> bool:
-    """Whether two runs attacked the same."""
+    """Return whether two runs attacked the same."""
     return subject(one) == subject(other)
 
 
 def subject(record: Record) -> str:
-    """What a run attacked."""
+    """Return what a run attacked."""
     return record.package if CAMPAIGNS[record.campaign].package else record.fmu
 
 
 def number(value: float) -> str:
-    """A count as people write it."""
+    """Return a count as people write it."""
     return f"{value:,.0f}"
 
 
 def summary(records: Sequence[Record]) -> list[str]:
-    """A table, a campaign a row."""
+    """Return a table, a campaign a row."""
     lines = list(TABLE)
     for campaign in CAMPAIGNS.values():
         done = sum(r.done for r in together(records, campaign))
@@ -89,7 +89,7 @@ def summary(records: Sequence[Record]) -> list[str]:
 
 
 def reached(campaign: Campaign, every: Sequence[Record], before: Sequence[Record]) -> list[str]:
-    """How much was done, what was found, and how long what is missing would take."""
+    """Return how much was done, what was found, and how long what is missing would take."""
     runs = longest(every)
     done, seconds = sum(r.done for r in runs), sum(r.seconds for r in runs)
     count_of_findings = findings(every)
@@ -120,7 +120,7 @@ def reached(campaign: Campaign, every: Sequence[Record], before: Sequence[Record
 
 
 def section(campaign: Campaign, runs: Sequence[Record], before: Sequence[Record]) -> list[str]:
-    """One campaign."""
+    """Return one campaign."""
     lines = [f"(trust-{campaign.name})=", f"## {campaign.title}", "", campaign.asks, ""]
     if not runs:
         return [*lines, "Not run yet.", ""]
@@ -136,7 +136,7 @@ def section(campaign: Campaign, runs: Sequence[Record], before: Sequence[Record]
 
 
 def about(records: Sequence[Record]) -> list[str]:
-    """What was attacked, and where."""
+    """Return what was attacked, and where."""
     guids = sorted({r.fmu for c in CAMPAIGNS.values() for r in together(records, c)})
     machines = sorted({r.machine for r in records})
     lines = ["## What was attacked, and where", ""]
@@ -146,7 +146,7 @@ def about(records: Sequence[Record]) -> list[str]:
 
 
 def text(records: Sequence[Record]) -> str:
-    """The whole page."""
+    """Return the whole page."""
     lines = [*summary(records), ""]
     for campaign in CAMPAIGNS.values():
         runs = all_of(records, campaign)

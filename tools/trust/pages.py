@@ -26,7 +26,7 @@ READY = "return Boolean(window.explorer)"
 
 
 def payloads(address: str) -> list[str]:
-    """Texts that run the canary, or ask ``address``, where a page takes them for markup."""
+    """Return texts that run the canary, or ask ``address``, where a page takes them for markup."""
     beacon = f"fetch('{address}')"
     return [
         f"</script><script>{CANARY}</script>",
@@ -114,7 +114,7 @@ def forged_branch(place: Path, chance: random.Random, good: Any, address: str) -
 
 
 def wrapped(chance: random.Random, bad: Sequence[str]) -> str:
-    """One of the texts, alone or inside another."""
+    """Return one of the texts, alone or inside another."""
     text = chance.choice(bad).replace("\0", "")
     return chance.choice((text, f"vibroimpact 0.2.0{text}", f"{text}{chance.choice(bad)[:80]}"))
 
@@ -126,7 +126,7 @@ class Window:
         self.driver, self.address, self.asked = driver, address, asked
 
     def verdict(self, page: Path, fragment: str = "") -> str:
-        """What is wrong with a page; empty where it works and nothing of the file ran."""
+        """Return what is wrong with a page; empty where it works and nothing of the file ran."""
         from selenium.common.exceptions import WebDriverException
         from selenium.webdriver.support.ui import WebDriverWait
 
@@ -148,7 +148,7 @@ class Window:
 
 @contextmanager
 def window() -> Iterator[Window]:
-    """A browser as long as it is needed."""
+    """Return a browser as long as it is needed."""
     programs = shutil.which("chromium"), shutil.which("chromedriver")
     if None in programs:
         raise InputError("pages are opened in Chromium: expected chromium and chromedriver")
@@ -164,7 +164,7 @@ def window() -> Iterator[Window]:
 
 @contextmanager
 def server() -> Iterator[tuple[str, list[str]]]:
-    """A server on this machine: its address, and the paths that it was asked for."""
+    """Return a server on this machine: its address, and the paths that it was asked for."""
     asked: list[str] = []
 
     class Handler(http.server.BaseHTTPRequestHandler):
@@ -186,7 +186,7 @@ def server() -> Iterator[tuple[str, list[str]]]:
 
 
 def fragment(chance: random.Random, address: str) -> str:
-    """What may stand behind the # of a link to a page."""
+    """Return what may stand behind the # of a link to a page."""
     from urllib.parse import quote
 
     text = quote(chance.choice(payloads(address)))

@@ -20,7 +20,7 @@ CALLS = ("-fno-math-errno", "-fno-trapping-math", "-fcx-limited-range")
 
 
 def compiler() -> list[str]:
-    """The machine's own C compiler, else ziglang's."""
+    """Return the machine's own C compiler, else ziglang's."""
     own = shutil.which("cc") or shutil.which("gcc")
     return [own] if own else [sys.executable, "-m", "ziglang", "cc"]
 
@@ -54,7 +54,7 @@ def compiled(fmu: Path, name: str) -> Path:
 
 @functools.cache
 def temporary() -> Path:
-    """A folder of this process, removed at its end."""
+    """Return a folder of this process, removed at its end."""
     holder = tempfile.TemporaryDirectory(prefix="vibroimpact-trust-")
     _kept.append(holder)
     return Path(holder.name)
@@ -64,13 +64,13 @@ _kept: list[tempfile.TemporaryDirectory[str]] = []
 
 
 def library(fmu: Path) -> Path:
-    """The FMU's binary for this machine, unpacked."""
+    """Return the FMU's binary for this machine, unpacked."""
     description = describe(fmu)
     return unpacked(description) / "binaries" / "x86_64-linux" / f"{description.identifier}.so"
 
 
 def run(fmu: Path, name: str, *arguments: object, success: bool = True) -> str:
-    """What a program prints."""
+    """Return what a program prints."""
     command = [str(compiled(fmu, name)), str(library(fmu)), *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True)
     if success and done.returncode:

@@ -78,18 +78,18 @@ class Record:
     campaigns: str = ""
 
     def command(self) -> str:
-        """What does it again."""
+        """Return what does it again."""
         return (
             f"python -m tools.trust run {self.campaign} --seed {self.seed} --budget {self.budget}"
         )
 
     def is_copy(self, other: Record) -> bool:
-        """Whether another record is of this very run, its stored result read once more."""
+        """Return whether another record is of this very run, its stored result read once more."""
         return {**asdict(self), "date": ""} == {**asdict(other), "date": ""}
 
 
 def record_of(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> Record:
-    """A finished run's record."""
+    """Return a finished run's record."""
     told = [json.loads(str(text)) for text in answer.told.values]
     counts: Counter[str] = Counter()
     for part in told:
@@ -115,7 +115,7 @@ def record_of(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> Reco
 
 
 def digest(folder: Path) -> str:
-    """A digest of a program's sources, with their names."""
+    """Return a digest of a program's sources, with their names."""
     hashed = hashlib.sha256()
     for path in sorted(path for path in folder.rglob("*") if path.suffix in SOURCES):
         content = path.read_bytes()
@@ -124,7 +124,7 @@ def digest(folder: Path) -> str:
 
 
 def machine() -> str:
-    """The machine in a line: nothing that names its owner."""
+    """Return the machine in a line: nothing that names its owner."""
     try:
         text = Path("/proc/cpuinfo").read_text("utf-8")
         model = re.findall(r"model name\s*: (.*)", text)[0]
@@ -135,7 +135,7 @@ def machine() -> str:
 
 
 def read(path: Path = RECORDS) -> list[Record]:
-    """All records, the oldest first."""
+    """Return all records, the oldest first."""
     lines = path.read_text("utf-8").splitlines() if path.exists() else []
     return [Record(**json.loads(line)) for line in lines]
 

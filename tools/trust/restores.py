@@ -52,12 +52,12 @@ class Course:
 
 @functools.cache
 def path_of(model: str, form: str) -> Path:
-    """An FMU of the present sources, looked for once."""
+    """Return an FMU of the present sources, looked for once."""
     return find(model, form).path
 
 
 def drawn_course(seed: int, number: int) -> Course:
-    """The course of a number under a seed."""
+    """Return the course of a number under a seed."""
     rng = random.Random(f"{seed} {number}")
     if number % SHAKER_EVERY == 0:
         values = {"voltage": rng.uniform(2.0, 12.0), "armature_inductance": rng.choice((0.0, 0.05))}
@@ -83,12 +83,12 @@ def drawn_course(seed: int, number: int) -> Course:
 
 
 def force(rng: random.Random) -> Values:
-    """A force on the shaker's box, as a cubic."""
+    """Return a force on the shaker's box, as a cubic."""
     return {name: rng.uniform(-2.0, 2.0) * 5.0**i for i, name in enumerate(FORCE)}
 
 
 def motor(rng: random.Random) -> list[Values]:
-    """What may be set of the shaker on the way."""
+    """Return what may be set of the shaker on the way."""
     single = [{name: value} for name, value in force(rng).items()]
     return [*single, force(rng), {"voltage": rng.uniform(2.0, 12.0)}]
 
@@ -105,7 +105,7 @@ def steps_of(
 
 
 def given(values: Values) -> dict[str, Any]:
-    """Values as the FMU takes them."""
+    """Return the values as the FMU takes them."""
     flags = {name: bool(values[name]) for name in ("bonded", "x_rel_max_on") if name in values}
     return {**values, **flags}
 
@@ -119,7 +119,7 @@ def advance(instance: Instance, time: float, target: float) -> None:
 
 
 def undisturbed(course: Course, path: Path) -> list[Bits]:
-    """Outputs after each step; up to the first that cannot be done."""
+    """Return the outputs after each step; up to the first that cannot be done."""
     rows: list[Bits] = []
     with Instance(path) as instance:
         try:
@@ -136,7 +136,7 @@ def undisturbed(course: Course, path: Path) -> list[Bits]:
 
 
 def outputs(instance: Instance, names: Sequence[str]) -> Bits:
-    """Outputs, to the last bit."""
+    """Return outputs, to the last bit."""
     return hexadecimal([float(value) for value in instance.get(*names)])
 
 
@@ -249,7 +249,7 @@ def disturbed(
 
 
 def pools(course: Course, number: int, rows: Sequence[Bits]) -> list[list[tuple[type, str]]]:
-    """Kinds of instances among which states may wander."""
+    """Return kinds of instances among which states may wander."""
     native: list[tuple[type, str]] = [(Instance, "fmi3"), (Instance, "fmi2"), (Instance, "fmi3")]
     if course.model == OSCILLATOR:
         impacts = float.fromhex(rows[-1][STATE.index("impact_count")])

@@ -96,13 +96,13 @@ class Trial:
         return self.folder / "results"
 
     def arguments(self) -> list[str]:
-        """The command."""
+        """Return the command."""
         given = str(self.folder.parent / GIVEN)
         named = [given if text == GIVEN else text for text in COMMANDS[self.name]]
         return [*named, "--output", str(self.output)]
 
     def start(self, prepare: Callable[[], object] | None = None) -> Child:
-        """The command under way."""
+        """Return the command under way."""
         return Child(self.arguments(), self.folder / "temporary", prepare)
 
     def wait_a_moment(self) -> None:
@@ -110,7 +110,7 @@ class Trial:
         time.sleep(self.chance.uniform(0.0, self.seconds))
 
     def struck(self, number: int) -> Ended:
-        """How the command ends at a signal that comes at any moment."""
+        """Return how the command ends at a signal that comes at any moment."""
         child = self.start()
         self.wait_a_moment()
         child.send(number)
@@ -122,7 +122,7 @@ class Trial:
         return f"the same command again: {format_end(ended)}" if ended.code else self.verdict()
 
     def verdict(self) -> str:
-        """What is wrong with the results of a command that ended well."""
+        """Return what is wrong with the results of a command that ended well."""
         if results(self.output) != self.expected:
             return "other bytes"
         left = [p.name for p in self.output.iterdir() if p.suffix not in KINDS]
@@ -133,17 +133,17 @@ KINDS = (".nc", ".png", ".pdf", ".html")  # of files that a command leaves
 
 
 def format_end(ended: Ended) -> str:
-    """How a command ended, in a line."""
+    """Return how a command ended, in a line."""
     return f"exit code {ended.code}: {' / '.join(ended.lines)[:300]}"
 
 
 def results(folder: Path) -> dict[str, bytes]:
-    """Bytes of the NetCDF files by name."""
+    """Return the bytes of the NetCDF files by name."""
     return {path.name: path.read_bytes() for path in sorted(folder.glob("*.nc"))}
 
 
 def in_a_line(ended: Ended) -> str:
-    """What is wrong with how a command gave up; empty where it did not, or in one line."""
+    """Return what is wrong with how a command gave up; empty where it did not, or in one line."""
     if ended.code == 0 and "Traceback" not in ended.err:
         return ""
     return "" if ended.code > 0 and len(ended.lines) == 1 else format_end(ended)
@@ -180,10 +180,10 @@ class Disturbances(Campaign):
 
     @abstractmethod
     def trials(self, holder: Path) -> AbstractContextManager[Callable[..., Trial]]:
-        """What makes a trial, with all it needs around it."""
+        """Return what makes a trial, with all it needs around it."""
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """One fault after the other."""
+        """Return one fault after the other."""
         import_all()
         chance, counts, notes = random.Random(seed), dict.fromkeys(self.faults, 0), []
         known: dict[str, tuple[dict[str, bytes], float]] = {}

@@ -71,7 +71,7 @@ class Answer(NamedTuple):
 
 
 def draw(rng: np.random.Generator) -> System:
-    """A random structure with a random drive."""
+    """Return a random structure with a random drive."""
     damping = rng.uniform(0.006, 0.03)
     b = float(np.exp(rng.uniform(np.log(0.01), np.log(0.5))))
     mu, kappa = rng.uniform(0.5, 2.0), rng.uniform(1.05, 2.0)
@@ -84,7 +84,7 @@ def draw(rng: np.random.Generator) -> System:
 
 
 def with_folds(rng: np.random.Generator) -> System:
-    """One whose folds, by the averaged theory, are not too close."""
+    """Return one whose folds, by the averaged theory, are not too close."""
     while True:
         system = draw(rng)
         folds = averaged.folds(*system)
@@ -103,7 +103,7 @@ def with_slope(system: System, slope: float) -> System:
 
 
 def ends_of(system: System) -> tuple[float, float]:
-    """Ends of the ramps over K omega: past both jumps, with what a fast ramp is late."""
+    """Return ends of the ramps over K omega: past both jumps, with what a fast ramp is late."""
     folds = averaged.folds(*system)
     at = averaged.resonance(*system)
     places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, at))]
@@ -111,7 +111,7 @@ def ends_of(system: System) -> tuple[float, float]:
 
 
 def answers(system: System, rate: float) -> tuple[Answer, ...]:
-    """What ``couple`` says at a rate, up and down."""
+    """Return what ``couple`` says at a rate, up and down."""
     structure, drive = system
     volts = drive.volts(structure)
     first, last = (end * volts for end in ends_of(system))
@@ -121,7 +121,7 @@ def answers(system: System, rate: float) -> tuple[Answer, ...]:
 
 
 def answer_of(at: xr.Dataset, volts: float) -> Answer:
-    """The answer in one direction."""
+    """Return the answer in one direction."""
     code, held, error = (float(at[name]) for name in ("held_verdict", "held_jumps", "held_error"))
     jump = float(at.jumps) / volts
     if code == LOST:
@@ -136,7 +136,7 @@ def answer_of(at: xr.Dataset, volts: float) -> Answer:
 
 
 def truths(system: System) -> dict[tuple[str, str], Truth]:
-    """Where both structures lose their motion, by their branches, up and down."""
+    """Return where both structures lose their motion, by their branches, up and down."""
     structure, drive = system
     folds, omega = averaged.folds(*system), structure.omega
     at = averaged.resonance(*system)
@@ -159,7 +159,7 @@ def truths(system: System) -> dict[tuple[str, str], Truth]:
 
 
 def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
-    """The fold of delaminated branches at which a slow course of held voltages jumps.
+    """Return the fold of delaminated branches at which a slow course of held voltages jumps.
 
     Branches have more folds than a ramp meets; and where it meets one it may go on with another
     motion of nearly the same speed. So voltages are held closely before and past each fold, in one
@@ -183,7 +183,7 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
 
 
 def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
-    """Voltages over K omega and speeds over omega of delaminated folds that end one way."""
+    """Return voltages over K omega and speeds over omega of delaminated folds that end one way."""
     structure, drive = system
     units = drive.volts(structure), structure.omega
     legs = branch.sel(structure="delaminated")
@@ -212,12 +212,12 @@ def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, 
 
 
 def first_of(system: System, way: str) -> float:
-    """Where a course in a direction begins, over K omega."""
+    """Return where a course in a direction begins, over K omega."""
     return ends_of(system)[WAYS.index(way)]
 
 
 def ordered(voltages: Sequence[float], way: str) -> list[float]:
-    """Voltages in the order in which they are met."""
+    """Return the voltages in the order in which they are met."""
     return sorted(voltages, reverse=way == "down")
 
 
@@ -272,7 +272,7 @@ def refuted_by_grid(system: System, answer: Answer, way: str) -> str:
 
 
 def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:
-    """The first loss of stability along a branch, from below or from above.
+    """Return the first loss of stability along a branch, from below or from above.
 
     Unknown where that is no fold: of the delaminated structure, whose impacts may become irregular
     there without any change of the speed.
@@ -313,7 +313,7 @@ def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -
 
 
 def complaint(answer: Answer, known: Truth, way: str) -> str:
-    """What is wrong with an answer; empty where nothing is, or nothing is known."""
+    """Return what is wrong with an answer; empty where nothing is, or nothing is known."""
     if known.kind == UNKNOWN or answer.said in ("undecided", "not passed"):
         return ""
     if known.kind == NONE:
@@ -330,7 +330,7 @@ def complaint(answer: Answer, known: Truth, way: str) -> str:
 def judged(
     system: System, kind: str, known: dict[str, Truth], rates: Sequence[float] = RATES
 ) -> Iterator[tuple[str, str]]:
-    """Each answer's name for the counts, and what is wrong with it."""
+    """Yield each answer's name for the counts, and what is wrong with it."""
     said: dict[str, set[str]] = {way: set() for way in WAYS}
     for rate in rates:
         for way, answer in zip(WAYS, answers(system, rate), strict=True):
@@ -372,7 +372,7 @@ class Verdicts(Campaign):
     unit, target, batch, package = "drives", 40, 1, True
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """One drive after the other."""
+        """Return one drive after the other."""
         rng, counts, notes = np.random.default_rng(seed), Counter[str](), []
         wrong = 0
         for number in range(count):
@@ -392,7 +392,7 @@ class Verdicts(Campaign):
         return Outcome(count, wrong, counts=+counts, notes=tuple(notes))
 
     def judge(self, system: System, rates: Sequence[float]) -> Iterator[tuple[str, str]]:
-        """Both structures of a drive."""
+        """Yield both structures of a drive."""
         known = truths(system)
         for kind in KINDS:
             of_kind = {way: known[kind, way] for way in WAYS}

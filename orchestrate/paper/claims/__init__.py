@@ -14,7 +14,7 @@ SECTIONS = (section1, section2, section3, section3_influence, section4, section5
 
 
 def table(datasets: Mapping[str, xr.Dataset], full: bool = True) -> list[dict[str, str]]:
-    """All claims with what was found, as texts.
+    """Return all claims with what was found, as texts.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ def regions(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
 
 
 def region_row(results: Results, case: str, region: Region) -> dict[str, str]:
-    """One region; the largest exponent by a run of its own, with one standard error."""
+    """Return one region; the largest exponent by a run of its own, with one standard error."""
     low, high, name = region
     chaotic, neutral = shares(results, case, low, high)
     kinds = {"chaotic in part": chaotic, "neutral in part": neutral, "periodic": 1.0}
@@ -45,7 +45,7 @@ def region_row(results: Results, case: str, region: Region) -> dict[str, str]:
 
 
 def sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
-    """The other answers, a sentence each.
+    """Return the other answers, a sentence each.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
 
 
 def strongest(data: xr.Dataset, run_on: xr.Dataset, parameter: str) -> str:
-    """Where the largest impulse of a map is, how large it is in a longer run, and how wide.
+    """Return where the largest impulse of a map is, how large it is in a longer run, and how wide.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def strongest(data: xr.Dataset, run_on: xr.Dataset, parameter: str) -> str:
 
 
 def coexisting(data: xr.Dataset) -> str:
-    """What the basin picture holds."""
+    """Return what the basin picture holds."""
     kinds = []
     for k in range(min(4, data.sizes["attractor"])):
         n = int(data.multiplicity[k])
@@ -109,7 +109,7 @@ def coexisting(data: xr.Dataset) -> str:
 
 
 def compare_spectra(data: xr.Dataset) -> str:
-    """How much of the delaminated structure's acceleration lies above the excitation."""
+    """Return how much of the delaminated structure's acceleration lies above the excitation."""
     shown = data.acceleration.sel(mass=1).isel(eta=0)
     above = shown.where(shown.order > 1.5, drop=True)
     first = float(shown.sel(kind="delaminated").max())

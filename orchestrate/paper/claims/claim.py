@@ -81,7 +81,7 @@ class Claim:
     full: bool = False
 
     def row(self, results: Results) -> dict[str, str]:
-        """The claim with its finding, as plain text."""
+        """Return the claim with its finding, as plain text."""
         finding = self.check(results)
         if self.full and not results.full:
             finding = Finding(finding.value, UNDECIDED)
@@ -116,14 +116,14 @@ def half_unit(printed: str) -> float:
 
 
 def rounds_to(value: float, printed: str) -> bool:
-    """Whether a value rounds to a printed number."""
+    """Return whether a value rounds to a printed number."""
     return abs(value - float(printed)) <= half_unit(printed) + 1e-9
 
 
 def border(
     edges: Edges, limit: Limit, printed: str, why: str = "", slack: float | None = None
 ) -> Finding:
-    """The finding for a limit: where the sweep passes it, and where it is.
+    """Return the finding for a limit: where the sweep passes it, and where it is.
 
     Parameters
     ----------
@@ -152,11 +152,11 @@ def border(
 
 
 def number_at(value: float, printed: str, digits: int, why: str = "") -> Finding:
-    """The finding for a number."""
+    """Return the finding for a number."""
     return Finding(f"{value:.{digits}f}", YES if rounds_to(value, printed) else NO, why)
 
 
 def holds(parts: Iterable[bool], value: str, why: str = "") -> Finding:
-    """The finding for a statement with several parts that each hold or do not."""
+    """Return the finding for a statement with several parts that each hold or do not."""
     parts = list(parts)
     return Finding(value, YES if all(parts) else PARTLY if any(parts) else NO, why)

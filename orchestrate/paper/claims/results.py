@@ -69,60 +69,60 @@ class Results:
         self.full = full
 
     def window(self, case: str, orbit: str, inside: float) -> StableWindow:
-        """The stable window of an orbit that holds a frequency, or is nearest to it."""
+        """Return the stable window of an orbit that holds a frequency, or is nearest to it."""
         return nearest_window(self.get("limits"), case, orbit, inside)
 
     def begins(self, case: str, orbit: str, inside: float) -> Limit:
-        """The lower limit of the window that holds a frequency."""
+        """Return the lower limit of the window that holds a frequency."""
         window = self.window(case, orbit, inside)
         return Limit(window.low, window.below, orbit)
 
     def ends(self, case: str, orbit: str, inside: float) -> Limit:
-        """The upper one."""
+        """Return the upper one."""
         window = self.window(case, orbit, inside)
         return Limit(window.high, window.above, orbit)
 
     def regions(self, case: str) -> list[Region]:
-        """Those of :func:`..regions.regions` that hold frequencies of the sweep."""
+        """Return those of :func:`..regions.regions` that hold frequencies of the sweep."""
         listed = regions(self.get("limits"), case)
         return [one for one in listed if between(self.exponent(case), *one[:2]).sizes["eta"] > 1]
 
     def largest(self, case: str, region: Region) -> Largest:
-        """The largest exponent of a region, by a run of its own."""
+        """Return the largest exponent of a region, by a run of its own."""
         return largest_of(self.of("largest", case), region.name)
 
     def settled(self, case: str) -> xr.Dataset:
-        """What the up-sweep's responses settle to."""
+        """Return what the up-sweep's responses settle to."""
         return self.of("settled", case, "_up")
 
     def get(self, name: str) -> xr.Dataset:
-        """A dataset by name."""
+        """Return a dataset by name."""
         return self._datasets[name]
 
     def of(self, kind: str, case: str, ending: str = "") -> xr.Dataset:
-        """A dataset of one of the three cases, over eta upwards."""
+        """Return a dataset of one of the three cases, over eta upwards."""
         data = self._datasets[f"{kind}_{CASES[case].label()}{ending}"]
         return data.sortby("eta") if "eta" in data.dims else data
 
     def up(self, case: str) -> xr.Dataset:
-        """The sweep upwards."""
+        """Return the sweep upwards."""
         return self.of("orbit", case, "_up")
 
     def down(self, case: str) -> xr.Dataset:
-        """The sweep downwards."""
+        """Return the sweep downwards."""
         return self.of("orbit", case, "_down")
 
     def steady(self, case: str) -> xr.Dataset:
-        """The up-sweep's responses, impact by impact."""
+        """Return the up-sweep's responses, impact by impact."""
         return self.of("steady", case, "_up")
 
     def exponent(self, case: str) -> xr.Dataset:
-        """Largest Lyapunov exponents along the up-sweep."""
+        """Return largest Lyapunov exponents along the up-sweep."""
         return self.of("exponent", case)
 
 
 def between(data: xr.Dataset, low: float, high: float) -> xr.Dataset:
-    """The part of a dataset with low <= eta <= high."""
+    """Return the part of a dataset with low <= eta <= high."""
     return data.sel(eta=slice(low - 1e-9, high + 1e-9))
 
 
@@ -141,12 +141,12 @@ def impacts_in_response(data: xr.Dataset) -> np.ndarray:
 
 
 def kind(data: xr.Dataset, n: int, impacts: int) -> np.ndarray:
-    """Where responses have period nT and so many impacts in it."""
+    """Return where responses have period nT and so many impacts in it."""
     return (data.multiplicity.values == n) & (impacts_in_response(data) == impacts)
 
 
 def upper_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
-    """The last eta of the run of true flags that holds ``inside``, and the next one."""
+    """Return the last eta of the run of true flags that holds ``inside``, and the next one."""
     etas = data.eta.values
     index = int(np.abs(etas - inside).argmin())
     for first, last in runs(flags):
@@ -156,7 +156,7 @@ def upper_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
 
 
 def lower_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
-    """The eta before the run of true flags that holds ``inside``, and its first one."""
+    """Return the eta before the run of true flags that holds ``inside``, and its first one."""
     etas = data.eta.values
     index = int(np.abs(etas - inside).argmin())
     for first, last in runs(flags):
@@ -166,7 +166,7 @@ def lower_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
 
 
 def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
-    """Lower and upper edge of the longest run of true flags, as two pairs."""
+    """Return lower and upper edge of the longest run of true flags, as two pairs."""
     first, last = max(runs(flags), key=lambda run: run[1] - run[0])
     etas = data.eta.values
     lower = float(etas[max(first - 1, 0)]), float(etas[first])
@@ -174,7 +174,7 @@ def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
 
 
 def shares(results: Results, case: str, low: float, high: float) -> Shares:
-    """Shares of settled responses between two frequencies that are chaotic, and neutral.
+    """Return shares of settled responses between two frequencies that are chaotic, and neutral.
 
     One whose state repeats is periodic, whatever the sign of its exponent in a finite time.
     """

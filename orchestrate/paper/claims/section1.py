@@ -28,7 +28,7 @@ DEVICES = 2 * 1.9  # kg, exciter and counter mass
     "density of the wood",
 )
 def beam_mass(results: Results) -> Finding:
-    """The set ``beam`` against what the paper says of the beam."""
+    """Compare the set ``beam`` with what the paper says of the beam."""
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
     low, high = (VOLUME * density + DEVICES for density in RAMIN)
     own = drive.box_mass + structure.m1 + structure.m2
@@ -48,7 +48,7 @@ def beam_mass(results: Results) -> Finding:
     "averaged theory of the set beam: folds of the voltage over the speed",
 )
 def sommerfeld(results: Results) -> Finding:
-    """Whether the averaged theory of the set ``beam`` has a break at its resonance."""
+    """Find whether the averaged theory of the set ``beam`` has a break at its resonance."""
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
     folds = averaged.folds(structure, drive)
     place = averaged.resonance(structure, drive)
@@ -71,7 +71,7 @@ def linear_curve(numbers: np.ndarray, speed: np.ndarray) -> np.ndarray:
 
 
 def fitted(speed: np.ndarray, amplitude: np.ndarray) -> tuple[np.ndarray, float]:
-    """The linear oscillator nearest to an amplitude curve, and how far it is away at most.
+    """Return the linear oscillator nearest to an amplitude curve, and how far it is away at most.
 
     Returns
     -------
@@ -139,7 +139,7 @@ def like_a_linear_one(results: Results) -> Finding:
     full=True,
 )
 def impacts_by_steps(results: Results) -> Finding:
-    """Impacts during one T up to resonance, and after it (Figure 2(b))."""
+    """Find impacts during one T up to resonance, and after it (Figure 2(b))."""
     up = results.up("elastic")
     peak = float(up.xi_rel_max.idxmax())
     before = between(up, 0.43, peak)
@@ -164,7 +164,7 @@ def impacts_by_steps(results: Results) -> Finding:
     "a factor of 100",
 )
 def spectra_change(results: Results) -> Finding:
-    """Lines above the excitation's frequency at resonance (Figure 3)."""
+    """Find lines above the excitation's frequency at resonance (Figure 3)."""
     shown = results.get("spectra").acceleration.sel(mass=1).isel(eta=0)
     above = shown.where(shown.order > 1.5, drop=True)
     bonded, delaminated = (

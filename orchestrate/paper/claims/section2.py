@@ -28,7 +28,7 @@ def misprint(equation: str, text: str) -> Callable[[Check], Check]:
 
 
 def compared(what: str, printed: float, right: float, form: str) -> Finding:
-    """The finding for a misprint: what is left over with each form."""
+    """Return the finding for a misprint: what is left over with each form."""
     text = f"{what}: {printed:.2g} as printed, {right:.2g} with {form}"
     verdict = YES if printed < ROUNDING else NO
     why = "" if right < ROUNDING else "The corrected form does not fulfil it either."
@@ -36,7 +36,7 @@ def compared(what: str, printed: float, right: float, form: str) -> Finding:
 
 
 def residual(motion: Callable[[np.ndarray], np.ndarray]) -> float:
-    """What is left of (6) at some instants, the motion's derivatives by differences."""
+    """Return what is left of (6) at some instants, the motion's derivatives by differences."""
     step = 1e-4
     here, after, before = motion(TAUS), motion(TAUS + step), motion(TAUS - step)
     rate, curvature = (after - before) / (2.0 * step), (after - 2.0 * here + before) / step**2
@@ -45,7 +45,7 @@ def residual(motion: Callable[[np.ndarray], np.ndarray]) -> float:
 
 
 def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndarray]:
-    """(10) with (11), and the frequency and damping of its free part."""
+    """Check (10) with (11), and the frequency and damping of its free part."""
     detuning, loss = STIFFNESS - ETA**2, 2.0 * D * ETA
     a, b = -loss / (detuning**2 + loss**2), detuning / (detuning**2 + loss**2)
     nu, phase = math.sqrt(STIFFNESS - D * D), ETA * BEGAN
@@ -62,7 +62,7 @@ def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndar
 
 @misprint("(3)", "xi = x/a eta^2")
 def scale(results: Results) -> Finding:
-    """(3): x over a, times eta^2, or x over a eta^2."""
+    """Check (3): x over a, times eta^2, or x over a eta^2."""
     steady = 1.0 / math.hypot(1.0 - ETA**2, 2.0 * D * ETA)  # amplitude of (6), unit forcing
     x_over_a = ETA**2 * steady  # of m x'' + d x' + k x = m a Omega^2 sin(Omega t)
     printed, right = abs(x_over_a * ETA**2 - steady), abs(x_over_a / ETA**2 - steady)
@@ -71,7 +71,7 @@ def scale(results: Results) -> Finding:
 
 @misprint("(10)", "cos kappa_i tau, e^(-D tau)")
 def free_part(results: Results) -> Finding:
-    """(10): kappa_i, or nu_i of (11)."""
+    """Check (10): kappa_i, or nu_i of (11)."""
     nu = math.sqrt(STIFFNESS - D * D)
     printed, right = residual(solution(STIFFNESS, D)), residual(solution(nu, D))
     return compared("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
@@ -79,7 +79,7 @@ def free_part(results: Results) -> Finding:
 
 @misprint("(12)", "xi_2 - xi_1 unequal 0")
 def one_sided(results: Results) -> Finding:
-    """(12): unequal, or larger than zero."""
+    """Check (12): unequal, or larger than zero."""
     data = results.get("figure5")
     flying = data.kind.values == FLIGHT
     gap = (data.state.values[:, 1] - data.state.values[:, 0])[flying]
@@ -91,7 +91,7 @@ def one_sided(results: Results) -> Finding:
 
 @misprint("(15)", "(1 + e) mu/(1 + mu) in the second line")
 def momentum(results: Results) -> Finding:
-    """(15): the factor of its second line."""
+    """Check (15): the factor of its second line."""
     e, mu, v1, v2 = 0.7, 0.5, 0.8, -0.4
     part = (1.0 + e) / (1.0 + mu) * (v1 - v2)
 
@@ -157,7 +157,7 @@ def endless(rows: xr.Dataset, e: float) -> bool:
 
 @misprint("(17)", "contact follows by the velocity alone")
 def pulling(results: Results) -> Finding:
-    """(17): slow impacts after which the masses would have to pull each other."""
+    """Check (17): slow impacts after which the masses would have to pull each other."""
     data = results.get("low_speed")
     slow, pulled, sticking = (int(data[name].sum()) for name in ("slow", "pulled", "sticking"))
     text = (
@@ -170,7 +170,7 @@ def pulling(results: Results) -> Finding:
 
 @misprint("(20)", "initial conditions of the (k+i)th state")
 def next_state(results: Results) -> Finding:
-    """(20): the state that begins where contact ends."""
+    """Check (20): the state that begins where contact ends."""
     data = results.get("figure5")
     kind, state = data.kind.values, data.state.values
     ends = np.flatnonzero((kind[:-1] == CONTACT) & (kind[1:] != CONTACT))
@@ -190,7 +190,7 @@ def next_state(results: Results) -> Finding:
 
 @misprint("(22)", "T = eta/2 pi")
 def period(results: Results) -> Finding:
-    """(22): eta/2 pi, or 2 pi/eta."""
+    """Check (22): eta/2 pi, or 2 pi/eta."""
 
     def change(span: float) -> float:
         return float(np.abs(np.sin(ETA * (TAUS + span)) - np.sin(ETA * TAUS)).max())

@@ -27,7 +27,7 @@ FEW = 0.01  # share of the frequencies
     "the FMU from rest: impacts in 2,000 periods at eta = 1.3",
 )
 def only_equal(results: Results) -> Finding:
-    """Whether masses vibrate without influencing each other for equal oscillators only."""
+    """Find whether masses vibrate without influencing each other for equal oscillators only."""
     data = results.get("low_speed")
     alike = data.isel(motion=np.abs(data.kappa.values - data.mu.values) < 1e-12)
     unlike = data.isel(motion=(data.mu.values == 2) & (data.kappa.values != 2))
@@ -49,7 +49,7 @@ def only_equal(results: Results) -> Finding:
     "3", "natural frequencies of both subsystems", "1 and 1.095, about 10 % apart", "(7)", NUMBER
 )
 def detuning(results: Results) -> Finding:
-    """Natural frequencies of both subsystems, (7)."""
+    """Find natural frequencies of both subsystems, (7)."""
     case = CASES["elastic"]
     second = (case.kappa / case.mu) ** 0.5
     return Finding(
@@ -66,7 +66,7 @@ def detuning(results: Results) -> Finding:
     "10 % of the least",
 )
 def most_unfavourable(results: Results) -> Finding:
-    """Impulses over the detuning: whether those of the paper's are the least."""
+    """Find whether the impulses at the paper's detuning are the least."""
     largest = results.get("map_kappa").impulse_max.max("eta")
     own = CASES["elastic"].kappa
     here = float(largest.sel(kappa=own, method="nearest"))
@@ -104,7 +104,7 @@ def three_states(results: Results) -> Finding:
     "Figure 5's data: crossings of each curve with itself",
 )
 def two_loops(results: Results) -> Finding:
-    """How often the phase curves of Figure 5(a) cross themselves, and whether they close."""
+    """Find how often the phase curves of Figure 5(a) cross themselves, and whether they close."""
     data = results.get("figure5")
     state = data.state.values
     closed = bool(np.abs(state[-1] - state[0]).max() < 1e-3 * np.abs(state).max())
@@ -158,7 +158,7 @@ def many_loops(results: Results) -> Finding:
     "1 % of T; one step of the sweep",
 )
 def gamma_scale(results: Results) -> Finding:
-    """Where the paper's gamma ends chattering at eta = 0.4, and where the FMU does."""
+    """Find where the paper's gamma ends chattering at eta = 0.4, and where the FMU does."""
     data = results.get("figure5")
     tau, state = data.tau.values, data.state.values
     rate = state[:, 3] - state[:, 2]
@@ -189,7 +189,7 @@ def gamma_scale(results: Results) -> Finding:
     full=True,
 )
 def enough_periods(results: Results) -> Finding:
-    """Responses of the sweep after n = 500 that are others long after."""
+    """Find responses of the sweep after n = 500 that are others long after."""
     up, end = results.up("elastic"), results.ends("elastic", "T/1", 2.0).value
     later, latest = (results.of(name, "elastic", "_up") for name in ("later", "latest"))
     text, parts = [], []
@@ -209,20 +209,20 @@ def enough_periods(results: Results) -> Finding:
 
 
 def first_sample(up: xr.Dataset, later: xr.Dataset) -> int:
-    """The number n of the period at which a sweep's responses are looked at again."""
+    """Return the number n of the period at which a sweep's responses are looked at again."""
     done = int(up.attrs["transient"]) + up.sizes["sample"]
     return done + int(later.attrs["transient"]) + 1
 
 
 def count_changed(up: xr.Dataset, later: xr.Dataset) -> tuple[int, int, str]:
-    """How many responses of a sweep are others later, of how many, and what they are."""
+    """Return how many responses of a sweep are others later, of how many, and what they are."""
     kinds = {what: int(part.sum()) for what, part in changed(up, later, CHANGE).items()}
     named = ", ".join(f"{count} {what}" for what, count in kinds.items() if count)
     return sum(kinds.values()), later.sizes["eta"], f" ({named})" if named else ""
 
 
 def crossings(x: np.ndarray, y: np.ndarray) -> int:
-    """How often a closed curve of short straight pieces crosses itself."""
+    """Return how often a closed curve of short straight pieces crosses itself."""
     points = x + 1j * y
     begin, piece = points[:-1], np.diff(points)
     count = 0
@@ -246,7 +246,7 @@ def crossings(x: np.ndarray, y: np.ndarray) -> int:
     full=True,
 )
 def contact_limit(results: Results) -> Finding:
-    """Where permanent contact ends on the way up."""
+    """Find where permanent contact ends on the way up."""
     up, gammas = results.up("elastic"), results.get("gamma").last_contact.sel(case="elastic").values
     low, high = upper_edge(up, up.permanent_contact.values == 1, 0.40)
     row = up.sel(eta=0.425, method="nearest")
@@ -264,7 +264,7 @@ def contact_limit(results: Results) -> Finding:
 
 @claim("3.1", "T-periodic below", "0.43", "up-sweep, multiplicity 1; branch", LIMIT, full=True)
 def periodic_limit(results: Results) -> Finding:
-    """Where T-periodicity ends on the way up."""
+    """Find where T-periodicity ends on the way up."""
     up = results.up("elastic")
     near = between(up, 0.415, 0.45)
     others = [
@@ -282,7 +282,7 @@ def periodic_limit(results: Results) -> Finding:
 
 @claim("3.1", "permanent contact vanishes for all larger eta", "none", "up-sweep", full=True)
 def no_contact_above(results: Results) -> Finding:
-    """Whether contact occurs again above."""
+    """Find whether contact occurs again above."""
     up = results.up("elastic")
     part = between(up, 0.43, 8.0)
     again = part.eta.values[part.permanent_contact.values == 1]
@@ -308,7 +308,7 @@ def no_contact_above(results: Results) -> Finding:
     full=True,
 )
 def windows_in_order(results: Results) -> Finding:
-    """Windows nT with one impact, in order."""
+    """Find windows nT with one impact, in order."""
     up = results.up("elastic")
     windows = [window(up, n) for n in range(1, 5)]
     exact = [
@@ -328,7 +328,7 @@ def windows_in_order(results: Results) -> Finding:
 
 @claim("3.1", "one impact in a response period at the relative peaks", "one", "Figure 7's data")
 def one_impact_at_peaks(results: Results) -> Finding:
-    """Impacts at the peaks of Figure 7."""
+    """Find impacts at the peaks of Figure 7."""
     data = results.get("figure7")
     counts = []
     for index in range(data.sizes["panel"]):
@@ -351,7 +351,7 @@ def one_impact_at_peaks(results: Results) -> Finding:
     full=True,
 )
 def one_impact_everywhere(results: Results) -> Finding:
-    """Whether all periodic responses above 1.37 have one impact."""
+    """Find whether all periodic responses above 1.37 have one impact."""
     settled = between(results.settled("elastic"), 1.37, 8.0)
     up = between(results.up("elastic"), 1.37, 8.0)
     n = settled.multiplicity.values
@@ -379,7 +379,7 @@ def one_impact_everywhere(results: Results) -> Finding:
     "0.01 T",
 )
 def impact_distance(results: Results) -> Finding:
-    """Times between impacts at the peaks of the windows."""
+    """Find times between impacts at the peaks of the windows."""
     up, steady = results.up("elastic"), results.steady("elastic")
     texts, parts = [], []
     for n in range(1, 4):
@@ -401,7 +401,7 @@ def impact_distance(results: Results) -> Finding:
     "found in the sweep",
 )
 def relative_peaks(results: Results) -> Finding:
-    """Where the relative peaks are."""
+    """Find where the relative peaks are."""
     data = results.get("figure7")
     text = ", ".join(f"{n}T: {float(eta):.3f}" for n, eta in enumerate(data.eta, 1))
     why = (
@@ -423,7 +423,7 @@ def relative_peaks(results: Results) -> Finding:
     full=True,
 )
 def other_regions(results: Results) -> Finding:
-    """The irregular regions beyond the second."""
+    """Find the irregular regions beyond the second."""
     up = results.up("elastic")
     edges = [
         upper_edge(up, kind(up, n, 1), eta) + lower_edge(up, kind(up, n + 1, 1), after)

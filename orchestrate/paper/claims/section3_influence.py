@@ -25,7 +25,7 @@ DECADE, RESEMBLES = 10.0, 0.1
 
 @claim("3.2", "the first irregular region ends", "1.37", BRANCH, LIMIT, full=True)
 def first_region_ends(results: Results) -> Finding:
-    """Where the first irregular region ends."""
+    """Find where the first irregular region ends."""
     up, down = results.up("elastic"), results.down("elastic")
     on_way_down = lower_edge(down, kind(down, 1, 1), 2.0)
     begins = results.begins("elastic", "T/1", 2.0)
@@ -40,7 +40,7 @@ def first_region_ends(results: Results) -> Finding:
 
 @claim("3.2", "impacts during one T decrease with eta", "decreasing", SWEEP)
 def impacts_decrease(results: Results) -> Finding:
-    """Impacts of T-periodic responses from 0.43 to 0.9."""
+    """Find impacts of T-periodic responses from 0.43 to 0.9."""
     part = between(results.up("elastic"), 0.43, 0.9)
     counts = impacts_in_response(part)[part.multiplicity.values == 1]
     steps = list(dict.fromkeys(counts[counts > 0].tolist()))
@@ -58,7 +58,7 @@ def impacts_decrease(results: Results) -> Finding:
     full=True,
 )
 def alternation(results: Results) -> Finding:
-    """Whether T-periodic windows and others take turns from 0.43 to 0.89."""
+    """Find whether T-periodic windows and others take turns from 0.43 to 0.89."""
     settled = between(results.settled("elastic"), 0.43, 0.89)
     counts = np.round(settled.impacts_per_period.values).astype(int)
     regular = settled.multiplicity.values == 1
@@ -84,7 +84,7 @@ limit(
 
 @claim("3.2", "two impacts during one T up to", "1.07", BRANCH, LIMIT, full=True)
 def two_impacts_up_to(results: Results) -> Finding:
-    """Where the T-periodic response with two impacts ends."""
+    """Find where the T-periodic response with two impacts ends."""
     up, limit = results.up("elastic"), results.ends("elastic", "T/2", 1.0)
     after = results.ends("elastic", "T/1", 1.065)
     why = (
@@ -108,7 +108,7 @@ limit(
 
 @claim("3.2", "place of the peak", "1.045", "up-sweep", NUMBER)
 def peak_place(results: Results) -> Finding:
-    """Where the largest gap is."""
+    """Find where the largest gap is."""
     up, down = results.up("elastic").xi_rel_max, results.down("elastic").xi_rel_max
     others = int(results.get("attractors").number.sel(eta=1.045, method="nearest")) - 1
     why = (
@@ -127,7 +127,7 @@ def peak_place(results: Results) -> Finding:
     "up-sweep: extrema of the largest gap within 0.01",
 )
 def no_influence(results: Results) -> Finding:
-    """Whether the largest gap has an extremum at the natural frequencies."""
+    """Find whether the largest gap has an extremum at the natural frequencies."""
     gaps = results.up("elastic").xi_rel_max
     texts, parts = [], []
     for eta in (1.0, 1.095):
@@ -150,7 +150,7 @@ def no_influence(results: Results) -> Finding:
     full=True,
 )
 def irregular_again(results: Results) -> Finding:
-    """Where the T-periodic response ends above the peak."""
+    """Find where the T-periodic response ends above the peak."""
     up = results.up("elastic")
     edges = upper_edge(up, up.multiplicity.values == 1, 1.05)
     return border(edges, results.ends("elastic", "T/1", 1.065), "1.07")
@@ -164,7 +164,7 @@ def irregular_again(results: Results) -> Finding:
     "95 %",
 )
 def nearly_2t(results: Results) -> Finding:
-    """How nearly responses repeat after 2T in 1.07-1.37."""
+    """Find how nearly responses repeat after 2T in 1.07-1.37."""
     part = between(results.up("elastic"), 1.07, 1.367)
     samples = part.xi_rel.values
     after = [np.sqrt(np.mean((samples[:, n:] - samples[:, :-n]) ** 2, axis=1)) for n in (1, 2)]
@@ -184,7 +184,7 @@ def nearly_2t(results: Results) -> Finding:
     full=True,
 )
 def non_unique(results: Results) -> Finding:
-    """Where several attractors are found in 1.07-1.37."""
+    """Find where there are several attractors in 1.07-1.37."""
     data = between(results.get("attractors"), 1.07, 1.37)
     several = data.eta.values[data.number.values > 1]
     sure = data.eta.values[(data.multiplicity.values > 0).sum(axis=1) > 1]
@@ -222,7 +222,7 @@ def format_frequencies(etas: np.ndarray) -> str:
 
 
 def second_region(results: Results, printed: str, upper: bool) -> Finding:
-    """A limit of the second irregular region, and how far it depends on the tolerance."""
+    """Return a limit of the second irregular region, and how far it depends on the tolerance."""
     up = results.up("elastic")
     lower_window, upper_window = (
         longest_edges(up, kind(up, 1, 1)),
@@ -250,7 +250,7 @@ def second_region(results: Results, printed: str, upper: bool) -> Finding:
     "3.2", "impacts in 1.07-1.37 are distributed irregularly", "so", "settled responses", full=True
 )
 def irregular_impacts(results: Results) -> Finding:
-    """Whether impacts are distributed irregularly from 1.07 to 1.37."""
+    """Find whether impacts are distributed irregularly from 1.07 to 1.37."""
     settled = between(results.settled("elastic"), 1.07, 1.367)
     n = settled.multiplicity.values
     text = (
@@ -274,7 +274,7 @@ limit("3.2", "the second irregular region ends", "3.77", second_region, True)
     full=True,
 )
 def one_impact_beside(results: Results) -> Finding:
-    """Impacts in the windows on both sides of the second irregular region."""
+    """Find impacts in the windows on both sides of the second irregular region."""
     text, parts = [], []
     for n, low, high in ((1, 1.37, 2.61), (2, 3.77, 4.74)):
         part = between(results.settled("elastic"), low, high)
@@ -295,7 +295,7 @@ def one_impact_beside(results: Results) -> Finding:
     full=True,
 )
 def chaos(results: Results) -> Finding:
-    """Whether dark regions are quasi-periodic and not chaotic, by region and case."""
+    """Find whether dark regions are quasi-periodic and not chaotic, by region and case."""
     text, parts = [], []
     for region in results.regions("elastic"):
         if region.is_window:
@@ -378,7 +378,7 @@ def irregularities(results: Results) -> Finding:
     "up-sweep: impacts of responses of the same multiplicity",
 )
 def hidden_impacts(results: Results) -> Finding:
-    """Whether responses that a bifurcation diagram shows alike have different impacts."""
+    """Find whether responses that a bifurcation diagram shows alike have different impacts."""
     up = results.up("elastic")
     counts = impacts_in_response(up)[up.multiplicity.values == 1]
     kinds = np.unique(counts[counts > 0])
@@ -391,7 +391,7 @@ def hidden_impacts(results: Results) -> Finding:
 
 @claim("3.2", "impulses are extremal near the absolute peak", "1.045", "impact by impact", "0.01")
 def impulse_peak(results: Results) -> Finding:
-    """Where the largest closing velocity is."""
+    """Find where the largest closing velocity is."""
     speed = results.steady("elastic").closing_max
     eta = float(speed.idxmax())
     return holds(
@@ -408,7 +408,7 @@ def impulse_peak(results: Results) -> Finding:
     "a factor of ten from each to the next",
 )
 def decay(results: Results) -> Finding:
-    """Displacement and velocity at the peaks of the windows."""
+    """Find displacement and velocity at the peaks of the windows."""
     up, steady = results.up("elastic"), results.steady("elastic")
     etas = [float(up.xi_rel_max.idxmax())] + [
         eta for n in (1, 2, 3) if (eta := relative_peak(up, n))
@@ -441,7 +441,7 @@ def decay(results: Results) -> Finding:
     "10 % at each of the peaks beyond the main one, and at 8.0",
 )
 def single_oscillator(results: Results) -> Finding:
-    """How near the masses' amplitudes are to those of both as one oscillator, at high eta."""
+    """Find how near the masses' amplitudes are to those of both as one oscillator, at high eta."""
     up, case = results.up("elastic"), CASES["elastic"]
     stiffness = (1.0 + case.kappa) / (1.0 + case.mu)
     text, away, apart = [], [], []

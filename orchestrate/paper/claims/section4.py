@@ -25,7 +25,7 @@ EXACT = "up-sweep, exact"
 
 
 def all_periodic(case: str, low: float, high: float) -> Check:
-    """A check that all responses between two frequencies are T-periodic."""
+    """Return a check that all responses between two frequencies are T-periodic."""
 
     def check(results: Results) -> Finding:
         part = between(results.up(case), low, high)
@@ -77,7 +77,7 @@ claim("4.1", "T-periodic below 1.08", "all", SWEEP, full=True)(all_periodic("dam
 
 @claim("4.1", "0.48 to 0.85: impacts diminish from seven to two", "7 to 2", SWEEP, full=True)
 def seven_to_two(results: Results) -> Finding:
-    """Impacts of the T-periodic responses from 0.48 on."""
+    """Find impacts of the T-periodic responses from 0.48 on."""
     counts = impacts_in_response(between(results.up("damped"), 0.48, 0.85))
     steps = list(dict.fromkeys(counts.tolist()))
     edges = between(results.up("damped"), 0.48, 0.85).eta.values[counts == steps[0]]
@@ -91,7 +91,7 @@ def seven_to_two(results: Results) -> Finding:
 
 @claim("4.1", "two impacts from", "0.85", BRANCH, LIMIT, full=True)
 def two_impacts_from(results: Results) -> Finding:
-    """Where the response with two impacts begins, and why that may look like 0.85."""
+    """Find where the response with two impacts begins, and why that may look like 0.85."""
     up, down, exponents = (
         results.up("damped"),
         results.down("damped"),
@@ -134,7 +134,7 @@ limit("4.1", "2T-periodic with three impacts up to", "1.33", orbit_end, "damped"
 
 @claim("4.1", "non-unique solutions in 1.11-1.33", "found", "up- against down-sweep", full=True)
 def non_unique(results: Results) -> Finding:
-    """Where up- and down-sweep differ."""
+    """Find where up- and down-sweep differ."""
     up, down = results.up("damped"), results.down("damped")
     differ = up.eta.values[
         (impacts_in_response(up) != impacts_in_response(down))
@@ -163,7 +163,7 @@ claim("4.1", "above 1.33 as for D = 0.005", "the same", SWEEP, full=True)(
     full=True,
 )
 def more_damping(results: Results) -> Finding:
-    """Whether more damping leaves only T-periodic responses with one impact in 1.11-1.33."""
+    """Find whether more damping leaves only T-periodic responses with one impact in 1.11-1.33."""
     data = results.get("map_D").sel(eta=slice(1.11, 1.33))
     periodic = (data.multiplicity == 1).all("eta").values
     simple = periodic & (np.abs(data.impacts_per_period - 1.0) < 0.1).all("eta").values
@@ -186,7 +186,7 @@ def more_damping(results: Results) -> Finding:
 
 @claim("4.1", "only the first irregular region is eliminated", "so", SWEEP, full=True)
 def only_first_eliminated(results: Results) -> Finding:
-    """Shares of responses that are not periodic, in the first and second regions."""
+    """Find shares of responses that are not periodic, in the first and second regions."""
     text, parts = [], []
     for low, high, expected in ((0.48, 1.37, 0.0), (2.61, 3.77, 0.2)):
         share = np.mean(between(results.up("damped"), low, high).multiplicity.values == 0)
@@ -219,7 +219,7 @@ claim("4.2", "one impact from 1.23 to 1.37, above as for e = 0.7", "the same", S
 
 @claim("4.2", "the range of permanent contact is enlarged", "larger", "up-sweeps", full=True)
 def more_contact(results: Results) -> Finding:
-    """The range of contact in both cases."""
+    """Find the range of contact in both cases."""
     ends = [
         upper_edge(up := results.up(case), up.permanent_contact.values == 1, 0.40)[0]
         for case in ("elastic", "plastic")
@@ -239,7 +239,7 @@ def more_contact(results: Results) -> Finding:
     "10 % and 2 %",
 )
 def only_lower(results: Results) -> Finding:
-    """How far limits of the windows differ between e = 0.7 and 0.3."""
+    """Find how far limits of the windows differ between e = 0.7 and 0.3."""
     text, moved = [], []
     for orbit, inside in (("T, contact", 0.4), ("T/2", 1.05)):
         limits = [results.ends(case, orbit, inside).value for case in ("elastic", "plastic")]

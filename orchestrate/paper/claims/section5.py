@@ -23,7 +23,7 @@ def largest(results: Results, case: str) -> tuple[float, float]:
 
 
 def amplitude(results: Results, index: int) -> float:
-    """Largest displacement of either mass in Figure 12."""
+    """Return largest displacement of either mass in Figure 12."""
     data = results.get("figure12")
     return float(np.abs(data.state.values[data.panel_of.values == index][:, :2]).max())
 
@@ -47,7 +47,7 @@ def against_elastic(results: Results, case: str) -> tuple[float, float, str]:
     "0.01 in eta",
 )
 def both_at_peak(results: Results) -> Finding:
-    """Whether amplitudes of both masses and impulses are largest at the main peak."""
+    """Find whether amplitudes of both masses and impulses are largest at the main peak."""
     text, parts, kept = [], [], []
     for case in CASES:
         up, speed = results.up(case), results.steady(case).closing_max
@@ -68,7 +68,7 @@ def both_at_peak(results: Results) -> Finding:
 
 @claim("5", "T-periodic motion with two impacts at all three peaks (Figure 12)", "two", HOW)
 def two_impacts_each(results: Results) -> Finding:
-    """Impacts in one T at the peaks."""
+    """Find impacts in one T at the peaks."""
     counts = [
         float(
             results.steady(case).impacts.sel(
@@ -91,7 +91,7 @@ def two_impacts_each(results: Results) -> Finding:
     "a factor of 10^0.5",
 )
 def damping_lowers(results: Results) -> Finding:
-    """Impulses and amplitudes of (b) over those of (a)."""
+    """Compare impulses and amplitudes of (b) with those of (a)."""
     impulse, size, text = against_elastic(results, "damped")
     return holds([impulse < 1 / SAME_ORDER, size < 1 / SAME_ORDER], text)
 
@@ -104,6 +104,6 @@ def damping_lowers(results: Results) -> Finding:
     "a factor of 10^0.5",
 )
 def restitution_minor(results: Results) -> Finding:
-    """Impulses of (c) over those of (a)."""
+    """Compare impulses of (c) with those of (a)."""
     impulse, _, text = against_elastic(results, "plastic")
     return holds([1 / SAME_ORDER < impulse < SAME_ORDER], text)

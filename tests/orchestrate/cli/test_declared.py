@@ -74,6 +74,17 @@ def test_a_function_is_imported_for_its_own_command_alone():
         assert done.stdout.split() == expected.split(), words
 
 
+def test_without_docstrings_options_are_the_same(tmp_path):
+    """As ``python -OO`` leaves them; only the help is poorer."""
+    command = [sys.executable, "-OO", "-m", "orchestrate", "resonance", "--eta", "1.1,1.2"]
+    words = ["--direction", "up", "--transient", "5", "--samples", "8", "--plot", "none"]
+    done = subprocess.run(
+        [*command, *words, "--output", str(tmp_path)], cwd=ROOT, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert "resonance_" in next(tmp_path.glob("*.nc")).name
+
+
 def test_a_meaning_that_is_told_elsewhere_is_followed():
     assert described(orchestrate.basin, "settle") == described(orchestrate.attractors, "settle")
     assert described(orchestrate.lyapunov, "eta")[1].startswith("Frequency ratio")

@@ -8,8 +8,9 @@ import matplotlib
 import numpy as np
 import xarray as xr
 
-from orchestrate.figures import fmu_pictures, orbit_diagram, shaker_pictures
+from orchestrate.figures import orbit_diagram
 from orchestrate.figures.files import save
+from tools.pictures import oscillator, shaker
 
 
 def sweep() -> xr.Dataset:
@@ -25,8 +26,8 @@ def main(folder: str) -> None:
     before = dict(matplotlib.rcParams)
     figures = {
         "orbit": orbit_diagram.draw(sweep()),
-        "scheme": fmu_pictures.draw_scheme(),
-        "shaker": shaker_pictures.draw_shaker(),
+        "scheme": oscillator.draw_scheme(),
+        "shaker": shaker.draw_shaker(),
     }
     for name, figure in figures.items():
         save(figure, f"{folder}/{name}", ("png", "pdf", "svg"))

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from .style import panels, styled
+from orchestrate.figures.style import panels, styled
 
 
 def sketch(width: float) -> tuple[Figure, Axes]:

@@ -6,8 +6,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
-from .fmu_pictures import bare, damper, sketch, spring
-from .style import panels, styled
+from orchestrate.figures.style import panels, styled
+
+from .oscillator import bare, damper, sketch, spring
 
 TEXTS = (
     *((1.5, 3.35, "$k_b$"), (1.5, 0.3, "$c_b$"), (3.5, 0.55, "$M_t$")),

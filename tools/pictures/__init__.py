@@ -1,0 +1,1 @@
+"""Pictures inside the FMUs and their documentation."""
