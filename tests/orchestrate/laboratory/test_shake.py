@@ -35,6 +35,10 @@ SIGNALS = {
 
 def exact(signal):
     """The signal as a function of one time, by its definition where it has a simple one."""
+    if isinstance(signal, SweptSine) and signal.spacing == "linear":  # the same, and quicker
+        first, half = signal.first, 0.5 * (signal.last - signal.first) / signal.duration
+        turn, level = 2.0 * math.pi, signal.acceleration
+        return lambda t: level * math.sin(turn * t * (first + half * t))
     if isinstance(signal, (SweptSine, SteppedSine)):
         return lambda t: float(signal(t))
     pieces = signal.pieces(1e-10)  # its own test shows that these are the signal
