@@ -128,7 +128,7 @@ def event_driven(structure, signal, times):
             rtol=1e-12,
             atol=1e-15,
             events=force if touching else gap,
-            max_step=1e-3,
+            max_step=1e-4,  # a shorter hop than a step would be missed
         )
         rows.append(np.array(run.y).T.reshape(-1, 4))
         if run.status != 1:
