@@ -10,8 +10,11 @@ import argparse
 import logging
 import re
 import sys
-from collections.abc import Collection, Sequence
+import warnings
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from ..errors import InputError, StaleError, VibroimpactError
 from ..version import __version__
@@ -150,7 +153,8 @@ def carry_out(arguments: Sequence[str]) -> int:
         store.FINISHED.clear()
     chosen = make_parser(arguments).parse_args(join_negative_values(arguments))
     try:
-        chosen.run(chosen)
+        with warnings_as_lines():
+            chosen.run(chosen)
         return SUCCESS
     except KeyboardInterrupt as ended:
         return interrupted(ended)
@@ -187,6 +191,22 @@ def stored_state() -> str:
     if store and store.FINISHED:
         return "the result is stored, the same command (without --force) goes on from there"
     return "nothing was stored, the same command begins anew"
+
+
+@contextmanager
+def warnings_as_lines() -> Iterator[None]:
+    """Print what is meant for the user as one line, without the place in the code."""
+    usual = warnings.showwarning
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if category is UserWarning:
+            print_error(f"warning: {message}")
+        else:
+            usual(message, category, *place, **more)
+
+    with warnings.catch_warnings():
+        warnings.showwarning = show
+        yield
 
 
 def print_error(line: str) -> None:

@@ -210,3 +210,15 @@ def test_mistakes_in_reading_are_one_line(ask, tmp_path, options, words):
     in_g(sweep(second=False), tmp_path / "bench.csv")
     (tmp_path / "bench.doc").write_text("a")
     ask("analyse", tmp_path / options[0], *options[1:]).complaint(*words)
+
+
+def test_numbers_in_another_unit_are_noticed_in_one_line(ask, tmp_path):
+    """A level of 0.01, called m/s2: the command goes on, and says what it wonders at."""
+    record = sweep(second=False)
+    small = record.assign({name: 0.005 * record[name] for name in record})
+    write_record(small.assign_attrs(record.attrs), tmp_path / "bench.csv")
+    done = ask("analyse", tmp_path / "bench.csv", "--show", "psd", "--plot", "none")
+    words = "no more than 0.03 m/s2: are these numbers in g, or in V? expected m/s2"
+    assert done.code == 0
+    assert f"warning: acceleration1: {words}" in done.complaints
+    assert len(done.complaints) == 2 and "box" in done.out

@@ -35,6 +35,10 @@ SIGNALS = {
 
 def exact(signal):
     """The signal as a function of one time, by its definition where it has a simple one."""
+    if isinstance(signal, SweptSine) and signal.spacing == "linear":  # the same, and quicker
+        first, half = signal.first, 0.5 * (signal.last - signal.first) / signal.duration
+        turn, level = 2.0 * math.pi, signal.acceleration
+        return lambda t: level * math.sin(turn * t * (first + half * t))
     if isinstance(signal, (SweptSine, SteppedSine)):
         return lambda t: float(signal(t))
     pieces = signal.pieces(1e-10)  # its own test shows that these are the signal
@@ -81,8 +85,10 @@ def test_bonded_structure_is_the_linear_oscillator(name):
     assert np.allclose(data.a1_abs, felt, rtol=1e-12, atol=1e-12)
 
 
-def event_driven(structure, signal, times):
+def event_driven(structure, signal, times, max_step=1e-4):
     """Impact by impact, by SciPy's events, with the end of chattering (17) and release (18).
+
+    A hop that is shorter than a step would be missed.
 
     Returns
     -------
@@ -124,7 +130,7 @@ def event_driven(structure, signal, times):
             rtol=1e-12,
             atol=1e-15,
             events=force if touching else gap,
-            max_step=1e-3,
+            max_step=max_step,
         )
         rows.append(np.array(run.y).T.reshape(-1, 4))
         if run.status != 1:
@@ -152,13 +158,13 @@ def random_structure(seed, restitution=(0.5, 0.9), damping=(0.003, 0.02)):
     )
 
 
-def check_impacts(seed, duration):
+def check_impacts(seed, duration, max_step=1e-4):
     """All impacts up to chaos, to 1e-7 of a period."""
     structure = random_structure(seed)
     first = structure.f1 * np.random.default_rng(seed + 1000).uniform(0.7, 1.0)
     signal = SweptSine(first=first, last=1.4 * first, duration=duration, acceleration=5.0)
     data = shake(structure, signal, start=OPEN, accuracy=1e-10, progress=False)
-    impacts, _ = event_driven(structure, signal, data.time.values)
+    impacts, _ = event_driven(structure, signal, data.time.values, max_step)
     times = data.impact_time.values
     times = times[times <= float(data.time[-1])]  # the excitation goes on to its end
     alike = min(len(times), len(impacts))
@@ -175,7 +181,7 @@ def check_impacts(seed, duration):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_impacts_of_a_swept_sine_are_those_of_an_independent_integration(seed):
-    check_impacts(seed, 0.4)
+    check_impacts(seed, 0.4, 1e-3)
 
 
 @pytest.mark.slow
