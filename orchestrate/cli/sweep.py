@@ -12,6 +12,7 @@ from .options import (
     add_over,
     add_structure,
     numbers_of,
+    state_of,
     structure_of,
     varied_arguments,
 )
@@ -57,6 +58,8 @@ def add_parser(commands: Commands) -> None:
         help="order of the values, each started from the end of the last (default: up for a "
         "range, a list as it stands)",
     )
+    text = "state that the first value starts from, m and m/s (default: rest)"
+    option("--start", metavar="X1,X2,V1,V2", help=text)
     add_numbers(
         option,
         transient=(500, "periods dropped"),
@@ -70,9 +73,11 @@ def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
     excitation, is_range = varied_arguments(arguments, structure, usual=PAPER_RANGE)
+    start = state_of("--start", arguments.start)
     question = {
         **excitation,
         "direction": arguments.direction or ("up" if is_range else "given"),
+        **({} if start is None else {"start": start}),
         **numbers_of(arguments, "transient", "samples", "tolerance"),
     }
     carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)

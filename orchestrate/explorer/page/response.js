@@ -1,6 +1,6 @@
 /** One settled response: stroboscopic samples, impacts, the largest gap, and where it ends. */
 
-import { lengthOf, periodOf } from "./structure.js";
+import { clearanceOf, lengthOf, periodOf } from "./structure.js";
 
 /**
  * @typedef {import("./kernel.js").Oscillator} Oscillator
@@ -36,7 +36,7 @@ export function respond(instance, point, start, { transient, samples, tolerance 
   const length = lengthOf(point);
   return {
     states,
-    gaps: gapsOf(states, length),
+    gaps: gapsOf(states, length, clearanceOf(point.structure)),
     peak: peak / length,
     impacts: (instance.get("impact_count") - before) / samples,
     contact: touching || instance.get("contact_count") > contacts,
@@ -62,10 +62,10 @@ function toBits(values, bits = 44) {
   return Array.from(values, (value) => (value / digit + TO_WHOLE - TO_WHOLE) * digit);
 }
 
-/** @param {Float64Array} states @param {number} length */
-export function gapsOf(states, length) {
+/** @param {Float64Array} states @param {number} length @param {number} clearance */
+function gapsOf(states, length, clearance) {
   const gaps = new Float64Array(states.length / 4);
-  for (let i = 0; i < gaps.length; i++) gaps[i] = (states[4 * i + 1] - states[4 * i]) / length;
+  for (let i = 0; i < gaps.length; i++) gaps[i] = (states[4 * i + 1] - states[4 * i] + clearance) / length;
   return gaps;
 }
 
