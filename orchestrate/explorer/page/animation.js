@@ -1,7 +1,7 @@
 /** The box, both masses and their springs in motion; impacts flash. */
 
 import { Picture } from "./picture.js";
-import { clearanceOf } from "./structure.js";
+import { gapOffset } from "./clearance.js";
 
 /**
  * @typedef {import("./motion.js").Motion} Motion
@@ -26,7 +26,7 @@ export class Animation {
 
   /** @param {Motion} motion @param {Point} point */
   load(motion, point) {
-    Object.assign(this, { motion, turn: 0, clearance: clearanceOf(point.structure) });
+    Object.assign(this, { motion, turn: 0, clearance: gapOffset(point.structure) });
     this.largest = motion.states.reduce((most, value, i) => (i % 4 < 2 ? Math.max(most, Math.abs(value)) : most), 0);
     this.picture.redraw();
   }

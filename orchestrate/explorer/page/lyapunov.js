@@ -1,5 +1,6 @@
 /** The largest Lyapunov exponent, estimated: how fast two motions that begin close by part. */
 
+import { gapBetween, gapOffset } from "./clearance.js";
 import { lengthOf, omegaOf, periodOf } from "./structure.js";
 
 /**
@@ -30,7 +31,7 @@ export function exponentOf(instance, point, start, { periods, distance }) {
   let difference = [-0.5, 0.5, 0.5, -0.5].map((part) => part * distance);
   let sum = 0;
   for (let n = 0; n < periods; n++) {
-    const twin = beside(state, difference, scale);
+    const twin = beside(state, difference, scale, gapOffset(point.structure));
     const moved = twin.map((value, i) => (value - state[i]) / scale[i]);
     [state, difference] = separate(next(state), next(twin), scale);
     const growth = norm(difference) / norm(moved);
@@ -42,11 +43,11 @@ export function exponentOf(instance, point, start, { periods, distance }) {
   return sum / (periods * period * omegaOf(point.structure));
 }
 
-/** A state close by whose gap is none below zero. @param {number[]} state @param {number[]} d @param {number[]} scale */
-function beside(state, d, scale) {
-  const sign = state[1] + d[1] * scale[1] < state[0] + d[0] * scale[0] ? -1 : 1;
+/** A state close by whose gap is none below zero. @param {number[]} state @param {number[]} d @param {number[]} scale @param {number} offset */
+function beside(state, d, scale, offset) {
+  const sign = gapBetween(state[0] + d[0] * scale[0], state[1] + d[1] * scale[1], offset) < 0 ? -1 : 1;
   const twin = state.map((value, i) => value + sign * d[i] * scale[i]);
-  return twin[1] < twin[0] ? [twin[0], twin[0], twin[2], twin[3]] : twin;
+  return gapBetween(twin[0], twin[1], offset) < 0 ? [twin[0], twin[0] - offset, twin[2], twin[3]] : twin;
 }
 
 /** @param {number[]} state @param {number[]} twin @param {number[]} scale @returns {[number[], number[]]} */

@@ -1,11 +1,11 @@
 /** The motion at the chosen frequency in four pictures, and in words. */
 
 import { axisAround, drawChart } from "./chart.js";
+import { gapBetween, gapOffset } from "./clearance.js";
 import { GRAVITY, inHertz } from "./excitation.js";
 import { Picture } from "./picture.js";
 import { peaksUpTo } from "./record.js";
 import { shown } from "./scale.js";
-import { clearanceOf } from "./structure.js";
 import { scaleAt, wordsOf } from "./units.js";
 
 /**
@@ -108,9 +108,9 @@ export function phaseChart(motion, point, level) {
 export function sectionChart(states, point, level) {
   const { length, speed } = scaleAt(point, level);
   const words = wordsOf(level);
-  const clearance = clearanceOf(point.structure);
+  const offset = gapOffset(point.structure);
   const count = states.length / 4;
-  const x = Float64Array.from({ length: count }, (_, i) => (states[4 * i + 1] - states[4 * i] + clearance) / length);
+  const x = Float64Array.from({ length: count }, (_, i) => gapBetween(states[4 * i], states[4 * i + 1], offset) / length);
   const y = Float64Array.from({ length: count }, (_, i) => (states[4 * i + 3] - states[4 * i + 2]) / speed);
   const dots = count > 2000 ? 0.8 : 1.8;
   return {

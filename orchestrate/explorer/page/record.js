@@ -13,6 +13,7 @@ const SEPARATORS = [";", "\t", ",", /\s+/];
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 const LONGEST = 2 ** 21; // values
 const FEWEST = 16;
+const MANY = 2 ** 19; // lines of a spectrum
 const UNEVEN = 0.05; // of a step
 /** @type {Record<string, number>} */
 const ACCELERATIONS = { "m/s2": 1, "m/s/s": 1, g: GRAVITY, mg: 1e-3 * GRAVITY, "mm/s2": 1e-3 };
@@ -98,10 +99,11 @@ function headingOf(text) {
   return { text: name.trim(), name: name.toLowerCase().replace(/[^a-z0-9]/g, ""), unit: plain };
 }
 
-/** Amplitude spectrum with a Hann window, filled with zeros to a power of two. @param {Float64Array} values @param {number} step s */
+/** Amplitude spectrum with a Hann window, filled with zeros so that no line falls between two. @param {Float64Array} values @param {number} step s */
 function amplitudes(values, step) {
   const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
-  const size = 2 ** Math.ceil(Math.log2(values.length));
+  const whole = 2 ** Math.ceil(Math.log2(values.length));
+  const size = Math.max(whole, Math.min(8 * whole, MANY));
   const [real, imaginary] = [new Float64Array(size), new Float64Array(size)];
   values.forEach((value, i) => (real[i] = (value - mean) * (0.5 - 0.5 * Math.cos((2 * Math.PI * i) / values.length))));
   transform(real, imaginary);

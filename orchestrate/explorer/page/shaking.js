@@ -48,9 +48,10 @@ export class Shaking {
   /** The same motions of a beam of one's own, or in the paper's units. @param {boolean} own @returns {[Structure, Level]} */
   converted(own) {
     const [omega, level] = own ? [OMEGA, FIRST] : [1, PAPER];
-    const other = rescaled(this.structure, omega, 1, 1);
+    const digits = own ? 17 : 12;
+    const other = rescaled(this.structure, omega, 1, 1, digits);
     const [from, to] = [pointAt(this.structure, 1, this.level), pointAt(other, 1, level)].map(lengthOf);
-    return [rescaled(this.structure, omega, 1, to / from), level];
+    return [rescaled(this.structure, omega, 1, to / from, digits), level];
   }
 
   /** @param {Structure} structure @param {Level} level */

@@ -46,9 +46,6 @@ export function withHalves(s, { m1, m2, f1, f2, zeta1, zeta2 }) {
   };
 }
 
-/** Gap between the faces when nothing loads the springs, m; below zero they are pressed together. @param {Structure} s */
-export const clearanceOf = (s) => s.clearance ?? 0;
-
 /**
  * A structure that differs in one number; `mu` keeps the damping ratios, the numbers of a half
  * keep its others.
@@ -76,26 +73,27 @@ export function withNumber(s, name, value) {
 /** All numbers that a field may show. @param {Structure} s @returns {Record<string, number>} */
 export function numbersIn(s) {
   const [ratios, halves] = [ratiosOf(s), halvesOf(s)];
-  const own = { mass1: s.m1, mass2: s.m2, zeta: 100 * halves.zeta1, gap: 1000 * clearanceOf(s) };
+  const own = { mass1: s.m1, mass2: s.m2, zeta: 100 * halves.zeta1, gap: 1000 * (s.clearance ?? 0) };
   return { ...s, ...ratios, ...halves, ...own, D: ratios.D1 };
 }
 
 /**
- * The same motions in other units: all ratios stay; to 14 digits, so that there and back is the same.
+ * The same motions in other units: all ratios stay.
  * @param {Structure} s
  * @param {number} omega rad/s
  * @param {number} mass of mass 1, kg
  * @param {number} length factor of what the clearance is
+ * @param {number} digits that are kept: fewer than all, so that there and back is the same
  * @returns {Structure}
  */
-export function rescaled(s, omega, mass, length) {
+export function rescaled(s, omega, mass, length, digits) {
   const [masses, times] = [mass / s.m1, omega / omegaOf(s)];
   const [stiff, damp] = [masses * times * times, masses * times];
   const factors = { m1: masses, m2: masses, k1: stiff, k2: stiff, d1: damp, d2: damp, clearance: length };
   /** @type {Record<string, number>} */
   const changed = { ...s };
   for (const [name, factor] of Object.entries(factors)) {
-    if (name in changed) changed[name] = Number((changed[name] * factor).toPrecision(14));
+    if (name in changed) changed[name] = Number((changed[name] * factor).toPrecision(digits));
   }
   return /** @type {Structure} */ (changed);
 }

@@ -1,9 +1,6 @@
 """The page in headless browsers: each way to use it, and the bits of what it shows."""
 
-import os
 import shlex
-import subprocess
-import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -18,6 +15,9 @@ from orchestrate.explorer.page import explore
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import follow
 from orchestrate.structures import Excitation, Structure
+
+from .conftest import typed
+from .test_own_beam import pasted
 
 PAPER = Structure()
 DIAGRAM = "explorer.regions.diagram"
@@ -307,22 +307,6 @@ EXCITATIONS = {  # an excitation, and what the command has of it; no option says
 }
 
 
-def pasted(command, folder):
-    """The results that a command writes when it is pasted into a shell, in order of their names."""
-    folder.mkdir()
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    surroundings = {
-        **os.environ,
-        "PATH": path,
-        "PYTHONPATH": str(Path(orchestrate.__file__).parents[1]),
-    }
-    done = subprocess.run(
-        ["sh", "-e"], input=command, cwd=folder, env=surroundings, capture_output=True, text=True
-    )
-    assert done.returncode == 0, (command, done.stderr)
-    return [xr.load_dataset(file) for file in sorted(folder.rglob("*.nc"))]
-
-
 @pytest.mark.parametrize("kind", EXCITATIONS)
 def test_the_commands_of_an_own_beam_compute_what_is_shown(window, tmp_path, kind, capsys):
     frequency, amplitude, words = EXCITATIONS[kind]
@@ -353,15 +337,6 @@ def test_the_motion_of_an_own_beam_is_computed_by_its_command(window, tmp_path, 
     for words in ("amplitude of the box, mm", "acceleration of the box, g", "largest gap, mm"):
         assert words in numbers
     assert window.console() == []
-
-
-def typed(browser, name, text):
-    """Type into an input as a hand does, letter by letter, and leave it."""
-    from selenium.webdriver.common.keys import Keys
-
-    browser.run("const at = document.getElementById(arguments[0]); at.focus(); at.select()", name)
-    browser.keys(*text)
-    browser.keys(Keys.TAB)
 
 
 def test_a_number_counts_when_it_has_been_typed(browser):
