@@ -22,7 +22,7 @@ FILE = """
 const [name, text] = arguments;
 const given = new DataTransfer();
 given.items.add(new File([text], name));
-window.dispatchEvent(new DragEvent("drop", { dataTransfer: given, bubbles: true, cancelable: true }));
+window.dispatchEvent(new DragEvent("drop", { dataTransfer: given, cancelable: true }));
 """
 
 
@@ -180,7 +180,9 @@ def record(frequency=30.0, level=2.0, rate=1000.0, count=3000):
 def test_a_measured_record_is_laid_over_the_models_spectrum(opened):
     opened.chosen()
     time, values = record()
-    rows = "\n".join(f"{1e3 * t:.3f};{a:.9f}".replace(".", ",") for t, a in zip(time, values))
+    rows = "\n".join(
+        f"{1e3 * t:.3f};{a:.9f}".replace(".", ",") for t, a in zip(time, values, strict=True)
+    )
     opened.run(FILE, "rig.csv", f"rig 7, 2024\nt [ms];Acc 1 [g]\n{rows}\n")
     opened.until("return explorer.inspector.measured")
     assert opened.text("record-status") == "rig.csv: Acc 1 in g; 3000 values, 1000 a second"
