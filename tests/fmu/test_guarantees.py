@@ -7,26 +7,28 @@ import pytest
 from .driver import run
 
 
-@pytest.mark.parametrize("eta", [0.4, 1.13, 2.9])
-def test_communication_grid_does_not_matter(fmu, tmp_path, eta):
+@pytest.mark.parametrize(
+    ("eta", "clearance"), [(0.4, 0.0), (1.13, 0.0), (2.9, 0.0), (1.13, 0.25), (1.13, -0.25)]
+)
+def test_communication_grid_does_not_matter(fmu, tmp_path, eta, clearance):
     """At eta = 1.13 the motion is chaotic: a difference in the last bit would have grown to one in
     the first digits.
     """
-    found = run("guarantees.grids", fmu, eta, 512, cwd=tmp_path)
+    found = run("guarantees.grids", fmu, eta, 512, clearance, cwd=tmp_path)
     reference = found.pop("one step")
     assert reference["impact_count"] > 100
     for name, outputs in found.items():
         assert outputs == reference, name
 
 
-def test_communication_grid_does_not_matter_after_inputs_changed(fmu, tmp_path):
+@pytest.mark.parametrize("clearance", [0.0, 0.25, -0.25])
+def test_communication_grid_does_not_matter_after_inputs_changed(fmu, tmp_path, clearance):
     """The same with inputs that change at common points of time, a constant acceleration among
     them.
     """
-    found = run(
-        "guarantees.communication_grid_does_not_matter_after_inputs_changed", fmu, cwd=tmp_path
-    )
-    assert found[0]["impact_count"] > 20
+    program = "guarantees.communication_grid_does_not_matter_after_inputs_changed"
+    found = run(program, fmu, clearance, cwd=tmp_path)
+    assert found[0]["impact_count"] > 15
     assert found[0] == found[1] == found[2]
 
 
@@ -71,13 +73,14 @@ def test_steps_of_a_period_end_where_one_step_ends(fmu, tmp_path, values, period
     assert parts == pytest.approx(whole, abs=1e-9)
 
 
-def test_amplitudes_scale_to_the_last_bit(fmu, tmp_path):
+@pytest.mark.parametrize("clearance", [0.0, 0.3, -0.3])
+def test_amplitudes_scale_to_the_last_bit(fmu, tmp_path, clearance):
     """Displacements, velocities and forces times 2^n, energies times 4^n; times, counts and the
     paper's xi as they were.
     """
-    found = run("guarantees.amplitudes_scale_to_the_last_bit", fmu, cwd=tmp_path)
+    found = run("guarantees.amplitudes_scale_to_the_last_bit", fmu, clearance, cwd=tmp_path)
     reference = found.pop("0")
-    assert reference["impact_count"] > 50
+    assert reference["impact_count"] > 40
     unchanged = {
         "xi1",
         "xi2",
@@ -98,14 +101,15 @@ def test_amplitudes_scale_to_the_last_bit(fmu, tmp_path):
         assert outputs == expected, n
 
 
-def test_masses_never_pass_through_each_other(fmu, tmp_path):
+@pytest.mark.parametrize("clearance", [0.0, 0.3, -0.3])
+def test_masses_never_pass_through_each_other(fmu, tmp_path, clearance):
     """x_rel >= 0 at dense and random points, and within a few roundings of every impact, where it
     is as small as it gets.
     """
     lowest, nearest, largest_near, impacts = run(
-        "guarantees.masses_never_pass_through_each_other", fmu, cwd=tmp_path
+        "guarantees.masses_never_pass_through_each_other", fmu, clearance, cwd=tmp_path
     )
-    assert impacts > 30
+    assert impacts > 10
     assert lowest >= 0.0
     assert nearest >= 0.0
     assert largest_near < 1e-12
@@ -118,6 +122,8 @@ def test_masses_never_pass_through_each_other(fmu, tmp_path):
         ({"m1": 5.0, "m2": 0.4, "k2": 0.9, "e": 0.3, "box_frequency": 2.9}, False),
         # a plastic impact begins a contact at full speed
         ({"m2": 3.0, "e": 0.0, "k2": 0.7, "d2": 0.05, "box_frequency": 0.8}, True),
+        ({"m2": 3.0, "box_frequency": 1.13, "clearance": 0.4}, False),
+        ({"m2": 3.0, "e": 0.0, "box_frequency": 0.8, "clearance": -0.2}, True),
     ],
 )
 def test_momentum_is_kept_at_impacts_and_starts_of_contact(fmu, tmp_path, values, contacts):

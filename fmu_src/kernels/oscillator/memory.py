@@ -61,6 +61,7 @@ V1_SAMPLE = slot(SAMPLES)
 V2_SAMPLE = slot(SAMPLES)
 EVALUATIONS = slot()
 EVALUATION_LIMIT = slot()
+CLEARANCE = slot()
 TIME = slot()  # communication point reached, s (the independent variable)
 
 # -- constants derived from the parameters ---------------------------------------------------------
@@ -70,6 +71,10 @@ SHARE = slot()  # 1/(1 + mu), the part of mass 1 in both
 FORCE_V = slot()  # 2 (D1 - D2), and
 FORCE_X = slot()  # omega1^2 - omega2^2: the coefficients of (18)
 FASTEST = slot()  # largest omega_i
+GAP_OFFSET = slot()  # the gap between unloaded springs, m: the clearance; 0 where bonded
+REST_1 = slot()  # where both masses rest while they are held together, from unloaded springs, m
+REST_2 = slot()
+PRELOAD = slot()  # f of (18) there, m: < 0 presses the masses together
 
 inside = Slots()  # a branch, one linear oscillator
 DAMPING = inside()  # D_i (8)
@@ -127,6 +132,7 @@ EVENT_HARMONIC = slot(2)  # the event function: positive inside the state, 0 at 
 EVENT_CUBIC = slot(4)
 EVENT_FREE_A = slot(2)
 EVENT_FREE_B = slot(2)
+EVENT_OFFSET = slot()  # its constant part
 EVENT_ORDERS = 7
 EVENT_DRIVE = slot(2 * EVENT_ORDERS)  # the forcing in its derivatives, where amplitudes grow
 SINE = slot()  # of the phase at the state's start
@@ -147,6 +153,7 @@ TARGET = slot()  # for messages: the time a step was to reach,
 REPORT = slot()  # and what a return code is about
 STOP_AT_IMPACT = slot()  # set from outside: a step ends at its first impact
 BEGIN = slot(4)  # displacements and velocities at the state's start: x1, v1, x2, v2
+BEGIN_GAP = slot()  # and the gap
 STOPPED = slot()  # the step has ended so
 NODE = slot()  # number of the node before the present interval,
 LEFT_AGE = slot()  # its age,
@@ -172,6 +179,7 @@ SIZE = slot.used
 
 # -- return codes of the entry points --------------------------------------------------------------
 OK, UNFINISHED, NOT_FINITE, START_OVERLAP, START_BONDED, LIMITED = 0, 1, 2, 3, 4, 5
+START_BEYOND_CLEARANCE = 6
 FORGED = 100  # a saved state that this model never had; which slot, and why:
 NOT_A_NUMBER, NO_INPUT, NO_AGE, NO_MODE, NO_END_KIND, NO_SERIES = 0, 1, 2, 3, 4, 5
 NO_COUNT, NO_PHASE, NO_TIME, NO_GAP, NO_EVENT = 6, 7, 8, 9, 10

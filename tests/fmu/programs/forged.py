@@ -38,7 +38,7 @@ def number(data, slot):
 def sane(values):
     """Whether outputs are numbers, and the masses apart or together."""
     finite = all(math.isfinite(value) for value in values.values())
-    return finite and values.get("x2", 0.0) >= values.get("x1", 0.0)
+    return finite and values.get("x_rel", 0.0) >= 0.0
 
 
 def run_on(f, begun):
@@ -72,7 +72,7 @@ def problem_of(f, data, begun, slot, value, derived):
     if time.perf_counter() - clock > PATIENCE:
         return f"took {time.perf_counter() - clock:.1f} s"
     if found and not all(map(sane, found)):
-        return "handed out what is no number, or x2 < x1"
+        return "handed out what is no number, or x_rel < 0"
     if found and derived[0] <= slot < derived[1]:
         f.reset()
         if found != run_on(f.restore(data, begun), begun):

@@ -9,7 +9,7 @@ from driver import harmonic, open_fmu
 OF_THE_STEP = ("box_impulse", "box_impulse_moment", "x_rel_max", "evaluations")
 
 
-def grids(path, eta, end):
+def grids(path, eta, end, clearance):
     """Outputs at the end of different communication grids.
 
     All are dyadic: every time and every difference of two times is exact, so that all grids reach
@@ -30,7 +30,7 @@ def grids(path, eta, end):
     }
     found = {}
     for name, times in grids.items():
-        f = open_fmu(path).start(**harmonic(eta))
+        f = open_fmu(path).start(**harmonic(eta), clearance=clearance)
         for time in [*times, end]:
             f.step(time)
         found[name] = f.outputs()
@@ -38,7 +38,7 @@ def grids(path, eta, end):
     return found
 
 
-def communication_grid_does_not_matter_after_inputs_changed(path):
+def communication_grid_does_not_matter_after_inputs_changed(path, clearance):
     changes = [
         (0.0, {"box_frequency": 1.13}),
         (20.0, {"box_amplitude": 0.5}),
@@ -48,7 +48,7 @@ def communication_grid_does_not_matter_after_inputs_changed(path):
     ]
     found = []
     for pieces in (1, 7, 256):
-        f = open_fmu(path).start()
+        f = open_fmu(path).start(clearance=clearance)
         for (begin, values), (end, _) in itertools.pairwise(changes):
             f.set(**values)
             ticks = int((end - begin) * 2**20)
@@ -99,24 +99,26 @@ def steps_of_a_period_end_where_one_step_ends(path, values, periods, pieces):
     return [f.get("x1", "x2", "impact_count") for f in (whole, parts)]
 
 
-def amplitudes_scale_to_the_last_bit(path):
-    starts = {"x1_start": -0.375, "x2_start": 0.8125, "v1_start": 0.1, "v2_start": -0.3}
+def amplitudes_scale_to_the_last_bit(path, clearance):
+    lengths = {"x1_start": -0.375, "x2_start": 0.8125, "clearance": clearance}
+    lengths |= {"v1_start": 0.1, "v2_start": -0.3, "box_amplitude": 0.7}
     found = {}
     for n in (0, -40, 7, 60):
         scale = 2.0**n
-        scaled = {name: value * scale for name, value in starts.items()}
-        f = open_fmu(path).start(box_amplitude=0.7 * scale, box_frequency=1.13, m2=1.5, **scaled)
+        scaled = {name: value * scale for name, value in lengths.items()}
+        f = open_fmu(path).start(box_frequency=1.13, m2=1.5, **scaled)
         f.step(250.0)
         f.step(256.0)
         found[n] = f.outputs()
     return found
 
 
-def masses_never_pass_through_each_other(path):
+def masses_never_pass_through_each_other(path, clearance):
     rng = random.Random(2)
     lowest, near, impacts = math.inf, [], 0
     for eta, more in ((0.4, {}), (1.13, {"m2": 3.0}), (2.9, {"e": 0.1}), (0.4, {"e": 0.0})):
-        first, second = (open_fmu(path).start(**harmonic(eta), **more) for _ in range(2))
+        more = {**harmonic(eta), **more, "clearance": clearance}
+        first, second = (open_fmu(path).start(**more) for _ in range(2))
         count = 0
         while first.time < 40.0:
             first.step(first.time + rng.uniform(0.0, 0.02))

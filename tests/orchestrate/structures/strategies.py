@@ -21,6 +21,7 @@ STRUCTURES = st.builds(
     d2=LOSS,
     e=st.floats(0.0, 1.0),
     gamma=st.floats(1e-9, 1.0),
+    clearance=st.one_of(st.just(0.0), st.floats(-1e3, 1e3)),
     bonded=st.booleans(),
 )
 NUMBERS = st.fixed_dictionaries(

@@ -26,7 +26,8 @@ def near(value, expected):
 
 @given(STRUCTURES)
 def test_si_to_numbers_and_back(structure):
-    numbers = {name: structure.get(name) for name in ("mu", "kappa", "D1", "D2", "e", "gamma")}
+    names = ("mu", "kappa", "D1", "D2", "e", "gamma", "clearance")
+    numbers = {name: structure.get(name) for name in names}
     scale = {"m1": structure.m1, "omega": structure.omega, "bonded": structure.bonded}
     back = Structure.nondimensional(**numbers, **scale)
     for name in STRUCTURE:
@@ -53,7 +54,7 @@ def test_the_operations_of_the_paper_s_sweeps():
     """To the last bit what sweeps by the paper's numbers have always given to the FMU."""
     structure = Structure.nondimensional(e=0.3, D=0.013, mu=0.7, kappa=1.3)
     expected = {"m1": 1.0, "m2": 0.7, "k1": 1.0, "k2": 1.3, "d1": 2.0 * 0.013}
-    rest = {"d2": 2.0 * 0.013 * 0.7, "e": 0.3, "gamma": 1e-4, "bonded": False}
+    rest = {"d2": 2.0 * 0.013 * 0.7, "e": 0.3, "gamma": 1e-4, "clearance": 0.0, "bonded": False}
     assert structure.parameters() == {**expected, **rest}
 
 
@@ -177,7 +178,10 @@ def test_ranges_are_the_fmu_s(name):
     quantity = STRUCTURE[name]
     for value in (quantity.minimum, quantity.maximum):
         assert getattr(Structure(**{name: value}), name) == value
-    below, above = np.nextafter(quantity.minimum, -1.0), np.nextafter(quantity.maximum, math.inf)
+    below, above = (
+        np.nextafter(quantity.minimum, -math.inf),
+        np.nextafter(quantity.maximum, math.inf),
+    )
     for value in (below, above, math.nan, math.inf, -math.inf, 10**400):
         with pytest.raises(InputError, match=f"^{name} = .*expected .* <= {name} <= "):
             Structure(**{name: value})

@@ -1,0 +1,150 @@
+"""A structure's clearance: constructors, files, the state at rest, and who does not know it yet."""
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate import Drive, InputError, Structure
+
+
+def test_every_constructor_takes_a_clearance():
+    halves = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0}
+    bonded = {"mass": 2.0, "f": 50.0, "thicknesses": (3.0, 2.0)}
+    made = [
+        Structure(clearance=-2e-5),
+        Structure.nondimensional(clearance=-2e-5),
+        Structure.from_halves(**halves, clearance=-2e-5),
+        Structure.from_bonded(**bonded, clearance=-2e-5),
+        Structure().replace(clearance=-2e-5),
+    ]
+    for structure in made:
+        assert structure.clearance == structure.parameters()["clearance"] == -2e-5
+        assert structure.get("clearance") == -2e-5
+        assert "clearance-2e-05" in structure.label()
+    assert "clearance" not in Structure().label()
+    assert Structure().clearance == 0.0
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e101, "wide", True])
+def test_a_clearance_out_of_range_is_refused_with_its_range(value):
+    with pytest.raises(InputError, match="clearance = .*: expected"):
+        Structure(clearance=value)
+
+
+def test_preload_and_place_at_rest():
+    """Both springs pull with the preload, and the faces touch."""
+    pressed = Structure(k1=2.0, k2=6.0, clearance=-0.4)
+    x1, x2 = pressed.at_rest
+    assert pressed.preload == pytest.approx(0.4 * 12.0 / 8.0)
+    assert (-2.0 * x1, 6.0 * x2) == pytest.approx((pressed.preload, pressed.preload))
+    assert x2 - x1 + pressed.clearance == pytest.approx(0.0, abs=1e-16)
+    for open_structure in (Structure(), Structure(clearance=0.4)):
+        assert open_structure.preload == 0.0
+        assert [str(x) for x in open_structure.at_rest] == ["0.0", "0.0"]  # no negative zero
+
+
+def test_a_bonded_structure_keeps_and_ignores_it():
+    bonded = Structure(clearance=-0.4).as_bonded()
+    assert (bonded.clearance, bonded.gap_offset, bonded.preload) == (-0.4, 0.0, 0.0)
+    assert bonded.as_delaminated() == Structure(clearance=-0.4)
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        "m1 = 1.0\nm2 = 1.0\nk1 = 1.0\nk2 = 1.2\nd1 = 0.01\nd2 = 0.01",
+        "mu = 1.0\nkappa = 1.2\nD = 0.005",
+        "m1 = 1.0\nm2 = 1.0\nf1_hz = 1.0\nf2_hz = 1.1\nzeta1 = 0.01\nzeta2 = 0.01",
+    ],
+)
+def test_files_have_it_with_all_keys_and_may_leave_it_out(tmp_path, keys):
+    path = tmp_path / "beam.toml"
+    path.write_text(f"[structure]\n{keys}\nclearance = -2e-5\n")
+    assert Structure.from_file(path).clearance == -2e-5
+    path.write_text(f"[structure]\n{keys}\n")
+    assert Structure.from_file(path).clearance == 0.0
+    path.write_text(f"[structure]\n{keys}\nclearance = nan\n")
+    with pytest.raises(InputError, match="structure.clearance = nan m: expected"):
+        Structure.from_file(path)
+
+
+def weak_drive(question):
+    """A question to the shipped set with a gap."""
+    structure = Structure.from_file("quick").replace(clearance=1e-3)
+    return lambda: getattr(orchestrate, question)(
+        structure, Drive.from_file("quick"), voltage=(1.2, 1.8)
+    )
+
+
+GAP = Structure(clearance=0.1)
+UNKNOWN = {
+    **{name: weak_drive(name) for name in ("couple", "jump_voltages", "capture", "passage")},
+    "drive_branch": lambda: orchestrate.drive_branch(GAP, Drive.from_file("quick")),
+    "orbit": lambda: orchestrate.orbit(GAP, eta=3.0),
+    "branch": lambda: orchestrate.branch(GAP, eta=3.0, limits=(2.9, 3.1)),
+    "branch over it": lambda: orchestrate.branch(
+        Structure(), eta=3.0, over="clearance", limits=(0.0, 0.1)
+    ),
+    "lyapunov": lambda: orchestrate.lyapunov(GAP, eta=3.0),
+    "lyapunov over it": lambda: orchestrate.lyapunov(
+        Structure(), eta=3.0, over="clearance", values=[0.0, 0.1]
+    ),
+    "impact_statistics": lambda: orchestrate.impact_statistics(GAP, eta=3.0),
+    "attractors": lambda: orchestrate.attractors(GAP, eta=3.0),
+    "basin": lambda: orchestrate.basin(GAP, eta=3.0),
+    "map": lambda: orchestrate.map(GAP, eta=[2.0, 3.0], e=[0.1, 0.2]),
+    "map over it": lambda: orchestrate.map(Structure(), eta=[2.0, 3.0], clearance=[0.0, 0.2]),
+}
+
+
+@pytest.mark.parametrize("question", UNKNOWN.values(), ids=UNKNOWN)
+def test_who_does_not_know_it_refuses_it_in_one_line(question):
+    with pytest.raises(InputError, match="^clearance.*expect") as caught:
+        question()
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("clearance", [0.3, -0.3])
+def test_answers_through_the_fmu_keep_the_gap(clearance):
+    """Gaps, contact, accelerations and states that go on: by the equations of motion."""
+    structure = Structure(clearance=clearance, e=0.4)
+    motion = orchestrate.simulate(structure, frequency=0.7, amplitude=1.5, periods=12, points=300)
+    gap = motion.x2 - motion.x1 + clearance
+    assert np.allclose(motion.x_rel, gap, rtol=0.0, atol=1e-14) and motion.x_rel.min() >= 0.0
+    touching = motion.in_contact.values.astype(bool)
+    assert motion.x_rel.values[touching] == pytest.approx(0.0, abs=0.0)
+    pull_1 = structure.k1 * motion.x1 + structure.d1 * motion.v1
+    pull_2 = structure.k2 * motion.x2 + structure.d2 * motion.v2
+    assert motion.a1_abs.values == pytest.approx(
+        (motion.contact_force + pull_1).values / -structure.m1, abs=1e-12
+    )
+    assert motion.a2_abs.values == pytest.approx(
+        (pull_2 - motion.contact_force).values / -structure.m2, abs=1e-12
+    )
+    assert motion.sizes["impact"] > 3
+    assert touching.any() == (clearance < 0.0)
+
+
+def test_a_sweep_over_the_clearance_goes_on_from_the_last_state():
+    """A preload that just holds, then one that does not: the response is that of the value alone,
+    and a sweep in both directions agrees where nothing is bistable.
+    """
+    structure = Structure(d1=0.4, d2=0.5, e=0.2)
+    values = np.linspace(-0.6, 0.6, 7)
+    found = orchestrate.sweep(
+        structure,
+        **{"over": "clearance", "values": values, "frequency": 0.6, "amplitude": 1.0},
+        **{"direction": "both", "transient": 60, "samples": 8},
+    )
+    up, down = found.sel(direction="up"), found.sel(direction="down")
+    assert up.xi_rel_max.values == pytest.approx(down.xi_rel_max.values, rel=1e-9, abs=1e-12)
+    alone = orchestrate.simulate(
+        structure.replace(clearance=values[4]),
+        frequency=0.6,
+        amplitude=1.0,
+        transient=60,
+        periods=1,
+    )
+    scale = 1.0 * 0.6**2
+    assert float(up.xi_rel_max[4]) == pytest.approx(float(alone.x_rel.max()) / scale, rel=1e-3)
+    assert up.xi_rel_max[0] == 0.0 and up.x1_max[0] > 0.3  # pressed shut, about x1 = -F/k1
