@@ -168,6 +168,7 @@ def structure_of(data: xr.Dataset) -> Structure:
     """The structure that a dataset is about."""
     names = ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma")
     given: dict[str, Any] = {name: float(data.attrs[name]) for name in names}
+    given["clearance"] = float(data.attrs.get("clearance", 0.0))  # files of 0.2 have none
     bonded = float(data.attrs["bonded"])
     if bonded not in (0.0, 1.0):
         raise ValueError(f"bonded = {bonded}")

@@ -5,12 +5,23 @@ That a step shows what it says is computed by a test, through the FMU.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from typing import Any
 
 from ..structures import Structure
 
 START = (0.0, 0.0, 0.0, 0.0)
 OTHER = (-0.055, -0.041, -2.263, -2.141)  # leads to the second motion at 1.3
+OMEGA = 2.0 * math.pi * 40.0  # of the pressed beam, whose other numbers are the paper's, rad/s
+PRESSED: dict[str, Any] = {
+    "eta": 0.75,
+    "region": (0.25, 1.5),
+    "changes": {
+        **{"k1": OMEGA**2, "k2": 1.2 * OMEGA**2, "d1": 0.01 * OMEGA, "d2": 0.01 * OMEGA},
+        "clearance": -5e-5,
+    },
+}
 
 
 @dataclass(frozen=True)
@@ -33,6 +44,9 @@ class Stop:
         Of its sweep.
     changes : dict of str to float
         Parameters that are not the paper's.
+    level : float
+        Peak acceleration of the box in g, held at all frequencies; 0: the paper's amplitude
+        1/eta^2 m.
     """
 
     name: str
@@ -42,13 +56,15 @@ class Stop:
     region: tuple[float, float] = (0.1, 8.0)
     direction: str = "up"
     changes: dict[str, float] = field(default_factory=dict)
+    level: float = 0.0
 
     @property
     def words(self) -> str:
         """What the page's link of this view says."""
         low, high = self.region
         start = ",".join(f"{value:g}" for value in self.start)
-        words = {"from": low, "to": high, "direction": self.direction, **self.changes}
+        level = {"g": self.level} if self.level else {}
+        words = {"from": low, "to": high, "direction": self.direction, **self.changes, **level}
         said = [f"{name}={value}" for name, value in words.items()]
         return "&".join([*said, f"eta={self.eta}", f"start={start}"])
 
@@ -103,5 +119,15 @@ TOUR = (
         "motions that begin almost alike soon have nothing in common; the exponent, above zero, "
         "says how soon. Listen: no rhythm stays.",
         (Stop("chaos", "", 2.9),),
+    ),
+    Step(
+        "Pressed shut",
+        "Here the halves are pressed together by 0.05 mm. Shaken gently the split stays shut, and "
+        "no test at this level can find it; above a threshold it opens and knocks. Compare, then "
+        "try the level and the gap at rest beside the pictures.",
+        (
+            Stop("pressed", "0.5 g: below", level=0.5, **PRESSED),
+            Stop("pressed-open", "3 g: above", level=3.0, **PRESSED),
+        ),
     ),
 )

@@ -208,7 +208,10 @@ export class App {
     this.mark(point.eta);
     this.waiting = !known;
     if (known) this.inspect(point.eta, known);
-    else this.tell("waits for the responses before it");
+    else {
+      this.tell("waits for the responses before it");
+      this.write();
+    }
   }
 
   /** @param {number} steps to the next frequencies of the diagram */

@@ -9,7 +9,7 @@ const TOUCHING = 2 ** -50; // relative: no more than the rounding of displacemen
 const TO_WHOLE = 1.5 * 2 ** 52; // added and taken away it leaves a whole number, ties to even
 
 /** The gap where both springs are unloaded, m; below zero the faces are pressed together. @param {Structure} s */
-export const gapOffset = (s) => (s.bonded ? 0 : s.clearance ?? 0);
+export const gapOffset = (s) => (s.bonded ? 0 : s.clearance);
 
 /** Displacements at rest, m: of the preload where there is one. @param {Structure} s @returns {Places} */
 export function atRest(s) {

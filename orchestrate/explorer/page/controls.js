@@ -18,7 +18,7 @@ const PAPER = [
   ["D", "damping D", 0, 0.1, 0.001],
   ["mu", "mass ratio μ", 0.2, 5, 0.01],
   ["kappa", "stiffness ratio κ", 0.2, 5, 0.01],
-  ["clearance", "gap at rest ξ₀", -2, 2, 0.01],
+  ["xi0", "gap at rest ξ₀", -2, 2, 0.01],
 ];
 /** @type {Entry[]} */
 const OWN = [
@@ -27,7 +27,7 @@ const OWN = [
   ["mass1", "mass of half 1, kg", 1e-6, 1e4],
   ["mass2", "mass of half 2, kg", 1e-6, 1e4],
   ["zeta", "damping ratio, %", 0, 20, 0.01],
-  ["gap", "gap at rest, mm", -2, 2, 0.001],
+  ["gap", "gap at rest, mm", -0.5, 0.5, 0.005],
 ];
 const SI = /** @type {const} */ ([
   ["m1", "kg"],
@@ -36,6 +36,7 @@ const SI = /** @type {const} */ ([
   ["k2", "N/m"],
   ["d1", "N s/m"],
   ["d2", "N s/m"],
+  ["clearance", "m"],
 ]);
 
 const DIGITS = 7;
@@ -56,8 +57,7 @@ export class Controls {
     this.inputs = new Map();
     at("sliders").append(this.row(RESTITUTION));
     for (const [id, entries] of /** @type {const} */ ([["paper-sliders", PAPER], ["own-sliders", OWN]])) {
-      const known = entries.filter(([name]) => "clearance" in structure || (name !== "clearance" && name !== "gap"));
-      at(id).append(...known.map((entry) => this.row(entry)));
+      at(id).append(...entries.map((entry) => this.row(entry)));
     }
     for (const [name, unit] of SI) at("si").append(this.row([name, `${name}, ${unit}`, ...ranges[name]]));
     at("si").append(this.row(["D1", "D₁", 0, 1e3]), this.row(["D2", "D₂", 0, 1e3]));

@@ -14,9 +14,10 @@ import { lengthOf, omegaOf, periodOf } from "./structure.js";
  * @param {Point} point
  * @param {number[]} start on the attractor, at phase 0
  * @param {{periods: number, distance: number}} settings
- * @returns {number} minus infinity where permanent contact forgets the difference
+ * @returns {Generator<undefined, number>} minus infinity where permanent contact forgets the
+ *   difference; it pauses, so that the instance may do other things
  */
-export function exponentOf(instance, point, start, { periods, distance }) {
+export function* exponentOf(instance, point, start, { periods, distance }) {
   const period = periodOf(point);
   const length = lengthOf(point);
   const speed = length * omegaOf(point.structure);
@@ -39,6 +40,7 @@ export function exponentOf(instance, point, start, { periods, distance }) {
     sum += Math.log(growth);
     const factor = distance / norm(difference);
     difference = difference.map((part) => part * factor);
+    if (n % 20 === 19) yield;
   }
   return sum / (periods * period * omegaOf(point.structure));
 }

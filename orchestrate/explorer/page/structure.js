@@ -2,7 +2,7 @@
 
 /**
  * @typedef {{m1: number, m2: number, k1: number, k2: number, d1: number, d2: number,
- *   e: number, gamma: number, bonded: number, clearance?: number}} Structure
+ *   e: number, gamma: number, bonded: number, clearance: number}} Structure
  * @typedef {{omega: number, mu: number, kappa: number, D1: number, D2: number}} Ratios
  * @typedef {{structure: Structure, eta: number, frequency: number, amplitude: number}} Point
  */
@@ -62,6 +62,7 @@ export function withNumber(s, name, value) {
   if (name === "mass2") return withHalves(s, { ...halves, m2: value });
   if (name === "zeta") return withHalves(s, { ...halves, zeta1: value / 100, zeta2: value / 100 });
   if (name === "gap") return { ...s, clearance: value / 1000 };
+  if (name === "xi0") return { ...s, clearance: value };
   if (name === "mu") return { ...s, m2: value * s.m1, d2: 2 * D2 * omega * s.m1 * value };
   if (name === "kappa") return { ...s, k2: value * s.k1 };
   if (name === "D1") return { ...s, d1: 2 * value * omega * s.m1 };
@@ -73,7 +74,7 @@ export function withNumber(s, name, value) {
 /** All numbers that a field may show. @param {Structure} s @returns {Record<string, number>} */
 export function numbersIn(s) {
   const [ratios, halves] = [ratiosOf(s), halvesOf(s)];
-  const own = { mass1: s.m1, mass2: s.m2, zeta: 100 * halves.zeta1, gap: 1000 * (s.clearance ?? 0) };
+  const own = { mass1: s.m1, mass2: s.m2, zeta: 100 * halves.zeta1, gap: 1000 * s.clearance, xi0: s.clearance };
   return { ...s, ...ratios, ...halves, ...own, D: ratios.D1 };
 }
 

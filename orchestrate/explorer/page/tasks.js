@@ -83,12 +83,12 @@ function* section(instance, { point, start, periods }) {
  */
 function* spectra(instance, { point, start }) {
   instance.begin(point, start);
-  const delaminated = spectrumOf(instance, point, 0, SPAN);
+  const delaminated = yield* spectrumOf(instance, point, 0, SPAN);
   const glued = { ...point, structure: { ...point.structure, bonded: 1 } };
   const settled = respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 });
-  const bonded = spectrumOf(instance, glued, 2001, SPAN);
+  const bonded = yield* spectrumOf(instance, glued, 2001, SPAN);
   yield { delaminated, bonded, bondedState: settled.end };
-  yield { exponent: exponentOf(instance, point, start, { periods: 400, distance: 1e-7 }) };
+  yield { exponent: yield* exponentOf(instance, point, start, { periods: 400, distance: 1e-7 }) };
 }
 
 /**

@@ -3,8 +3,10 @@
 import functools
 
 import numpy as np
+import pytest
 
 import orchestrate
+from orchestrate.constants import GRAVITY
 from orchestrate.explorer.tour import TOUR
 from orchestrate.flags import flag_words
 
@@ -15,10 +17,14 @@ STOPS = {stop.name: stop for step in TOUR for stop in step.stops}
 def settled(name):
     """The response that a stop of the tour leads to, and its impacts over ten periods."""
     stop = STOPS[name]
-    asked = {"eta": stop.eta, "start": stop.start, "progress": False}
-    motion = orchestrate.simulate(stop.structure, **asked, transient=700, periods=10)
-    asked["eta"] = [stop.eta]
-    swept = orchestrate.sweep(stop.structure, **asked, direction="given").isel(eta=0)
+    shaken = {"eta": stop.eta}
+    if stop.level:
+        frequency = stop.eta * stop.structure.omega
+        shaken = {"frequency": frequency, "amplitude": stop.level * GRAVITY / frequency**2}
+    asked = {"start": stop.start, "progress": False}
+    motion = orchestrate.simulate(stop.structure, **shaken, **asked, transient=700, periods=10)
+    shaken = {name: [value] for name, value in shaken.items()}
+    swept = orchestrate.sweep(stop.structure, **shaken, **asked, direction="given").squeeze()
     decided = flag_words(swept.multiplicity_decided.attrs)[int(swept.multiplicity_decided)]
     return swept, motion, decided
 
@@ -66,6 +72,19 @@ def test_chaos_has_a_positive_exponent():
     assert settled("chaos")[2] == "irregular"
 
 
+def test_a_pressed_delamination_stays_shut_below_a_level_and_knocks_above_it():
+    below, above = (settled(name) for name in ("pressed", "pressed-open"))
+    stops = [STOPS[name] for name in ("pressed", "pressed-open")]
+    assert stops[0].structure == stops[1].structure and stops[0].level < stops[1].level
+    assert stops[0].structure.clearance < 0.0 < stops[0].structure.preload
+    swept, motion, _ = below
+    assert float(swept.impacts_per_period) == float(swept.xi_rel_max) == 0.0
+    assert motion.in_contact.all() and motion.sizes["impact"] == 0
+    assert float(motion.contact_force.min()) > 0.0
+    swept, motion, _ = above
+    assert float(swept.impacts_per_period) > 1.0 and float(motion.x_rel.max()) > 1e-4
+
+
 TEXTS = (
     "return [...document.querySelectorAll('#tour p')].filter((p) => !p.hidden)"
     ".map((p) => p.textContent)"
@@ -77,7 +96,7 @@ def test_each_stop_is_a_link_that_opens_its_motion(everywhere):
     for name, stop in STOPS.items():
         browser.run(f"document.querySelector('#tour a[href=\"#tour={name}\"]').click()")
         browser.until(f"return location.hash.startsWith('#tour={name}&')")
-        assert browser.chosen() == stop.eta
+        assert browser.chosen() == pytest.approx(stop.eta, rel=1e-8)
         assert browser.run("return explorer.inspector.choice.start") == list(stop.start)
         (step,) = [step for step in TOUR if stop in step.stops]
         (text,) = browser.run(TEXTS)
