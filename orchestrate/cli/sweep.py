@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from .grammar import state_of
 from .options import Commands, add_over, structure_of, varied_arguments
 from .question import (
     carry_out,
@@ -46,6 +47,8 @@ def add_parser(commands: Commands) -> None:
         help="order of the values, each started from the end of the last (default: up for a "
         "range, a list as it stands)",
     )
+    text = "state that the first value starts from, m and m/s (default: rest)"
+    question.add("start", state_of, metavar="X1,X2,V1,V2", help=text)
     question.declare("transient", "samples", "tolerance")
 
 
@@ -55,6 +58,8 @@ def run(arguments: argparse.Namespace) -> None:
     excitation, is_range = varied_arguments(arguments, structure, usual=PAPER_RANGE)
     direction = arguments.direction or ("up" if is_range else "given")
     question = {**excitation, "direction": direction, **arguments.question.keywords(arguments)}
+    if question["start"] is None:
+        del question["start"]  # a file's name has always been without it
     carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
 
 

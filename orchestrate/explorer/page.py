@@ -24,12 +24,14 @@ from .branches import overlay
 from .bundle import bundle
 from .figure6 import first_diagram
 from .shipped import Shipped, shipped
+from .tour import TOUR
 
 if TYPE_CHECKING:
     import xarray as xr
 
 SOURCES = Path(__file__).parent / "page"
 HEAD = b"<title>Explorer of a vibro-impacting structure</title>"  # by which a page is known
+FLAG = {"bonded": [0.0, 1.0]}  # a range too
 READ = 4096  # bytes of a file that are read for it
 
 
@@ -123,7 +125,7 @@ def page(chosen: Shipped, drawn: dict[str, Any], kernels: dict[str, WebKernel]) 
             style=Markup(style),  # own sources, in elements whose content HTML takes as it stands
             script=Markup(script),
             worker=Markup(bundle(scripts, "worker")),
-            title=title(chosen.structure),
+            tour=TOUR,
             branches=drawn["branches"],
             source=f"{made_by}; sweep by {chosen.source}" if chosen.source else made_by,
             table={**table(chosen), **drawn, **tables, "drive": weak_drive()},
@@ -169,12 +171,14 @@ def table(chosen: Shipped) -> dict[str, Any]:
     return {
         "structure": numbers(chosen.structure),
         "usual": numbers(Structure()),
-        "ranges": {name: [q.minimum, q.maximum] for name, q in STRUCTURE.items()},
+        "ranges": {name: [q.minimum, q.maximum] for name, q in STRUCTURE.items()} | FLAG,
         "settings": chosen.settings,
         "directions": chosen.directions,
         "count": chosen.count,
         "low": chosen.low,
         "high": chosen.high,
+        "level": chosen.level,
+        "tour": {stop.name: stop.words for step in TOUR for stop in step.stops},
     }
 
 
@@ -195,14 +199,6 @@ def voltages(low: float = 0.8, high: float = 2.0, first: float = 0.9) -> dict[st
 def numbers(structure: Structure) -> dict[str, float]:
     """A structure's parameters as the kernel takes them."""
     return {name: float(value) for name, value in structure.parameters().items()}
-
-
-def title(structure: Structure) -> str:
-    """A structure in a few words."""
-    ratios = {name: structure.get(name) for name in ("e", "D1", "D2", "mu", "kappa")}
-    signs = {"D1": "D₁", "D2": "D₂", "mu": "μ", "kappa": "κ"}
-    told = ", ".join(f"{signs.get(name, name)} = {value:g}" for name, value in ratios.items())
-    return f"A delaminated beam in a shaken box: {told}"
 
 
 def packed(content: bytes) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..constants import GRAVITY
 from ..errors import InputError
 from ..structures import Excitation, Structure
 
@@ -41,6 +42,9 @@ class Shipped:
         Number of responses in a direction.
     low, high : float
         Ends of the frequency ratios.
+    level : tuple of str and float
+        How strongly the box is shaken: ``"paper"``, 1/eta^2 m, or held at all frequencies, ``"g"``
+        as acceleration, ``"mm"`` as amplitude.
     source : str
         What computed it.
     """
@@ -52,13 +56,15 @@ class Shipped:
     count: int
     low: float
     high: float
+    level: tuple[str, float]
     source: str
 
 
 def nothing(structure: Structure) -> Shipped:
     """No sweep: the page computes its first diagram itself, over the paper's frequency ratios."""
     settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
-    return Shipped(structure, ("up",), settings, np.empty(0), 0, *PAPER, "")
+    level = ("paper", 1.0) if is_scaled(structure) else ("g", 1.0)
+    return Shipped(structure, ("up",), settings, np.empty(0), 0, *PAPER, level, "")
 
 
 def shipped(data: xr.Dataset) -> Shipped:
@@ -109,8 +115,24 @@ def read(data: xr.Dataset, direction: str) -> Shipped:
         count=data.sizes[parameter],
         low=float(data.eta.min()),
         high=float(data.eta.max()),
+        level=level_of(data, structure),
         source=f"{data.attrs['source']}, {data.attrs['fmu_model']} {data.attrs['fmu_guid']}",
     )
+
+
+def is_scaled(structure: Structure) -> bool:
+    """Whether a structure is the paper's, whose omega is 1 rad/s."""
+    return math.isclose(structure.omega, 1.0)
+
+
+def level_of(data: xr.Dataset, structure: Structure) -> tuple[str, float]:
+    """How strongly the box was shaken; at the first frequency, where nothing was held."""
+    eta, frequency, amplitude = (data[name].values for name in ("eta", "frequency", "amplitude"))
+    if is_scaled(structure) and np.allclose(amplitude * eta**2, 1.0, rtol=1e-9):
+        return "paper", 1.0
+    if np.ptp(amplitude) == 0.0:
+        return "mm", float(f"{1e3 * amplitude[0]:.12g}")
+    return "g", float(f"{amplitude[0] * frequency[0] ** 2 / GRAVITY:.9g}")
 
 
 def settings_of(data: xr.Dataset) -> dict[str, float]:
@@ -146,6 +168,7 @@ def structure_of(data: xr.Dataset) -> Structure:
     """The structure that a dataset is about."""
     names = ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma")
     given: dict[str, Any] = {name: float(data.attrs[name]) for name in names}
+    given["clearance"] = float(data.attrs.get("clearance", 0.0))  # files of 0.2 have none
     bonded = float(data.attrs["bonded"])
     if bonded not in (0.0, 1.0):
         raise ValueError(f"bonded = {bonded}")

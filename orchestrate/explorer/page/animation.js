@@ -1,6 +1,7 @@
 /** The box, both masses and their springs in motion; impacts flash. */
 
 import { Picture } from "./picture.js";
+import { gapOffset } from "./clearance.js";
 
 /**
  * @typedef {import("./motion.js").Motion} Motion
@@ -16,7 +17,8 @@ export class Animation {
     /** @type {Motion | null} */
     this.motion = null;
     this.turn = 0; // periods since the motion's beginning
-    this.speed = 0.25; // periods a second
+    this.clearance = 0; // m
+    this.speed = 2 ** -1.5; // periods a second
     this.running = false;
     this.last = 0;
     this.picture = new Picture(canvas, (pen, size, theme) => this.draw(pen, size, theme));
@@ -24,25 +26,28 @@ export class Animation {
 
   /** @param {Motion} motion @param {Point} point */
   load(motion, point) {
-    Object.assign(this, { motion, point, turn: 0 });
+    Object.assign(this, { motion, turn: 0, clearance: gapOffset(point.structure) });
     this.largest = motion.states.reduce((most, value, i) => (i % 4 < 2 ? Math.max(most, Math.abs(value)) : most), 0);
     this.picture.redraw();
   }
 
   /** Run, or hold. @param {boolean} running */
   run(running) {
+    const began = running && !this.running;
     this.running = running;
     this.last = performance.now();
-    if (running) requestAnimationFrame((now) => this.tick(now));
+    if (began) requestAnimationFrame((now) => this.tick(now));
   }
 
   /** @param {number} now */
   tick(now) {
-    if (!this.running || !this.motion) return;
-    const length = (this.motion.time.length - 1) / this.motion.points;
-    this.turn = (this.turn + ((now - this.last) / 1000) * this.speed) % length;
+    if (!this.running) return;
+    if (this.motion) {
+      const length = (this.motion.time.length - 1) / this.motion.points;
+      this.turn = (this.turn + (Math.max(now - this.last, 0) / 1000) * this.speed) % length;
+      this.picture.paint();
+    }
     this.last = now;
-    this.picture.paint();
     requestAnimationFrame((next) => this.tick(next));
   }
 
@@ -75,15 +80,16 @@ export class Animation {
   /** @param {Pen} pen @param {import("./picture.js").Size} size @param {import("./theme.js").Theme} theme */
   draw(pen, { width, height }, theme) {
     const { motion } = this;
-    if (!motion) return pen.text(width / 2, height / 2, "click the orbit diagram", { fill: theme.soft });
-    const half = Math.min(width * 0.4, 220);
+    if (!motion) return;
+    const half = Math.min(width * 0.42, 260);
     const shift = 18 * Math.sin(2 * Math.PI * this.turn);
     const middle = width / 2 + shift;
-    const [top, tall] = [height * 0.2, height * 0.5];
+    const [top, tall] = [22, height - 50];
+    pen.text(width / 2, 10, "← the box is shaken →", { fill: theme.soft });
     pen.box(middle - half, top, 2 * half, tall, { stroke: theme.ink, width: 3 });
-    pen.line([width / 2, width / 2], [top + tall + 6, height - 26], { stroke: theme.soft, dash: [3, 3] });
     const scale = (half * 0.33) / (this.largest || 1);
-    const [x1, x2] = this.now(motion).map((x) => middle + scale * x);
+    const [first, second] = this.now(motion);
+    const [x1, x2] = [first, second + this.clearance].map((x) => middle + scale * x);
     const [wide, high] = [half * 0.3, tall * 0.42];
     const level = top + tall / 2;
     spring(pen, middle - half, x1 - wide, level, theme.soft);
@@ -92,9 +98,9 @@ export class Animation {
     pen.box(x2, level - high / 2, wide, high, { fill: theme.two });
     const flash = this.flash(motion);
     if (flash > 0) pen.dots([(x1 + x2) / 2], [level], 6 + 16 * flash, { fill: theme.hit, alpha: flash });
-    pen.text(x1 - wide / 2, level, "1", { fill: theme.paper });
-    pen.text(x2 + wide / 2, level, "2", { fill: theme.paper });
-    pen.text(width / 2, height - 12, `period ${(motion.first + this.turn).toFixed(2)}`, { fill: theme.ink });
+    pen.text(x1 - wide / 2, level, "half 1", { fill: theme.paper });
+    pen.text(x2 + wide / 2, level, "half 2", { fill: theme.paper });
+    pen.text(width / 2, height - 12, `period ${this.turn.toFixed(2)}`, { fill: theme.ink });
   }
 
   /** How bright the last impact still is, 0 to 1. @param {Motion} motion */

@@ -1,27 +1,36 @@
-/** The page: joins the diagram, the chosen motion, the controls and the link. */
+/** The page: joins the diagram, the chosen motion, the controls, the tour and the link. */
 
 import { BasinPart } from "./basin_part.js";
 import { diagramCommand, motionCommand } from "./command.js";
-import { DrivePart } from "./drive_part.js";
-import { Controls, hertz } from "./controls.js";
+import { Controls } from "./controls.js";
 import { Crew } from "./crew.js";
 import { nearest, scaled, startAt } from "./diagram.js";
 import { listen } from "./diagram_input.js";
-import { saveCsv } from "./files.js";
+import { DrivePart } from "./drive_part.js";
+import { hertzOf, inHertz, PAPER, pointAt, sameLevel } from "./excitation.js";
+import { onNumber } from "./field.js";
 import { Inspector } from "./inspector.js";
-import { fragmentOf, viewOf } from "./link.js";
+import { ETAS, fragmentOf, viewOf } from "./link.js";
 import { overlayOf } from "./overlay.js";
 import { load } from "./payload.js";
+import { acceptRecords } from "./record_part.js";
 import { Regions } from "./regions.js";
 import { USUAL } from "./response.js";
+import { saveShown } from "./saving.js";
 import { shown } from "./scale.js";
-import { pointAt, sameStructure, titleOf } from "./structure.js";
-import { diagramCsv, driveCsv, impactsCsv, motionCsv, sectionCsv, spectrumCsv } from "./tables.js";
+import { Shaking } from "./shaking.js";
+import { sameStructure } from "./structure.js";
+import { TourPart } from "./tour_part.js";
 
 /**
  * @typedef {import("./structure.js").Structure} Structure
- * @typedef {import("./diagram.js").Direction} Direction
+ * @typedef {import("./structure.js").Point} Point
+ * @typedef {import("./excitation.js").Level} Level
+ * @typedef {import("./link.js").View} View
  */
+
+const FIRST_ETA = 0.7; // of the motion that the page opens with, where its diagram has it
+const REST = [0, 0, 0, 0];
 
 /** @param {string} id @returns {HTMLElement} */
 const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
@@ -32,18 +41,33 @@ export class App {
   /** @param {Awaited<ReturnType<typeof load>>} payload */
   constructor({ table, compiled, worker, diagram }) {
     this.table = table;
+    const [unit, value] = table.level;
+    /** @type {View} */
+    this.usual = {
+      ...{ structure: table.structure, level: { unit, value }, low: table.low, high: table.high, start: null },
+      direction: table.directions.length === 2 ? "both" : table.directions[0] ?? "up",
+      eta: table.low < FIRST_ETA && FIRST_ETA < table.high ? FIRST_ETA : (table.low + table.high) / 2,
+    };
+    this.structure = table.structure;
+    this.level = this.usual.level;
+    this.eta = NaN;
+    this.waiting = false; // for the start of the chosen response
     const size = Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
     this.crew = new Crew(worker, compiled, size);
     this.crew.onerror = (text) => this.tell(text);
     this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.crew, diagram, table, () => this.refreshDiagram());
     this.inspector = new Inspector(at, this.crew, () => this.refreshMotion());
-    this.basin = new BasinPart(at, this.crew, (start) => this.inspect(this.eta, start));
+    this.basin = new BasinPart(at, this.crew, {
+      choose: (start) => this.inspect(this.eta, start),
+      seen: () => this.computeBasin(),
+    });
     this.drive = new DrivePart(at, this.crew, table.drive);
-    this.structure = table.structure;
-    this.controls = new Controls(at("sliders"), at("si"), table.ranges, (structure) => this.change(structure));
-    /** @type {number} */
-    this.eta = NaN;
-    this.waiting = false; // for the start of the chosen response
+    this.controls = new Controls(at, this.structure, table.ranges, (structure) => this.change(structure));
+    this.shaking = new Shaking(at, this.structure, this.level, {
+      choose: (eta, exactly) => this.choose(eta, exactly),
+      change: (structure, level) => this.change(structure, level),
+    });
+    this.tour = new TourPart(at("tour"), table.tour);
     this.regions.view.overlay = (pen, picture, theme) => {
       if (input("branches").checked && sameStructure(this.structure, table.structure)) {
         overlayOf(table, this.regions.view)(pen, picture, theme);
@@ -51,6 +75,8 @@ export class App {
     };
     this.connect();
     this.restore(location.hash);
+    this.inspector.animation.run(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+    this.refreshMotion();
   }
 
   /** Buttons, keys and inputs. */
@@ -76,51 +102,70 @@ export class App {
       play: () => this.play(),
       impact: () => this.nextImpact(),
       listen: () => this.listen(),
-      "basin-go": () => inspector.found && inspector.choice && this.basin.compute(inspector.choice, inspector.found.response),
+      others: () => this.showOthers(),
       link: () => this.copy(location.href, "link"),
       "command-copy": () => this.copy(at("command").textContent ?? "", "command"),
       "motion-command-copy": () => this.copy(at("motion-command").textContent ?? "", "command"),
-      reset: () => this.change(this.table.structure, true),
+      reset: () => this.change(this.usual.structure, this.usual.level),
     };
     for (const id in clicks) at(id).addEventListener("click", clicks[id]);
     at("direction").addEventListener("change", () => this.open(regions.diagram.low, regions.diagram.high));
     at("beside").addEventListener("change", () => inspector.drawMotion());
     at("branches").addEventListener("change", () => regions.view.refresh());
     at("speed").addEventListener("input", () => (inspector.animation.speed = 2 ** input("speed").valueAsNumber));
-    at("periods").addEventListener("change", () => this.setPeriods());
-    at("pitch").addEventListener("change", () => inspector.sound.playing && inspector.listen(input("pitch").valueAsNumber));
-    this.connectFrequency();
+    onNumber(input("periods"), (periods) => this.setPeriods(periods));
+    onNumber(input("pitch"), (pitch) => {
+      if (inspector.sound.playing) inspector.listen(pitch);
+    });
+    acceptRecords(at, this.crew, (measured) => this.lay(measured));
     addEventListener("hashchange", () => this.restore(location.hash));
+    addEventListener("keydown", (event) => this.pressed(event));
     document.querySelectorAll("button[data-save]").forEach((button) =>
-      button.addEventListener("click", () => this.save(/** @type {HTMLElement} */ (button).dataset.save ?? "")),
+      button.addEventListener("click", () => this.tell(saveShown(/** @type {HTMLElement} */ (button).dataset.save ?? "", this))),
     );
   }
 
-  connectFrequency() {
-    at("eta").addEventListener("input", () => this.choose(input("eta").valueAsNumber));
-    at("eta-number").addEventListener("change", () => this.choose(input("eta-number").valueAsNumber, true));
-    at("hertz").addEventListener("change", () =>
-      this.choose(hertz.eta(input("hertz").valueAsNumber, this.structure), true),
-    );
+  /** Keys that count wherever one is, but in a field. @param {KeyboardEvent} event */
+  pressed(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const typing = event.target instanceof HTMLInputElement && event.target.type !== "range";
+    if (event.key.toLowerCase() === "s" && !typing && !(event.target instanceof HTMLSelectElement)) this.listen();
   }
 
   /** A view from a link. @param {string} fragment */
   restore(fragment) {
-    const { table } = this;
-    const usual = { structure: table.structure, low: table.low, high: table.high, direction: table.directions.length === 2 ? /** @type {const} */ ("both") : table.directions[0] ?? "up" };
-    const view = viewOf(fragment, { ...usual, eta: null, start: null }, table.structure);
-    this.structure = view.structure;
-    this.controls.show(view.structure);
+    const { table, usual } = this;
+    const stop = this.tour.follow(fragment);
+    const paper = { ...usual, structure: table.usual, level: PAPER };
+    const view = viewOf(stop ?? fragment, stop === null ? usual : paper, table.ranges);
+    this.set(view.structure, view.level);
     input("direction").value = view.direction;
     this.regions.open(view.structure, view);
-    if (view.eta !== null) this.choose(view.eta, true, view.start);
+    const { name } = this.tour;
+    // of a diagram that is still to come, the motion from rest
+    if (view.eta !== null) this.choose(view.eta, true, view.start ?? (this.known(view.eta) ? null : REST));
+    this.tour.show(name);
+    this.write();
+  }
+
+  /** Whether it is known where the response at a frequency begins. @param {number} eta */
+  known(eta) {
+    const { diagram } = this.regions;
+    return startAt(diagram.lanes[0], nearest(diagram, eta)) !== null;
+  }
+
+  /** @param {Structure} structure @param {Level} level */
+  set(structure, level) {
+    Object.assign(this, { structure, level });
+    this.controls.show(structure, level);
+    this.shaking.show(structure, level);
   }
 
   /** @param {number} low @param {number} high */
   open(low, high) {
-    const direction = /** @type {Direction} */ (input("direction").value);
-    const inside = [Math.max(low, 1e-3), Math.min(Math.max(high, 2e-3), 1000)];
-    this.regions.open(this.structure, { low: inside[0], high: inside[1], direction });
+    const direction = /** @type {View["direction"]} */ (input("direction").value);
+    const inside = [Math.max(low, ETAS[0]), Math.min(Math.max(high, 2 * ETAS[0]), ETAS[1])];
+    this.regions.open(this.structure, { low: inside[0], high: inside[1], direction, level: this.level });
   }
 
   /** @param {number} steps */
@@ -128,16 +173,26 @@ export class App {
     this.regions.go(steps);
     const { diagram } = this.regions;
     input("direction").value = diagram.direction;
-    this.structure = diagram.structure;
-    this.controls.show(diagram.structure);
+    const other = !sameStructure(this.structure, diagram.structure) || !sameLevel(this.level, diagram.level);
+    this.set(diagram.structure, diagram.level);
+    if (other) this.carryOn();
   }
 
-  /** Other parameters. @param {Structure} structure @param {boolean} [shown] whether the controls are to be set */
-  change(structure, shown = false) {
-    this.structure = structure;
-    if (shown) this.controls.show(structure);
-    this.regions.follow(structure);
-    if (Number.isFinite(this.eta)) this.waiting = true;
+  /** Other parameters: the diagram follows, and the motion goes on from where it was. @param {Structure} structure @param {Level} [level] */
+  change(structure, level = this.level) {
+    this.tour.show("");
+    this.set(structure, level);
+    this.regions.follow(structure, level);
+    this.carryOn();
+  }
+
+  /** The chosen motion with the parameters of now. */
+  carryOn() {
+    const { choice, found } = this.inspector;
+    if (!Number.isFinite(this.eta)) return;
+    const point = pointAt(this.structure, this.eta, this.level);
+    this.mark(point.eta);
+    this.inspect(point.eta, choice ? scaled(found?.response.end ?? choice.start, choice.point, point) : REST);
   }
 
   /** Choose a response: the nearest of the diagram, or exactly `eta`. @param {number} eta @param {boolean} [exactly] @param {number[] | null} [start] */
@@ -146,13 +201,17 @@ export class App {
     const { diagram } = this.regions;
     const index = nearest(diagram, eta);
     const near = diagram.points[index];
-    const point = exactly && Math.abs(near.eta - eta) > 1e-12 * eta ? pointAt(this.structure, eta) : near;
+    const point = exactly && Math.abs(near.eta - eta) > 1e-9 * eta ? pointAt(this.structure, eta, this.level) : near;
     const there = startAt(diagram.lanes[0], index);
     const known = start ?? (there && scaled(there, near, point));
+    this.tour.show("");
     this.mark(point.eta);
     this.waiting = !known;
     if (known) this.inspect(point.eta, known);
-    else this.tell(`η = ${point.eta}: waits for the responses before it`);
+    else {
+      this.tell("waits for the responses before it");
+      this.write();
+    }
   }
 
   /** @param {number} steps to the next frequencies of the diagram */
@@ -167,17 +226,18 @@ export class App {
     this.eta = eta;
     this.regions.view.marks.eta = eta;
     this.regions.view.picture.redraw();
-    input("eta").value = String(eta);
-    input("eta-number").value = String(eta);
-    input("hertz").value = String(Number(hertz.of(eta, this.structure).toPrecision(9)));
+    this.shaking.mark(eta);
   }
 
   /** @param {number} eta @param {number[]} start */
   inspect(eta, start) {
     const { diagram } = this.regions;
     const near = diagram.points[nearest(diagram, eta)];
-    const point = near.eta === eta ? near : pointAt(this.structure, eta);
-    this.inspector.choose({ point, start, settings: diagram.settings.transient < USUAL.transient ? USUAL : diagram.settings });
+    const shownThere = near.eta === eta && sameStructure(near.structure, this.structure) && sameLevel(diagram.level, this.level);
+    const point = shownThere ? near : pointAt(this.structure, eta, this.level);
+    const settings = diagram.settings.transient < USUAL.transient ? USUAL : diagram.settings;
+    this.basin.leave(point);
+    this.inspector.choose({ point, start, settings, level: this.level });
     this.write();
   }
 
@@ -186,8 +246,9 @@ export class App {
     const { low, high, direction } = this.regions.diagram;
     const { choice } = this.inspector;
     const eta = Number.isFinite(this.eta) ? this.eta : null;
-    const view = { structure: this.structure, low, high, direction, eta, start: choice && eta === choice.point.eta ? choice.start : null };
-    history.replaceState(null, "", fragmentOf(view, this.table.structure));
+    const start = choice && eta === choice.point.eta ? choice.start : null;
+    const view = { structure: this.structure, level: this.level, low, high, direction, eta, start };
+    history.replaceState(null, "", fragmentOf(view, this.usual, this.tour.name));
   }
 
   /** Something of the diagram has come. */
@@ -197,15 +258,15 @@ export class App {
     const count = diagram.points.length * diagram.lanes.length;
     const { transient, samples } = diagram.settings;
     const time = complete && took ? ` in ${shown(took.all / 1000, 2)} s` : " …";
-    this.tell(`${count} responses × ${transient + samples} periods, η ${shown(diagram.low, 6)} to ${shown(diagram.high, 6)}${time}`);
+    this.tell(`${count} responses × ${transient + samples} periods${time}`);
     at("diagram").dataset.complete = String(complete);
     Object.assign(input("back"), { disabled: place <= 0 });
     Object.assign(input("forth"), { disabled: place >= seen.length - 1 });
-    Object.assign(input("eta"), { min: diagram.low, max: diagram.high, step: (diagram.high - diagram.low) / 2000 });
-    if (Number.isFinite(this.eta)) input("eta").value = String(this.eta);
-    at("structure").textContent = titleOf(this.structure);
+    this.shaking.reach(diagram.low, diagram.high);
+    if (Number.isFinite(this.eta)) this.shaking.mark(this.eta);
     at("command").textContent = diagramCommand(diagram, this.table.usual);
-    this.regions.view.picture.describe(`Orbit diagram, gap over frequency ratio from ${shown(diagram.low, 6)} to ${shown(diagram.high, 6)}, ${count} responses. Arrow keys choose a frequency, plus and minus zoom, b and f go back and forth.`);
+    const [low, high] = inHertz(diagram.level) ? [diagram.low, diagram.high].map((eta) => hertzOf(eta, diagram.structure)) : [diagram.low, diagram.high];
+    this.regions.view.picture.describe(`Orbit diagram, gap over ${inHertz(diagram.level) ? "frequency in Hz" : "frequency ratio"} from ${shown(low, 6)} to ${shown(high, 6)}, ${count} responses. Arrow keys choose a frequency, plus and minus zoom, b and f go back and forth.`);
     this.write();
     if (complete && this.waiting && !this.regions.quick) {
       this.waiting = false;
@@ -215,25 +276,45 @@ export class App {
 
   /** The motion has come. */
   refreshMotion() {
-    const { choice, periods } = this.inspector;
+    const { choice, periods, animation, sound } = this.inspector;
+    at("listen").textContent = sound.playing ? "Silence (S)" : "Sound (S)";
+    at("play").textContent = animation.running ? "Pause" : "Play";
     if (!choice) return;
     const { transient, samples } = choice.settings;
     const asked = { transient: transient + samples, periods, points: 200 };
     at("motion-command").textContent = motionCommand(choice.point, choice.start, asked, this.table.usual);
-    at("listen").textContent = this.inspector.sound.playing ? "Silence" : "Listen";
     at("motion").dataset.eta = String(choice.point.eta);
+    if (this.basin.visible) this.computeBasin();
+  }
+
+  computeBasin() {
+    const { found, choice } = this.inspector;
+    if (found && choice) this.basin.compute(choice, found.response);
+  }
+
+  showOthers() {
+    at("basin-figure").scrollIntoView({ block: "center" });
+    this.computeBasin();
+  }
+
+  /** A measured record over the model's spectrum, whose axis then is in Hz. @param {import("./record.js").Measured} measured */
+  lay(measured) {
+    this.inspector.measured = measured;
+    if (!inHertz(this.level)) this.change(...this.shaking.converted(true));
+    this.inspector.drawSpectrum();
+    at("spectrum").scrollIntoView({ block: "center" });
   }
 
   play() {
     const { animation } = this.inspector;
     animation.run(!animation.running);
-    at("play").textContent = animation.running ? "Pause" : "Play";
+    this.refreshMotion();
   }
 
   nextImpact() {
     const turn = this.inspector.animation.nextImpact();
-    at("play").textContent = "Play";
-    this.tell(turn === null ? "no impact in this motion" : `impact at period ${turn.toFixed(4)} of the motion`);
+    this.tell(turn === null ? "no impact in this motion" : `impact after ${turn.toFixed(4)} periods`);
+    this.refreshMotion();
   }
 
   listen() {
@@ -243,29 +324,10 @@ export class App {
     this.refreshMotion();
   }
 
-  setPeriods() {
-    const periods = Math.round(input("periods").valueAsNumber);
-    if (!(periods >= 1 && periods <= 200)) return;
-    this.inspector.periods = periods;
+  /** @param {number} periods */
+  setPeriods(periods) {
+    this.inspector.periods = Math.round(periods);
     if (this.inspector.choice) this.inspector.choose(this.inspector.choice);
-  }
-
-  /** @param {string} words of a file: what, and the kind */
-  save(words) {
-    const [name, kind] = words.split(".");
-    const { found, choice, section, spectra, pictures, animation } = this.inspector;
-    /** @type {Record<string, import("./picture.js").Picture>} */
-    const shownPictures = { ...pictures.pictures, diagram: this.regions.view.picture, basin: this.basin.view.picture, drive: this.drive.picture, animation: animation.picture };
-    const file = `${name}_eta${Number.isFinite(this.eta) ? this.eta : ""}`;
-    if (kind === "png") shownPictures[name].savePng(file);
-    if (kind === "svg") shownPictures[name].saveSvg(file);
-    if (kind !== "csv") return;
-    if (name === "diagram") void saveCsv(file, diagramCsv(this.regions.diagram));
-    if (name === "section" && section.length) void saveCsv(file, sectionCsv(section));
-    if (name === "spectrum" && spectra) void saveCsv(file, spectrumCsv(spectra));
-    if (name === "history" && found && choice) void saveCsv(file, motionCsv(found.motion, choice.point));
-    if (name === "drive") void saveCsv(file, driveCsv(this.drive.rows));
-    if (name === "impacts" && found) void saveCsv(file, impactsCsv(found.motion));
   }
 
   /** @param {string} text @param {string} what */

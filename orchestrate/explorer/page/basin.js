@@ -1,6 +1,7 @@
 /** Basins of attraction: where starts on a plane of gap and gap velocity lead to. */
 
 import { respond } from "./response.js";
+import { gapOffset } from "./clearance.js";
 import { lengthOf, omegaOf } from "./structure.js";
 
 /**
@@ -16,7 +17,7 @@ const SETTLING = { transient: 300, samples: 64, tolerance: 1e-2 };
 /** The start at a cell of a plane. @param {Point} point @param {Plane} plane @param {number} column @param {number} row */
 export function startAt(point, plane, column, row) {
   const length = lengthOf(point);
-  const gap = ((column + 0.5) / plane.side) * plane.gap * length;
+  const gap = ((column + 0.5) / plane.side) * plane.gap * length - gapOffset(point.structure);
   const speed = ((2 * (row + 0.5)) / plane.side - 1) * plane.speed * length * omegaOf(point.structure);
   const [x, v] = plane.mean;
   return [x - gap / 2, x + gap / 2, v - speed / 2, v + speed / 2];

@@ -1,52 +1,77 @@
-/** The basin at the chosen frequency: asked of all workers, shown as it comes. */
+/** Other motions at the chosen frequency: where a plane of starts leads to, asked of all workers. */
 
 import { BasinView, coarseFirst } from "./basin_view.js";
 import { shares } from "./orders.js";
-import { lengthOf } from "./structure.js";
 
 const SIDE = 64; // cells
 
 export class BasinPart {
-  /** @param {(id: string) => HTMLElement} at @param {import("./crew.js").Crew} crew @param {(start: number[]) => void} choose */
-  constructor(at, crew, choose) {
+  /**
+   * @param {(id: string) => HTMLElement} at
+   * @param {import("./crew.js").Crew} crew
+   * @param {{choose: (start: number[]) => void, seen: () => void}} acts
+   */
+  constructor(at, crew, { choose, seen }) {
     this.at = at;
     this.crew = crew;
+    this.choose = choose;
     this.view = new BasinView(/** @type {HTMLCanvasElement} */ (at("basin")), choose);
     /** @type {import("./crew.js").Order | null} */
     this.order = null;
+    this.point = ""; // that it was computed at
+    this.visible = false;
+    /** @param {IntersectionObserverEntry[]} entries */
+    const watch = ([{ isIntersecting }]) => {
+      this.visible = isIntersecting;
+      if (isIntersecting) seen();
+    };
+    new IntersectionObserver(watch, { threshold: 0.4 }).observe(at("basin"));
   }
 
-  /** @param {import("./inspector.js").Choice} choice @param {import("./response.js").Response} response */
-  compute({ point }, { peak, end }) {
+  /** Nothing is known of another point. @param {import("./structure.js").Point} point */
+  leave(point) {
+    if (this.point === JSON.stringify(point)) return;
     this.order?.cancel();
+    this.point = "";
+    this.view.clear();
+    this.at("basins").replaceChildren();
+  }
+
+  /** Unless it is there. @param {import("./inspector.js").Choice} choice @param {import("./response.js").Response} response */
+  compute({ point, level }, { peak, end }) {
+    if (this.point === JSON.stringify(point)) return;
+    this.order?.cancel();
+    this.point = JSON.stringify(point);
     const reach = Math.max(peak, 1e-3) * 3;
     const mean = /** @type {[number, number]} */ ([(end[0] + end[1]) / 2, (end[2] + end[3]) / 2]);
     const plane = { side: SIDE, gap: reach, speed: reach * Math.max(point.eta, 1), mean };
-    this.view.begin(point, plane);
+    this.view.begin(point, plane, level);
     const asked = shares(coarseFirst(SIDE), this.crew.workers.length).map((cells) => ({ point, plane, cells }));
     const order = this.crew.askAll("basin", asked, (parts) => {
       parts.forEach((part) => this.view.take(part));
-      this.tell(false, lengthOf(point));
+      this.tell(false);
     });
     this.order = order;
-    void order.done.then(() => this.order === order && this.tell(true, lengthOf(point)));
+    void order.done.then(() => this.order === order && this.tell(true));
   }
 
-  /** @param {boolean} complete @param {number} length */
-  tell(complete, length) {
+  /** @param {boolean} complete */
+  tell(complete) {
     const list = this.at("basins");
+    const words = this.view.words();
     list.replaceChildren(
-      ...this.view.words().map(({ colour, text }) => {
-        const row = document.createElement("li");
-        const key = document.createElement("span");
+      ...words.map(({ colour, text, start }) => {
+        const [row, key, go] = ["li", "span", "button"].map((tag) => document.createElement(tag));
         key.className = "key";
         key.style.background = colour;
-        row.append(key, text);
+        go.textContent = "Show";
+        go.ariaLabel = `show: ${text}`;
+        go.addEventListener("click", () => this.choose(start));
+        row.append(key, text, " ", go);
         return row;
       }),
     );
     list.dataset.complete = String(complete);
-    const words = this.view.words().map(({ text }) => text);
-    this.view.picture.describe(`Basins of attraction, unit of the gap ${length} m: ${words.join("; ")}`);
+    this.view.picture.describe(`Where starts lead to: ${words.map(({ text }) => text).join("; ")}`);
   }
 }

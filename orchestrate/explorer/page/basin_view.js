@@ -2,9 +2,12 @@
 
 import { label, startAt } from "./basin.js";
 import { drawFrame, areaOf } from "./chart.js";
+import { inHertz, PAPER } from "./excitation.js";
 import { Picture } from "./picture.js";
 import { shown } from "./scale.js";
+import { omegaOf } from "./structure.js";
 import { channels } from "./theme.js";
+import { gapUnit, wordsOf } from "./units.js";
 
 /**
  * @typedef {import("./basin.js").Plane} Plane
@@ -36,8 +39,11 @@ export class BasinView {
     this.plane = null;
     /** @type {Point | null} */
     this.point = null;
+    this.level = PAPER;
     /** @type {Attractor[]} */
     this.attractors = [];
+    /** @type {[number, number][]} */
+    this.examples = []; // a cell of each
     this.labels = new Int16Array(0);
     this.cells = document.createElement("canvas");
     this.picture = new Picture(canvas, (pen, size, theme) => this.draw(pen, size, theme));
@@ -71,9 +77,17 @@ export class BasinView {
     return true;
   }
 
-  /** @param {Point} point @param {Plane} plane */
-  begin(point, plane) {
-    Object.assign(this, { point, plane, attractors: [] });
+  /** Nothing to show. */
+  clear() {
+    this.plane = null;
+    this.cursor = null;
+    this.picture.redraw();
+  }
+
+  /** @param {Point} point @param {Plane} plane @param {import("./excitation.js").Level} level */
+  begin(point, plane, level) {
+    this.level = level;
+    Object.assign(this, { point, plane, attractors: [], examples: [] });
     this.labels = new Int16Array(plane.side * plane.side).fill(-1);
     Object.assign(this.cells, { width: plane.side, height: plane.side });
     this.picture.redraw();
@@ -81,18 +95,23 @@ export class BasinView {
 
   /** @param {{column: number, row: number} & Attractor} part */
   take({ column, row, ...found }) {
-    const { side } = /** @type {Plane} */ (this.plane);
-    this.labels[row * side + column] = label(this.attractors, found, 0.03);
+    if (!this.plane) return;
+    const number = label(this.attractors, found, 0.03);
+    this.labels[row * this.plane.side + column] = number;
+    this.examples[number] ??= [column, row];
     this.picture.redraw();
   }
 
-  /** What was found, in words. */
+  /** What was found in words, and a start that leads to each. */
   words() {
+    const { point, plane } = this;
+    if (!point || !plane) return [];
     const total = this.labels.reduce((sum, one) => sum + (one >= 0 ? 1 : 0), 0) || 1;
     return this.attractors.map(({ multiplicity, impacts }, number) => {
       const share = this.labels.reduce((sum, one) => sum + (one === number ? 1 : 0), 0) / total;
-      const kind = multiplicity ? `period ${multiplicity}` : "not periodic";
-      return { colour: colourOf(number), text: `${kind}, ${shown(impacts, 3)} impacts per period: ${(100 * share).toFixed(1)} %` };
+      const kind = multiplicity ? `repeats after ${multiplicity} period${multiplicity > 1 ? "s" : ""}` : "does not repeat";
+      const text = `${kind}, ${shown(impacts, 3)} impacts per period: ${(100 * share).toFixed(1)} % of starts`;
+      return { colour: colourOf(number), text, start: startAt(point, plane, ...this.examples[number]) };
     });
   }
 
@@ -110,7 +129,7 @@ export class BasinView {
   draw(pen, size, theme) {
     const place = areaOf(size);
     const { plane } = this;
-    if (!plane) return pen.text(size.width / 2, size.height / 2, "not computed yet", { fill: theme.soft });
+    if (!plane || !this.point) return;
     this.paintCells(plane.side);
     pen.image(this.cells, ...place);
     if (this.cursor) {
@@ -120,8 +139,10 @@ export class BasinView {
       const corner = [left + column * cell, top + height - (row + 1) * tall];
       pen.box(corner[0] - 2, corner[1] - 2, cell + 4, tall + 4, { stroke: theme.ink, width: 2 });
     }
-    const x = { low: 0, high: plane.gap, label: "gap ξ₂ − ξ₁ at the start" };
-    drawFrame(pen, place, { ...theme, grid: "transparent" }, x, { low: -plane.speed, high: plane.speed, label: "gap velocity" });
+    const [words, unit] = [wordsOf(this.level), gapUnit(this.point, this.level)];
+    const speed = plane.speed * unit * (inHertz(this.level) ? omegaOf(this.point.structure) : 1);
+    const x = { low: 0, high: plane.gap * unit, label: `${words.gap}, at the start` };
+    drawFrame(pen, place, { ...theme, grid: "transparent" }, x, { low: -speed, high: speed, label: words.gapSpeed });
   }
 
   /** Cells that are still to come have the colour of the coarser cell they lie in. @param {number} side */

@@ -8,7 +8,7 @@ import { scaleOf, shown, tickText, ticksOf } from "./scale.js";
  * @typedef {import("./theme.js").Theme} Theme
  * @typedef {{x: ArrayLike<number>, y: ArrayLike<number>, colour: keyof Theme, dots?: number,
  *   label?: string, alpha?: number, width?: number}} Series
- * @typedef {{x: Axis, y: Axis, series: Series[], spans?: [number, number][], empty?: string}} Chart
+ * @typedef {{x: Axis, y: Axis, series: Series[], spans?: [number, number][]}} Chart
  * @typedef {[number, number, number, number]} Place x, y, width, height
  */
 
@@ -32,7 +32,6 @@ export function drawChart(pen, size, theme, chart) {
   drawFrame(pen, place, theme, chart.x, chart.y);
   pen.inside(place, () => chart.series.forEach((series) => drawSeries(pen, series, px, py, theme)));
   drawLegend(pen, place, theme, chart.series);
-  if (chart.empty) pen.text(left + width / 2, top + height / 2, chart.empty, { fill: theme.soft });
 }
 
 /** @param {Pen} pen @param {Series} series @param {(v: number) => number} px @param {(v: number) => number} py @param {Theme} theme */
@@ -48,7 +47,7 @@ function drawLegend(pen, [left, top, width], theme, series) {
   for (const { label, colour } of [...series].reverse()) {
     if (!label) continue;
     pen.text(x, top - 10, label, { anchor: "end", fill: theme[colour] });
-    x -= 8 + 6.6 * label.length;
+    x -= 12 + 7 * label.length;
   }
 }
 

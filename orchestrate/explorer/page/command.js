@@ -1,5 +1,6 @@
-/** The commands of `orchestrate` that compute what the page shows. */
+/** The commands that compute what the page shows, each to be pasted into a shell. */
 
+import { givenHertz, GRAVITY } from "./excitation.js";
 import { omegaOf } from "./structure.js";
 
 /**
@@ -9,53 +10,78 @@ import { omegaOf } from "./structure.js";
  */
 
 const PROGRAM = "python -m orchestrate";
-const GRAVITY = 9.80665; // m/s²
+const REST = [0, 0, 0, 0];
 
 /** `--set NAME=VALUE` for what is not usual. @param {Structure} structure @param {Structure} usual */
 function sets(structure, usual) {
-  return differences(structure, usual).map(([name, value]) => ` --set ${name}=${value}`).join("");
+  return differences(structure, usual).map(([name, value]) => ` --set ${name}=${name === "bonded" ? value === 1 : value}`).join("");
 }
 
-/** @param {Structure} structure @param {Structure} usual @returns {[string, string][]} */
+/** @param {Structure} structure @param {Structure} usual @returns {[string, number][]} */
 function differences(structure, usual) {
-  return Object.entries(structure)
-    .filter(([name, value]) => value !== usual[/** @type {keyof Structure} */ (name)])
-    .map(([name, value]) => [name, name === "bonded" ? String(Boolean(value)) : String(value)]);
+  return Object.entries(structure).filter(([name, value]) => value !== usual[/** @type {keyof Structure} */ (name)]);
 }
 
-/** The diagram. @param {Diagram} diagram @param {Structure} usual */
+/** The diagram: a line, or one for each direction where they begin from other states than rest. @param {Diagram} diagram @param {Structure} usual */
 export function diagramCommand(diagram, usual) {
-  const { structure, direction, points, settings } = diagram;
-  const { transient, samples } = settings;
-  const starts = diagram.lanes.map(({ from, starts: known, direction: way }) => {
-    if (from || !known) return from ?? [0, 0, 0, 0];
-    const place = way === "up" ? 0 : known.length - 4;
-    return Array.from(known.subarray(place, place + 4));
-  });
-  const options = optionsOf(points);
-  if (options && starts.every((start) => start.every((value) => value === 0))) {
-    const kept = `--direction ${direction} --transient ${transient} --samples ${samples}`;
-    return `${PROGRAM} sweep ${options} ${kept}${sets(structure, usual)}`;
-  }
-  const given = differences(structure, usual).map(([name, value]) => `${name}=${value}`).join(", ");
-  return diagram.lanes
-    .map(({ direction: way }, i) => {
-      const words = `${keywordsOf(points)}, direction="${way}", start=[${starts[i].join(", ")}]`;
-      return `orchestrate.sweep(orchestrate.Structure(${given}), ${words}, transient=${transient}, samples=${samples})`;
-    })
+  const { structure, direction, points, settings, lanes } = diagram;
+  const starts = lanes.map(startOf);
+  const how = `--transient ${settings.transient} --samples ${settings.samples}${sets(structure, usual)}`;
+  const options = rangeOptions(points) || listOptions(points);
+  if (options && starts.every(isRest)) return `${PROGRAM} sweep ${options} --direction ${direction} ${how}`;
+  /** @param {number[]} start */
+  const from = (start) => (isRest(start) ? "" : ` --start=${start.join(",")}`);
+  return lanes
+    .map(({ direction: way }, i) =>
+      options ? `${PROGRAM} sweep ${options} --direction ${way}${from(starts[i])} ${how}` : script(diagram, way, starts[i], usual),
+    )
     .join("\n");
 }
 
+/** Where the first response of a direction begins. @param {import("./diagram.js").Lane} lane */
+function startOf({ from, starts, direction }) {
+  if (from || !starts) return from ?? REST;
+  const place = direction === "up" ? 0 : starts.length - 4;
+  return Array.from(starts.subarray(place, place + 4));
+}
+
+/** @param {number[]} start */
+const isRest = (start) => start.every((value) => value === 0);
+
+/** An excitation that the command line cannot say, as a line of Python. @param {Diagram} diagram @param {string} direction @param {number[]} start @param {Structure} usual */
+function script({ structure, points, settings }, direction, start, usual) {
+  const numbers = differences(structure, usual).map(([name, value]) => `${name}=${name === "bonded" ? "True" : value}`);
+  /** @param {"frequency" | "amplitude"} name */
+  const list = (name) => `${name}=[${points.map((point) => point[name]).join(", ")}]`;
+  const words = `${list("frequency")}, ${list("amplitude")}, direction="${direction}", start=[${start.join(", ")}]`;
+  const how = `transient=${settings.transient}, samples=${settings.samples}`;
+  const call = `orchestrate.sweep(orchestrate.Structure(${numbers.join(", ")}), ${words}, ${how})`;
+  return `python -c 'import orchestrate; ${call}.to_netcdf("sweep_${direction}.nc")'`;
+}
+
 /** An excitation at the command line, where a range says it to the last bit; else nothing. @param {Point[]} points */
-function optionsOf(points) {
+function rangeOptions(points) {
   if (points.every(isPlain)) return rangeOf("--eta", points.map(({ eta }) => eta), (eta) => eta);
   const turns = points.map(({ frequency }) => frequency);
   const range = rangeOf("--hz", turns, (hz) => 2 * Math.PI * hz) || rangeOf("--frequency", turns, (value) => value);
+  const level = levelOption(points);
+  return range && level && `${range} ${level}`;
+}
+
+/** The same as a list. @param {Point[]} points */
+function listOptions(points) {
+  if (points.every(isPlain)) return `--eta ${points.map(({ eta }) => eta).join(",")}`;
+  const level = levelOption(points);
+  return level && `--frequency ${points.map(({ frequency }) => frequency).join(",")} ${level}`;
+}
+
+/** How strongly all points are shaken; nothing where no number says it to the last bit. @param {Point[]} points */
+function levelOption(points) {
   const { frequency, amplitude } = points[0];
-  if (points.every((point) => point.amplitude === amplitude)) return range && `${range} --amplitude ${amplitude}`;
+  if (points.every((point) => point.amplitude === amplitude)) return `--amplitude ${amplitude}`;
   const level = Number(((amplitude * frequency * frequency) / GRAVITY).toPrecision(9));
   const held = points.every((point) => point.amplitude === (level * GRAVITY) / (point.frequency * point.frequency));
-  return held && range && `${range} --g ${level}`;
+  return held ? `--g ${level}` : "";
 }
 
 /** Values as a range of decimal numbers; nothing where they are none. @param {string} option @param {number[]} values @param {(value: number) => number} of what the option's number becomes */
@@ -67,36 +93,25 @@ function rangeOf(option, values, of) {
   return even ? `${option} ${first}:${last}:${step}` : "";
 }
 
-/** An excitation as keywords of `orchestrate.sweep`. @param {Point[]} points */
-function keywordsOf(points) {
-  if (!points.every(isPlain)) {
-    /** @param {"frequency" | "amplitude"} name */
-    const list = (name) => `${name}=[${points.map((point) => point[name]).join(", ")}]`;
-    return `${list("frequency")}, ${list("amplitude")}`;
-  }
-  const etas = points.map(({ eta }) => eta);
-  const [, range] = rangeOf("", etas, (eta) => eta).split(" ");
-  if (!range) return `eta=[${etas.join(", ")}]`;
-  const [first, last, step] = range.split(":").map(Number);
-  return `eta=[float(f"{i}e-9") for i in range(${nine(first)}, ${nine(last)} + 1, ${nine(step)})]`;
-}
-
 /** Whether an excitation is told by the frequency ratio alone. @param {Point} point */
 function isPlain({ eta, amplitude }) {
   return amplitude === 1 / (eta * eta);
 }
 
-/** In units of 1e-9, as a whole number. @param {number} value */
-function nine(value) {
-  return Math.round(value * 1e9);
-}
-
 /** The motion that goes on from a response. @param {Point} point @param {number[]} start @param {{transient: number, periods: number, points: number}} asked @param {Structure} usual */
 export function motionCommand(point, start, { transient, periods, points }, usual) {
-  const { eta, frequency, amplitude } = point;
-  // 1/eta^2 m says something of a structure of 1 rad/s only
-  const paper = isPlain(point) && Math.abs(omegaOf(point.structure) - 1) < 1e-9;
-  const where = paper ? `--eta ${eta}` : `--frequency ${frequency} --amplitude ${amplitude}`;
   const how = `--transient ${transient} --periods ${periods} --points ${points}`;
-  return `${PROGRAM} simulate ${where} ${how} --start=${start.join(",")}${sets(point.structure, usual)}`;
+  return `${PROGRAM} simulate ${where(point)} ${how} --start=${start.join(",")}${sets(point.structure, usual)}`;
+}
+
+/** The excitation of one motion. @param {Point} point */
+function where(point) {
+  const { eta, frequency, amplitude, structure } = point;
+  // 1/eta^2 m says something of a structure of 1 rad/s only
+  if (isPlain(point) && Math.abs(omegaOf(structure) - 1) < 1e-9) return `--eta ${eta}`;
+  const hertz = givenHertz(point);
+  const turns = 2 * Math.PI * hertz === frequency ? `--hz ${hertz}` : `--frequency ${frequency}`;
+  const level = Number(((amplitude * frequency * frequency) / GRAVITY).toPrecision(9));
+  const held = amplitude === (level * GRAVITY) / (frequency * frequency);
+  return `${turns} ${held ? `--g ${level}` : `--amplitude ${amplitude}`}`;
 }

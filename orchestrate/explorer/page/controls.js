@@ -1,20 +1,33 @@
-/** Sliders with a number beside each: the paper's parameters, and the SI numbers. */
+/** Sliders with a number beside each: the paper's parameters, or Hz, mm and kg, and the SI numbers. */
 
-import { omegaOf, ratiosOf, withRatio } from "./structure.js";
+import { inHertz } from "./excitation.js";
+import { onNumber, showNumber } from "./field.js";
+import { numbersIn, withNumber } from "./structure.js";
 
 /**
  * @typedef {import("./structure.js").Structure} Structure
- * @typedef {{name: string, label: string, low: number, high: number, step: number}} Slider
+ * @typedef {import("./excitation.js").Level} Level
+ * @typedef {[name: string, label: string, low: number, high: number, step?: number]} Entry
+ *   with a slider where there is a step
  */
 
-/** @type {Slider[]} */
-const SLIDERS = [
-  { name: "e", label: "restitution e", low: 0, high: 1, step: 0.01 },
-  { name: "D", label: "damping D (both)", low: 0, high: 0.1, step: 0.001 },
-  { name: "D1", label: "damping D₁", low: 0, high: 0.1, step: 0.001 },
-  { name: "D2", label: "damping D₂", low: 0, high: 0.1, step: 0.001 },
-  { name: "mu", label: "mass ratio μ", low: 0.2, high: 5, step: 0.01 },
-  { name: "kappa", label: "stiffness ratio κ", low: 0.2, high: 5, step: 0.01 },
+/** @type {Entry} */
+const RESTITUTION = ["e", "restitution e", 0, 1, 0.01];
+/** @type {Entry[]} */
+const PAPER = [
+  ["D", "damping D", 0, 0.1, 0.001],
+  ["mu", "mass ratio μ", 0.2, 5, 0.01],
+  ["kappa", "stiffness ratio κ", 0.2, 5, 0.01],
+  ["xi0", "gap at rest ξ₀", -2, 2, 0.01],
+];
+/** @type {Entry[]} */
+const OWN = [
+  ["f1", "half 1 alone, Hz", 0.1, 1e4],
+  ["f2", "half 2 alone, Hz", 0.1, 1e4],
+  ["mass1", "mass of half 1, kg", 1e-6, 1e4],
+  ["mass2", "mass of half 2, kg", 1e-6, 1e4],
+  ["zeta", "damping ratio, %", 0, 20, 0.01],
+  ["gap", "gap at rest, mm", -0.5, 0.5, 0.005],
 ];
 const SI = /** @type {const} */ ([
   ["m1", "kg"],
@@ -23,80 +36,78 @@ const SI = /** @type {const} */ ([
   ["k2", "N/m"],
   ["d1", "N s/m"],
   ["d2", "N s/m"],
+  ["clearance", "m"],
 ]);
+
+const DIGITS = 7;
 
 export class Controls {
   /**
-   * @param {HTMLElement} sliders
-   * @param {HTMLElement} si
+   * @param {(id: string) => HTMLElement} at
+   * @param {Structure} structure
    * @param {Record<string, [number, number]>} ranges of the SI numbers
    * @param {(structure: Structure) => void} changed
    */
-  constructor(sliders, si, ranges, changed) {
+  constructor(at, structure, ranges, changed) {
+    this.at = at;
     this.changed = changed;
-    /** @type {Structure | null} */
-    this.structure = null;
+    this.ranges = ranges;
+    this.structure = structure;
     /** @type {Map<string, HTMLInputElement[]>} */
     this.inputs = new Map();
-    for (const slider of SLIDERS) sliders.append(this.slider(slider));
-    for (const [name, unit] of SI) si.append(this.entry(name, unit, ranges[name]));
+    at("sliders").append(this.row(RESTITUTION));
+    for (const [id, entries] of /** @type {const} */ ([["paper-sliders", PAPER], ["own-sliders", OWN]])) {
+      at(id).append(...entries.map((entry) => this.row(entry)));
+    }
+    for (const [name, unit] of SI) at("si").append(this.row([name, `${name}, ${unit}`, ...ranges[name]]));
+    at("si").append(this.row(["D1", "D₁", 0, 1e3]), this.row(["D2", "D₂", 0, 1e3]));
   }
 
-  /** @param {Slider} slider */
-  slider({ name, label, low, high, step }) {
+  /** @param {Entry} entry */
+  row([name, label, min, max, step]) {
     const row = document.createElement("div");
     row.className = "slider";
-    const inputs = [
-      inputOf({ type: "range", id: name, min: low, max: high, step }),
-      inputOf({ type: "number", id: `${name}-number`, min: low, max: high, step: "any" }),
-    ];
-    inputs[1].ariaLabel = `${label}, number`;
-    row.append(labelOf(name, label), ...inputs);
-    this.inputs.set(name, inputs);
-    inputs[0].addEventListener("input", () => this.set(name, inputs[0], low, high));
-    // not while it is typed: 1.7 begins with 1
-    inputs[1].addEventListener("change", () => this.set(name, inputs[1], low, high));
-    return row;
-  }
-
-  /** @param {"m1" | "m2" | "k1" | "k2" | "d1" | "d2"} name @param {string} unit @param {[number, number]} range */
-  entry(name, unit, [low, high]) {
-    const row = document.createElement("div");
-    row.className = "entry";
-    const index = document.createElement("sub");
-    index.textContent = name[1];
-    const input = inputOf({ type: "number", id: name, step: "any", min: low, max: high });
-    row.append(labelOf(name, name[0], index, `, ${unit}`), input);
-    this.inputs.set(name, [input]);
-    input.addEventListener("change", () => this.set(name, input, low, high));
-    return row;
-  }
-
-  /** @param {string} name @param {HTMLInputElement} input @param {number} low @param {number} high */
-  set(name, input, low, high) {
-    const value = input.valueAsNumber;
-    const good = Number.isFinite(value) && value >= low && value <= high && this.structure;
-    input.setCustomValidity(good ? "" : `expected ${low} to ${high}`);
-    if (!good || !this.structure) {
-      input.reportValidity();
-      return;
+    const words = document.createElement("label");
+    Object.assign(words, { htmlFor: name, textContent: label });
+    row.append(words);
+    const number = inputOf({ type: "number", id: step ? `${name}-number` : name, min, max, step: "any" });
+    const inputs = [number];
+    if (step) {
+      inputs.unshift(inputOf({ type: "range", id: name, min, max, step }));
+      number.ariaLabel = `${label}, number`;
+      onNumber(inputs[0], (value) => this.set(name, value, inputs[0]), "input");
     }
-    const both = name === "D" ? ["D1", "D2"] : [name];
-    const changed = both.reduce((structure, one) => withRatio(structure, one, value), this.structure);
-    this.show(changed, input);
-    this.changed(changed);
+    onNumber(number, (value) => this.set(name, value, number));
+    row.append(...inputs);
+    this.inputs.set(name, inputs);
+    return row;
   }
 
-  /** Show a structure's numbers; the input that is being typed into is left alone. @param {Structure} structure @param {HTMLInputElement} [typed] */
-  show(structure, typed) {
+  /** What is expected, if the number leads to no structure. @param {string} name @param {number} value @param {HTMLInputElement} typed is left as it is */
+  set(name, value, typed) {
+    const structure = withNumber(this.structure, name, value);
+    for (const [other, [low, high]] of Object.entries(this.ranges)) {
+      const number = structure[/** @type {keyof Structure} */ (other)] ?? low;
+      if (!(number >= low && number <= high)) return `makes ${other} ${number}; expected ${low} to ${high}`;
+    }
     this.structure = structure;
-    const ratios = ratiosOf(structure);
-    /** @type {Record<string, number>} */
-    const values = { ...structure, ...ratios, D: ratios.D1 };
+    this.changed(structure);
+    this.fill(typed);
+  }
+
+  /** Show a structure's numbers, in the units of how it is shaken. @param {Structure} structure @param {Level} level */
+  show(structure, level) {
+    this.structure = structure;
+    this.at("paper-sliders").hidden = inHertz(level);
+    this.at("own-sliders").hidden = !inHertz(level);
+    this.fill();
+  }
+
+  /** @param {HTMLInputElement} [typed] */
+  fill(typed) {
+    const values = numbersIn(this.structure);
     for (const [name, inputs] of this.inputs) {
-      for (const input of inputs) {
-        if (input !== typed) input.value = String(Number(values[name].toPrecision(12)));
-      }
+      for (const input of inputs) if (input !== typed) showNumber(input, values[name], DIGITS);
     }
   }
 }
@@ -107,19 +118,3 @@ function inputOf(attributes) {
   for (const [name, value] of Object.entries(attributes)) input.setAttribute(name, String(value));
   return input;
 }
-
-/** @param {string} name of its input @param {(string | Node)[]} parts */
-function labelOf(name, ...parts) {
-  const label = document.createElement("label");
-  label.htmlFor = name;
-  label.append(...parts);
-  return label;
-}
-
-/** Frequency in Hz of a frequency ratio, and back. */
-export const hertz = {
-  /** @param {number} eta @param {Structure} structure */
-  of: (eta, structure) => (eta * omegaOf(structure)) / (2 * Math.PI),
-  /** @param {number} frequency @param {Structure} structure */
-  eta: (frequency, structure) => (frequency * 2 * Math.PI) / omegaOf(structure),
-};

@@ -1,7 +1,8 @@
 /** An orbit diagram: responses along the frequency, some of them still to come. */
 
+import { hertzOf, inHertz, pointAt, pointAtHertz } from "./excitation.js";
 import { niceStep } from "./scale.js";
-import { lengthOf, pointAt } from "./structure.js";
+import { lengthOf, omegaOf } from "./structure.js";
 
 /**
  * @typedef {import("./structure.js").Structure} Structure
@@ -11,14 +12,16 @@ import { lengthOf, pointAt } from "./structure.js";
  *   multiplicity: number, start: number[], end: number[]}} Found
  * @typedef {{direction: "up" | "down", found: (Found | undefined)[], starts: Float64Array | null, from: number[] | null}} Lane
  *   `starts`: where each response begins, if that is known beforehand; `from`: where a chain does
- * @typedef {{structure: Structure, direction: Direction, low: number, high: number, points: Point[],
- *   lanes: Lane[], settings: import("./response.js").Settings}} Diagram
+ * @typedef {import("./excitation.js").Level} Level
+ * @typedef {{low: number, high: number, direction: Direction, level: Level}} Region frequency ratios
+ * @typedef {Region & {structure: Structure, points: Point[], lanes: Lane[],
+ *   settings: import("./response.js").Settings}} Diagram
  */
 
 export const LOWEST = 1e-5; // gaps below are drawn in the strip of zero
 
 /**
- * Frequency ratios on a decimal grid, as `orchestrate sweep --eta FIRST:LAST:STEP` has them.
+ * Frequencies on a decimal grid, as `orchestrate sweep --eta FIRST:LAST:STEP` has them.
  * @param {number} low
  * @param {number} high
  * @param {number} count at most
@@ -28,11 +31,11 @@ export function decimalGrid(low, high, count) {
   const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const unit = Math.round(step * 10 ** digits);
   const first = Math.ceil(Math.round(low * 10 ** digits) / unit - 1e-9) * unit;
-  const etas = [];
+  const values = [];
   for (let i = Math.max(first, unit); i <= Math.round(high * 10 ** digits); i += unit) {
-    etas.push(Number(`${i}e-${digits}`));
+    values.push(Number(`${i}e-${digits}`));
   }
-  return { etas, step: Number(`${unit}e-${digits}`) };
+  return values;
 }
 
 /** @param {Direction} direction @returns {("up" | "down")[]} */
@@ -43,20 +46,22 @@ export function lanesOf(direction) {
 /**
  * A diagram that is still to be computed.
  * @param {Structure} structure
- * @param {{low: number, high: number, direction: Direction}} region
+ * @param {Region} region
  * @param {number} count of frequencies, at most
  * @param {import("./response.js").Settings} settings
  * @returns {Diagram}
  */
-export function empty(structure, { low, high, direction }, count, settings) {
-  const points = decimalGrid(low, high, count).etas.map((eta) => pointAt(structure, eta));
+export function empty(structure, { low, high, direction, level }, count, settings) {
+  const points = inHertz(level)
+    ? decimalGrid(hertzOf(low, structure), hertzOf(high, structure), count).map((hertz) => pointAtHertz(structure, hertz, level))
+    : decimalGrid(low, high, count).map((eta) => pointAt(structure, eta, level));
   const lanes = lanesOf(direction).map((way) => ({
     direction: way,
     found: new Array(points.length),
     starts: null,
     from: null,
   }));
-  return { structure, direction, low, high, points, lanes, settings };
+  return { structure, direction, level, low, high, points, lanes, settings };
 }
 
 /** Index of the frequency nearest to `eta`. @param {Diagram} diagram @param {number} eta */
@@ -93,8 +98,9 @@ export function startFrom(other, point, direction) {
   return best < 0 ? rest : scaled(startAt(lane, best) ?? rest, other.points[best], point);
 }
 
-/** A state at one excitation as the like one at another: displacements go with a eta^2. @param {number[]} start @param {Point} from @param {Point} to */
+/** A state at one point as the like one at another: displacements go with a eta^2. @param {number[]} start @param {Point} from @param {Point} to */
 export function scaled(start, from, to) {
-  const factor = lengthOf(to) / lengthOf(from);
-  return factor === 1 ? start : start.map((value) => value * factor);
+  const length = lengthOf(to) / lengthOf(from);
+  const speed = (length * omegaOf(to.structure)) / omegaOf(from.structure);
+  return length === 1 && speed === 1 ? start : start.map((value, i) => value * (i < 2 ? length : speed));
 }

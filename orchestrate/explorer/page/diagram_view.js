@@ -5,6 +5,7 @@ import { LOWEST } from "./diagram.js";
 import { Picture } from "./picture.js";
 import { scaleOf } from "./scale.js";
 import { channels } from "./theme.js";
+import { frequencyUnit, gapUnit, wordsOf } from "./units.js";
 
 /**
  * @typedef {import("./diagram.js").Diagram} Diagram
@@ -31,28 +32,29 @@ export function panels(size) {
 export class Reach {
   constructor() {
     this.low = Infinity;
-    this.high = LOWEST;
+    this.high = 0;
     this.most = 1;
   }
 
-  /** Take a response in; whether it reaches beyond. @param {Found} found */
-  take({ gaps, impacts }) {
+  /** Take a response in; whether it reaches beyond. @param {Found} found @param {number} unit of gaps on the axis */
+  take({ gaps, impacts }, unit) {
     let beyond = false;
     for (const gap of gaps) {
-      if (gap > this.high) [this.high, beyond] = [2 * gap, true];
-      if (gap < this.low && gap > LOWEST) [this.low, beyond] = [Math.max(gap / 2, LOWEST * 0.5), true];
+      if (gap * unit > this.high) [this.high, beyond] = [2 * gap * unit, true];
+      if (gap > LOWEST && gap * unit < this.low) [this.low, beyond] = [Math.max(gap / 2, LOWEST * 0.5) * unit, true];
     }
     if (impacts > this.most) [this.most, beyond] = [2 * impacts, true];
     return beyond;
   }
 
   /** @param {Diagram} diagram */
-  axes({ low, high }) {
+  axes({ low, high, level }) {
     const [least, largest] = this.low < this.high ? [this.low, this.high] : [0.01, 10];
+    const words = wordsOf(level);
     return {
-      x: { low, high, label: "frequency ratio η" },
-      gaps: { low: least, high: largest, log: true, label: "gap ξ₂ − ξ₁ at phase 0" },
-      impacts: { low: 0.1, high: this.most, log: true, label: "impacts / T" },
+      x: { low, high, label: words.frequency },
+      gaps: { low: least, high: largest, log: true, label: words.gap },
+      impacts: { low: 0.1, high: this.most, log: true, label: "impacts a period" },
     };
   }
 }
@@ -89,15 +91,15 @@ export class Plate {
     this.alpha = Math.min(0.6, Math.max(0.1, 0.6 * Math.sqrt(wide / Math.max(count, 1) / this.dot)));
   }
 
-  /** @param {Diagram["points"][number]} point @param {Found} found @param {string} colour */
-  add(point, found, colour) {
+  /** @param {Diagram["points"][number]} point @param {Found} found @param {string} colour @param {number} unit of gaps on the axis */
+  add(point, found, colour, unit) {
     const { px, py, counts, bottom = 0, strip = 0, top = 0 } = this;
     if (!px || !py || !counts || !this.ends || !this.countsEnds) return;
     const x = Math.floor(px(point.eta) - (this.broad - 1) / 2);
     if (x < this.ends[0] || x > this.ends[1]) return;
     const rgb = channels(colour);
     for (const gap of found.gaps) {
-      const y = gap > LOWEST ? py(gap) : bottom - strip / 2;
+      const y = gap > LOWEST ? py(gap * unit) : bottom - strip / 2;
       if (y >= top && y <= bottom) this.mark(x, Math.floor(y), rgb);
     }
     const y = found.impacts > 0.1 ? counts(found.impacts) : this.countsEnds[1] - 2;
@@ -128,15 +130,25 @@ export class Plate {
   }
 }
 
-/** Frames of both panels. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axes} axes */
-export function drawFrames(pen, size, theme, axes) {
+/** Frames of both panels. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axes} axes @param {number} unit of frequency ratios on the axis */
+export function drawFrames(pen, size, theme, axes, unit) {
   const { gaps, impacts } = panels(size);
   const [left, top, width, height] = gaps;
   pen.box(left, top + height - STRIP, width, STRIP, { fill: theme.grid });
   pen.text(left - 6, top + height - STRIP / 2, "0", { anchor: "end", fill: theme.soft });
   const above = /** @type {Place} */ ([left, top, width, height - STRIP]);
-  drawFrame(pen, above, theme, { ...axes.x, label: undefined }, axes.gaps);
-  drawFrame(pen, impacts, theme, axes.x, axes.impacts);
+  const x = { ...axes.x, low: axes.x.low * unit, high: axes.x.high * unit };
+  drawFrame(pen, above, theme, { ...x, label: undefined }, axes.gaps);
+  drawFrame(pen, impacts, theme, x, axes.impacts);
+}
+
+/** Which colour is which direction, where there are both. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Diagram} diagram */
+function drawLanes(pen, size, theme, { lanes }) {
+  if (lanes.length < 2) return;
+  const [left, top, width] = panels(size).gaps;
+  lanes.forEach(({ direction }, i) =>
+    pen.text(left + width - 100 * (1 - i), top - 10, `swept ${direction}`, { anchor: "end", fill: theme[direction] }),
+  );
 }
 
 /** The chosen frequency, and the span that is being dragged. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axis} axis @param {{eta: number | null, drag: [number, number] | null}} marks */
@@ -190,7 +202,7 @@ export class DiagramView {
       for (const { found } of one?.lanes ?? []) {
         found.forEach((response, i) => {
           const eta = one?.points[i].eta ?? NaN;
-          if (response && eta >= diagram.low && eta <= diagram.high) this.reach.take(response);
+          if (one && response && eta >= diagram.low && eta <= diagram.high) this.reach.take(response, gapUnit(one.points[i], diagram.level));
         });
       }
     }
@@ -205,8 +217,9 @@ export class DiagramView {
 
   /** A response has come. @param {"up" | "down"} direction @param {number} index @param {Found} found */
   add(direction, index, found) {
-    if (this.reach.take(found)) this.stale = true;
-    this.queue.push([/** @type {Diagram} */ (this.diagram), direction, index]);
+    const diagram = /** @type {Diagram} */ (this.diagram);
+    if (this.reach.take(found, gapUnit(diagram.points[index], diagram.level))) this.stale = true;
+    this.queue.push([diagram, direction, index]);
     this.picture.redraw();
   }
 
@@ -236,22 +249,24 @@ export class DiagramView {
   draw(pen, size, theme) {
     if (!this.diagram) return;
     if (this.stale) this.restart();
-    this.work(theme);
-    drawFrames(pen, size, theme, this.axes);
+    this.work(theme, this.diagram);
+    drawLanes(pen, size, theme, this.diagram);
+    drawFrames(pen, size, theme, this.axes, frequencyUnit(this.diagram.structure, this.diagram.level));
     pen.image(this.plate.show(), 0, 0, size.width, size.height);
     this.overlay?.(pen, size, theme);
     drawMarks(pen, size, theme, this.axes.x, this.marks);
     if (this.queue.length > this.done) this.picture.redraw();
   }
 
-  /** Put dots on the plate for some milliseconds. @param {Theme} theme */
-  work(theme) {
+  /** Put dots on the plate for some milliseconds. @param {Theme} theme @param {Diagram} shown */
+  work(theme, shown) {
     const end = performance.now() + 10;
     let done = this.done;
     while (done < this.queue.length && performance.now() < end) {
       const [diagram, direction, index] = this.queue[done++];
       const found = diagram.lanes.find((lane) => lane.direction === direction)?.found[index];
-      if (found) this.plate.add(diagram.points[index], found, theme[direction]);
+      const point = diagram.points[index];
+      if (found) this.plate.add(point, found, theme[direction], gapUnit(point, shown.level));
     }
     this.done = done;
     if (done === this.queue.length) [this.queue, this.done] = [[], 0];

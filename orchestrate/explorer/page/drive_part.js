@@ -32,6 +32,12 @@ export class DrivePart {
     at("ramp-down").addEventListener("click", () => this.drift(-1));
     at("drive-bonded").addEventListener("change", () => this.clear());
     this.voltage.addEventListener("input", () => (this.ramp = 0));
+    const seen = new IntersectionObserver(([{ isIntersecting }]) => {
+      if (!isIntersecting) return;
+      seen.disconnect(); // once: from then on its buttons say what it does
+      if (!this.rows.length && !this.running) this.drift(1);
+    });
+    seen.observe(this.picture.canvas);
   }
 
   /** Forget the run. */
@@ -115,7 +121,6 @@ export class DrivePart {
         { x, y, colour: "one", label: "speed" },
         { x: x.slice(-1), y: y.slice(-1), colour: "hit", dots: 4 },
       ],
-      empty: this.rows.length ? "" : "start the motor",
     });
   }
 }

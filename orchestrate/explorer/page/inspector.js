@@ -2,8 +2,17 @@
 
 import { Animation } from "./animation.js";
 import { axisAround } from "./chart.js";
-import { historyChart, motionPictures, numbersOf, phaseChart, sectionChart, spectrumChart, columnsOf } from "./motion_view.js";
-import { shown } from "./scale.js";
+import {
+  columnsOf,
+  exponentWords,
+  historyChart,
+  motionPictures,
+  numbersOf,
+  phaseChart,
+  sectionChart,
+  sentenceOf,
+  spectrumChart,
+} from "./motion_view.js";
 import { Sound } from "./sound.js";
 
 /**
@@ -11,7 +20,7 @@ import { Sound } from "./sound.js";
  * @typedef {import("./response.js").Response} Response
  * @typedef {import("./response.js").Settings} Settings
  * @typedef {import("./motion.js").Motion} Motion
- * @typedef {{point: Point, start: number[], settings: Settings}} Choice
+ * @typedef {{point: Point, start: number[], settings: Settings, level: import("./excitation.js").Level}} Choice
  */
 
 const POINTS = 200; // a period
@@ -35,6 +44,10 @@ export class Inspector {
     this.found = null;
     /** @type {any} */
     this.spectra = null;
+    /** @type {number | undefined} */
+    this.exponent = undefined;
+    /** @type {import("./record.js").Measured | null} */
+    this.measured = null;
     /** @type {Motion | null} */
     this.bonded = null;
     /** @type {Float64Array} */
@@ -44,7 +57,7 @@ export class Inspector {
   /** Show the motion of a response. @param {Choice} choice */
   choose(choice) {
     this.stop();
-    Object.assign(this, { choice, found: null, spectra: null, bonded: null });
+    Object.assign(this, { choice, found: null, spectra: null, bonded: null, exponent: undefined });
     this.at("exponent").textContent = "…";
     this.ask("motion", { ...choice, periods: this.periods, points: POINTS }, ([found]) => this.take(found));
     const glued = { ...choice.point, structure: { ...choice.point.structure, bonded: 1 } };
@@ -85,11 +98,12 @@ export class Inspector {
   }
 
   showNumbers() {
-    const { point } = /** @type {Choice} */ (this.choice);
+    const { point, level } = /** @type {Choice} */ (this.choice);
     const { response } = /** @type {{response: Response}} */ (this.found);
+    this.at("sentence").textContent = sentenceOf(response, this.exponent);
     const list = this.at("numbers");
     list.querySelectorAll(".told").forEach((row) => row.remove());
-    for (const [name, value] of Object.entries(numbersOf(response, point)).reverse()) {
+    for (const [name, value] of Object.entries(numbersOf(response, point, level)).reverse()) {
       const row = document.createElement("div");
       row.className = "told";
       row.append(tagged("dt", name), tagged("dd", value));
@@ -100,13 +114,13 @@ export class Inspector {
   drawMotion() {
     if (!this.found || !this.choice) return;
     const { motion } = this.found;
-    const { point } = this.choice;
-    const history = historyChart(motion, point, this.periods);
-    const phase = phaseChart(motion, point);
+    const { point, level } = this.choice;
+    const history = historyChart(motion, point, level);
+    const phase = phaseChart(motion, point, level);
     const beside = /** @type {HTMLInputElement} */ (this.at("beside")).checked;
     if (beside && this.bonded) {
-      const { x1, v1 } = columnsOf(this.bonded, point);
-      const { turns } = columnsOf(motion, point);
+      const { x1, v1 } = columnsOf(this.bonded, point, level);
+      const { turns } = columnsOf(motion, point, level);
       const look = /** @type {const} */ ({ colour: "soft", label: "bonded", width: 2, alpha: 0.8 });
       history.series.unshift({ x: turns, y: x1, ...look });
       phase.series.unshift({ x: x1, y: v1, ...look });
@@ -118,9 +132,9 @@ export class Inspector {
   }
 
   drawSection() {
-    const { point } = /** @type {Choice} */ (this.choice);
+    const { point, level } = /** @type {Choice} */ (this.choice);
     const count = this.section.length / 4;
-    this.pictures.show("section", sectionChart(this.section, point), `Stroboscopic section at frequency ratio ${point.eta}: ${count} samples of gap and gap velocity`);
+    this.pictures.show("section", sectionChart(this.section, point, level), `Stroboscopic section at frequency ratio ${point.eta}: ${count} samples of gap and gap velocity`);
     this.at("section-count").textContent = `${count} periods`;
   }
 
@@ -145,14 +159,20 @@ export class Inspector {
   /** @param {any} part */
   takeSpectra(part) {
     if (part.exponent !== undefined) {
-      const repeats = this.found?.response.multiplicity;
-      const settles = repeats ? " (regular)" : " (it converges, but has not repeated yet)";
-      const verdict = part.exponent > 0.005 ? " (chaotic)" : part.exponent < -0.002 ? settles : "";
-      this.at("exponent").textContent = `${shown(part.exponent, 3)}${verdict}`;
+      this.exponent = part.exponent;
+      this.at("exponent").textContent = exponentWords(part.exponent, this.found?.response.multiplicity ?? 0);
+      if (this.found) this.showNumbers();
       return;
     }
     this.spectra = part;
-    this.pictures.show("spectrum", spectrumChart(part), "Amplitude spectrum of the acceleration of mass 1, delaminated beside bonded");
+    this.drawSpectrum();
+  }
+
+  drawSpectrum() {
+    if (!this.spectra || !this.choice) return;
+    const chart = spectrumChart(this.spectra, this.choice.point, this.choice.level, this.measured);
+    const words = chart.series.map(({ label }) => label).join(", ");
+    this.pictures.show("spectrum", chart, `Amplitude spectrum of the acceleration of half 1: ${words}`);
   }
 
   /** Play the impacts of many periods as they come from the kernel. @param {number} pitch periods a second */

@@ -1,5 +1,7 @@
 /** Kernels in WebAssembly: an instance each, driven as the FMU drives it. */
 
+import { fromRest } from "./clearance.js";
+
 /**
  * @typedef {{SIZE: number, TIME: number, STOP: number, SET: number, CUBIC: number, CUBIC_END: number,
  *   [name: string]: number}} Slots
@@ -84,15 +86,16 @@ export class Oscillator extends Instance {
   /**
    * Begin at phase 0.
    * @param {Point} point
-   * @param {ArrayLike<number>} start
+   * @param {Iterable<number>} start
    */
   begin(point, start) {
+    const [x1, x2, v1, v2] = fromRest(start, point.structure);
     this.initialize({
       ...point.structure,
-      x1_start: start[0],
-      x2_start: start[1],
-      v1_start: start[2],
-      v2_start: start[3],
+      x1_start: x1,
+      x2_start: x2,
+      v1_start: v1,
+      v2_start: v2,
       box_amplitude: point.amplitude,
       box_frequency: point.frequency,
       x_rel_max_on: 0,

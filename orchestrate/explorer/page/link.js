@@ -1,43 +1,61 @@
 /** The view as a link: what is behind the # restores it. */
 
+import { LEVELS, PAPER } from "./excitation.js";
+
 /**
  * @typedef {import("./structure.js").Structure} Structure
- * @typedef {{structure: Structure, low: number, high: number, direction: "up" | "down" | "both",
- *   eta: number | null, start: number[] | null}} View
+ * @typedef {import("./excitation.js").Level} Level
+ * @typedef {{structure: Structure, level: Level, low: number, high: number,
+ *   direction: "up" | "down" | "both", eta: number | null, start: number[] | null}} View
+ * @typedef {Record<string, [number, number]>} Ranges of the numbers of a structure
  */
 
-/** @param {View} view @param {Structure} usual numbers that need not be said */
-export function fragmentOf({ structure, low, high, direction, eta, start }, usual) {
-  const words = new URLSearchParams({ from: String(low), to: String(high), direction });
+/** Frequency ratios that a view may have. @type {[number, number]} */
+export const ETAS = [1e-3, 1000];
+
+/** @param {View} view @param {View} usual what need not be said @param {string} [tour] stop of the tour */
+export function fragmentOf({ structure, level, low, high, direction, eta, start }, usual, tour) {
+  const words = new URLSearchParams(tour ? { tour } : {});
+  for (const [name, value] of Object.entries({ from: low, to: high, direction })) words.set(name, String(value));
   for (const [name, value] of Object.entries(structure)) {
-    if (value !== usual[/** @type {keyof Structure} */ (name)]) words.set(name, String(value));
+    if (value !== usual.structure[/** @type {keyof Structure} */ (name)]) words.set(name, String(value));
   }
+  if (level.unit !== usual.level.unit || level.value !== usual.level.value) words.set(level.unit, String(level.value));
   if (eta !== null) words.set("eta", String(eta));
   if (start) words.set("start", start.join(","));
   return `#${words}`;
 }
 
-/** A view from a link; what it does not say, or says wrongly, is as in `view`. @param {string} fragment @param {View} view @param {Structure} usual @returns {View} */
-export function viewOf(fragment, view, usual) {
+/** A view from a link; what it does not say, or says wrongly, is as in `view`. @param {string} fragment @param {View} view @param {Ranges} ranges @returns {View} */
+export function viewOf(fragment, view, ranges) {
   const words = new URLSearchParams(fragment.replace(/^#/, ""));
-  /** @param {string} name @param {number} other */
-  const number = (name, other) => {
+  /** @param {string} name @param {[number, number]} range @param {number | undefined} other */
+  const number = (name, [least, most], other) => {
     const value = words.get(name) ? Number(words.get(name)) : NaN;
-    return Number.isFinite(value) ? value : other;
+    return value >= least && value <= most ? value : other;
   };
-  const structure = { ...usual };
-  for (const name of /** @type {(keyof Structure)[]} */ (Object.keys(usual))) {
-    structure[name] = number(name, usual[name]);
+  const structure = { ...view.structure };
+  for (const name of /** @type {(keyof Structure)[]} */ (Object.keys(structure))) {
+    structure[name] = number(name, ranges[name], structure[name]) ?? 0;
   }
   const direction = words.get("direction") ?? "";
-  const start = (words.get("start") ?? "").split(",").map(Number);
-  const low = number("from", view.low);
-  const high = number("to", view.high);
+  const start = (words.get("start") ?? "").split(",").map((text) => (text ? Number(text) : NaN));
+  const [low, high] = [number("from", ETAS, view.low) ?? view.low, number("to", ETAS, view.high) ?? view.high];
   return {
     structure,
-    ...(low > 0 && high > low ? { low, high } : { low: view.low, high: view.high }),
+    level: levelOf(number) ?? view.level,
+    ...(high > low ? { low, high } : { low: view.low, high: view.high }),
     direction: direction === "up" || direction === "down" || direction === "both" ? direction : view.direction,
-    eta: words.get("eta") ? number("eta", 1) : null,
+    eta: number("eta", ETAS, undefined) ?? view.eta,
     start: start.length === 4 && start.every(Number.isFinite) ? start : null,
   };
+}
+
+/** @param {(name: string, range: [number, number], other: undefined) => number | undefined} number @returns {Level | undefined} */
+function levelOf(number) {
+  for (const unit of /** @type {const} */ (["g", "mm"])) {
+    const value = number(unit, LEVELS[unit], undefined);
+    if (value !== undefined) return { unit, value };
+  }
+  return number("paper", LEVELS.paper, undefined) === 1 ? PAPER : undefined;
 }

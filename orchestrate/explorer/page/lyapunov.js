@@ -1,5 +1,6 @@
 /** The largest Lyapunov exponent, estimated: how fast two motions that begin close by part. */
 
+import { gapBetween, gapOffset } from "./clearance.js";
 import { lengthOf, omegaOf, periodOf } from "./structure.js";
 
 /**
@@ -13,9 +14,10 @@ import { lengthOf, omegaOf, periodOf } from "./structure.js";
  * @param {Point} point
  * @param {number[]} start on the attractor, at phase 0
  * @param {{periods: number, distance: number}} settings
- * @returns {number} minus infinity where permanent contact forgets the difference
+ * @returns {Generator<undefined, number>} minus infinity where permanent contact forgets the
+ *   difference; it pauses, so that the instance may do other things
  */
-export function exponentOf(instance, point, start, { periods, distance }) {
+export function* exponentOf(instance, point, start, { periods, distance }) {
   const period = periodOf(point);
   const length = lengthOf(point);
   const speed = length * omegaOf(point.structure);
@@ -30,7 +32,7 @@ export function exponentOf(instance, point, start, { periods, distance }) {
   let difference = [-0.5, 0.5, 0.5, -0.5].map((part) => part * distance);
   let sum = 0;
   for (let n = 0; n < periods; n++) {
-    const twin = beside(state, difference, scale);
+    const twin = beside(state, difference, scale, gapOffset(point.structure));
     const moved = twin.map((value, i) => (value - state[i]) / scale[i]);
     [state, difference] = separate(next(state), next(twin), scale);
     const growth = norm(difference) / norm(moved);
@@ -38,15 +40,16 @@ export function exponentOf(instance, point, start, { periods, distance }) {
     sum += Math.log(growth);
     const factor = distance / norm(difference);
     difference = difference.map((part) => part * factor);
+    if (n % 20 === 19) yield;
   }
   return sum / (periods * period * omegaOf(point.structure));
 }
 
-/** A state close by whose gap is none below zero. @param {number[]} state @param {number[]} d @param {number[]} scale */
-function beside(state, d, scale) {
-  const sign = state[1] + d[1] * scale[1] < state[0] + d[0] * scale[0] ? -1 : 1;
+/** A state close by whose gap is none below zero. @param {number[]} state @param {number[]} d @param {number[]} scale @param {number} offset */
+function beside(state, d, scale, offset) {
+  const sign = gapBetween(state[0] + d[0] * scale[0], state[1] + d[1] * scale[1], offset) < 0 ? -1 : 1;
   const twin = state.map((value, i) => value + sign * d[i] * scale[i]);
-  return twin[1] < twin[0] ? [twin[0], twin[0], twin[2], twin[3]] : twin;
+  return gapBetween(twin[0], twin[1], offset) < 0 ? [twin[0], twin[0] - offset, twin[2], twin[3]] : twin;
 }
 
 /** @param {number[]} state @param {number[]} twin @param {number[]} scale @returns {[number[], number[]]} */

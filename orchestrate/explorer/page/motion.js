@@ -69,7 +69,7 @@ function advance(instance, time, target, impacts) {
  */
 export function accelerations([x1, x2, v1, v2], touching, { structure: s }) {
   if (touching) {
-    const both = -((s.k1 + s.k2) * x1 + (s.d1 + s.d2) * v1) / (s.m1 + s.m2);
+    const both = -((s.k1 + s.k2) * x1 + s.k2 * (x2 - x1) + (s.d1 + s.d2) * v1) / (s.m1 + s.m2);
     return [both, both];
   }
   return [-(s.k1 * x1 + s.d1 * v1) / s.m1, -(s.k2 * x2 + s.d2 * v2) / s.m2];

@@ -1,36 +1,39 @@
-/** The motion at the chosen frequency in four pictures. */
+/** The motion at the chosen frequency in four pictures, and in words. */
 
 import { axisAround, drawChart } from "./chart.js";
+import { gapBetween, gapOffset } from "./clearance.js";
+import { GRAVITY, inHertz } from "./excitation.js";
 import { Picture } from "./picture.js";
+import { peaksUpTo } from "./record.js";
 import { shown } from "./scale.js";
-import { lengthOf, omegaOf } from "./structure.js";
+import { scaleAt, wordsOf } from "./units.js";
 
 /**
  * @typedef {import("./motion.js").Motion} Motion
+ * @typedef {import("./excitation.js").Level} Level
  * @typedef {import("./structure.js").Point} Point
  * @typedef {import("./chart.js").Series} Series
  * @typedef {import("./chart.js").Chart} Chart
+ * @typedef {import("./spectrum.js").Spectrum} Spectrum
+ * @typedef {import("./response.js").Response} Response
+ * @typedef {"history" | "phase" | "section" | "spectrum"} Name
  */
 
-const GRAVITY = 9.80665; // m/s²
-const WAIT = "click the orbit diagram";
+const CHAOTIC = 0.005; // exponents above
+const REGULAR = -0.002; // and below
 
 /** @param {(id: string) => HTMLElement} at the page's elements */
 export function motionPictures(at) {
-  /** @type {Record<"history" | "phase" | "section" | "spectrum", Chart>} */
-  const charts = { history: blank("time / T", "ξ"), phase: blank("ξ", "ξ′"), section: blank("gap ξ", "gap ξ′"), spectrum: blank("frequency / Ω", "amplitude, m/s²") };
-  /** @param {keyof typeof charts} name */
+  /** @type {Partial<Record<Name, Chart>>} */
+  const charts = {};
+  /** @param {Name} name */
   const picture = (name) =>
-    new Picture(/** @type {HTMLCanvasElement} */ (at(name)), (pen, size, theme) =>
-      drawChart(pen, size, theme, charts[name]),
-    );
-  const pictures = {
-    history: picture("history"),
-    phase: picture("phase"),
-    section: picture("section"),
-    spectrum: picture("spectrum"),
-  };
-  /** @param {keyof typeof charts} name @param {Chart} chart @param {string} words */
+    new Picture(/** @type {HTMLCanvasElement} */ (at(name)), (pen, size, theme) => {
+      const chart = charts[name];
+      if (chart) drawChart(pen, size, theme, chart);
+    });
+  const pictures = { history: picture("history"), phase: picture("phase"), section: picture("section"), spectrum: picture("spectrum") };
+  /** @param {Name} name @param {Chart} chart @param {string} words */
   const show = (name, chart, words) => {
     charts[name] = chart;
     pictures[name].describe(words);
@@ -39,20 +42,14 @@ export function motionPictures(at) {
   return { pictures, show };
 }
 
-/** @param {string} x @param {string} y @returns {Chart} */
-function blank(x, y) {
-  return { x: { low: 0, high: 1, label: x }, y: { low: 0, high: 1, label: y }, series: [], empty: WAIT };
-}
-
-/** Columns of a motion over a eta^2, time in periods. @param {Motion} motion @param {Point} point */
-export function columnsOf(motion, point) {
-  const length = lengthOf(point);
-  const speed = length * omegaOf(point.structure);
+/** Columns of a motion as the axes have them, time from its beginning. @param {Motion} motion @param {Point} point @param {Level} level */
+export function columnsOf(motion, point, level) {
+  const { length, speed, time } = scaleAt(point, level);
   /** @param {number} part @param {number} unit */
   const column = (part, unit) =>
     Float64Array.from({ length: motion.time.length }, (_, i) => motion.states[4 * i + part] / unit);
   return {
-    turns: motion.time.map((time) => time / motion.period),
+    turns: motion.time.map((t) => (t - motion.time[0]) / time),
     x1: column(0, length),
     x2: column(1, length),
     v1: column(2, speed),
@@ -60,7 +57,7 @@ export function columnsOf(motion, point) {
   };
 }
 
-/** Spans of permanent contact, in periods. @param {Motion} motion @param {ArrayLike<number>} turns */
+/** Spans of permanent contact. @param {Motion} motion @param {ArrayLike<number>} turns */
 export function contactSpans({ contact }, turns) {
   /** @type {[number, number][]} */
   const spans = [];
@@ -75,87 +72,115 @@ export function contactSpans({ contact }, turns) {
   return spans;
 }
 
-/** Time histories with impacts and contact. @param {Motion} motion @param {Point} point @param {number} periods shown @returns {Chart} */
-export function historyChart(motion, point, periods) {
-  const { turns, x1, x2 } = columnsOf(motion, point);
-  const [from, to] = [turns[0], Math.min(turns[0] + periods, turns[turns.length - 1])];
-  const hits = Float64Array.from(motion.impactTime, (time) => time / motion.period);
-  const places = motion.impactPlace.map((x) => x / lengthOf(point));
+/** Time histories with impacts and contact. @param {Motion} motion @param {Point} point @param {Level} level @returns {Chart} */
+export function historyChart(motion, point, level) {
+  const { turns, x1, x2 } = columnsOf(motion, point, level);
+  const { length, time } = scaleAt(point, level);
+  const words = wordsOf(level);
+  const hits = motion.impactTime.map((t) => (t - motion.time[0]) / time);
   return {
-    x: { low: from, high: to, label: "time / T" },
-    y: axisAround([x1, x2], "ξ₁, ξ₂"),
+    x: { low: 0, high: turns[turns.length - 1], label: words.time },
+    y: axisAround([x1, x2], words.place),
     spans: contactSpans(motion, turns),
     series: [
-      { x: turns, y: x1, colour: "one", label: "mass 1" },
-      { x: turns, y: x2, colour: "two", label: "mass 2" },
-      { x: hits, y: places, colour: "hit", dots: 2.5, label: "impact" },
+      { x: turns, y: x1, colour: "one", label: "half 1" },
+      { x: turns, y: x2, colour: "two", label: "half 2" },
+      { x: hits, y: motion.impactPlace.map((x) => x / length), colour: "hit", dots: 2.5, label: "impact" },
     ],
   };
 }
 
-/** Phase curves of both masses, as in the paper's Figure 12. @param {Motion} motion @param {Point} point @returns {Chart} */
-export function phaseChart(motion, point) {
-  const { x1, x2, v1, v2 } = columnsOf(motion, point);
+/** Phase curves of both masses, as in the paper's Figure 12. @param {Motion} motion @param {Point} point @param {Level} level @returns {Chart} */
+export function phaseChart(motion, point, level) {
+  const { x1, x2, v1, v2 } = columnsOf(motion, point, level);
+  const words = wordsOf(level);
   return {
-    x: axisAround([x1, x2], "ξ"),
-    y: axisAround([v1, v2], "ξ′"),
+    x: axisAround([x1, x2], words.place),
+    y: axisAround([v1, v2], words.speed),
     series: [
-      { x: x1, y: v1, colour: "one", label: "mass 1", width: 1 },
-      { x: x2, y: v2, colour: "two", label: "mass 2", width: 1 },
+      { x: x1, y: v1, colour: "one", label: "half 1", width: 1 },
+      { x: x2, y: v2, colour: "two", label: "half 2", width: 1 },
     ],
   };
 }
 
-/** Stroboscopic section of gap and gap velocity. @param {ArrayLike<number>} states @param {Point} point @returns {Chart} */
-export function sectionChart(states, point) {
-  const length = lengthOf(point);
-  const speed = length * omegaOf(point.structure);
+/** Stroboscopic section of gap and gap velocity. @param {ArrayLike<number>} states @param {Point} point @param {Level} level @returns {Chart} */
+export function sectionChart(states, point, level) {
+  const { length, speed } = scaleAt(point, level);
+  const words = wordsOf(level);
+  const offset = gapOffset(point.structure);
   const count = states.length / 4;
-  const x = Float64Array.from({ length: count }, (_, i) => (states[4 * i + 1] - states[4 * i]) / length);
+  const x = Float64Array.from({ length: count }, (_, i) => gapBetween(states[4 * i], states[4 * i + 1], offset) / length);
   const y = Float64Array.from({ length: count }, (_, i) => (states[4 * i + 3] - states[4 * i + 2]) / speed);
   const dots = count > 2000 ? 0.8 : 1.8;
   return {
-    x: axisAround([x], "gap ξ₂ − ξ₁"),
-    y: axisAround([y], "gap velocity"),
+    x: axisAround([x], words.gap),
+    y: axisAround([y], words.gapSpeed),
     series: [{ x, y, colour: "hit", dots, alpha: 0.8 }],
   };
 }
 
-/** @param {{delaminated: import("./spectrum.js").Spectrum, bonded: import("./spectrum.js").Spectrum}} found @returns {Chart} */
-export function spectrumChart({ delaminated, bonded }) {
-  const high = Math.max(...delaminated.amplitude, ...bonded.amplitude) || 1;
+/** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @param {import("./record.js").Measured | null} measured @returns {Chart} */
+export function spectrumChart({ delaminated, bonded }, point, level, measured) {
+  const { line, acceleration } = scaleAt(point, level);
+  const words = wordsOf(level);
+  const ends = [delaminated, bonded].map(({ amplitude }) => amplitude.reduce((most, value) => Math.max(most, value), 0));
+  const high = Math.max(...ends) / acceleration || 1;
   const low = high * 1e-7;
   /** @param {Float64Array} amplitude */
-  const kept = (amplitude) => amplitude.map((value) => Math.max(value, low / 10));
+  const kept = (amplitude) => amplitude.map((value) => Math.max(value / acceleration, low / 10));
+  const x = delaminated.order.map((order) => order * line);
+  /** @type {Series[]} */
+  const series = [
+    { x, y: kept(delaminated.amplitude), colour: "one", label: "delaminated", width: 1 },
+    { x, y: kept(bonded.amplitude), colour: "hit", label: "bonded" },
+  ];
+  if (measured && inHertz(level)) {
+    const peaks = peaksUpTo(measured, x[x.length - 1], 2000);
+    series.push({ x: peaks.x, y: kept(peaks.y), colour: "ink", label: "measured", width: 1 });
+  }
   return {
-    x: { low: 0, high: delaminated.order[delaminated.order.length - 1], label: "frequency / Ω" },
-    y: { low, high: high * 2, log: true, label: "|a₁|, m/s²" },
-    series: [
-      { x: delaminated.order, y: kept(delaminated.amplitude), colour: "one", label: "delaminated", width: 1 },
-      { x: bonded.order, y: kept(bonded.amplitude), colour: "hit", label: "bonded" },
-    ],
+    x: { low: 0, high: x[x.length - 1], label: words.line },
+    y: { low, high: high * 2, log: true, label: words.acceleration },
+    series,
   };
 }
 
-/** The same in Hz, mm and g, of a structure that is not the paper's of 1 rad/s. @param {import("./response.js").Response} response @param {Point} point @returns {Record<string, string>} */
-function inUnits({ peak }, { structure, eta, frequency, amplitude }) {
-  if (Math.abs(omegaOf(structure) - 1) < 1e-9) return {};
+/** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @returns {Record<string, string>} */
+export function numbersOf({ peak, impacts, contact, multiplicity }, { eta, frequency, amplitude }, level) {
+  const own = inHertz(level);
+  /** @type {Record<string, string>} */
+  const first = own
+    ? {
+        "frequency, Hz": shown(frequency / (2 * Math.PI), 6),
+        "amplitude of the box, mm": shown(1e3 * amplitude),
+        "acceleration of the box, g": shown((amplitude * frequency * frequency) / GRAVITY),
+        "largest gap, mm": shown(1e3 * peak * amplitude * eta * eta),
+      }
+    : { "frequency ratio η": String(eta), "largest gap ξ": shown(peak, 6) };
   return {
-    "frequency, Hz": shown(frequency / (2 * Math.PI), 6),
-    "amplitude of the box, mm": shown(1e3 * amplitude),
-    "acceleration of the box, g": shown((amplitude * frequency * frequency) / GRAVITY),
-    "largest gap, mm": shown(1e3 * peak * amplitude * eta * eta),
+    ...first,
+    "impacts a period": shown(impacts),
+    "repeats after": multiplicity ? `${multiplicity} period${multiplicity > 1 ? "s" : ""}` : "does not repeat",
+    "stick together": contact ? "for a while" : "no",
   };
 }
 
-/** Numbers of a response for people. @param {import("./response.js").Response} response @param {Point} point */
-export function numbersOf(response, point) {
-  return {
-    "frequency ratio η": String(point.eta),
-    "impacts per period": shown(response.impacts),
-    multiplicity: response.multiplicity ? String(response.multiplicity) : "0 (does not repeat)",
-    "largest gap ξ": shown(response.peak, 6),
-    ...inUnits(response, point),
-    "permanent contact": response.contact ? "yes" : "no",
-  };
+/** What the exponent says. @param {number} exponent @param {number} repeats after so many periods, 0 if not */
+export function exponentWords(exponent, repeats) {
+  const settles = repeats ? " (regular)" : " (it converges, but has not repeated yet)";
+  return `${shown(exponent, 3)}${exponent > CHAOTIC ? " (chaotic)" : exponent < REGULAR ? settles : ""}`;
+}
+
+/** A response in a sentence. @param {Response} response @param {number | undefined} exponent if it is known */
+export function sentenceOf({ impacts, contact, multiplicity, peak }, exponent) {
+  if (!impacts) return peak > 0 ? "The halves never touch." : "The halves stay closed: no impact.";
+  const count = `${shown(impacts, 3)} impact${impacts === 1 ? "" : "s"} a period`;
+  const sticks = contact ? ", then the halves stick together for a while" : "";
+  if (multiplicity) {
+    const every = multiplicity === 1 ? "every shaking period" : `after ${multiplicity} shaking periods`;
+    return `Repeats ${every}: ${count}${sticks}.`;
+  }
+  const kind = exponent !== undefined && exponent > CHAOTIC ? "Chaos: never repeats" : "Does not repeat";
+  return `${kind}, ${count}${sticks}.`;
 }

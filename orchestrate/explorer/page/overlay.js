@@ -1,7 +1,9 @@
 /** Branches of periodic orbits over the diagram: stable, unstable, bifurcation points. */
 
 import { panels, STRIP } from "./diagram_view.js";
+import { pointAt } from "./excitation.js";
 import { scaleOf } from "./scale.js";
+import { gapUnit } from "./units.js";
 
 /**
  * Draws them.
@@ -9,20 +11,23 @@ import { scaleOf } from "./scale.js";
  * @param {import("./diagram_view.js").DiagramView} view
  * @returns {import("./picture.js").Draw}
  */
-export function overlayOf({ branches, bifurcations }, view) {
+export function overlayOf({ branches, bifurcations, structure }, view) {
   return (pen, size, theme) => {
     const [left, top, width, height] = panels(size).gaps;
     const px = scaleOf(view.axes.x, left, left + width);
-    const py = scaleOf(view.axes.gaps, top + height - STRIP, top);
+    const scale = scaleOf(view.axes.gaps, top + height - STRIP, top);
+    const { level } = /** @type {import("./diagram.js").Diagram} */ (view.diagram);
+    /** @param {number} gap @param {number} eta */
+    const py = (gap, eta) => scale(gap * gapUnit(pointAt(structure, eta, level), level));
     pen.inside([left, top, width, height - STRIP], () => {
       for (const { x, y, stable } of branches) {
         const look = { stroke: theme.two, width: 1.8, dash: stable ? [] : [5, 4] };
-        pen.line(x.map(px), y.map(py), look);
+        pen.line(x.map(px), y.map((gap, i) => py(gap, x[i])), look);
       }
       /** @type {[number, number][]} */
       const taken = [];
       for (const { eta, gap, kind } of bifurcations) {
-        const [x, y] = [px(eta), py(gap)];
+        const [x, y] = [px(eta), py(gap, eta)];
         pen.dots([x], [y], 4, { fill: theme.two });
         let level = y - 10;
         while (taken.some(([a, b]) => Math.abs(a - x) < 110 && Math.abs(b - level) < 12)) level -= 13;

@@ -6,7 +6,7 @@
  * @typedef {{oscillator: Kernel, shaker: Kernel, drive: import("./coupled.js").Start,
  *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>,
  *   settings: import("./response.js").Settings, directions: ("up" | "down")[], count: number,
- *   low: number, high: number,
+ *   low: number, high: number, level: ["paper" | "g" | "mm", number], tour: Record<string, string>,
  *   branches: {x: number[], y: number[], stable: boolean}[],
  *   bifurcations: {eta: number, gap: number, kind: string}[]}} Table
  */
@@ -42,7 +42,7 @@ export async function load() {
  * @param {Float64Array} data eta, frequency, amplitude, then four numbers a start for each direction
  * @returns {import("./diagram.js").Diagram | null}
  */
-function shipped({ structure, settings, directions, count, low, high }, data) {
+function shipped({ structure, settings, directions, count, low, high, level: [unit, value] }, data) {
   if (!count) return null;
   const points = Array.from({ length: count }, (_, i) => ({
     structure,
@@ -57,5 +57,5 @@ function shipped({ structure, settings, directions, count, low, high }, data) {
     from: null,
   }));
   const direction = directions.length === 2 ? /** @type {const} */ ("both") : directions[0];
-  return { structure, direction, low, high, points, lanes, settings };
+  return { structure, direction, level: { unit, value }, low, high, points, lanes, settings };
 }

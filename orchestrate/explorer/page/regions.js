@@ -4,13 +4,13 @@ import { empty } from "./diagram.js";
 import { DiagramView } from "./diagram_view.js";
 import { chain, replay } from "./orders.js";
 import { USUAL } from "./response.js";
+import { sameLevel } from "./excitation.js";
 import { sameStructure } from "./structure.js";
 
 /**
  * @typedef {import("./diagram.js").Diagram} Diagram
- * @typedef {import("./diagram.js").Direction} Direction
+ * @typedef {import("./diagram.js").Region} Region
  * @typedef {import("./structure.js").Structure} Structure
- * @typedef {{low: number, high: number, direction: Direction}} Region
  */
 
 const QUICK = { transient: 100, samples: 40, tolerance: 1e-2 };
@@ -58,9 +58,8 @@ export class Regions {
   /** Look at a region of a structure's responses. @param {Structure} structure @param {Region} region @param {boolean} [quick] at low resolution, in place of the last quick one */
   open(structure, region, quick = false) {
     const { shipped } = this;
-    const whole = shipped && sameStructure(shipped.structure, structure) && covers(shipped, region);
-    if (whole && shipped) return this.enter(shipped, null, false);
-    const parent = this.diagram && sameStructure(this.diagram.structure, structure) ? this.parentOf(region) : null;
+    if (shipped && like(shipped, structure, region) && covers(shipped, region)) return this.enter(shipped, null, false);
+    const parent = this.diagram && like(this.diagram, structure, region) ? this.parentOf(region) : null;
     const settings = quick ? QUICK : USUAL;
     const diagram = empty(structure, widened(region), quick ? 160 : this.count, settings);
     this.enter(diagram, parent, quick);
@@ -79,13 +78,14 @@ export class Regions {
   /** The diagram whose states a new one may begin from. @param {Region} region */
   parentOf(region) {
     const known = [this.diagram, this.shipped].find(
-      (one) => one && one.low <= region.low && one.high >= region.high && sameStructure(one.structure, this.diagram.structure),
+      (one) => one && one.low <= region.low && one.high >= region.high && like(one, this.diagram.structure, region),
     );
     return known ?? this.diagram;
   }
 
   /** @param {Diagram} diagram @param {Diagram | null} parent @param {boolean} quick */
   enter(diagram, parent, quick) {
+    clearTimeout(this.timer);
     if (this.quick) this.seen.splice(this.place--, 1);
     this.quick = quick;
     this.seen.splice(this.place + 1, this.seen.length, diagram);
@@ -136,13 +136,17 @@ export class Regions {
     this.told(true);
   }
 
-  /** Follow parameters that are being changed: quickly now, in full once they rest. @param {Structure} structure */
-  follow(structure) {
+  /** Follow parameters that are being changed: quickly now, in full once they rest. @param {Structure} structure @param {import("./excitation.js").Level} level */
+  follow(structure, level) {
     const { low, high, direction } = this.diagram;
-    clearTimeout(this.timer);
-    this.open(structure, { low, high, direction }, true);
-    this.timer = window.setTimeout(() => this.open(structure, { low, high, direction }), 400);
+    this.open(structure, { low, high, direction, level }, true);
+    this.timer = window.setTimeout(() => this.open(structure, { low, high, direction, level }), 400);
   }
+}
+
+/** Whether a diagram is of a structure that is shaken as a region says. @param {Diagram} diagram @param {Structure} structure @param {Region} region */
+function like(diagram, structure, { level }) {
+  return sameStructure(diagram.structure, structure) && sameLevel(diagram.level, level);
 }
 
 /** Whether a region is the whole of a diagram. @param {Diagram} diagram @param {Region} region */
@@ -151,8 +155,8 @@ function covers(diagram, { low, high, direction }) {
 }
 
 /** @param {Region} region @returns {Region} */
-function widened({ low, high, direction }) {
+function widened({ low, high, direction, level }) {
   const middle = (low + high) / 2;
   const half = Math.max((high - low) / 2, LEAST / 2);
-  return { low: Math.max(middle - half, LEAST), high: middle + half, direction };
+  return { low: Math.max(middle - half, LEAST), high: middle + half, direction, level };
 }

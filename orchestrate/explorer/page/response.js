@@ -1,5 +1,6 @@
 /** One settled response: stroboscopic samples, impacts, the largest gap, and where it ends. */
 
+import { gapBetween, gapOffset, withoutLastDigits } from "./clearance.js";
 import { lengthOf, periodOf } from "./structure.js";
 
 /**
@@ -14,13 +15,12 @@ import { lengthOf, periodOf } from "./structure.js";
 export const USUAL = { transient: 500, samples: 200, tolerance: 1e-2 };
 
 const LEAST_GAP = 2 ** -20; // of the motion's size: smaller gaps have no size of their own
-const TO_WHOLE = 1.5 * 2 ** 52; // added and taken away it leaves a whole number, ties to even
 
 /**
  * The response after a transient, from a state at phase 0; the instance stands at its end.
  * @param {Oscillator} instance
  * @param {Point} point
- * @param {ArrayLike<number>} start
+ * @param {Iterable<number>} start
  * @param {Settings} settings
  * @returns {Response}
  */
@@ -34,38 +34,23 @@ export function respond(instance, point, start, { transient, samples, tolerance 
   instance.set({ x_rel_max_on: 1 });
   const { states, peak } = instance.sampled(samples, (index) => (transient + index) * period);
   const length = lengthOf(point);
+  const offset = gapOffset(point.structure);
   return {
     states,
-    gaps: gapsOf(states, length),
+    gaps: gapsOf(states, length, offset),
     peak: peak / length,
     impacts: (instance.get("impact_count") - before) / samples,
     contact: touching || instance.get("contact_count") > contacts,
     multiplicity: multiplicity(overSize(states, (2 * Math.PI) / period, peak), tolerance),
     start: Array.from(start),
-    end: withoutLastDigits(states.subarray(states.length - 4)),
+    end: withoutLastDigits(states.subarray(states.length - 4), offset),
   };
 }
 
-/**
- * A state to 44 bits of the larger displacement and of the larger velocity, as `sweep` passes it on.
- * @param {Float64Array} state
- */
-function withoutLastDigits(state) {
-  return [...toBits(state.subarray(0, 2)), ...toBits(state.subarray(2))];
-}
-
-/** @param {Float64Array} values @param {number} [bits] */
-function toBits(values, bits = 44) {
-  const largest = Math.max(...values.map(Math.abs));
-  const words = new Uint32Array(new Float64Array([largest]).buffer);
-  const digit = largest === 0 ? 1 : 2 ** ((words[1] >>> 20) - 1022 - bits);
-  return Array.from(values, (value) => (value / digit + TO_WHOLE - TO_WHOLE) * digit);
-}
-
-/** @param {Float64Array} states @param {number} length */
-export function gapsOf(states, length) {
+/** @param {Float64Array} states @param {number} length @param {number} offset */
+function gapsOf(states, length, offset) {
   const gaps = new Float64Array(states.length / 4);
-  for (let i = 0; i < gaps.length; i++) gaps[i] = (states[4 * i + 1] - states[4 * i]) / length;
+  for (let i = 0; i < gaps.length; i++) gaps[i] = gapBetween(states[4 * i], states[4 * i + 1], offset) / length;
   return gaps;
 }
 

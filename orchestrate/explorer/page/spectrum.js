@@ -8,6 +8,8 @@ import { periodOf } from "./structure.js";
  * @typedef {{order: Float64Array, amplitude: Float64Array}} Spectrum lines over the excitation's
  */
 
+const PIECE = 4096; // samples
+
 /**
  * Of the motion that goes on from where the instance stands. The square of the frequency times the
  * displacement's spectrum has the impulses too, which no sampled acceleration has.
@@ -15,17 +17,23 @@ import { periodOf } from "./structure.js";
  * @param {Point} point
  * @param {number} first periods since the start
  * @param {{periods: number, points: number, highest: number}} span powers of two
- * @returns {Spectrum}
+ * @returns {Generator<undefined, Spectrum>} it pauses, so that the instance may do other things
  */
-export function spectrumOf(instance, point, first, { periods, points, highest }) {
+export function* spectrumOf(instance, point, first, { periods, points, highest }) {
   const period = periodOf(point);
   const count = periods * points;
-  const { states } = instance.sampled(count, (index) => (first + index / points) * period);
   const real = new Float64Array(count);
-  for (let i = 0; i < count; i++) {
-    const box = point.amplitude * Math.sin((2 * Math.PI * ((i + 1) % points)) / points);
-    const hann = 0.5 - 0.5 * Math.cos((2 * Math.PI * i) / count);
-    real[i] = (states[4 * i] + box) * hann;
+  for (let done = 0; done < count; done += PIECE) {
+    const { states } = instance.sampled(PIECE, (index) => (first + (done + index) / points) * period);
+    for (let k = 0; k < PIECE; k++) {
+      const i = done + k;
+      const box = point.amplitude * Math.sin((2 * Math.PI * ((i + 1) % points)) / points);
+      const hann = 0.5 - 0.5 * Math.cos((2 * Math.PI * i) / count);
+      real[i] = (states[4 * k] + box) * hann;
+    }
+    const kept = instance.memory.slice();
+    yield;
+    instance.memory.set(kept);
   }
   const imaginary = new Float64Array(count);
   transform(real, imaginary);

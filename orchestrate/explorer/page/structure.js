@@ -2,10 +2,12 @@
 
 /**
  * @typedef {{m1: number, m2: number, k1: number, k2: number, d1: number, d2: number,
- *   e: number, gamma: number, bonded: number}} Structure
+ *   e: number, gamma: number, bonded: number, clearance: number}} Structure
  * @typedef {{omega: number, mu: number, kappa: number, D1: number, D2: number}} Ratios
  * @typedef {{structure: Structure, eta: number, frequency: number, amplitude: number}} Point
  */
+
+const TURN = 2 * Math.PI;
 
 /** The unit of frequency, rad/s (2). @param {Structure} s */
 export function omegaOf(s) {
@@ -24,38 +26,77 @@ export function ratiosOf(s) {
   };
 }
 
-/** A structure in a few words. @param {Structure} s */
-export function titleOf(s) {
-  const { D1, D2, mu, kappa } = ratiosOf(s);
-  const ratios = { e: s.e, "D₁": D1, "D₂": D2, "μ": mu, "κ": kappa };
-  const told = Object.entries(ratios).map(([name, value]) => `${name} = ${Number(value.toPrecision(6))}`);
-  return `A ${s.bonded ? "bonded" : "delaminated"} beam in a shaken box: ${told.join(", ")}`;
+/** Natural frequency in Hz and damping ratio of each half alone. @param {Structure} s */
+export function halvesOf(s) {
+  const [first, second] = [Math.sqrt(s.k1 / s.m1), Math.sqrt(s.k2 / s.m2)];
+  return {
+    f1: first / TURN,
+    f2: second / TURN,
+    zeta1: s.d1 / (2 * first * s.m1),
+    zeta2: s.d2 / (2 * second * s.m2),
+  };
+}
+
+/** A structure by its halves; `mu` is the ratio of the masses. @param {Structure} s @param {{m1: number, m2: number, f1: number, f2: number, zeta1: number, zeta2: number}} halves @returns {Structure} */
+export function withHalves(s, { m1, m2, f1, f2, zeta1, zeta2 }) {
+  const [first, second] = [TURN * f1, TURN * f2];
+  return {
+    ...{ ...s, m1, m2, k1: m1 * first * first, k2: m2 * second * second },
+    ...{ d1: 2 * zeta1 * first * m1, d2: 2 * zeta2 * second * m2 },
+  };
 }
 
 /**
- * A structure that differs in one of the paper's numbers; `mu` keeps the damping ratios.
+ * A structure that differs in one number; `mu` keeps the damping ratios, the numbers of a half
+ * keep its others.
  * @param {Structure} s
  * @param {string} name
  * @param {number} value
  * @returns {Structure}
  */
-export function withRatio(s, name, value) {
+export function withNumber(s, name, value) {
   const { omega, D2 } = ratiosOf(s);
+  const halves = { m1: s.m1, m2: s.m2, ...halvesOf(s) };
+  if (name in halves && !(name in s)) return withHalves(s, { ...halves, [name]: value });
+  if (name === "mass1") return withHalves(s, { ...halves, m1: value });
+  if (name === "mass2") return withHalves(s, { ...halves, m2: value });
+  if (name === "zeta") return withHalves(s, { ...halves, zeta1: value / 100, zeta2: value / 100 });
+  if (name === "gap") return { ...s, clearance: value / 1000 };
+  if (name === "xi0") return { ...s, clearance: value };
   if (name === "mu") return { ...s, m2: value * s.m1, d2: 2 * D2 * omega * s.m1 * value };
   if (name === "kappa") return { ...s, k2: value * s.k1 };
   if (name === "D1") return { ...s, d1: 2 * value * omega * s.m1 };
   if (name === "D2") return { ...s, d2: 2 * value * omega * s.m1 * (s.m2 / s.m1) };
+  if (name === "D") return withNumber(withNumber(s, "D1", value), "D2", value);
   return { ...s, [name]: value };
 }
 
+/** All numbers that a field may show. @param {Structure} s @returns {Record<string, number>} */
+export function numbersIn(s) {
+  const [ratios, halves] = [ratiosOf(s), halvesOf(s)];
+  const own = { mass1: s.m1, mass2: s.m2, zeta: 100 * halves.zeta1, gap: 1000 * s.clearance, xi0: s.clearance };
+  return { ...s, ...ratios, ...halves, ...own, D: ratios.D1 };
+}
+
 /**
- * Frequency ratio `eta` with the amplitude 1/eta^2 m, so that xi of (3) is x in metres.
- * @param {Structure} structure
- * @param {number} eta
- * @returns {Point}
+ * The same motions in other units: all ratios stay.
+ * @param {Structure} s
+ * @param {number} omega rad/s
+ * @param {number} mass of mass 1, kg
+ * @param {number} length factor of what the clearance is
+ * @param {number} digits that are kept: fewer than all, so that there and back is the same
+ * @returns {Structure}
  */
-export function pointAt(structure, eta) {
-  return { structure, eta, frequency: eta * omegaOf(structure), amplitude: 1 / (eta * eta) };
+export function rescaled(s, omega, mass, length, digits) {
+  const [masses, times] = [mass / s.m1, omega / omegaOf(s)];
+  const [stiff, damp] = [masses * times * times, masses * times];
+  const factors = { m1: masses, m2: masses, k1: stiff, k2: stiff, d1: damp, d2: damp, clearance: length };
+  /** @type {Record<string, number>} */
+  const changed = { ...s };
+  for (const [name, factor] of Object.entries(factors)) {
+    if (name in changed) changed[name] = Number((changed[name] * factor).toPrecision(digits));
+  }
+  return /** @type {Structure} */ (changed);
 }
 
 /**

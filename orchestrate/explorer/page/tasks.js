@@ -4,6 +4,7 @@ import { destination, startAt } from "./basin.js";
 import { Coupled } from "./coupled.js";
 import { exponentOf } from "./lyapunov.js";
 import { record } from "./motion.js";
+import { readRecord } from "./record.js";
 import { respond } from "./response.js";
 import { spectrumOf } from "./spectrum.js";
 import { periodOf, pointOf } from "./structure.js";
@@ -82,12 +83,12 @@ function* section(instance, { point, start, periods }) {
  */
 function* spectra(instance, { point, start }) {
   instance.begin(point, start);
-  const delaminated = spectrumOf(instance, point, 0, SPAN);
+  const delaminated = yield* spectrumOf(instance, point, 0, SPAN);
   const glued = { ...point, structure: { ...point.structure, bonded: 1 } };
   const settled = respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 });
-  const bonded = spectrumOf(instance, glued, 2001, SPAN);
+  const bonded = yield* spectrumOf(instance, glued, 2001, SPAN);
   yield { delaminated, bonded, bondedState: settled.end };
-  yield { exponent: exponentOf(instance, point, start, { periods: 400, distance: 1e-7 }) };
+  yield { exponent: yield* exponentOf(instance, point, start, { periods: 400, distance: 1e-7 }) };
 }
 
 /**
@@ -131,5 +132,12 @@ function* basin(instance, { point, plane, cells }) {
   }
 }
 
+/** A measured record. @param {Oscillator} _ @param {{file: File}} asked */
+function* measured(_, { file }) {
+  // a worker may wait for a file; TypeScript's library for pages does not have it
+  const reader = new /** @type {any} */ (globalThis).FileReaderSync();
+  yield readRecord(reader.readAsText(file));
+}
+
 /** @type {Record<string, (instance: Oscillator, asked: any, shaker: Instance) => Generator<unknown>>} */
-export const TASKS = { replay, chain, motion, section, spectra, sound, drive, basin };
+export const TASKS = { replay, chain, motion, section, spectra, sound, drive, basin, record: measured };

@@ -1,4 +1,4 @@
-/** A worker: computes tasks in short slices, the newest first, so that it can be told to stop. */
+/** A worker: computes tasks in short slices, the newest and the one before in turn. */
 
 import { Instance, Oscillator } from "./kernel.js";
 import { TASKS } from "./tasks.js";
@@ -13,6 +13,7 @@ let shaker;
 const tasks = [];
 const wake = new MessageChannel();
 let awake = false;
+let turn = 1;
 const scope = /** @type {{onmessage: unknown, postMessage: (message: unknown) => void}} */ (
   /** @type {unknown} */ (self)
 );
@@ -42,7 +43,8 @@ function rouse() {
 
 wake.port1.onmessage = () => {
   awake = false;
-  const task = tasks[tasks.length - 1];
+  turn = 1 - turn;
+  const task = tasks[tasks.length - 1 - turn] ?? tasks[0];
   if (!task) return;
   const message = slice(task);
   if (message.done) drop(task.id);
@@ -59,7 +61,7 @@ function slice({ id, run }) {
     do {
       const { value, done } = run.next();
       if (done) return { id, parts, done: true };
-      parts.push(value);
+      if (value !== undefined) parts.push(value); // else it only pauses
     } while (performance.now() < end);
     return { id, parts, done: false };
   } catch (error) {

@@ -10,6 +10,7 @@ from orchestrate.explorer.page import explore
 
 from .chromium import Chromium
 from .firefox import Firefox
+from .webkit import WebKit, programs
 
 SLOW = pytest.mark.slow
 ETAS = np.round(np.linspace(0.1, 8.0, 211), 4)  # periodic, irregular, with permanent contact
@@ -48,6 +49,16 @@ def firefox(tmp_path_factory):
     browser.quit()
 
 
+@pytest.fixture(scope="session")
+def webkit(tmp_path_factory):
+    pytest.importorskip("selenium", reason="selenium drives the browser")
+    if None in programs():
+        pytest.skip("no webkit2gtk-driver with xvfb here: the page is not tried in WebKit")
+    browser = WebKit(*programs(), tmp_path_factory.mktemp("downloads"))
+    yield browser
+    browser.quit()
+
+
 @pytest.fixture(scope="session", params=["chromium", pytest.param("firefox", marks=SLOW)])
 def window(request):
     """Each browser, the second in the slow tests."""
@@ -62,9 +73,29 @@ def browser(window, page):
     assert window.console() == []
 
 
+@pytest.fixture(
+    params=["chromium", *(pytest.param(one, marks=SLOW) for one in ("firefox", "webkit"))]
+)
+def everywhere(request, page):
+    """The page opened anew in each of three browsers."""
+    browser = request.getfixturevalue(request.param)
+    browser.open(page)
+    yield browser
+    assert browser.console() == []
+
+
 @pytest.fixture
 def opened(chromium, page):
     """The same, in Chromium only."""
     chromium.open(page)
     yield chromium
     assert chromium.console() == []
+
+
+def typed(browser, name, text):
+    """Type into an input as a hand does, letter by letter, and leave it."""
+    from selenium.webdriver.common.keys import Keys
+
+    browser.run("const at = document.getElementById(arguments[0]); at.focus(); at.select()", name)
+    browser.keys(*text)
+    browser.keys(Keys.TAB)

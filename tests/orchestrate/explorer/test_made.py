@@ -165,6 +165,7 @@ WRONG = {
     "samples": ["many", 0.0, np.nan],
     "start": ["[a, b, c, d]", "[0.0]", "", "[nan, 0, 0, 0]", 5.0],
     "bonded": ["no", 2.0],
+    "clearance": ["wide", np.nan],
     "direction": ["sideways", "both"],
 }
 

@@ -1,0 +1,46 @@
+/** How the box is shaken: the paper's amplitude 1/eta^2 m, or a level held at all frequencies. */
+
+import { omegaOf } from "./structure.js";
+
+/**
+ * @typedef {import("./structure.js").Structure} Structure
+ * @typedef {import("./structure.js").Point} Point
+ * @typedef {{unit: "paper" | "g" | "mm", value: number}} Level acceleration in g, or amplitude in mm
+ */
+
+export const GRAVITY = 9.80665; // m/s²
+/** @type {Level} */
+export const PAPER = { unit: "paper", value: 1 };
+/** @type {Record<Level["unit"], [number, number]>} */
+export const LEVELS = { paper: [1, 1], g: [1e-6, 1e4], mm: [1e-6, 1e4] };
+
+/** Whether numbers are shown in Hz, mm, g and seconds. @param {Level} level */
+export const inHertz = ({ unit }) => unit !== "paper";
+
+/** @param {Level} a @param {Level} b */
+export const sameLevel = (a, b) => a.unit === b.unit && a.value === b.value;
+
+/** @param {number} eta @param {Structure} structure */
+export const hertzOf = (eta, structure) => (eta * omegaOf(structure)) / (2 * Math.PI);
+
+/** @param {number} hertz @param {Structure} structure */
+export const etaOf = (hertz, structure) => (hertz * 2 * Math.PI) / omegaOf(structure);
+
+/** The paper's frequency ratio as a point, or the frequency in Hz of nine digits that is nearest. @param {Structure} structure @param {number} eta @param {Level} level @returns {Point} */
+export function pointAt(structure, eta, level) {
+  if (inHertz(level)) return pointAtHertz(structure, Number(hertzOf(eta, structure).toPrecision(9)), level);
+  return { structure, eta, frequency: eta * omegaOf(structure), amplitude: 1 / (eta * eta) };
+}
+
+/** As `orchestrate` computes it from `--hz` with `--g` or `--amplitude`. @param {Structure} structure @param {number} hertz @param {Level} level @returns {Point} */
+export function pointAtHertz(structure, hertz, { unit, value }) {
+  const frequency = 2 * Math.PI * hertz;
+  const amplitude = unit === "g" ? (value * GRAVITY) / (frequency * frequency) : value / 1000;
+  return { structure, eta: frequency / omegaOf(structure), frequency, amplitude };
+}
+
+/** The frequency in Hz as it was given, without the roundings of 2 pi. @param {Point} point */
+export function givenHertz({ frequency }) {
+  const hertz = Number((frequency / (2 * Math.PI)).toPrecision(12));
+  return 2 * Math.PI * hertz === frequency ? hertz : frequency / (2 * Math.PI);
+}

@@ -1,0 +1,35 @@
+/** A field for a number: what is expected is said beside it, and what is not changes nothing. */
+
+/**
+ * Watch a field.
+ * @param {HTMLInputElement} input with its ends in `min` and `max`
+ * @param {(value: number) => string | void} take what to do with a number that is inside; it may
+ *   say what it expects
+ * @param {"change" | "input"} [event] a typed number counts when it is complete: 1.7 begins with 1
+ */
+export function onNumber(input, take, event = "change") {
+  input.addEventListener(event, () => {
+    const { valueAsNumber: value } = input;
+    const good = Number.isFinite(value) && value >= Number(input.min) && value <= Number(input.max);
+    complain(input, (good ? take(value) : `expected ${input.min} to ${input.max}`) ?? "");
+  });
+}
+
+/** Show a number in a field. @param {HTMLInputElement} input @param {number} value @param {number} [digits] */
+export function showNumber(input, value, digits = 12) {
+  input.value = String(Number(value.toPrecision(digits)));
+  complain(input, "");
+}
+
+/** Say beside a field what is expected; nothing where all is well. @param {HTMLInputElement} input @param {string} words */
+function complain(input, words) {
+  if (input.validationMessage === words) return;
+  input.setCustomValidity(words);
+  input.setAttribute("aria-invalid", String(Boolean(words)));
+  const id = `${input.id}-wrong`;
+  const note = document.getElementById(id) ?? document.createElement("span");
+  Object.assign(note, { id, className: "wrong", textContent: words, hidden: !words });
+  note.setAttribute("role", "alert");
+  input.setAttribute("aria-describedby", id);
+  if (!note.isConnected) input.after(note);
+}

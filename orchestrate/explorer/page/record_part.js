@@ -1,0 +1,37 @@
+/** A record that is dropped on the page: read by a worker, its spectrum laid over the model's. */
+
+import { shown } from "./scale.js";
+
+const LARGEST = 60e6; // bytes
+
+/** @typedef {import("./record.js").Measured} Measured */
+
+/**
+ * Take files that are dropped anywhere on the page, or chosen.
+ * @param {(id: string) => HTMLElement} at
+ * @param {import("./crew.js").Crew} crew
+ * @param {(measured: Measured) => void} take
+ */
+export function acceptRecords(at, crew, take) {
+  const chosen = /** @type {HTMLInputElement} */ (at("record"));
+  /** @param {FileList | null | undefined} files */
+  const open = (files) => files?.length && read(files[0], crew, take, (words) => (at("record-status").textContent = words));
+  chosen.addEventListener("change", () => open(chosen.files));
+  addEventListener("dragover", (event) => event.preventDefault());
+  addEventListener("drop", (event) => {
+    event.preventDefault();
+    open(event.dataTransfer?.files);
+  });
+}
+
+/** @param {File} file @param {import("./crew.js").Crew} crew @param {(measured: Measured) => void} take @param {(words: string) => void} say */
+function read(file, crew, take, say) {
+  if (file.size > LARGEST) return say(`${file.name}: ${shown(file.size / 1e6, 3)} MB; expected at most ${LARGEST / 1e6}`);
+  say(`${file.name} …`);
+  crew.ask("record", { file }, ([reading]) => {
+    if ("error" in reading) return say(`${file.name}: ${reading.error}`);
+    const { column, unit, count, rate } = reading;
+    say(`${file.name}: ${column} in ${unit}; ${count} values, ${shown(rate)} a second`);
+    take(reading);
+  });
+}

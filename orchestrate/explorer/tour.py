@@ -1,0 +1,133 @@
+"""The guided tour: six steps, each one or two motions with a text for who sees this first.
+
+That a step shows what it says is computed by a test, through the FMU.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..structures import Structure
+
+START = (0.0, 0.0, 0.0, 0.0)
+OTHER = (-0.055, -0.041, -2.263, -2.141)  # leads to the second motion at 1.3
+OMEGA = 2.0 * math.pi * 40.0  # of the pressed beam, whose other numbers are the paper's, rad/s
+PRESSED: dict[str, Any] = {
+    "eta": 0.75,
+    "region": (0.25, 1.5),
+    "changes": {
+        **{"k1": OMEGA**2, "k2": 1.2 * OMEGA**2, "d1": 0.01 * OMEGA, "d2": 0.01 * OMEGA},
+        "clearance": -5e-5,
+    },
+}
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A motion of the tour, of the paper's structure or one near it.
+
+    Attributes
+    ----------
+    name : str
+        In the link ``#tour=NAME``.
+    label : str
+        Of its link, where a step has several.
+    eta : float
+        Frequency ratio, with the amplitude 1/eta^2 m.
+    start : tuple of float
+        State at phase 0: x1, x2 in m, v1, v2 in m/s.
+    region : tuple of float
+        Frequency ratios of the diagram.
+    direction : str
+        Of its sweep.
+    changes : dict of str to float
+        Parameters that are not the paper's.
+    level : float
+        Peak acceleration of the box in g, held at all frequencies; 0: the paper's amplitude
+        1/eta^2 m.
+    """
+
+    name: str
+    label: str
+    eta: float
+    start: tuple[float, ...] = START
+    region: tuple[float, float] = (0.1, 8.0)
+    direction: str = "up"
+    changes: dict[str, float] = field(default_factory=dict)
+    level: float = 0.0
+
+    @property
+    def words(self) -> str:
+        """What the page's link of this view says."""
+        low, high = self.region
+        start = ",".join(f"{value:g}" for value in self.start)
+        level = {"g": self.level} if self.level else {}
+        words = {"from": low, "to": high, "direction": self.direction, **self.changes, **level}
+        said = [f"{name}={value}" for name, value in words.items()]
+        return "&".join([*said, f"eta={self.eta}", f"start={start}"])
+
+    @property
+    def structure(self) -> Structure:
+        """The structure that moves."""
+        return Structure().replace(**self.changes)
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of the tour: its title, its text, and one motion or two."""
+
+    title: str
+    text: str
+    stops: tuple[Stop, ...]
+
+
+TOUR = (
+    Step(
+        "Quiet",
+        "A beam is split along its middle and shaken. Well above its resonance the halves tap each "
+        "other once in each shaking period, always in the same way. In the diagram that is one "
+        "dot: the gap is the same each time the shaking begins anew. A sound beam would be silent.",
+        (Stop("quiet", "", 1.7),),
+    ),
+    Step(
+        "Rattling",
+        "Shaken more slowly, the halves part further and strike three times in each period, with "
+        "three different speeds. Still it repeats: one dot. Press S to hear the rhythm.",
+        (Stop("rattling", "", 0.7),),
+    ),
+    Step(
+        "Chattering",
+        "Very slow shaking: the halves bounce like a ball that is let fall, ever faster and lower, "
+        "until they stick together and move as one, the shaded times. Then they part again. Each "
+        "period has more than twenty impacts.",
+        (Stop("chattering", "", 0.3),),
+    ),
+    Step(
+        "Two answers",
+        "One beam, one frequency, two motions: which one comes depends on how it began. So a test "
+        "that sweeps upwards and one that sweeps downwards can disagree, here in both colours.",
+        (
+            Stop("two-answers", "from rest", 1.3, START, (1.1, 1.5), "both"),
+            Stop("two-answers-other", "the other, wider one", 1.3, OTHER, (1.1, 1.5), "both"),
+        ),
+    ),
+    Step(
+        "Chaos",
+        "Nothing is random here, and yet it never repeats: a cloud of dots in the diagram. Two "
+        "motions that begin almost alike soon have nothing in common; the exponent, above zero, "
+        "says how soon. Listen: no rhythm stays.",
+        (Stop("chaos", "", 2.9),),
+    ),
+    Step(
+        "Pressed shut",
+        "Here the halves are pressed together by 0.05 mm. Shaken gently the split stays shut, and "
+        "no test at this level can find it; above a threshold it opens and knocks. Compare, then "
+        "try the level and the gap at rest beside the pictures.",
+        (
+            Stop("pressed", "0.5 g: below", level=0.5, **PRESSED),
+            Stop("pressed-open", "3 g: above", level=3.0, **PRESSED),
+        ),
+    ),
+)

@@ -1,0 +1,225 @@
+"""A beam of one's own on the page: its numbers, what is wrong with them, records, commands."""
+
+import json
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate import cli
+
+from .conftest import typed
+
+DIAGRAM = "explorer.regions.diagram"
+READY = "return explorer.regions.complete && !explorer.regions.quick && explorer.inspector.found"
+FILE = """
+const [name, text] = arguments;
+const given = new DataTransfer();
+given.items.add(new File([text], name));
+window.dispatchEvent(new DragEvent("drop", { dataTransfer: given, cancelable: true }));
+"""
+
+
+def pasted(command, folder):
+    """The results that a command writes when it is pasted into a shell, in order of their names."""
+    folder.mkdir()
+    programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    surroundings = os.environ | {
+        "PATH": programs,
+        "PYTHONPATH": str(Path(orchestrate.__file__).parents[1]),
+    }
+    shell = {"input": command, "cwd": folder, "env": surroundings}
+    done = subprocess.run(["sh", "-e"], **shell, capture_output=True, text=True)
+    assert done.returncode == 0, (command, done.stderr)
+    return [xr.load_dataset(file) for file in sorted(folder.rglob("*.nc"))]
+
+
+def own(browser):
+    """Choose the units of a beam of one's own, as a hand does."""
+    browser.run(
+        "const units = document.getElementById('units'); units.value = 'own';"
+        "units.dispatchEvent(new Event('change'))"
+    )
+    browser.until(READY)
+
+
+def test_the_papers_motions_are_those_of_a_beam_in_hertz(opened):
+    """Its ratios stay, and so do motion, impacts and diagram; back in the paper's units it is
+    Figure 6's structure again, bit for bit.
+    """
+    opened.chosen()
+    eta = opened.run("return explorer.eta")
+    impacts = opened.run("return explorer.inspector.found.response.impacts")
+    own(opened)
+    assert float(opened.get("hertz", "value")) == pytest.approx(40.0 * eta)
+    assert float(opened.get("f2", "value")) == pytest.approx(40.0 * np.sqrt(1.2), rel=1e-6)
+    assert opened.run("return explorer.inspector.found.response.impacts") == impacts
+    gap = 9.80665 / (2.0 * np.pi * 40.0) ** 2  # 1 g is so much for a eta^2
+    peak = opened.run("return explorer.inspector.found.response.peak")
+    assert f"largest gap, mm{1e3 * gap * peak:.4g}" in opened.text("numbers")
+    for words in ("frequency, Hz", "amplitude of the box, mm", "acceleration of the box, g1"):
+        assert words in opened.text("numbers")
+    opened.run(
+        "const units = document.getElementById('units'); units.value = 'paper';"
+        "units.dispatchEvent(new Event('change'))"
+    )
+    assert opened.run("return explorer.structure") == opened.run("return explorer.table.usual")
+
+
+def test_a_beam_of_42_and_55_hertz_is_what_the_commands_compute(opened, tmp_path):
+    opened.open(Path(opened.run("return location.pathname")), "#from=1&to=1.3&eta=1.2")
+    own(opened)
+    for name, text in {"f1": "42", "f2": "55", "zeta-number": "0.7", "level": "0.5"}.items():
+        typed(opened, name, text)
+    typed(opened, "hertz", "50.25")
+    opened.until(READY)
+    structure = opened.run("return explorer.structure")
+    names = ("m1", "m2", "k1", "k2", "d1", "d2", "e")
+    beam = orchestrate.Structure.from_halves(m1=1, m2=1, f1=42, f2=55, zeta1=0.007, zeta2=0.007)
+    assert [structure[name] for name in names] == pytest.approx([getattr(beam, n) for n in names])
+    assert opened.run("return explorer.inspector.choice.point.frequency") == 2.0 * np.pi * 50.25
+    (motion,) = pasted(opened.text("motion-command"), tmp_path / "motion")
+    states = opened.numbers("explorer.inspector.found.motion.states").reshape(-1, 4)
+    assert states[:, 0].tobytes() == motion.x1.values.tobytes()
+    assert " --hz 50.25 --g 0.5 " in opened.text("motion-command")
+    arguments = cli.make_parser().parse_args(shlex.split(opened.text("command"))[3:])
+    assert arguments.hz and float(arguments.g) == 0.5
+    (swept,) = pasted(opened.text("command"), tmp_path / "sweep")
+    gaps = opened.numbers(f"{DIAGRAM}.lanes[0].found.flatMap((one) => Array.from(one.gaps))")
+    assert gaps.tobytes() == swept.xi_rel.values.tobytes()
+
+
+SHOWN = {  # states of the page: a link's words, and what is done then
+    "first": ("", ""),
+    "both directions": ("#from=1.2&to=1.25&direction=both&eta=1.22", ""),
+    "dragged region": (
+        "#from=1.2&to=1.3&direction=both",
+        "explorer.open(1.21, 1.24); explorer.choose(1.22)",
+    ),
+    "other beam": ("#from=2.8&to=2.9&direction=down&e=0.55&k2=1.3&eta=2.85", ""),
+    "bonded": ("#from=1&to=1.05&bonded=1&eta=1.02", ""),
+    "tour": ("#tour=two-answers-other", ""),
+    "in mm": ("#from=1&to=1.05&mm=0.3&k1=9000&k2=10000&eta=1.01", ""),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SHOWN)
+def test_every_command_that_the_page_shows_runs_when_it_is_pasted(opened, page, tmp_path, name):
+    fragment, done = SHOWN[name]
+    opened.open(page, fragment)
+    opened.until(READY)
+    opened.run(done)
+    opened.until(READY)
+    (motion,) = pasted(opened.text("motion-command"), tmp_path / "motion")
+    states = opened.numbers("explorer.inspector.found.motion.states").reshape(-1, 4)
+    assert states[:, 1].tobytes() == motion.x2.values.tobytes()
+    results = pasted(opened.text("command"), tmp_path / "sweep")
+    lanes = opened.run(f"return {DIAGRAM}.lanes.map((lane) => lane.direction)")
+    for number, way in enumerate(lanes):
+        found = f"{DIAGRAM}.lanes[{number}].found.flatMap((one) => Array.from(one.gaps))"
+        mine = opened.numbers(found).tobytes()
+        theirs = [
+            one.sel(direction=way) if "direction" in one.dims else one
+            for one in results
+            if one.attrs["direction"] in (way, "both")
+        ]
+        assert [one.xi_rel.values.tobytes() for one in theirs] == [mine]
+
+
+WRONG = {  # a field, what is typed, and what is said beside it
+    "e-number": ("1.7", "expected 0 to 1"),
+    "mu-number": ("0", "expected 0.2 to 5"),
+    "eta-number": ("-1", "expected 0.001 to 1000"),
+    "periods": ("1000", "expected 1 to 200"),
+    "pitch": ("0", "expected 0.2 to 500"),
+}
+STATE = "return JSON.stringify([explorer.structure, explorer.level, explorer.eta, location.hash])"
+
+
+def test_what_is_wrong_with_a_number_stands_beside_its_field_and_nothing_changes(opened):
+    opened.chosen()
+    before = opened.run(STATE)
+    for name, (text, words) in WRONG.items():
+        typed(opened, name, text)
+        assert opened.text(f"{name}-wrong") == words
+        assert not opened.get(f"{name}-wrong", "hidden")
+        assert opened.run(
+            "const [field, note] = [arguments[0], `${arguments[0]}-wrong`].map((id) =>"
+            " document.getElementById(id)); return field.nextElementSibling === note &&"
+            " field.getAttribute('aria-describedby') === note.id",
+            name,
+        )
+        assert opened.run(STATE) == before
+    typed(opened, "e-number", "0.6")
+    assert opened.run("return explorer.structure.e") == 0.6
+    assert opened.text("e-number-wrong") == ""
+
+
+def test_a_link_with_wrong_numbers_opens_the_usual_view(opened, page):
+    opened.chosen()
+    before = json.loads(opened.run(STATE))
+    opened.open(page, "#e=7&m1=-1&eta=1e9&from=-3&to=0&g=1e99&start=1,2&direction=sideways")
+    opened.chosen()
+    assert json.loads(opened.run(STATE))[:3] == before[:3]
+
+
+def record(frequency=30.0, level=2.0, rate=1000.0, count=3000):
+    """Times and a sine in g, with its third harmonic a tenth of it."""
+    time = np.arange(count) / rate
+    phase = 2.0 * np.pi * frequency * time
+    return time, level * np.sin(phase) + 0.1 * level * np.sin(3.0 * phase)
+
+
+def test_a_measured_record_is_laid_over_the_models_spectrum(opened):
+    opened.chosen()
+    time, values = record()
+    rows = "\n".join(
+        f"{1e3 * t:.3f};{a:.9f}".replace(".", ",") for t, a in zip(time, values, strict=True)
+    )
+    opened.run(FILE, "rig.csv", f"rig 7, 2024\nt [ms];Acc 1 [g]\n{rows}\n")
+    opened.until("return explorer.inspector.measured")
+    assert opened.text("record-status") == "rig.csv: Acc 1 in g; 3000 values, 1000 a second"
+    measured = "explorer.inspector.measured"
+    lines, amplitudes = (
+        opened.numbers(f"{measured}.{name}") for name in ("frequency", "amplitude")
+    )
+    for line, expected in ((30.0, 2.0), (90.0, 0.2)):
+        near = np.abs(lines - line) < 1.0
+        assert amplitudes[near].max() / 9.80665 == pytest.approx(expected, rel=0.02)
+        assert lines[near][amplitudes[near].argmax()] == pytest.approx(line, abs=0.25)
+    assert opened.run("return explorer.level.unit") == "g"  # so that the axis is in Hz
+    opened.until("return explorer.inspector.spectra")
+    opened.until(
+        "return document.getElementById('spectrum').getAttribute('aria-label').includes('measured')"
+    )
+
+
+LINES = "".join(f"{i},{i % 5}\n" for i in range(20))
+UNREADABLE = {  # a file, and what is said of it
+    "a picture": ("\x89PNG\x00\x01 nothing", "no columns of numbers in it; expected columns"),
+    "nothing": ("", "no columns of numbers in it; expected columns of numbers under a heading"),
+    "few rows": ("t,a\n0,1\n1,2\n", "2 rows of numbers; expected 16 at least"),
+    "a hole": (LINES + "20,\n" + LINES, 'line 21 "20," has no 2 numbers'),
+    "uneven times": (LINES + "40,1\n", "column 1 is no time in equal steps, line"),
+    "a strange unit": ("t [s],a1 [furlong]\n" + LINES, 'unit "furlong" of column 2; expected one'),
+}
+
+
+def test_what_cannot_be_read_is_said_in_a_line_and_nothing_changes(opened):
+    opened.chosen()
+    before = opened.run(STATE)
+    for name, (text, words) in UNREADABLE.items():
+        opened.run(FILE, f"{name}.csv", text)
+        opened.until(
+            f"return document.getElementById('record-status').textContent.includes('{name}.csv: ')"
+        )
+        assert words in opened.text("record-status")
+        assert opened.run(STATE) == before
+    assert opened.run("return explorer.inspector.measured") is None

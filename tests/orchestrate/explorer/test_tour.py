@@ -1,0 +1,106 @@
+"""The guided tour shows what it says: each of its motions is computed through the FMU."""
+
+import functools
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate.constants import GRAVITY
+from orchestrate.explorer.tour import TOUR
+from orchestrate.flags import flag_words
+
+STOPS = {stop.name: stop for step in TOUR for stop in step.stops}
+
+
+@functools.cache
+def settled(name):
+    """The response that a stop of the tour leads to, and its impacts over ten periods."""
+    stop = STOPS[name]
+    shaken = {"eta": stop.eta}
+    if stop.level:
+        frequency = stop.eta * stop.structure.omega
+        shaken = {"frequency": frequency, "amplitude": stop.level * GRAVITY / frequency**2}
+    asked = {"start": stop.start, "progress": False}
+    motion = orchestrate.simulate(stop.structure, **shaken, **asked, transient=700, periods=10)
+    shaken = {name: [value] for name, value in shaken.items()}
+    swept = orchestrate.sweep(stop.structure, **shaken, **asked, direction="given").squeeze()
+    decided = flag_words(swept.multiplicity_decided.attrs)[int(swept.multiplicity_decided)]
+    return swept, motion, decided
+
+
+def test_quiet_is_one_weak_impact_a_period_always_the_same():
+    swept, motion, decided = settled("quiet")
+    assert (float(swept.impacts_per_period), float(swept.multiplicity)) == (1.0, 1.0)
+    assert decided == "repeated"
+    _, loud, _ = settled("rattling")
+    assert motion.impact_velocity.max() < loud.impact_velocity.max()
+
+
+def test_rattling_is_three_impacts_a_period_of_three_speeds():
+    swept, motion, decided = settled("rattling")
+    assert (float(swept.impacts_per_period), float(swept.multiplicity)) == (3.0, 1.0)
+    assert decided == "repeated" and not swept.permanent_contact
+    speeds = np.sort(motion.impact_velocity.values[:3])
+    assert np.diff(speeds).min() > 0.1 * speeds.max()
+    assert float(swept.xi_rel_max) > 2.0 * float(settled("quiet")[0].xi_rel_max)
+
+
+def test_chattering_is_more_than_twenty_impacts_and_then_contact():
+    swept, motion, _ = settled("chattering")
+    assert float(swept.impacts_per_period) > 20.0 and bool(swept.permanent_contact)
+    assert 0 < int(motion.in_contact.sum()) < motion.sizes["time"]
+
+
+def test_two_answers_are_two_periodic_motions_of_one_beam_at_one_frequency():
+    first, other = (settled(name)[0] for name in ("two-answers", "two-answers-other"))
+    stops = [STOPS[name] for name in ("two-answers", "two-answers-other")]
+    assert stops[0].eta == stops[1].eta and stops[0].structure == stops[1].structure
+    assert float(first.multiplicity) == float(other.multiplicity) == 2.0
+    assert float(other.xi_rel_max) > 1.5 * float(first.xi_rel_max)
+    low, high = stops[0].region
+    etas = np.round(np.arange(low, high, 0.01), 4)
+    both = orchestrate.sweep(stops[0].structure, eta=etas, direction="both", progress=False)
+    up, down = (both.xi_rel_max.sel(direction=word) for word in ("up", "down"))
+    assert float(abs(up - down).max()) > 0.1  # its diagram shows two colours
+
+
+def test_chaos_has_a_positive_exponent():
+    stop = STOPS["chaos"]
+    found = orchestrate.lyapunov(stop.structure, eta=stop.eta, progress=False)
+    assert found.exponent.item() > 5.0 * found.standard_error.item() > 0.0
+    assert settled("chaos")[2] == "irregular"
+
+
+def test_a_pressed_delamination_stays_shut_below_a_level_and_knocks_above_it():
+    below, above = (settled(name) for name in ("pressed", "pressed-open"))
+    stops = [STOPS[name] for name in ("pressed", "pressed-open")]
+    assert stops[0].structure == stops[1].structure and stops[0].level < stops[1].level
+    assert stops[0].structure.clearance < 0.0 < stops[0].structure.preload
+    swept, motion, _ = below
+    assert float(swept.impacts_per_period) == float(swept.xi_rel_max) == 0.0
+    assert motion.in_contact.all() and motion.sizes["impact"] == 0
+    assert float(motion.contact_force.min()) > 0.0
+    swept, motion, _ = above
+    assert float(swept.impacts_per_period) > 1.0 and float(motion.x_rel.max()) > 1e-4
+
+
+TEXTS = (
+    "return [...document.querySelectorAll('#tour p')].filter((p) => !p.hidden)"
+    ".map((p) => p.textContent)"
+)
+
+
+def test_each_stop_is_a_link_that_opens_its_motion(everywhere):
+    browser = everywhere
+    for name, stop in STOPS.items():
+        browser.run(f"document.querySelector('#tour a[href=\"#tour={name}\"]').click()")
+        browser.until(f"return location.hash.startsWith('#tour={name}&')")
+        assert browser.chosen() == pytest.approx(stop.eta, rel=1e-8)
+        assert browser.run("return explorer.inspector.choice.start") == list(stop.start)
+        (step,) = [step for step in TOUR if stop in step.stops]
+        (text,) = browser.run(TEXTS)
+        assert text.startswith(step.text)
+    browser.run("explorer.choose(1.0)")
+    assert "tour" not in browser.run("return location.hash")
+    assert not browser.run(TEXTS)[0].startswith(step.text)
