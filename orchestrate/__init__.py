@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from .dynamics.lyapunov import lyapunov
     from .dynamics.orbits import orbit
     from .dynamics.parameter_map import map
+    from .diagnosis.signs import signs
     from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
     from .figures.plot import plot
     from .laboratory.analysis.density import probability_density
@@ -126,6 +127,7 @@ __all__ = [
     "resonance",
     "shake",
     "shock_spectrum",
+    "signs",
     "simulate",
     "spectra",
     "spectrogram",
@@ -157,6 +159,7 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "laboratory.analysis.spectrogram": ("spectrogram",),
     "laboratory.analysis.shock_spectrum": ("shock_spectrum",),
     "laboratory.analysis.density": ("probability_density",),
+    "diagnosis.signs": ("signs",),
     "response.simulate": ("simulate",),
     "response.resonance": ("resonance",),
     "response.sweep": ("sweep",),
