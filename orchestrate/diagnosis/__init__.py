@@ -1,9 +1,10 @@
-"""The diagnosis: from a record to what it says of the beam.
+"""The diagnosis: from a record to a verdict.
 
 ======================  ===========================================================================
 module                  idea
 ======================  ===========================================================================
-:mod:`.indicators`      the model-free signs of the literature: formula, source, what else moves them
+:mod:`.orders`          orders of a record's channels in short windows, and the floor between them
+:mod:`.indicators`      the model-free signs of the literature: formula, source, what moves them
 :mod:`.signs`           the signs of a record, their floors, and those of a sound structure
 :mod:`.response_signs`  signs of accelerations over time
 :mod:`.drive_signs`     signs of a run on a weak drive
