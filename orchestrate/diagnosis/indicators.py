@@ -64,7 +64,7 @@ INDICATORS = {
     ),
     "coherence_loss": Indicator(
         "coherence loss",
-        "1 - sum of c S over sum of S, over the lines that the box excites; c: coherence, S: power",
+        "mean of 1 - c over the lines that the box excites; c: coherence of the response with the box",
         BENDAT,
         "noise, leakage at a light damping or in a fast sweep, a second source of vibration",
     ),

@@ -22,8 +22,8 @@ ORDERS = (0.5, 1.0, 2.0, 2.37, 3.0, 3.37, 4.0, 5.0)
 HARMONICS = (2.0, 3.0, 4.0, 5.0)
 OF_ORDERS = {"order_2": 2.0, "order_3": 3.0, "order_half": 0.5}
 OVERLAP = 0.5
-ABOVE = 6.0  # times the highest frequency of the excitation: where the high band begins
-HIGHEST = 0.4  # of the sampling rate, where it may begin
+ABOVE = (3.3, 6.0)  # times the highest frequency of the excitation: where the high band begins
+USUAL, HIGHEST = 0.3, 0.4  # of the sampling rate: where it begins at the latest, and may begin
 NOISE_LINES = (0.36, 0.44)  # of the sampling rate: lines for the noise where there is no sweep
 SAME_LEVEL = 1.1  # ratio of levels below which two records have the same
 FEWEST = 4  # windows of a curve
@@ -97,7 +97,7 @@ def response_signs(
         Frequency above which the signs at high frequencies are taken, Hz.
     """
     own = signs_of_orders(channels, periods) if swept else signs_of_spectra(channels)
-    edge = ABOVE * own.highest if high_band is None else high_band
+    edge = usual_band(channels, own.highest) if high_band is None else high_band
     moments = signs_of_moments(channels, edge)
     values, floors = coherence_loss(channels, own.noise)
     return ResponseSigns(
@@ -108,6 +108,13 @@ def response_signs(
         own.noise,
         own.highest,
     )
+
+
+def usual_band(channels: Channels, highest: float) -> float:
+    """Where the high band begins, Hz; NaN where the sampling rate does not reach so far."""
+    lowest, usual = (factor * highest for factor in ABOVE)
+    edge = min(usual, USUAL * channels.sample_rate)
+    return edge if edge >= lowest else math.nan
 
 
 def is_swept(channels: Channels, periods: float) -> bool:
@@ -240,7 +247,7 @@ def in_noise_lines(frequency: Floats, rate: float) -> NDArray[np.bool_]:
 
 
 def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
-    """Part of the response's power that is not coherent with the box; and that of noise alone."""
+    """Mean of 1 less the coherence where the box excites the structure; and that of noise alone."""
     try:
         segments = averaging(channels, None, "hann", OVERLAP, fewest=2)
     except InputError:
@@ -248,12 +255,12 @@ def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
         return unknown, unknown
     frequency, box, rows, cross = spectra(channels)
     excited = is_excited(frequency, box)
-    total = rows[:, excited].sum(axis=-1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        coherent = (np.abs(cross[:, excited]) ** 2 / box[excited]).sum(axis=-1)
-        density = 2.0 * noise**2 / channels.sample_rate
-        floor = density * excited.sum() / total + 1.0 / segments.independent
-        return 1.0 - coherent / total, np.minimum(floor, 1.0)
+        power = rows[:, excited]
+        coherence = np.abs(cross[:, excited]) ** 2 / (box[excited] * power)
+        share = 2.0 * noise[:, None] ** 2 / channels.sample_rate / power
+        floor = np.minimum(share, 1.0).mean(axis=-1) + 1.0 / segments.independent
+    return 1.0 - coherence.mean(axis=-1), np.minimum(floor, 1.0)
 
 
 def signs_of_moments(

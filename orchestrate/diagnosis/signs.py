@@ -56,7 +56,7 @@ def signs(
         compare records; of a run on a weak drive that of the sound beam, which it must have.
     structure : Structure, optional
         A guess of the beam. Its bonded form is the sound structure; by default that is the linear
-        oscillator whose response is nearest to the record's.
+        oscillator whose acceleration is nearest to the record's.
     noise : float, optional
         Root mean square of the noise of each response, m/s2; by default from the record.
     seeds : int
@@ -65,7 +65,8 @@ def signs(
         Of the excitation, in a window of the orders.
     high_band : float, optional
         Hz above which the signs at high frequencies are taken; by default six times the highest
-        frequency of the excitation, where the sampling rate reaches above that.
+        frequency of the excitation or, where that is lower, 0.3 of the sampling rate. Where that
+        is less than 3.3 times the highest frequency there are none.
 
     Returns
     -------
@@ -117,7 +118,7 @@ def signs(
         for channels, sine in zip(every, swept, strict=True)
     ]
     noises = [one.noise if level is None else np.full(len(names), level) for one in own]
-    sound = sound_of(structure, own)
+    sound = sound_of(structure, own[0], every[0])
     values, floors = with_comparisons(own, len(names))
     made = [
         response_signs(sound.records(channels, rms, range(count)), sine, length, edge)
@@ -161,8 +162,8 @@ def checked_band(high_band: float, rate: float) -> float:
     return checked_number("high_band", high_band, 1e-9, HIGHEST * rate, "Hz")
 
 
-def sound_of(structure: Structure | None, own: Sequence[ResponseSigns]) -> SoundStructure:
-    """The sound structure: of the guess, or the oscillator nearest to the record's response.
+def sound_of(structure: Structure | None, own: ResponseSigns, channels: Channels) -> SoundStructure:
+    """The sound structure: of the guess, or the oscillator nearest to the record.
 
     Raises
     ------
@@ -171,11 +172,11 @@ def sound_of(structure: Structure | None, own: Sequence[ResponseSigns]) -> Sound
     """
     if structure is not None:
         return SoundStructure.from_structure(structure)
-    if not own[0].curves:
+    if not own.curves:
         text = "too short, or the box does not move; expected structure="
         raise InputError(f"record: {text}")
-    curve = own[0].curves[0]
-    return SoundStructure.nearest(curve.frequency, curve.response)
+    curve = own.curves[0]
+    return SoundStructure.nearest(curve.frequency, curve.response, channels)
 
 
 def with_comparisons(

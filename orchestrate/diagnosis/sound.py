@@ -41,31 +41,48 @@ class SoundStructure:
         return cls(math.sqrt(k / m) / TURN, min(damping, 0.999))
 
     @classmethod
-    def nearest(cls, frequency: Floats, response: Floats) -> SoundStructure:
-        """The oscillator whose response over the box is nearest to a measured one.
+    def nearest(cls, frequency: Floats, response: Floats, channels: Channels) -> SoundStructure:
+        """The oscillator whose acceleration is nearest to a record's.
 
         Parameters
         ----------
         frequency : ndarray, shape (n,)
             Hz.
         response : ndarray, shape (channels, n)
-            Complex, acceleration over the box's.
+            Complex, acceleration over the box's: what the search begins with, since a sweep that
+            is fast moves its peak.
+        channels : Channels
+            The record.
         """
         from scipy.optimize import least_squares
 
         peak = float(frequency[int(np.abs(response).max(axis=0).argmax())])
+        measured = channels.responses()[1]
 
-        def misfit(logs: Floats) -> Floats:
+        def of_response(logs: Floats) -> Floats:
             rest = (transmissibility(frequency, *np.exp(logs)) - response).ravel()
             return np.concatenate([rest.real, rest.imag])
+
+        def of_record(logs: Floats) -> Floats:
+            return np.asarray((cls(*np.exp(logs)).acceleration(channels) - measured).ravel())
 
         low, high = math.log(0.2 * frequency[0]), math.log(5.0 * frequency[-1])
         bounds = ([low, math.log(1e-4)], [high, math.log(0.9)])
         starts = [(math.log(peak), math.log(ratio)) for ratio in FIRST_DAMPING]
-        fits = [least_squares(misfit, start, bounds=bounds) for start in starts]
+        fits = [least_squares(of_response, start, bounds=bounds) for start in starts]
         best = min(fits, key=lambda fitted: float(fitted.cost))
-        f, zeta = np.exp(best.x)
+        f, zeta = np.exp(least_squares(of_record, best.x, bounds=bounds, x_scale=(0.01, 1.0)).x)
         return cls(float(f), float(zeta))
+
+    def acceleration(self, channels: Channels) -> Floats:
+        """Acceleration in space under the box of a record, m/s2.
+
+        It is exact for a box that is straight between the samples.
+        """
+        from scipy.signal import lfilter
+
+        filters = ramp_invariant(self.f, self.zeta, channels.sample_rate)
+        return np.asarray(lfilter(*filters, channels.box))
 
     def records(self, channels: Channels, noise: Floats, seeds: Sequence[int]) -> Channels:
         """What sensors on this structure would have read: one row for each seed and channel.
@@ -83,10 +100,7 @@ class SoundStructure:
         Channels
             The box, then the responses of the first seed, of the second one, and so on.
         """
-        from scipy.signal import lfilter
-
-        # exact for a box that is straight between the samples
-        steady = lfilter(*ramp_invariant(self.f, self.zeta, channels.sample_rate), channels.box)
+        steady = self.acceleration(channels)
         rows = [channels.box]
         for seed in seeds:
             for number, level in enumerate(noise):
