@@ -40,6 +40,8 @@ from typing import TYPE_CHECKING, Any
 from .version import __version__
 
 if TYPE_CHECKING:
+    from .diagnosis.plan_test import plan_test
+    from .diagnosis.signs import signs
     from .dynamics.attractors import attractors
     from .dynamics.basins import basin
     from .dynamics.borders import border
@@ -48,7 +50,6 @@ if TYPE_CHECKING:
     from .dynamics.lyapunov import lyapunov
     from .dynamics.orbits import orbit
     from .dynamics.parameter_map import map
-    from .diagnosis.signs import signs
     from .errors import FmuError, InputError, StaleError, StoreError, VibroimpactError, WorkerError
     from .figures.plot import plot
     from .laboratory.analysis.density import probability_density
@@ -119,6 +120,7 @@ __all__ = [
     "measure",
     "orbit",
     "passage",
+    "plan_test",
     "plot",
     "probability_density",
     "psd",
@@ -159,6 +161,7 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "laboratory.analysis.spectrogram": ("spectrogram",),
     "laboratory.analysis.shock_spectrum": ("shock_spectrum",),
     "laboratory.analysis.density": ("probability_density",),
+    "diagnosis.plan_test": ("plan_test",),
     "diagnosis.signs": ("signs",),
     "response.simulate": ("simulate",),
     "response.resonance": ("resonance",),

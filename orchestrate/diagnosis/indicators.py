@@ -64,7 +64,7 @@ INDICATORS = {
     ),
     "coherence_loss": Indicator(
         "coherence loss",
-        "mean of 1 - c over the lines that the box excites; c: coherence of the response with the box",
+        "mean of 1 - c over the lines that the box excites; c: coherence with the box",
         BENDAT,
         "noise, leakage at a light damping or in a fast sweep, a second source of vibration",
     ),
@@ -119,7 +119,7 @@ INDICATORS = {
     ),
     "extra_power": Indicator(
         "extra power",
-        "mean of P over mean of P', less 1, at the same speeds below the jump, P' of the sound beam",
+        "mean of P over mean of P', less 1, at the same speeds up to the jump; P': sound beam",
         PAPER,
         "a warmer motor, another damping of the box or of the clamp",
     ),

@@ -1,4 +1,4 @@
-"""Model-free signs of a record, their floors, and those of a sound structure with the same noise."""
+"""Model-free signs of a record, and those of a sound structure with the same noise."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def signs(
     >>> bool(answer.exceeds.sel(sign="order_2") == 1)
     True
     """
-    others = [] if other is None else [other] if hasattr(other, "variables") else list(other)
+    others = other_records(other)
     if is_drive_run(record):
         return signs_of_a_drive(record, others)
     length = checked_number("periods", periods, 2.0, 1e4)
@@ -133,6 +133,15 @@ def signs(
     }
     answer = dataset(every[0].title, names, values, floors, shown, described)
     return answer.assign(frequency=peaks(own[0], names), **of_sound(sound, noises[0]))
+
+
+def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Dataset]:
+    """The records beside the first one."""
+    import xarray as xr
+
+    if other is None:
+        return []
+    return [other] if isinstance(other, xr.Dataset) else list(other)
 
 
 def noise_source(swept: bool) -> str:
