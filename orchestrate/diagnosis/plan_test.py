@@ -164,7 +164,8 @@ def plan_test(
     -----
     One sweep over all frequencies is computed for the guess, and one for a fifth of its split, at
     most 120 s long. A structure without clearance is the same at all levels; one with a clearance
-    is computed at each. The recommended sweep is as slow as ISO 7626-2 asks for; sweep it up and down.
+    is computed at each. The recommended sweep is as slow as ISO 7626-2 asks for; sweep it up and
+    down.
 
     Examples
     --------
