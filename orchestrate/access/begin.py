@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..structures import Excitation, Structure
-from .events import STATE
+from .impacts import STATE
 from .instance import Instance
 
 REST = (0.0, 0.0, 0.0, 0.0)
