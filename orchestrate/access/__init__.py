@@ -21,7 +21,7 @@ module               idea
 ===================  =================================================================
 """
 
-from .begin import REST, begin, last_samples, sampled, samples_per_step
+from .begin import REST, begin, gap_between, last_samples, sampled, samples_per_step
 from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
@@ -58,6 +58,7 @@ __all__ = [
     "describe",
     "find",
     "finder",
+    "gap_between",
     "last_samples",
     "samples_per_step",
     "sampled",

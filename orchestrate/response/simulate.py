@@ -37,7 +37,7 @@ IN_TIME = {  # units, long name
     "a1_abs": ("m/s2", f"acceleration of mass 1 {IN_SPACE}"),
     "a2_abs": ("m/s2", f"acceleration of mass 2 {IN_SPACE}"),
     "box_acceleration": ("m/s2", "acceleration of the box"),
-    "x_rel": ("m", "gap x2 - x1"),
+    "x_rel": ("m", "gap x2 - x1 + clearance"),
     "v_rel": ("m/s", "velocity of the gap"),
     "contact_force": ("N", "compressive force between the masses in permanent contact (18)"),
 }
