@@ -280,4 +280,5 @@ def structure_of(history: xr.Dataset) -> Structure:
     if not known or history.sizes.get("time", 0) < 4:
         raise InputError("history: expected an answer of shake or simulate, of 4 samples or more")
     numbers = {name: float(attributes[name]) for name in names}
+    numbers["clearance"] = float(attributes.get("clearance", 0.0))  # of today's histories
     return Structure(**numbers, bonded=bool(attributes.get("bonded", False)))
