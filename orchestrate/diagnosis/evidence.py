@@ -1,5 +1,4 @@
-"""What a record holds for a fit: orders with their weights, and how a computed motion misses them.
-"""
+"""What a record holds for a fit: orders with their weights, and how a computed motion misses them."""
 
 from __future__ import annotations
 

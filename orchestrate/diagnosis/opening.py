@@ -56,16 +56,6 @@ def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
     return np.asarray(np.abs(structure.m2 + own * motion))
 
 
-def preload(structure: Structure) -> float:
-    """Force that presses the faces together at rest, N; 0 where they touch or have a gap.
-
-    Springs that hold faces together by a negative clearance c press them by -c k1 k2/(k1 + k2).
-    """
-    clearance = float(getattr(structure, "clearance", 0.0))
-    k1, k2 = structure.k1, structure.k2
-    return max(0.0, -clearance) * k1 * k2 / (k1 + k2)
-
-
 def sweep_rate(f: float, zeta: float) -> float:
     """Fastest linear sweep that shows a resonance as a steady sine does, Hz/s.
 

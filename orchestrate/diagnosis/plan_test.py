@@ -19,7 +19,7 @@ from ..laboratory.swept_sine import SweptSine
 from ..response.labels import variable, yes_or_no
 from ..running.options import Running
 from ..structures import Structure
-from .opening import opening_force, preload, sweep_rate
+from .opening import opening_force, sweep_rate
 from .sound import SoundStructure
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ class Test:
 
     def at_levels(self, levels: Floats) -> list[Sweep]:
         """A sweep at each level."""
-        if getattr(self.structure, "clearance", 0.0):
+        if self.structure.clearance:
             return [self.computed(self.structure, level) for level in levels]
         computed = self.computed(self.structure, float(levels[-1]))
         return [computed.at(level) for level in levels]
@@ -373,7 +373,7 @@ def dataset(
     force = opening_force(test.structure, f)
     with np.errstate(divide="ignore", invalid="ignore"):
         smallest = np.where(higher[-1] > 0.0, limit * levels[-1] / higher[-1], np.inf)
-        open_from = preload(test.structure) / force
+        open_from = test.structure.preload / force
         told = np.where(higher > 0.0, opening * limit / higher, np.inf).min(axis=1)
     peaks = np.array([sweep.peak for sweep in sweeps])
     ranges = min(one.range for name, one in test.sensors.items() if name != BOX)

@@ -102,7 +102,12 @@ def run_function() -> Any:
     run.restype = c_ssize_t
 
     def call(
-        numbers: tuple[float, ...], cubics: Floats, step: float, parts: int, bound: float, out: Floats
+        numbers: tuple[float, ...],
+        cubics: Floats,
+        step: float,
+        parts: int,
+        bound: float,
+        out: Floats,
     ) -> int:
         array = np.array(numbers)
         arguments = array.ctypes.data, cubics.ctypes.data, len(cubics), step, parts, bound

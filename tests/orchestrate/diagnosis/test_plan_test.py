@@ -68,6 +68,25 @@ def test_the_recommended_sweep_counts_and_does_not_overload(plan):
     assert float(plan.recommended_duration) >= span / sweep_rate(f, zeta) * 0.999
 
 
+def test_a_preloaded_delamination_shows_from_the_level_that_opens_it(exported):
+    force = 0.3  # N; at 46 Hz the faces need 1.9 N for each m/s2
+    k1, k2 = HALVES.k1, HALVES.k2
+    pressed = HALVES.replace(clearance=-force * (k1 + k2) / (k1 * k2))
+    needed = force / float(opening_force(HALVES, np.linspace(44.0, 50.0, 61)).max())
+    plan = orchestrate.plan_test(
+        pressed,
+        sensor=SENSOR,
+        levels=[0.9 * needed, 3.0 * needed],
+        frequencies=np.linspace(40.0, 54.0, 15),
+        progress=False,
+    )
+    assert float(plan.opening_level.min()) == pytest.approx(needed, rel=0.05)
+    shut, opened = plan.distance_harmonics.max("frequency").values
+    assert shut < 0.05 * opened
+    assert plan.opening.isel(level=0).max() < 1e-9 < plan.opening.isel(level=1).max()
+    assert (plan.closing_force.isel(level=0) < force).all()
+
+
 def test_smaller_differences_are_told_at_higher_levels(plan):
     splits = plan.smallest_split.values
     assert splits[0] == np.inf and 1.0 > splits[1] > splits[2] > 0.0
