@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from .laboratory.shake import shake
     from .laboratory.shock import Shock
     from .laboratory.swept_sine import SweptSine
+    from .reports.report import report
     from .response.resonance import resonance
     from .response.simulate import simulate
     from .response.spectra import spectra
@@ -126,6 +127,7 @@ __all__ = [
     "psd",
     "read_record",
     "record",
+    "report",
     "resonance",
     "shake",
     "shock_spectrum",
@@ -146,6 +148,7 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
         *("VibroimpactError", "WorkerError"),
     ),
     "figures.plot": ("plot",),
+    "reports.report": ("report",),
     "laboratory.random_vibration": ("Random",),
     "laboratory.record": ("record",),
     "laboratory.record_files": ("read_record", "write_record"),

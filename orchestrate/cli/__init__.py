@@ -24,6 +24,7 @@ from . import (
     build,
     capture,
     couple,
+    diagnose,
     drive_branch,
     explore,
     jump_voltages,
@@ -42,7 +43,7 @@ from .options import Commands, sets_text
 from .process import Terminated, outputs, signals
 
 COMMANDS = (
-    *(build, simulate, shake, analyse, resonance, spectra, sweep, map),
+    *(build, simulate, shake, analyse, diagnose, resonance, spectra, sweep, map),
     *(lyapunov, attractors, basin, orbit, branch, border),
     *(couple, capture, passage, jump_voltages, drive_branch),
     *(explore, paper),

@@ -1,4 +1,4 @@
-"""Pictures of the diagnosis: signs over their floors, the plan of a test."""
+"""Pictures of the diagnosis: a record over its fits, signs over their floors, a test's plan."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ from .style import (
 
 CHANNELS = {"acceleration1": "sensor 1", "acceleration2": "sensor 2", "motor": "motor"}
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY)
+FITS = (BLUE, ORANGE, GREEN, PURPLE)  # of hypotheses, the best first
 LIMIT = 2.0  # times what noise and a sound structure show, from which a sign stands out
 FEWEST_DECADES = (0.2, 10.0)  # of the signs' axis, at least
 HEIGHT = 0.8  # of all bars of a sign
@@ -152,3 +153,82 @@ def draw_distances(plane: Axes, data: xr.Dataset, limit: float) -> None:
         float(at.recommended_first), float(at.recommended_last), color=GREY, alpha=0.15, zorder=0
     )
     plane.set_ylabel("difference in standard\ndeviations of the noise")
+
+
+@styled
+def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw the orders of a record over those of the fits, a column a sensor.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.detect`.
+    title : str
+        By default the answer's own.
+    """
+    channels = [str(channel) for channel in data.channel.values]
+    orders = [float(order) for order in data.order.values]
+    rows, columns = len(orders), len(channels)
+    figure, axes = panels(rows, columns, (1.5 + 6.0 * columns, 0.9 + 1.9 * rows), sharex=True)
+    shown = best_fits(data)
+    for place, (order, channel) in enumerate((n, name) for n in orders for name in channels):
+        plane = axes[place]
+        at = data.sel(order=order, channel=channel)
+        plane.plot(at.frequency, at.measured, ".", color=BLACK, markersize=3.0, label="measured")
+        if "floor" in at:
+            plane.plot(at.frequency, at.floor, color=GREY, linewidth=0.8, label="floor")
+        for number, name in enumerate(shown):
+            line: Any = {
+                "color": FITS[number % len(FITS)],
+                "linewidth": 1.1,
+                "zorder": 3.0 - 0.1 * number,
+            }
+            plane.plot(at.frequency, at.fitted.sel(hypothesis=name), label=name, **line)
+        plane.set_yscale("log")
+        limit_decades(plane, at.measured.values)
+        if place % columns == 0:
+            plane.set_ylabel(f"order {order:g}\nin m/s$^2$")
+        if place < columns:
+            plane.set_title(CHANNELS.get(channel, channel))
+    for plane in axes[-columns:]:
+        plane.set_xlabel("frequency of the excitation in Hz")
+    legend_below(figure, axes, 4)
+    set_title(figure, title or str(data.attrs.get("title", "")))
+    return figure
+
+
+def best_fits(data: xr.Dataset) -> list[str]:
+    """Names of the hypotheses, the best first, as many as there are colours."""
+    ordered = data.hypothesis.values[np.argsort(data.misfit.values, kind="stable")]
+    return [str(name) for name in ordered[: len(FITS)]]
+
+
+def limit_decades(plane: Axes, values: np.ndarray) -> None:
+    """Show what was measured; a fit may be as small as it likes."""
+    known = values[np.isfinite(values) & (values > 0.0)]
+    if len(known):
+        plane.set_ylim(0.3 * np.quantile(known, 0.02), 3.0 * known.max())
+
+
+@styled
+def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw how far each fit is from the record, over the frequency.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Of :func:`orchestrate.detect`.
+    title : str
+        By default the answer's own.
+    """
+    figure, (axes,) = panels(1, 1, (8.0, 3.4))
+    for number, name in enumerate(best_fits(data)):
+        one = data.sel(hypothesis=name)
+        line: Any = {"color": FITS[number % len(FITS)], "linewidth": 1.0}
+        words = f"{name}: {float(one.misfit):.3g}"
+        axes.semilogy(one.frequency, one.misfit_at, label=words, **line)
+    axes.axhline(1.0, color=GREY, linewidth=0.8)
+    axes.set(xlabel="frequency of the excitation in Hz", ylabel="misfit over its usual size")
+    legend_below(figure, [axes], 2)
+    set_title(figure, title or str(data.attrs.get("title", "")))
+    return figure

@@ -34,6 +34,7 @@ DRAW: dict[str, Callable[[xr.Dataset], Figure]] = {  # questions whose answer ne
     "basin": basin.draw,
     "border": borders.draw,
     "branch": branches.draw,
+    "detect": diagnosis.draw_detect,
     "drive_branch": weak_drive.draw_stationary,
     "drive_spectra": drive_spectra.draw,
     "jump_voltages": jump_voltages.draw,

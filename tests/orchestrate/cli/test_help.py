@@ -21,6 +21,7 @@ COMMANDS = (
         "simulate",
         "shake",
         "analyse",
+        "diagnose",
         "resonance",
         "spectra",
         "sweep",

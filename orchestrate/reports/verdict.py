@@ -1,0 +1,180 @@
+"""The sections of a verdict on a beam."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ..figures.diagnosis import draw_detect, draw_misfit
+from .page import MISSING, Picture, Section, Table, Verdict, text_of, with_error
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+TONES = {"delaminated": "bad", "no opening seen": "good", "not described": "unclear"}
+ALWAYS_ASSUMED = (
+    "Two masses stand for the beam, each half in one mode; waves and higher modes are left out.",
+    "Impacts take no time and lose energy by one number e, the same at all speeds.",
+    "The masses are those of the guess: their ratio alone acts.",
+)
+WORTH = (
+    "This page is the result of a calculation on one record. It is no certificate, for flight or "
+    "for anything else. Faces that are pressed together, or glued in part, may be delaminated and "
+    "not open in a test."
+)
+BEST = 4  # hypotheses in the table of parameters
+
+
+def verdict_of(answer: xr.Dataset) -> Verdict:
+    """The verdict in one sentence."""
+    word = str(answer.verdict.values)
+    return Verdict(
+        f"{word[0].upper()}{word[1:]}.", SENTENCES[word](answer), TONES.get(word, "open")
+    )
+
+
+def range_text(answer: xr.Dataset) -> str:
+    """Levels and frequencies that the record has."""
+    low, high = number(answer, "frequency_low"), number(answer, "frequency_high")
+    level = number(answer, "level_high")
+    return f"up to {text_of(level)} m/s² over {text_of(low)} to {text_of(high)} Hz"
+
+
+def delaminated(answer: xr.Dataset) -> str:
+    """What is said of a delaminated beam."""
+    ratio = number(answer, "ratio")
+    better = "" if math.isnan(ratio) else f", {text_of(ratio)} times closer than any sound one"
+    return (
+        "The record is that of two halves that part and strike each other: the delaminated "
+        f"structure describes it{better}."
+    )
+
+
+def no_opening(answer: xr.Dataset) -> str:
+    """What is said where nothing opens; never that the beam is intact."""
+    smallest = number(answer, "smallest_opening")
+    seen = ""
+    if math.isfinite(smallest):
+        seen = f" An opening of {text_of(1e6 * smallest)} µm or more would have been seen."
+    return f"No opening of the faces was seen {range_text(answer)}.{seen}"
+
+
+def not_described(answer: xr.Dataset) -> str:
+    """What is said where no hypothesis fits."""
+    return (
+        "None of the structures that were tried, sound or delaminated, describes this record: "
+        "the beam, its clamp or the sensors do something else."
+    )
+
+
+def undecided(answer: xr.Dataset) -> str:
+    """What is said where it is close."""
+    return "This record does not tell a delaminated beam from a sound one."
+
+
+SENTENCES = {
+    "delaminated": delaminated,
+    "no opening seen": no_opening,
+    "not described": not_described,
+    "undecided": undecided,
+}
+
+
+def number(answer: xr.Dataset, name: str) -> float:
+    """A single number of an answer, NaN where it has none."""
+    return float(answer[name]) if name in answer else math.nan
+
+
+def verdict_sections(answer: xr.Dataset) -> list[Section]:
+    """All that a verdict rests on."""
+    made = [decision(answer), fits(answer), misfits(answer), parameters(answer), assumed(answer)]
+    return [section for section in made if section is not None]
+
+
+def decision(answer: xr.Dataset) -> Section:
+    """What decided, and what would change it."""
+    reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
+    points = [f"What decided: {reason}"] if reason else []
+    odds = number(answer, "odds")
+    if math.isfinite(odds):
+        points.append(f"Odds of a delamination by simulated records: {text_of(odds)} to 1.")
+    if settle:
+        points.append(f"What would change or settle it: {settle}")
+    return Section("Why", [WORTH], points)
+
+
+def fits(answer: xr.Dataset) -> Section | None:
+    """The measurement over the fits."""
+    if "measured" not in answer or "fitted" not in answer:
+        return None
+    words = "What was measured, and what the best structures of each kind do, order by order"
+    return Section(
+        "The measurement over the fits",
+        picture=Picture.from_figure(draw_detect(answer), words),
+        tables=[hypotheses(answer)],
+    )
+
+
+def misfits(answer: xr.Dataset) -> Section | None:
+    """The misfit over the frequency."""
+    if "misfit_at" not in answer:
+        return None
+    words = "How far each structure is from the measurement, over the frequency"
+    text = "1 is as far as the noise and the stated error of a good model allow."
+    picture = Picture.from_figure(draw_misfit(answer), words)
+    return Section("Where they miss it", [text], picture=picture)
+
+
+def hypotheses(answer: xr.Dataset) -> Table:
+    """The hypotheses, the best first."""
+    ordered = answer.sortby("misfit")
+    rows = []
+    for position in range(ordered.sizes["hypothesis"]):
+        one = ordered.isel(hypothesis=position)
+        row = [str(one.hypothesis.values), text_of(float(one.misfit))]
+        for name in ("minima", "evaluations"):
+            row.append(text_of(number(one, name), digits=6))
+        rows.append(tuple(row))
+    columns = ("structure", "misfit", "minima found", "motions computed")
+    return Table(columns, rows, frozenset({0}))
+
+
+def parameters(answer: xr.Dataset) -> Section | None:
+    """Parameters with their errors, of the best structures."""
+    if "value" not in answer or "parameter" not in answer.dims:
+        return None
+    shown = by_misfit(answer)[:BEST]
+    names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
+    units = dict(zip(answer.parameter.values, answer.unit.values, strict=True))
+    rows = [
+        (str(name), *(parameter_text(one.sel(parameter=name), str(units[name])) for one in shown))
+        for name in answer.parameter.values
+    ]
+    known = [row for row in rows if any(text != MISSING for text in row[1:])]
+    text = (
+        "Errors are standard errors from blocks of the record and from what the structure misses. "
+        f"What a structure does not have, or the record does not hold, has a dash ({MISSING})."
+    )
+    return Section("Parameters", [text], tables=[Table(("parameter", *names), known)])
+
+
+def by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
+    """The hypotheses of an answer one by one, the best first; itself where it has one only."""
+    if "hypothesis" not in answer.dims:
+        return [answer]
+    ordered = answer.sortby("misfit")
+    return [ordered.isel(hypothesis=position) for position in range(ordered.sizes["hypothesis"])]
+
+
+def parameter_text(at: xr.Dataset, unit: str) -> str:
+    """A parameter of one hypothesis, with its error."""
+    value = float(at.value)
+    return (
+        with_error(value, number(at, "standard_error"), unit) if math.isfinite(value) else MISSING
+    )
+
+
+def assumed(answer: xr.Dataset) -> Section:
+    """What was assumed."""
+    own = [text.strip() for text in str(answer.attrs.get("assumed", "")).split(";")]
+    return Section("What was assumed", points=[*ALWAYS_ASSUMED, *filter(None, own)])
