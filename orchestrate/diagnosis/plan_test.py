@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -261,7 +262,9 @@ class Test:
             name: replace(one, noise=0.0, range=math.inf, resolution=0.0, sample_rate=rate)
             for name, one in {BOX: next(iter(self.sensors.values())), **self.sensors}.items()
         }
-        channels = Channels.from_record(measure(history, quiet, excitation=sine), (BOX,))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit
+            channels = Channels.from_record(measure(history, quiet, excitation=sine), (BOX,))
         names, responses = channels.responses()
         linear = self.sound.acceleration(channels)
         rows = np.concatenate([channels.values[:1], responses, linear[None]])
@@ -365,45 +368,23 @@ def dataset(
     import xarray as xr
 
     f, levels = test.frequency, np.array([sweep.level for sweep in sweeps])
-    first, higher = (
-        np.stack(rows)
-        for rows in zip(*(test.noise.distances(one, f) for one in sweeps), strict=True)
-    )
+    distances = [test.noise.distances(one, f) for one in sweeps]
+    first, higher = (np.stack(rows) for rows in zip(*distances, strict=True))
     opening = np.stack([sweep.opening for sweep in sweeps])
-    force = opening_force(test.structure, f)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        smallest = np.where(higher[-1] > 0.0, limit * levels[-1] / higher[-1], np.inf)
-        open_from = test.structure.preload / force
-        told = np.where(higher > 0.0, opening * limit / higher, np.inf).min(axis=1)
-    peaks = np.array([sweep.peak for sweep in sweeps])
-    ranges = min(one.range for name, one in test.sensors.items() if name != BOX)
     over, unit = ("level", "frequency"), "standard deviations of the noise in a window"
+    kept = levels[:, None] * opening_force(test.structure, f)
+    splits = smallest_splits(levels, limit, split_distances)
+    split = "smallest difference between the halves that counts, relative to the guess's"
     answer = xr.Dataset(
         {
             "distance": variable(over, np.hypot(first, higher), "1", f"difference in {unit}"),
             "distance_first": variable(over, first, "1", f"of order 1, in {unit}"),
             "distance_harmonics": variable(over, higher, "1", f"of orders 2 and 3, in {unit}"),
             "opening": variable(over, opening, "m", "largest gap"),
-            "closing_force": variable(
-                over, levels[:, None] * force, "N", "preload above which the faces stay shut"
-            ),
-            "smallest_level": variable(
-                "frequency", smallest, "m/s2", "level from which orders 2 and 3 count"
-            ),
-            "opening_level": variable(
-                "frequency", open_from, "m/s2", "level from which the faces open"
-            ),
-            "smallest_opening": variable("level", told, "m", "smallest gap that counts"),
-            "smallest_split": variable(
-                "level",
-                smallest_splits(levels, limit, split_distances),
-                "1",
-                "smallest difference between the halves that counts, relative to the guess's",
-            ),
-            "overload": yes_or_no(
-                "level", peaks > ranges, "whether readings reach the sensor's range"
-            ),
+            "closing_force": variable(over, kept, "N", "preload above which the faces stay shut"),
             "threshold": variable((), limit, "1", f"difference that counts, in {unit}"),
+            "smallest_split": variable("level", splits, "1", split),
+            **thresholds(test, sweeps, limit, higher, opening),
         },
         {
             "level": variable("level", levels, "m/s2", "peak acceleration of the box"),
@@ -412,6 +393,36 @@ def dataset(
         attributes("plan_test", "Plan of a test", test.structure.label()),
     )
     return answer.assign(recommended(test, answer))
+
+
+def thresholds(
+    test: Test, sweeps: Sequence[Sweep], limit: float, higher: Floats, opening: Floats
+) -> dict[str, Any]:
+    """From which level and which opening on orders 2 and 3 count, and where readings are cut.
+
+    Parameters
+    ----------
+    test : Test
+    sweeps : sequence of Sweep
+    limit : float
+        Difference that counts.
+    higher, opening : ndarray, shape (levels, frequencies)
+        Distance by orders 2 and 3, and the largest gap in m.
+    """
+    force = opening_force(test.structure, test.frequency)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        smallest = np.where(higher[-1] > 0.0, limit * sweeps[-1].level / higher[-1], np.inf)
+        open_from = test.structure.preload / force
+        told = np.where(higher > 0.0, opening * limit / higher, np.inf).min(axis=1)
+    ranges = min(one.range for name, one in test.sensors.items() if name != BOX)
+    cut = np.array([sweep.peak > ranges for sweep in sweeps])
+    level, opens = "level from which orders 2 and 3 count", "level from which the faces open"
+    return {
+        "smallest_level": variable("frequency", smallest, "m/s2", level),
+        "opening_level": variable("frequency", open_from, "m/s2", opens),
+        "smallest_opening": variable("level", told, "m", "smallest gap that counts"),
+        "overload": yes_or_no("level", cut, "whether readings reach the sensor's range"),
+    }
 
 
 def smallest_splits(levels: Floats, limit: float, distances: Floats) -> Floats:
