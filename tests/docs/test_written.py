@@ -13,6 +13,7 @@ LONG = {
     "build",
     "capture",
     "couple",
+    "diagnose",
     "explore",
     "jump-voltages",
     "paper",
