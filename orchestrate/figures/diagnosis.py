@@ -162,10 +162,11 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        Of :func:`orchestrate.detect`.
+        Of :func:`orchestrate.detect` or :func:`orchestrate.fit`.
     title : str
         By default the answer's own.
     """
+    data = by_hypothesis(data)
     channels = [str(channel) for channel in data.channel.values]
     orders = [float(order) for order in data.order.values]
     rows, columns = len(orders), len(channels)
@@ -195,6 +196,17 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
     legend_below(figure, axes, 4)
     set_title(figure, title or str(data.attrs.get("title", "")))
     return figure
+
+
+def by_hypothesis(data: xr.Dataset) -> xr.Dataset:
+    """An answer along its hypotheses, also where it has one only."""
+    if "hypothesis" in data.dims:
+        return data
+    fitted = {name: data[name] for name in ("fitted", "misfit", "misfit_at") if name in data}
+    name = str(data.attrs.get("hypothesis", "fit"))
+    return data.drop_vars(list(fitted)).merge(
+        xr.Dataset(fitted).drop_vars("hypothesis", errors="ignore").expand_dims(hypothesis=[name])
+    )
 
 
 def best_fits(data: xr.Dataset) -> list[str]:

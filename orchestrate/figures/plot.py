@@ -36,6 +36,7 @@ DRAW: dict[str, Callable[[xr.Dataset], Figure]] = {  # questions whose answer ne
     "branch": branches.draw,
     "detect": diagnosis.draw_detect,
     "drive_branch": weak_drive.draw_stationary,
+    "fit": diagnosis.draw_detect,
     "drive_spectra": drive_spectra.draw,
     "jump_voltages": jump_voltages.draw,
     "lyapunov": lyapunov.draw,

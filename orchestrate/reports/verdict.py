@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..figures.diagnosis import draw_detect, draw_misfit
 from .page import MISSING, Picture, Section, Table, Verdict, text_of, with_error
 
@@ -132,8 +134,8 @@ def hypotheses(answer: xr.Dataset) -> Table:
     for position in range(ordered.sizes["hypothesis"]):
         one = ordered.isel(hypothesis=position)
         row = [str(one.hypothesis.values), text_of(float(one.misfit))]
-        for name in ("minima", "evaluations"):
-            row.append(text_of(number(one, name), digits=6))
+        row.append(f"{int(np.isfinite(one.minima).sum())}" if "minima" in one else MISSING)
+        row.append(text_of(number(one, "evaluations"), digits=6))
         rows.append(tuple(row))
     columns = ("structure", "misfit", "minima found", "motions computed")
     return Table(columns, rows, frozenset({0}))
