@@ -33,6 +33,7 @@ from . import (
     orbit,
     paper,
     passage,
+    report,
     resonance,
     shake,
     simulate,
@@ -46,7 +47,7 @@ COMMANDS = (
     *(build, simulate, shake, analyse, diagnose, resonance, spectra, sweep, map),
     *(lyapunov, attractors, basin, orbit, branch, border),
     *(couple, capture, passage, jump_voltages, drive_branch),
-    *(explore, paper),
+    *(explore, report, paper),
 )
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 STORE = "orchestrate.running.store"

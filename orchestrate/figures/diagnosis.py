@@ -78,7 +78,8 @@ def write_values(axes: Axes, place: np.ndarray, ratios: np.ndarray, values: np.n
         known = np.isfinite(ratio)
         text = f"{value:.3g}" if known else "not in this record"
         x = max(float(ratio), FEWEST_DECADES[0]) if known else FEWEST_DECADES[0]
-        offset: Any = {"xytext": (3, 0), "textcoords": "offset points"}
+        offset: Any = {"xytext": (3, 0), "textcoords": "offset points", "zorder": 4}
+        offset["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
         colour = BLACK if known else GREY
         axes.annotate(text, (x, y), va="center", fontsize=7, color=colour, **offset)
 

@@ -18,6 +18,7 @@ LONG = {
     "jump-voltages",
     "paper",
     "passage",
+    "report",
 }  # read only
 EVERY = [
     pytest.param(page, words, id=f"{page.stem}-{' '.join(words)[:60]}")
