@@ -13,7 +13,8 @@ GUESS = RECORDS / "beam.toml"
 
 
 def write_csv(path, *columns, heading="time [s];base [m/s2];acc 1 [m/s2]"):
-    rows = "".join(";".join(f"{value:.6g}" for value in row) + "\n" for row in zip(*columns))
+    table = np.stack(columns, axis=1)
+    rows = "".join(";".join(f"{value:.6g}" for value in row) + "\n" for row in table)
     path.write_text(f"{heading}\n{rows}")
     return path
 
