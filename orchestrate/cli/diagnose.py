@@ -7,7 +7,7 @@ import hashlib
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from .options import Commands, add_set, plain_float, structure_of
@@ -80,13 +80,24 @@ def run(arguments: argparse.Namespace) -> None:
     others = [read(arguments, path) for path in arguments.other]
     if others and len(arguments.records) > 1:
         raise InputError("--other: of one beam; expected one record with it")
-    records = {path: read(arguments, path) for path in arguments.records}
-    verdicts = verdicts_of(arguments, records, guess)
+    records = {path: read(arguments, path) for path in dict.fromkeys(arguments.records)}
+    names = {path: name_of(path, guess, arguments) for path in records}
+    verdicts = verdicts_of(arguments, records, names, guess)
     for path, verdict in verdicts.items():
-        report(path, verdict)
+        print_verdict(path, verdict)
         signs = signs_of(records[path], others, guess)
-        stem = f"diagnose_{path.stem}_{digest(verdict.attrs['record_sha256'], guess.parameters())}"
-        write(arguments, stem, {"": verdict, "_signs": signs}, formats, plots)
+        write(arguments, names[path], {"": verdict, "_signs": signs}, formats, plots)
+
+
+def name_of(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
+    """Name of the files of a record: another content, guess or way to read it has another one."""
+    read_as = [arguments.columns, arguments.unit, arguments.sample_rate]
+    return f"diagnose_{path.stem}_{digest(checksum(path), guess.parameters(), read_as)}"
+
+
+def checksum(path: Path) -> str:
+    """SHA-256 of a file."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def guess_of(arguments: argparse.Namespace) -> Structure:
@@ -136,19 +147,24 @@ def columns_of(arguments: argparse.Namespace) -> dict[str, str | int] | None:
 
 
 def verdicts_of(
-    arguments: argparse.Namespace, records: Mapping[Path, xr.Dataset], guess: Structure
+    arguments: argparse.Namespace,
+    records: Mapping[Path, xr.Dataset],
+    names: Mapping[Path, str],
+    guess: Structure,
 ) -> dict[Path, xr.Dataset]:
-    """The verdict on each record."""
-    from .. import detect
+    """The verdict on each record, stored by its name."""
+    from .. import detect_all
 
-    running: dict[str, Any] = dict(running_of(arguments))
+    named = {names[path]: record for path, record in records.items()}
+    running = running_of(arguments, arguments.output)
+    verdicts = detect_all(named, guess, **running)
     return {
-        path: detect(record, guess, **running).assign_attrs(
+        path: verdicts[name].assign_attrs(
             record_file=path.name,
-            record_sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
+            record_sha256=checksum(path),
             guess_file=str(arguments.structure),
         )
-        for path, record in records.items()
+        for path, name in names.items()
     }
 
 
@@ -173,14 +189,16 @@ def write(
 
     folder = open_folder(arguments.output)
     for ending, answer in answers.items():
-        place = write_netcdf(answer, folder / f"{stem}{ending}.nc")
+        place = folder / f"{stem}{ending}.nc"
+        if ending:  # the verdict is stored already
+            write_netcdf(answer, place)
         pictures = draw_picture(place, plots, True, partial(plot, answer))
         for file in (place, *export_formats(answer, place, formats, fresh=True), *pictures):
             print(file)
     print(report(*answers.values(), output=folder / f"{stem}.html", notes=arguments.notes))
 
 
-def report(path: Path, verdict: xr.Dataset) -> None:
+def print_verdict(path: Path, verdict: xr.Dataset) -> None:
     """Print the verdict and what it rests on, in a few lines."""
     from ..reports.verdict import verdict_of
 

@@ -28,7 +28,8 @@ from .style import (
 
 CHANNELS = {"acceleration1": "sensor 1", "acceleration2": "sensor 2", "motor": "motor"}
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY)
-FITS = (BLUE, ORANGE, GREEN, PURPLE)  # of hypotheses, the best first
+FITS = (BLUE, ORANGE, GREEN)  # of the delaminated, of the best sound structure, of the bonded one
+PARTED, BONDED = "delaminated", "bonded"  # names of hypotheses begin so
 LIMIT = 2.0  # times what noise and a sound structure show, from which a sign stands out
 FEWEST_DECADES = (0.2, 10.0)  # of the signs' axis, at least
 HEIGHT = 0.8  # of all bars of a sign
@@ -194,7 +195,7 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
             plane.set_title(CHANNELS.get(channel, channel))
     for plane in axes[-columns:]:
         plane.set_xlabel("frequency of the excitation in Hz")
-    legend_below(figure, axes, 4)
+    legend_below(figure, axes, 3)
     set_title(figure, title or str(data.attrs.get("title", "")))
     return figure
 
@@ -211,9 +212,14 @@ def by_hypothesis(data: xr.Dataset) -> xr.Dataset:
 
 
 def best_fits(data: xr.Dataset) -> list[str]:
-    """Names of the hypotheses, the best first, as many as there are colours."""
-    ordered = data.hypothesis.values[np.argsort(data.misfit.values, kind="stable")]
-    return [str(name) for name in ordered[: len(FITS)]]
+    """Names of the fits that are worth a curve: the best delaminated and the best sound structure,
+    and the bonded one.
+    """
+    order = np.argsort(data.misfit.values, kind="stable")
+    ordered = [str(name) for name in data.hypothesis.values[order]]
+    parted = [name for name in ordered if name.startswith(PARTED)][:1]
+    sound = [name for name in ordered if not name.startswith(PARTED)]
+    return [*parted, *dict.fromkeys([*sound[:1], *(name for name in sound if name == BONDED)])]
 
 
 def limit_decades(plane: Axes, values: np.ndarray) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 PACKAGES = ("numpy", "scipy", "xarray", "fmpy", "lmfit", "matplotlib")
-LONGEST = 400  # letters of an attribute
+LONGEST = 160  # letters of an attribute
 
 
 def origin(answers: Sequence[xr.Dataset]) -> Section:
@@ -38,9 +38,12 @@ def described(answer: xr.Dataset) -> list[tuple[str, str]]:
         ("guess_file", "guess"),
         ("sensors", "sensors"),
         ("source", "computed by"),
-        ("history", "when and what was asked"),
     ]
     rows = [(label, shortened(attributes[name])) for name, label in shown if attributes.get(name)]
+    if "history" in attributes:
+        rows.append(("computed on", attributes["history"].partition(": ")[0]))
+    if "call" in attributes and "record_file" not in attributes:
+        rows.append(("what was asked", shortened(attributes["call"])))
     for name in sorted(attributes):
         if name.startswith("fmu_guid"):
             model = attributes.get(name.replace("guid", "model"), "")

@@ -161,12 +161,13 @@ def text_of(value: float, unit: str = "", digits: int = 3) -> str:
 
     Examples
     --------
-    >>> text_of(0.012345, "Hz"), text_of(float("nan")), text_of(12.0, "1")
-    ('0.0123 Hz', '–', '12')
+    >>> text_of(0.012345, "Hz"), text_of(float("nan")), text_of(12.0, "1"), text_of(2e-6, "m")
+    ('0.0123 Hz', '–', '12', '2 µm')
     """
     if not math.isfinite(value):
         return MISSING
-    return f"{value:.{digits}g} {'' if unit == '1' else unit}".rstrip()
+    factor, shown = scaled(abs(value), unit)
+    return f"{value / factor:.{digits}g} {shown}".rstrip()
 
 
 def with_error(value: float, error: float, unit: str = "") -> str:
@@ -176,23 +177,19 @@ def with_error(value: float, error: float, unit: str = "") -> str:
     --------
     >>> with_error(42.12345, 0.0213, "Hz"), with_error(42.0, float("nan"), "Hz")
     ('42.123 ± 0.021 Hz', '42 Hz')
-    >>> with_error(8437.5, 120.0, "N/m")
-    '8437 ± 120 N/m'
+    >>> with_error(8437.5, 120.0, "N/m"), with_error(-3.4e-7, 4.4e-7, "m")
+    ('8438 ± 120 N/m', '-0.34 ± 0.44 µm')
     """
     if not (math.isfinite(error) and error > 0.0):
         return text_of(value, unit, 4)
+    factor, shown = scaled(max(abs(value), error), unit)
+    value, error = value / factor, error / factor
     places = max(0, 1 - math.floor(math.log10(error)))
-    shown = "" if unit == "1" else unit
     return f"{value:.{places}f} ± {error:.{places}f} {shown}".rstrip()
 
 
-def sentence_list(words: Sequence[str], joint: str = "and") -> str:
-    """Words as a part of a sentence.
-
-    Examples
-    --------
-    >>> sentence_list(["a", "b", "c"])
-    'a, b and c'
-    """
-    *first, last = words
-    return f"{', '.join(first)} {joint} {last}" if first else last
+def scaled(size: float, unit: str) -> tuple[float, str]:
+    """A factor, and the unit that it makes of one: short lengths are in micrometres."""
+    if unit == "m" and 0.0 < size < 1e-3:
+        return 1e-6, "µm"
+    return 1.0, "" if unit == "1" else unit.replace("s2", "s²")

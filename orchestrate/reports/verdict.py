@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..figures.diagnosis import draw_detect, draw_misfit
+from ..figures.diagnosis import PARTED, draw_detect, draw_misfit
 from .page import MISSING, Picture, Section, Table, Verdict, text_of, with_error
 
 if TYPE_CHECKING:
@@ -15,16 +16,15 @@ if TYPE_CHECKING:
 
 TONES = {"delaminated": "bad", "no opening seen": "good", "not described": "unclear"}
 ALWAYS_ASSUMED = (
-    "Two masses stand for the beam, each half in one mode; waves and higher modes are left out.",
-    "Impacts take no time and lose energy by one number e, the same at all speeds.",
-    "The masses are those of the guess: their ratio alone acts.",
+    "Two masses stand for the beam: waves and higher modes are left out.",
+    "Impacts take no time and lose energy by one number e.",
 )
 WORTH = (
     "This page is the result of a calculation on one record. It is no certificate, for flight or "
     "for anything else. Faces that are pressed together, or glued in part, may be delaminated and "
     "not open in a test."
 )
-BEST = 4  # hypotheses in the table of parameters
+BEST = 3  # hypotheses in the table of parameters
 
 
 def verdict_of(answer: xr.Dataset) -> Verdict:
@@ -96,13 +96,37 @@ def verdict_sections(answer: xr.Dataset) -> list[Section]:
 def decision(answer: xr.Dataset) -> Section:
     """What decided, and what would change it."""
     reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
-    points = [f"What decided: {reason}"] if reason else []
+    points = [f"What decided: {full(reason)}"] if reason else []
     odds = number(answer, "odds")
     if math.isfinite(odds):
-        points.append(f"Odds of a delamination by simulated records: {text_of(odds)} to 1.")
+        points.append(
+            f"Odds of the delaminated against the best sound structure: {ratio_of(odds)}."
+        )
     if settle:
-        points.append(f"What would change or settle it: {settle}")
+        points.append(f"What would change or settle it: {full(settle)}")
     return Section("Why", [WORTH], points)
+
+
+def ratio_of(odds: float) -> str:
+    """Odds as people give them.
+
+    Examples
+    --------
+    >>> ratio_of(23.7), ratio_of(0.0005)
+    ('24 to 1', '1 to 2000')
+    """
+    return f"{odds:.2g} to 1" if odds >= 1.0 else f"1 to {float(f'{1.0 / odds:.2g}'):g}"
+
+
+def full(words: str) -> str:
+    """Words as a sentence: a capital at the beginning, a point at the end.
+
+    Examples
+    --------
+    >>> full("gains agree"), full("They do.")
+    ('Gains agree.', 'They do.')
+    """
+    return f"{words[:1].upper()}{words[1:].rstrip('.')}."
 
 
 def fits(answer: xr.Dataset) -> Section | None:
@@ -138,26 +162,42 @@ def hypotheses(answer: xr.Dataset) -> Table:
         row.append(text_of(number(one, "evaluations"), digits=6))
         rows.append(tuple(row))
     columns = ("structure", "misfit", "minima found", "motions computed")
-    return Table(columns, rows, frozenset({0}))
+    return Table(columns, rows, frozenset(decided(answer, [row[0] for row in rows])[:1]))
+
+
+def decided(answer: xr.Dataset, names: Sequence[str]) -> list[int]:
+    """Places of the hypotheses that the verdict goes by, the best first."""
+    parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
+    return [place for place, name in enumerate(names) if name.startswith(PARTED) == parted]
 
 
 def parameters(answer: xr.Dataset) -> Section | None:
     """Parameters with their errors, of the best structures."""
     if "value" not in answer or "parameter" not in answer.dims:
         return None
-    shown = by_misfit(answer)[:BEST]
+    shown = by_misfit(answer)
     names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
     units = dict(zip(answer.parameter.values, answer.unit.values, strict=True))
     rows = [
         (str(name), *(parameter_text(one.sel(parameter=name), str(units[name])) for one in shown))
         for name in answer.parameter.values
     ]
-    known = [row for row in rows if any(text != MISSING for text in row[1:])]
+    columns = [0] + [
+        place for place in range(1, 1 + len(shown)) if any(row[place] != MISSING for row in rows)
+    ][:BEST]
+    known = [
+        tuple(row[place] for place in columns)
+        for row in rows
+        if any(row[place] != MISSING for place in columns[1:])
+    ]
+    heads = ("parameter", *(names[place - 1] for place in columns[1:]))
     text = (
         "Errors are standard errors from blocks of the record and from what the structure misses. "
         f"What a structure does not have, or the record does not hold, has a dash ({MISSING})."
     )
-    return Section("Parameters", [text], tables=[Table(("parameter", *names), known)])
+    if str(answer.verdict.values) in ("not described", "undecided"):
+        text += " This record confirms none of these structures: do not rely on their numbers."
+    return Section("Parameters", [text], tables=[Table(heads, known)])
 
 
 def by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
@@ -179,4 +219,4 @@ def parameter_text(at: xr.Dataset, unit: str) -> str:
 def assumed(answer: xr.Dataset) -> Section:
     """What was assumed."""
     own = [text.strip() for text in str(answer.attrs.get("assumed", "")).split(";")]
-    return Section("What was assumed", points=[*ALWAYS_ASSUMED, *filter(None, own)])
+    return Section("What was assumed", points=[*ALWAYS_ASSUMED, *map(full, filter(None, own))])
