@@ -118,7 +118,7 @@ def noisy(search: Search, values: Mapping[str, float]) -> list[Floats]:
 def shaken_again(evidence: Evidence, noise: Floats) -> Evidence:
     """The evidence with more noise on the base."""
     base = evidence.orders.channels.box + noise
-    pieces = Sampled(acceleration=base, sample_rate=evidence.rate).pieces()
+    pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.rate).pieces()
     return replace(evidence, pieces=pieces)
 
 

@@ -55,7 +55,9 @@ class Evidence:
         if thin is not orders.channels:
             orders = orders_of(thin)
         rate = orders.channels.sample_rate
-        return cls(orders, Sampled(acceleration=orders.channels.box, sample_rate=rate).pieces())
+        return cls(
+            orders, Sampled(acceleration=tuple(orders.channels.box), sample_rate=rate).pieces()
+        )
 
     @property
     def rate(self) -> float:
@@ -99,7 +101,7 @@ class Evidence:
         """Orders 1, 2, 3 of the sensors, shape (sensors, 3, windows), m/s2."""
         rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
         numbers = [ORDERS.index(order) for order in FITTED]
-        return self.orders.amplitude[np.ix_(rows, numbers, self.used)]
+        return self.orders.amplitude[rows][:, numbers][:, :, self.used]
 
     @cached_property
     def size(self) -> Floats:

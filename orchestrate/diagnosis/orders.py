@@ -73,7 +73,9 @@ class OrderWindows:
     def chosen(self, windows: NDArray[np.intp], count: int) -> OrderWindows:
         """Return some of the windows with the first ``count`` orders, for many channels to come."""
         return OrderWindows(
-            *(array[windows] for array in (self.time, self.frequency, self.rate)),
+            self.time[windows],
+            self.frequency[windows],
+            self.rate[windows],
             self.orders[:count],
             tuple(self.parts[i] for i in windows),
             tuple(np.ascontiguousarray(self.solutions[i][:, :count]) for i in windows),
