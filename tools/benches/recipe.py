@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 OPENED = 1e-6  # m: a gap that counts; a penalty lets go of less where nothing opens
 FIRST, LAST, DURATION = 20.0, 90.0, 40.0  # Hz, Hz, s
-SOUND = ("sound", "hardening", "friction", "clamp")
 SPLIT = ("delaminated", "gap", "preloaded")
 EXCITATIONS = ("up", "down", "log", "stepped", "random")
 MOST_APART = 1.5  # frequencies of a guess; the second mode of a hardly delaminated beam is far away
@@ -226,6 +225,18 @@ def hardening(rng: np.random.Generator, level: float, conditions: Conditions) ->
     return whole(own, own.bonded(cubic=cubic), cubic)
 
 
+def sagging(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """A bonded beam that hardens by up to 15 %, and is stiffer to one side than to the other."""
+    own = halves(rng)
+    one = own.whole()
+    change = rng.uniform(0.02, 0.15)
+    peak = level / (2.0 * one.zeta * (TURN * one.f) ** 2 * (1.0 + change))
+    cubic, sag = cubic_for(change, one.f, peak), peak * rng.uniform(0.1, 0.5)
+    found = whole(own, own.bonded(cubic=cubic, sag=sag), cubic)
+    stiffer = math.sqrt(1.0 + 3.0 * cubic * sag**2 / (TURN * one.f) ** 2)
+    return replace(found, f1=one.f * stiffer, f2=one.f * stiffer)
+
+
 def friction(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
     """A bonded beam with dry friction of 5 to 50 % of what moves it."""
     own = halves(rng)
@@ -273,6 +284,7 @@ Maker = Callable[[np.random.Generator, float, Conditions], Specimen]
 KINDS: Mapping[str, Maker] = {
     "sound": sound,
     "hardening": hardening,
+    "sagging": sagging,
     "friction": friction,
     "clamp": clamp,
     "delaminated": delaminated,

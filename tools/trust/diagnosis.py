@@ -23,7 +23,7 @@ NOT_DESCRIBED, UNDECIDED = "not described", "undecided"
 REFUSED, NOT_ASKED = "refused", "not asked"
 KINDS = (  # one after the other: the two that the targets are about are drawn more often
     *("sound", "delaminated", "hardening", "delaminated", "friction", "gap"),
-    *("sound", "preloaded", "clamp", "delaminated", "intact elements", "elements"),
+    *("sound", "preloaded", "clamp", "delaminated", "intact elements", "elements", "sagging"),
 )
 USUAL, WIDE = (0.01, 0.05), (0.001, 0.1)  # noise: of the targets, and of all curves
 PART_USUAL = 0.6
@@ -43,8 +43,8 @@ class Diagnosis(Campaign):
     asks = (
         "`detect` is asked about records of beams that are none of its models: two masses with "
         "compliant contact (a spring with a dashpot, Hunt and Crossley, Hertz), with a gap, "
-        "pressed together, with friction; bonded beams that are linear, harden or soften, have dry "
-        "friction, or rattle in their clamp; cantilevers of finite elements, delaminated from "
+        "pressed together, with friction; bonded beams that are linear, harden or soften, sag, "
+        "have dry friction, or rattle in their clamp; cantilevers of finite elements, delaminated from "
         "their free end or not. Swept 20 to 90 Hz in 40 s or otherwise, one or two sensors with "
         "gains off by 3 %, delays, noise of 0.1 to 10 %; masses and frequencies of the guess off "
         "by up to 10 %. A finding is a sound beam, or one that did not open, that is called "
