@@ -44,12 +44,12 @@ class Diagnosis(Campaign):
         "`detect` is asked about records of beams that are none of its models: two masses with "
         "compliant contact (a spring with a dashpot, Hunt and Crossley, Hertz), with a gap, "
         "pressed together, with friction; bonded beams that are linear, harden or soften, sag, "
-        "have dry friction, or rattle in their clamp; cantilevers of finite elements, delaminated from "
-        "their free end or not. Swept 20 to 90 Hz in 40 s or otherwise, one or two sensors with "
-        "gains off by 3 %, delays, noise of 0.1 to 10 %; masses and frequencies of the guess off "
-        "by up to 10 %. A finding is a sound beam, or one that did not open, that is called "
+        "have dry friction, or rattle in their clamp; cantilevers of finite elements, delaminated "
+        "from their free end or not. Swept 20 to 90 Hz in 40 s or otherwise, one or two sensors "
+        "with gains off by 3 %, delays, noise of 0.1 to 10 %; masses and frequencies of the guess "
+        "off by up to 10 %. A finding is a sound beam, or one that did not open, that is called "
         "delaminated; or no opening seen in a beam whose faces parted by more than 0.02 mm and "
-        "struck each other."
+        "struck each other. Random excitation is refused: the detector goes by orders."
     )
     unit = "beams"
     target = 500
