@@ -18,6 +18,8 @@ What is asked
     of it, :func:`record`, :func:`read_record` and :func:`write_record` what was measured;
     :func:`frf`, :func:`psd`, :func:`track_orders`, :func:`harmonics`, :func:`spectrogram`,
     :func:`shock_spectrum` and :func:`probability_density` of such a record, or of a measured one;
+    :func:`signs` of delamination in it, :func:`fit` a structure to it and :func:`detect` whether
+    it is delaminated, :func:`detect_all` of many; :func:`plan_test` for a record that shows it;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
     :func:`couple_all`,
     :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
@@ -26,7 +28,7 @@ What is asked
     for other tools.
 What is answered
     An :class:`xarray.Dataset` with units, long names, all parameters, and where it comes from.
-    :func:`plot` draws it.
+    :func:`plot` draws it, :func:`report` makes it a page to read, print and sign.
 
 All is computed by FMPy through exported FMUs. Every function that computes takes the keywords of
 :class:`orchestrate.running.options.Running`: ``jobs``, ``cluster``, ``store`` and more.
@@ -40,6 +42,9 @@ from typing import TYPE_CHECKING, Any
 from .version import __version__
 
 if TYPE_CHECKING:
+    from .diagnosis.detect import detect
+    from .diagnosis.detect_all import detect_all
+    from .diagnosis.fit import fit
     from .diagnosis.plan_test import plan_test
     from .diagnosis.signs import signs
     from .dynamics.attractors import attractors
@@ -110,8 +115,11 @@ __all__ = [
     "capture",
     "couple",
     "couple_all",
+    "detect",
+    "detect_all",
     "drive_branch",
     "drive_spectra",
+    "fit",
     "frf",
     "harmonics",
     "impact_statistics",
@@ -164,6 +172,9 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "laboratory.analysis.spectrogram": ("spectrogram",),
     "laboratory.analysis.shock_spectrum": ("shock_spectrum",),
     "laboratory.analysis.density": ("probability_density",),
+    "diagnosis.fit": ("fit",),
+    "diagnosis.detect": ("detect",),
+    "diagnosis.detect_all": ("detect_all",),
     "diagnosis.plan_test": ("plan_test",),
     "diagnosis.signs": ("signs",),
     "response.simulate": ("simulate",),

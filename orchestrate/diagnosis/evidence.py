@@ -1,4 +1,4 @@
-"""What a record holds for a fit: orders with their weights, and how a computed motion misses them."""
+"""What a record holds for a fit: orders with weights, and what a computed motion misses of them."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
-from ..laboratory.analysis.channels import BOX
-from ..laboratory.pieces import FACTORIALS, Pieces
+from ..laboratory.pieces import Pieces
 from ..laboratory.sampled import Sampled
-from .orders import ORDERS, Complexes, RecordOrders, record_orders
+from .orders import ORDERS, Complexes, OrderWindows, RecordOrders, orders_of, record_orders, thinned
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,6 +22,7 @@ Floats = NDArray[np.float64]
 FITTED = (1.0, 2.0, 3.0)
 RELATIVE = (0.03, 0.03, 0.03)  # errors of a model's orders 1, 2, 3 over the size of order 1
 NEIGHBOURS = 2  # windows on each side over which that size is the largest
+IRREGULAR = 1.5  # errors of orders over the amplitude between the orders
 SKIPPED = 1.0  # s at the beginning where the start is not forgotten; at most a tenth of the record
 GAIN, DELAY = 0.03, 2e-4  # of a sensor against that of the base: standard deviations, 1 and s
 MOST_GAIN, MOST_DELAY = 0.12, 1e-3
@@ -51,13 +51,23 @@ class Evidence:
     def from_record(cls, record: xr.Dataset) -> Evidence:
         """Of a record; raises as :func:`.orders.record_orders`."""
         orders = record_orders(record)
+        thin = thinned(orders.channels, float(orders.windows.frequency.max()))
+        if thin is not orders.channels:
+            orders = orders_of(thin)
         rate = orders.channels.sample_rate
-        return cls(orders, Sampled(acceleration=orders.channels.box, sample_rate=rate).pieces())
+        return cls(
+            orders, Sampled(acceleration=tuple(orders.channels.box), sample_rate=rate).pieces()
+        )
 
     @property
     def rate(self) -> float:
         """Samples in a second, Hz."""
         return self.orders.channels.sample_rate
+
+    @property
+    def samples(self) -> int:
+        """How many of each channel."""
+        return len(self.orders.channels.time)
 
     @cached_property
     def masses(self) -> tuple[int, ...]:
@@ -70,6 +80,11 @@ class Evidence:
         time = self.orders.windows.time - self.orders.channels.time[0]
         skipped = min(SKIPPED, 0.1 * self.orders.channels.duration)
         return np.flatnonzero(time > skipped)
+
+    @cached_property
+    def windows(self) -> OrderWindows:
+        """These windows, with the orders that are fitted."""
+        return self.orders.windows.chosen(self.used, len(FITTED))
 
     @cached_property
     def frequency(self) -> Floats:
@@ -86,7 +101,7 @@ class Evidence:
         """Orders 1, 2, 3 of the sensors, shape (sensors, 3, windows), m/s2."""
         rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
         numbers = [ORDERS.index(order) for order in FITTED]
-        return self.orders.amplitude[np.ix_(rows, numbers, self.used)]
+        return self.orders.amplitude[rows][:, numbers][:, :, self.used]
 
     @cached_property
     def size(self) -> Floats:
@@ -104,16 +119,18 @@ class Evidence:
 
     @cached_property
     def error(self) -> Floats:
-        """Weights: noise and what a good model may miss, shape (sensors, 3, windows), m/s2."""
+        """Weights: what is between the orders (noise, or motion that does not repeat) and what a
+        good model may miss, shape (sensors, 3, windows), m/s2.
+        """
+        rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
+        floor = np.maximum(IRREGULAR * self.orders.floor[rows][:, self.used], self.noise[:, None])
         model = np.array(self.relative)[:, None] * self.size[:, None, :]
-        return np.sqrt(self.noise[:, None, None] ** 2 + model**2)
+        return np.sqrt(floor[:, None, :] ** 2 + model**2)
 
     @cached_property
-    def base_mean(self) -> Floats:
-        """Mean acceleration of the base from each sample to the next, m/s2."""
-        h = 1.0 / self.rate
-        powers = h ** np.arange(4) / FACTORIALS / np.arange(1, 5)
-        return self.pieces.derivatives @ powers
+    def base(self) -> Complexes:
+        """Orders 1, 2, 3 of the base, shape (3, windows), m/s2."""
+        return self.windows.amplitudes(self.orders.channels.box[np.newaxis])[0]
 
     @cached_property
     def resonance(self) -> float:
@@ -127,22 +144,26 @@ class Evidence:
         size = np.abs(self.measured[:, 0] - self.level)
         return float((size / (TURN * self.frequency) ** 2).max())
 
-    def computed(self, velocities: Floats) -> Complexes:
+    def computed(self, motion: Floats) -> Complexes:
         """Orders 1, 2, 3 that sensors would read of a motion, shape (sensors, 3, windows).
 
         Parameters
         ----------
-        velocities : ndarray, shape (1 or 2, samples)
-            Of both masses relative to the base at the record's samples, m/s. Their differences hold
-            the impulses of impacts: means of the acceleration from one sample to the next, whose
-            middle is half a sample later and whose order n is sinc(n f/rate) too small.
+        motion : ndarray, shape (1 or 2, samples)
+            Displacements of the masses in the base at the record's samples, m.
+
+        Notes
+        -----
+        The second differences of displacements are means of the acceleration over two steps, with
+        the weights of a triangle: they hold the impulses of impacts exactly, and what would come
+        back from around the sampling rate is as small as there the square of the sinc is, by which
+        the orders are divided. The base's orders are added.
         """
-        chosen = velocities[[min(mass, len(velocities) - 1) for mass in self.masses]]
-        mean = np.diff(chosen, axis=1) * self.rate + self.base_mean
-        padded = np.concatenate([mean, mean[:, -1:]], axis=1)
-        windows = self.orders.windows
-        found = windows.amplitudes(padded, later=0.5)[:, : len(FITTED), self.used]
-        return found / np.sinc(np.outer(FITTED, self.frequency) / self.rate)
+        chosen = motion[[min(mass, len(motion) - 1) for mass in self.masses]]
+        second = np.diff(chosen, 2, axis=1) * self.rate**2
+        padded = np.pad(second, ((0, 0), (1, 1)), mode="edge")
+        found = self.windows.amplitudes(padded)
+        return found / np.sinc(np.outer(FITTED, self.frequency) / self.rate) ** 2 + self.base
 
     def matched(self, computed: Complexes) -> Complexes:
         """The same with each sensor's gain and delay, as order 1 asks for them in closed form.
@@ -169,14 +190,14 @@ class Evidence:
         gain = 1.0 + float(np.clip(GAIN * solution[0], -MOST_GAIN, MOST_GAIN))
         return gain, float(np.clip(DELAY * solution[1], -MOST_DELAY, MOST_DELAY))
 
-    def residuals(self, velocities: Floats) -> Floats:
+    def residuals(self, motion: Floats) -> Floats:
         """What a motion misses, over the errors; shape (sensors, 4, windows).
 
         Order 1 as two numbers, the sizes of orders 2 and 3; 0 where an order is not resolved.
         """
-        if not np.isfinite(velocities).all():
+        if not np.isfinite(motion).all():
             return np.full((len(self.masses), 4, len(self.used)), LOST)
-        return self.missed(self.matched(self.computed(velocities)))
+        return self.missed(self.matched(self.computed(motion)))
 
     def missed(self, computed: Complexes) -> Floats:
         """What computed orders miss, over the errors; shape (sensors, 4, windows)."""

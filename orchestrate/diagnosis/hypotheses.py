@@ -22,10 +22,27 @@ if TYPE_CHECKING:
     from .evidence import Evidence
 
 Floats = NDArray[np.float64]
+REPORTED = {  # units and long names
+    "f1": ("Hz", "natural frequency of half 1 alone"),
+    "f2": ("Hz", "natural frequency of half 2 alone"),
+    "zeta1": ("1", "damping ratio of half 1 alone"),
+    "zeta2": ("1", "damping ratio of half 2 alone"),
+    "e": ("1", "coefficient of restitution"),
+    "clearance": ("m", "gap between the faces at rest; below 0: pressed together"),
+    "f": ("Hz", "natural frequency of the sound structure"),
+    "zeta": ("1", "damping ratio of the sound structure"),
+    "square": ("1/m", "stiffness that goes with the square of the displacement"),
+    "cube": ("1/m2", "stiffness that goes with the cube of the displacement"),
+    "friction": ("m/s2", "dry friction over the mass"),
+    "stop": ("1", "stiffness of a stop over that of the spring"),
+    "position": ("m", "where the stop is met"),
+}
+FREE = tuple(REPORTED)[:6]  # of a delaminated structure
 Values = Mapping[str, float]
 DAMPING = (3e-4, 0.2)  # damping ratios that are looked for
 SPLIT = 0.9  # largest |ln(f2/f1)|
 RESTITUTION = (0.0, 0.95)
+SPLITS = (0.08, -0.08, 0.18, -0.18, 0.3, -0.3, 0.45, -0.45)  # ln(f2/f1) of the scan
 SLOW = 0.01  # of the largest speed: below it friction is viscous
 
 
@@ -49,8 +66,12 @@ class Hypothesis(ABC):
         """Smallest and largest value of each number that is fitted."""
 
     @abstractmethod
-    def velocities(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
-        """The motion under the measured base, shape (1 or 2, samples), m/s."""
+    def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
+        """The motion in the measured base, shape (1 or 2, samples), m."""
+
+    @abstractmethod
+    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
+        """The fitted numbers as a user knows them, by the names of ``REPORTED``, in SI."""
 
     def parameters(self, start: Values, evidence: Evidence) -> Parameters:
         """Return a start as lmfit takes it."""
@@ -89,11 +110,16 @@ class Sound(Hypothesis):
         """The structure itself."""
         return SingleMass(f=values["f"], zeta=math.exp(values["log_zeta"]))
 
-    def velocities(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
+    def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
         """The motion; NaN where it has no bounds."""
-        bound = 30.0 * evidence.displacement
+        cubics, bound = evidence.pieces.derivatives, 30.0 * evidence.displacement
         mass = self.mass(values, evidence)
-        return mass.velocities(evidence.pieces.derivatives, 1.0 / evidence.rate, bound)[np.newaxis]
+        return mass.displacements(cubics, 1.0 / evidence.rate, bound)[np.newaxis]
+
+    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
+        """Those of the single mass."""
+        mass = self.mass(values, evidence)
+        return {name: getattr(mass, name) for name in ("f", "zeta", *self.extra)}
 
 
 class Bonded(Sound):
@@ -245,21 +271,30 @@ class Delaminated(Hypothesis):
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """A scan over the split of the halves, their common frequency and restitution."""
         guess, found = self.values_of(self.guess, evidence), []
-        for split in (0.08, 0.18, 0.3, 0.45):
-            for sign in (1.0, -1.0):
-                for shift in (0.96, 1.0, 1.04):
-                    for e in (0.35, 0.7):
-                        common = shift * evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
-                        start = {"common": common, "split": sign * split, "e": e}
-                        found.append({**guess, **start})
+        for split in SPLITS:
+            for shift in (0.96, 1.0, 1.04):
+                for e in (0.35, 0.7):
+                    common = shift * evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
+                    found.append({**guess, "common": common, "split": split, "e": e})
         return found
 
-    def velocities(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
+    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
+        """Those of the structure that are free."""
+        structure = self.structure(values, evidence)
+        return {name: float(structure.get(name)) for name in self.free}
+
+    def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
         """The motion by the FMU."""
         assert player is not None
         player.start(self.structure(values, evidence))
         nodes = evidence.pieces.nodes
-        return player.play(nodes, evidence.pieces.derivatives, nodes).rows[:, 2:4].T
+        return player.play(nodes, evidence.pieces.derivatives, nodes).rows[:, :2].T
+
+
+class DelaminatedWithClearance(Delaminated):
+    """The same with a gap between the faces at rest, or pressed together by a preload."""
+
+    name: ClassVar[str] = "delaminated, with clearance"
 
 
 SOUND = (Bonded(), Curved(), Rubbing(), Stopped(), StoppedBelow())

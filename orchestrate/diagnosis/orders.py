@@ -6,7 +6,7 @@ window are solved once, as a matrix, and applied to as many channels as there ar
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,6 +32,7 @@ OVERLAP = 0.5
 QUIET = 0.05  # of the usual amplitude of the base: windows below are not used
 NO_SINE = 0.5  # rms of what the base does beside its orders, over the rms of order 1
 FEWEST = 8  # windows
+KEPT = 14.0  # samples in a period of the highest frequency: order 3 has more than four then
 EXPECTED = "expected a swept or stepped sine"
 
 
@@ -47,8 +48,8 @@ class OrderWindows:
         ``ORDERS`` and after them ``OFF_ORDERS``.
     parts : tuple of slice
         Samples of each.
-    solutions : tuple of ndarray, shape (orders, samples)
-        Complex: applied to a channel's samples they give ``A exp(i theta)`` of
+    solutions : tuple of ndarray, shape (samples, orders)
+        Complex: a channel's samples times these give ``A exp(i theta)`` of
         ``A sin(n phase + theta)`` for each order n, NaN above 0.45 of the sampling rate. The phase
         is that of the base: its own order 1 has theta = 0.
     sample_rate : float
@@ -69,6 +70,19 @@ class OrderWindows:
     def __len__(self) -> int:
         return len(self.parts)
 
+    def chosen(self, windows: NDArray[np.intp], count: int) -> OrderWindows:
+        """Return some of the windows with the first ``count`` orders, for many channels to come."""
+        return OrderWindows(
+            self.time[windows],
+            self.frequency[windows],
+            self.rate[windows],
+            self.orders[:count],
+            tuple(self.parts[i] for i in windows),
+            tuple(np.ascontiguousarray(self.solutions[i][:, :count]) for i in windows),
+            self.sample_rate,
+            self.samples,
+        )
+
     def amplitudes(self, values: Floats, later: float = 0.0) -> Complexes:
         """Complex amplitudes of channels, shape (channels, orders, windows).
 
@@ -80,7 +94,7 @@ class OrderWindows:
         """
         found = np.empty((len(values), len(self.orders), len(self)), dtype=complex)
         for number, (part, solution) in enumerate(zip(self.parts, self.solutions, strict=True)):
-            found[:, :, number] = values[:, part] @ solution.T
+            found[:, :, number] = values[:, part] @ solution
         if later:
             turn = TURN * np.outer(self.orders, self.frequency) * later / self.sample_rate
             found *= np.exp(-1j * turn)
@@ -145,15 +159,50 @@ def record_orders(record: xr.Dataset) -> RecordOrders:
     of whole orders may change at a constant rate. A window lasts 0.25 s, longer where the sweep is
     slow or where it would have less than 8 periods.
     """
+    return orders_of(checked_channels(record))
+
+
+def checked_channels(record: xr.Dataset) -> Channels:
+    """The channels of a record that has the base's and one of the structure's.
+
+    Raises
+    ------
+    InputError
+    """
     channels = Channels.from_record(record, (BOX,))
     if len(channels.names) < 2:
         text = "expected acceleration1, acceleration2 or both beside box_acceleration"
         raise InputError(f"record: no acceleration of the structure; {text}")
+    return channels
+
+
+def orders_of(channels: Channels) -> RecordOrders:
+    """Orders of channels; see :func:`record_orders`."""
     windows, amplitude = windows_of(channels)
     whole, off = amplitude[:, : len(ORDERS)], amplitude[:, len(ORDERS) :]
     squares = np.nanmean(np.abs(off) ** 2, axis=1)
     floor = np.sqrt(np.stack([smoothed(row) for row in squares]))
     return RecordOrders(windows, channels, whole, floor, np.quantile(floor, 0.2, axis=1))
+
+
+def thinned(channels: Channels, highest: float) -> Channels:
+    """Every second, third, ... sample of channels, low-passed before, if enough of them are left.
+
+    Parameters
+    ----------
+    channels : Channels
+    highest : float
+        Frequency of the excitation, Hz, in whose period ``KEPT`` samples are to be left.
+    """
+    from scipy.signal import firwin, resample_poly
+
+    factor = int(channels.sample_rate // (KEPT * highest))
+    if factor < 2:
+        return channels
+    low_pass = firwin(40 * factor + 1, 0.8 / factor, window=("kaiser", 9.0))  # 90 dB
+    values = resample_poly(channels.values, 1, factor, axis=1, window=low_pass)
+    time, rate = channels.time[::factor], channels.sample_rate / factor
+    return replace(channels, time=time, sample_rate=rate, values=values)
 
 
 def smoothed(values: Floats, width: int = 5) -> Floats:
@@ -261,7 +310,8 @@ def solved(one: Window, sample_rate: float) -> Complexes:
 def referenced(box: Floats, one: Window, solution: Complexes) -> Complexes:
     """The same with the phase of the base's own order 1 as phase."""
     shift = np.angle(solution[0] @ box[one.part])
-    return np.asarray(solution * np.exp(-1j * np.array([*ORDERS, *OFF_ORDERS]) * shift)[:, None])
+    turn = np.exp(-1j * np.array([*ORDERS, *OFF_ORDERS]) * shift)
+    return np.ascontiguousarray((solution * turn[:, None]).T)
 
 
 def rms_beside(box: Floats, one: Window, amplitude: Complexes) -> float:

@@ -26,10 +26,10 @@ static double acceleration(const Mass *p, double base, double x, double v) {
     return -base - force;
 }
 
-/* Velocities at the beginning of each cubic and at the end of the last one; how many are bounded. */
-EXPORT ptrdiff_t run(const Mass *p, const double *cubics, ptrdiff_t count, double step, int parts, double bound, double *velocity) {
+/* Displacements at the beginning of each cubic and at the end of the last one; how many are bounded. */
+EXPORT ptrdiff_t run(const Mass *p, const double *cubics, ptrdiff_t count, double step, int parts, double bound, double *displacement) {
     double x = 0.0, v = 0.0, h = step / parts;
-    velocity[0] = v;
+    displacement[0] = x;
     for (ptrdiff_t i = 0; i < count; i++) {
         const double *c = cubics + 4 * i;
         double right = c[0];
@@ -46,7 +46,7 @@ EXPORT ptrdiff_t run(const Mass *p, const double *cubics, ptrdiff_t count, doubl
             v = v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
         }
         if (!(fabs(x) < bound)) return i;
-        velocity[i + 1] = v;
+        displacement[i + 1] = x;
     }
     return count;
 }

@@ -67,8 +67,8 @@ class SingleMass:
         smooth = (w * w, 2.0 * self.zeta * w, self.square, self.cube, self.friction, self.slow)
         return (*smooth, self.stop, self.position, self.side)
 
-    def velocities(self, cubics: Floats, step: float, bound: float = 1e3) -> Floats:
-        """Velocity relative to the base where each cubic begins, and at the end, m/s.
+    def displacements(self, cubics: Floats, step: float, bound: float = 1e3) -> Floats:
+        """Displacement in the base where each cubic begins, and at the end, m.
 
         Parameters
         ----------
@@ -81,10 +81,10 @@ class SingleMass:
         """
         stiffest = self.f * math.sqrt(1.0 + max(self.stop, 0.0))
         parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / LONGEST))
-        velocity = np.full(len(cubics) + 1, np.nan)
+        found = np.full(len(cubics) + 1, np.nan)
         run = run_function() or run_slowly
-        run(self.numbers(), np.ascontiguousarray(cubics), step, parts, bound, velocity)
-        return velocity
+        run(self.numbers(), np.ascontiguousarray(cubics), step, parts, bound, found)
+        return found
 
 
 @functools.cache
@@ -101,16 +101,10 @@ def run_function() -> Any:
     run.argtypes = [c_void_p, c_void_p, c_ssize_t, c_double, c_int, c_double, c_void_p]
     run.restype = c_ssize_t
 
-    def call(
-        numbers: tuple[float, ...],
-        cubics: Floats,
-        step: float,
-        parts: int,
-        bound: float,
-        out: Floats,
-    ) -> int:
+    def call(numbers: tuple[float, ...], cubics: Floats, *rest: Any) -> int:
+        *settings, out = rest
         array = np.array(numbers)
-        arguments = array.ctypes.data, cubics.ctypes.data, len(cubics), step, parts, bound
+        arguments = array.ctypes.data, cubics.ctypes.data, len(cubics), *settings
         return int(run(*arguments, out.ctypes.data))
 
     return call
@@ -133,7 +127,7 @@ def run_slowly(
         return -base - force
 
     x, v, h = 0.0, 0.0, step / parts
-    out[0] = v
+    out[0] = x
     for number, c in enumerate(cubics.tolist()):
         right = c[0]
         for part in range(parts):
@@ -151,5 +145,5 @@ def run_slowly(
             v = v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)
         if not abs(x) < bound:
             return number
-        out[number + 1] = v
+        out[number + 1] = x
     return len(cubics)

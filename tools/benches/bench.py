@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 STEPS = 60.0  # in a period of the fastest oscillation, contacts closed
+PIECE = 100_000  # numbers that are computed at once
 BASE = 1.0 / 3000.0  # s: longest step, for what the base does
 
 
@@ -54,8 +55,12 @@ class Bench:
         factor = self.factor_for(system)
         step = 1.0 / (factor * self.rate)
         samples = int(self.excitation.duration * self.rate)
-        times = 0.5 * step * np.arange(2 * samples * factor + 1, dtype=np.float64)
-        base = self.excitation(times)
+        base = np.empty(2 * samples * factor + 1)
+        for begin in range(0, len(base), PIECE):
+            part = slice(begin, min(begin + PIECE, len(base)))
+            base[part] = self.excitation(
+                0.5 * step * np.arange(part.start, part.stop, dtype=np.float64)
+            )
         return base[::2], integrate(system, base, step), factor
 
     def measure(self, system: ModalSystem, seed: int) -> tuple[xr.Dataset, Motion]:

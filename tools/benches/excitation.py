@@ -30,8 +30,11 @@ class Excitation(Protocol):
 
 def ramped(time: Floats, ramp: float, duration: float) -> Floats:
     """From 0 to 1 in the first ``ramp`` seconds, and back in the last ones, as shakers do."""
-    inside = np.clip(np.minimum(time, duration - time) / ramp, 0.0, 1.0)
-    return np.asarray(np.sin(0.5 * np.pi * inside) ** 2)
+    values = np.ones(time.shape)
+    ends = (time < ramp) | (time > duration - ramp)
+    inside = np.clip(np.minimum(time[ends], duration - time[ends]) / ramp, 0.0, 1.0)
+    values[ends] = np.sin(0.5 * np.pi * inside) ** 2
+    return values
 
 
 @dataclass(frozen=True)

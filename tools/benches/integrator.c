@@ -27,7 +27,7 @@ typedef struct {
     int modes, contacts, springs, frictions, outputs, law;
     const double *stiffness, *damping, *participation;  /* of each mode: w^2, 2 zeta w */
     const double *contact_rows, *clearance, *contact_stiffness, *contact_damping;
-    const double *spring_rows, *cubic;
+    const double *spring_rows, *cubic, *offset;
     const double *friction_rows, *friction_force, *friction_coefficient, *friction_speed;
     const double *output_rows;
     double longest_impact;  /* s: contacts that last longer are no impacts */
@@ -72,8 +72,8 @@ static double accelerate(const System *s, const double *q, const double *v, doub
     }
     for (int k = 0; k < s->springs; k++) {
         const double *row = s->spring_rows + k * n;
-        double x = along(row, q, n);
-        push(row, -s->cubic[k] * x * x * x, a, n);
+        double o = s->offset[k], x = along(row, q, n) + o;
+        push(row, -s->cubic[k] * (x * x * x - o * o * o), a, n);
     }
     for (int k = 0; k < s->frictions; k++) {
         const double *row = s->friction_rows + k * n;

@@ -13,7 +13,7 @@ import numpy as np
 
 from orchestrate.access.c_library import library
 
-from .system import LAWS, CubicSprings, Floats, Frictions, ModalSystem, Motion, no_contacts
+from .system import LAWS, Floats, Frictions, ModalSystem, Motion, no_contacts, no_springs
 
 SOURCE = Path(__file__).with_suffix(".c")
 NUMBERS = POINTER(c_double)
@@ -21,7 +21,7 @@ COUNTS = ("modes", "contacts", "springs", "frictions", "outputs", "law")
 ARRAYS = (
     *("stiffness", "damping", "participation"),
     *("contact_rows", "clearance", "contact_stiffness", "contact_damping"),
-    *("spring_rows", "cubic"),
+    *("spring_rows", "cubic", "offset"),
     *("friction_rows", "friction_force", "friction_coefficient", "friction_speed"),
     "output_rows",
 )
@@ -95,7 +95,7 @@ def integrate(
     q = np.array(position, dtype=float)
     v = np.zeros(system.modes) if velocity is None else np.array(velocity, dtype=float)
     contacts = system.contacts or no_contacts(system.modes)
-    springs = system.springs or CubicSprings(np.zeros((0, system.modes)), np.zeros(0))
+    springs = system.springs or no_springs(system.modes)
     steps, outputs = (len(base) - 1) // 2, len(system.output_rows)
     out = np.empty((steps + 1, outputs))
     kept, peaks = np.zeros((len(contacts.rows), KEPT)), np.zeros(len(springs.rows))
@@ -118,13 +118,13 @@ def passed_system(system: ModalSystem) -> tuple[list[Floats], CSystem]:
     """The arrays, to be kept, and the structure that points at them."""
     n, empty = system.modes, np.zeros(0)
     contacts = system.contacts or no_contacts(n)
-    springs = system.springs or CubicSprings(np.zeros((0, n)), empty)
+    springs = system.springs or no_springs(n)
     frictions = system.frictions or Frictions(np.zeros((0, n)), empty, empty, empty)
     w = system.frequency
     arrays = [
         *(w * w, 2.0 * system.damping_ratio * w, system.participation),
         *(contacts.rows, contacts.clearance, contacts.stiffness, contacts.damping),
-        *(springs.rows, springs.stiffness),
+        *(springs.rows, springs.stiffness, springs.offset),
         *(frictions.rows, frictions.force, frictions.coefficient, frictions.speed),
         system.output_rows,
     ]

@@ -103,11 +103,11 @@ class Halves:
             participation=roots,
             output_rows=own,
             contacts=faces.contacts(gap, np.array([faces.clearance]), reduced),
-            springs=CubicSprings(own, cubic * masses) if cubic else None,
+            springs=CubicSprings(own, cubic * masses, np.zeros(2)) if cubic else None,
             frictions=sliding if faces.friction else None,
         )
 
-    def bonded(self, cubic: float = 0.0, friction: float = 0.0) -> ModalSystem:
+    def bonded(self, cubic: float = 0.0, friction: float = 0.0, sag: float = 0.0) -> ModalSystem:
         """One mass, on which both sensors are.
 
         Parameters
@@ -116,6 +116,8 @@ class Halves:
             N/(kg m3)
         friction : float
             Dry friction of the support, N/kg.
+        sag : float
+            m from where the cubic spring is at its softest (or stiffest) to the place at rest.
         """
         whole = self.whole()
         row = np.array([[1.0 / math.sqrt(whole.mass)]])
@@ -125,7 +127,9 @@ class Halves:
             damping_ratio=np.array([whole.zeta]),
             participation=np.array([math.sqrt(whole.mass)]),
             output_rows=np.vstack([row, row]),
-            springs=CubicSprings(row, np.array([cubic * whole.mass])) if cubic else None,
+            springs=CubicSprings(row, np.array([cubic * whole.mass]), np.array([sag]))
+            if cubic
+            else None,
             frictions=dry if friction else None,
         )
 

@@ -52,13 +52,17 @@ class Sensor:
         rng : numpy.random.Generator
         """
         sections = butter(self.order, self.bandwidth, fs=rate, output="sos")
-        felt = self.gain * sosfilt(sections, signal)
-        if self.delay:
-            number = np.arange(len(felt))
-            felt = np.interp(number - self.delay * rate, number, felt)
-        sampled = resample_poly(felt, 1, factor, window=against_aliasing(factor))
+        taps = self.gain * delayed(against_aliasing(factor), self.delay * rate)
+        sampled = resample_poly(sosfilt(sections, signal), 1, factor, window=taps)
         rms = float(np.sqrt(np.mean(sampled**2)))
         return np.asarray(sampled + self.noise * rms * rng.normal(size=sampled.shape))
+
+
+def delayed(taps: Floats, steps: float) -> Floats:
+    """A symmetric filter that delays by some steps, between two whole numbers linearly."""
+    whole, part = int(steps), steps % 1.0
+    long = np.pad(taps, whole + 1)
+    return np.asarray((1.0 - part) * np.roll(long, whole) + part * np.roll(long, whole + 1))
 
 
 @functools.cache

@@ -39,10 +39,22 @@ class Contacts:
 
 @dataclass(frozen=True)
 class CubicSprings:
-    """Forces ``-stiffness x**3`` along ``x = rows @ q``; rows (springs, modes), N/m3."""
+    """Forces ``-stiffness ((x + offset)**3 - offset**3)`` along ``x = rows @ q``.
+
+    Attributes
+    ----------
+    rows : ndarray
+        (springs, modes)
+    stiffness : ndarray
+        N/m3
+    offset : ndarray
+        m; away from zero the spring is stiffer to one side than to the other, as that of a beam
+        which sags: even orders without any impact.
+    """
 
     rows: Floats
     stiffness: Floats
+    offset: Floats
 
 
 @dataclass(frozen=True)
@@ -71,6 +83,11 @@ def no_contacts(modes: int) -> Contacts:
     """Of a structure without any."""
     empty = np.zeros(0)
     return Contacts(np.zeros((0, modes)), empty, empty, empty)
+
+
+def no_springs(modes: int) -> CubicSprings:
+    """Of a structure without any."""
+    return CubicSprings(np.zeros((0, modes)), np.zeros(0), np.zeros(0))
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,8 @@ class Outcome:
         What else was counted, to be summed.
     notes : tuple of str
         A line a finding, with what is needed to see it again.
+    rows : tuple of list
+        What was measured of each unit, where the campaign keeps that.
     """
 
     done: int
@@ -47,6 +49,7 @@ class Outcome:
     worst: float = 0.0
     counts: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    rows: tuple[list[Any], ...] = ()
 
 
 class Campaign(ABC):
@@ -94,6 +97,14 @@ class Campaign(ABC):
             Units to do.
         """
 
+    def report(self, rows: Sequence[Sequence[Any]]) -> list[str]:
+        """Lines of Markdown for the page, from the rows of all its runs."""
+        return []
+
+    def draw(self, rows: Sequence[Sequence[Any]], folder: Path) -> list[Path]:
+        """Draw what the report shows as pictures into the folder of the page; which files."""
+        return []
+
 
 def batch_seed(seed: int, batch: int) -> int:
     """The seed of a batch: those of neighbours have nothing in common."""
@@ -101,10 +112,10 @@ def batch_seed(seed: int, batch: int) -> int:
 
 
 def sources() -> str:
-    """A digest of all campaigns' sources: other sources, another question."""
+    """A digest of the sources of all campaigns and benches: other sources, another question."""
     from .records import digest
 
-    return digest(HERE)
+    return digest(HERE, HERE.parent / "benches")
 
 
 @dataclass(frozen=True)
@@ -137,7 +148,8 @@ class CampaignJob(Job):
             clock = processor_time()
             found = campaign.run(fmus[OSCILLATOR], seed, count)
             notes = [without_places(note) for note in found.notes[:TOLD]]
-            told = json.dumps({"counts": dict(found.counts), "notes": notes})
+            kept = {"counts": dict(found.counts), "notes": notes, "rows": found.rows}
+            told = json.dumps(kept)
             seconds = processor_time() - clock
             rows.append((found.done, found.findings, found.worst, seconds, seed, told))
         names = ("done", "findings", "worst", "seconds", "seed", "told")
