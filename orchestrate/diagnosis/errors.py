@@ -7,8 +7,9 @@ weights W of the soft loss. Two covariances of d are taken:
 * blocks: the residuals that are there, summed over blocks of neighbouring windows (a sandwich):
   what the model misses hangs together over neighbours and is no noise.
 
-The variance is the sum of both: each sees a part of what there is, and the blocks are few. ``J'J`` alone would take each window for an experiment of
-its own and the model for true; on real contacts it is 20 to 100 times too small.
+The variance is the sum of both: each sees a part of what there is, and the blocks are few. ``J'J``
+alone would take each window for an experiment of its own and the model for true; on real contacts
+it is 20 to 100 times too small.
 """
 
 from __future__ import annotations

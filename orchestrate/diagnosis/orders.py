@@ -173,6 +173,9 @@ def checked_channels(record: xr.Dataset) -> Channels:
     if len(channels.names) < 2:
         text = "expected acceleration1, acceleration2 or both beside box_acceleration"
         raise InputError(f"record: no acceleration of the structure; {text}")
+    for name, values in zip(channels.names, channels.values, strict=True):
+        if not np.ptp(values) > 0.0:
+            raise InputError(f"{name}: does not move; expected the reading of an accelerometer")
     return channels
 
 
