@@ -11,13 +11,16 @@ What is described
     harmonic motion, and a motor of limited power that shakes the box; in SI or by the paper's
     numbers, in Python or in TOML files.
 What is asked
-    :func:`simulate`, :func:`resonance`, :func:`sweep`, :func:`spectra`; :func:`map`,
-    :func:`lyapunov`, :func:`attractors`, :func:`basin`, :func:`impact_statistics`;
-    :func:`shake` as in the laboratory, by a :class:`SweptSine`, :class:`Random` vibration, a
-    :class:`Shock` or :class:`Sampled` acceleration; :func:`measure` what a :class:`Sensor` reads
+    :func:`simulate`, :func:`resonance`, :func:`resonance_levels`, :func:`contact_threshold`,
+    :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`, :func:`poincare`,
+    :func:`attractors`, :func:`basin`, :func:`basin_entropy`, :func:`impact_statistics`;
+    :func:`shake` as in the laboratory, by a :class:`SweptSine` or :class:`SteppedSine`,
+    :class:`Random` vibration, a :class:`Shock` or :class:`Sampled` acceleration; :func:`measure` what a :class:`Sensor` reads
     of it, :func:`record`, :func:`read_record` and :func:`write_record` what was measured;
     :func:`frf`, :func:`psd`, :func:`track_orders`, :func:`harmonics`, :func:`spectrogram`,
     :func:`shock_spectrum` and :func:`probability_density` of such a record, or of a measured one;
+    :func:`signs` of delamination in it, :func:`fit` a structure to it and :func:`detect` whether
+    it is delaminated, :func:`detect_all` of many; :func:`plan_test` for a record that shows it;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
     :func:`couple_all`,
     :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
@@ -26,7 +29,7 @@ What is asked
     for other tools.
 What is answered
     An :class:`xarray.Dataset` with units, long names, all parameters, and where it comes from.
-    :func:`plot` draws it.
+    :func:`plot` draws it, :func:`report` makes it a page to read, print and sign.
 
 All is computed by FMPy through exported FMUs. Every function that computes takes the keywords of
 :class:`orchestrate.running.options.Running`: ``jobs``, ``cluster``, ``store`` and more.

@@ -1,5 +1,10 @@
 """The public names and where each lives: ``__init__.py`` reads them here, type checkers too."""
 
+from .diagnosis.detect import detect as detect
+from .diagnosis.detect_all import detect_all as detect_all
+from .diagnosis.fit import fit as fit
+from .diagnosis.plan_test import plan_test as plan_test
+from .diagnosis.signs import signs as signs
 from .dynamics.attractors import attractors as attractors
 from .dynamics.basin_entropy import basin_entropy as basin_entropy
 from .dynamics.basins import basin as basin
@@ -36,6 +41,7 @@ from .laboratory.shake import shake as shake
 from .laboratory.shock import Shock as Shock
 from .laboratory.stepped_sine import SteppedSine as SteppedSine
 from .laboratory.swept_sine import SweptSine as SweptSine
+from .reports.report import report as report
 from .response.resonance import resonance as resonance
 from .response.resonance_levels import resonance_levels as resonance_levels
 from .response.simulate import simulate as simulate

@@ -27,6 +27,7 @@ from . import (
     build,
     capture,
     couple,
+    diagnose,
     drive_branch,
     explore,
     jump_voltages,
@@ -36,6 +37,7 @@ from . import (
     paper,
     passage,
     poincare,
+    report,
     resonance,
     shake,
     simulate,
@@ -46,10 +48,10 @@ from .options import Commands, sets_text
 from .process import Terminated, outputs, signals
 
 COMMANDS = (
-    *(build, simulate, shake, analyse, resonance, spectra, sweep, map),
+    *(build, simulate, shake, analyse, diagnose, resonance, spectra, sweep, map),
     *(lyapunov, poincare, attractors, basin, orbit, branch, border),
     *(couple, capture, passage, jump_voltages, drive_branch),
-    *(explore, paper),
+    *(explore, report, paper),
 )
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 STORE = "orchestrate.running.store"

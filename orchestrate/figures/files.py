@@ -27,6 +27,20 @@ def prepare() -> None:
         figure.savefig(io.BytesIO(), format="png")
 
 
+def png_of(figure: Figure) -> bytes:
+    """A figure as the bytes of a PNG file."""
+    file = io.BytesIO()
+    with style():
+        figure.savefig(file, format="png", metadata=UNDATED["png"])
+    return file.getvalue()
+
+
+def size_of(png: bytes) -> dict[str, int]:
+    """Width and height of a picture in pixels, from its header: a page keeps their place."""
+    width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))
+    return {"width": width, "height": height}
+
+
 def save(
     figure: Figure, path: str | Path, formats: Iterable[str] = ("png",), **options: Any
 ) -> list[Path]:

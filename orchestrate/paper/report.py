@@ -10,6 +10,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
+from ..figures.files import size_of
 from ..files import write_whole
 from ..running.store import now
 from ..version import __version__
@@ -112,9 +113,3 @@ def entry(part: Part, picture: Path) -> dict[str, Any]:
         "data": [f"{name}.nc" for name in part.jobs],
         **size_of(content),
     }
-
-
-def size_of(png: bytes) -> dict[str, int]:
-    """Width and height of a picture in pixels, from its header: the page keeps their place."""
-    width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))
-    return {"width": width, "height": height}

@@ -13,10 +13,12 @@ LONG = {
     "build",
     "capture",
     "couple",
+    "diagnose",
     "explore",
     "jump-voltages",
     "paper",
     "passage",
+    "report",
 }  # read only
 EVERY = [
     pytest.param(page, words, id=f"{page.stem}-{' '.join(words)[:60]}")

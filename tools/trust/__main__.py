@@ -46,7 +46,8 @@ def run(
 
 
 def write_page() -> None:
-    """The page, from all records."""
+    """The page and its pictures, from all records."""
+    page.draw(records.read())
     text = page.text(records.read())
     write_whole(page.PAGE, lambda place: place.write_text(text, "utf-8"))
 

@@ -5,10 +5,10 @@ other.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,8 @@ class Outcome:
         What else was counted, to be summed.
     notes : tuple of str
         A line a finding, with what is needed to see it again.
+    rows : tuple of list
+        What was measured of each unit, where the campaign keeps that.
     """
 
     done: int
@@ -34,6 +36,7 @@ class Outcome:
     worst: float = 0.0
     counts: Mapping[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    rows: tuple[list[Any], ...] = ()
 
 
 class Campaign(ABC):
@@ -80,3 +83,11 @@ class Campaign(ABC):
         count : int
             Units to do.
         """
+
+    def report(self, rows: Sequence[Sequence[Any]]) -> list[str]:
+        """Return lines of Markdown for the page, from the rows of all its runs."""
+        return []
+
+    def draw(self, rows: Sequence[Sequence[Any]], folder: Path) -> list[Path]:
+        """Draw what the report shows as pictures into the folder of the page; return them."""
+        return []

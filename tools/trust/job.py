@@ -30,8 +30,10 @@ def batch_seed(seed: int, batch: int) -> int:
 
 
 def sources() -> str:
-    """Return a digest of all campaigns' sources: other sources, another question."""
-    return digest(HERE)
+    """Return a digest of the sources of all campaigns and benches: other sources, another
+    question.
+    """
+    return digest(HERE, HERE.parent / "benches")
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,8 @@ class CampaignJob(Job):
             clock = processor_time()
             outcome = campaign.run(fmus[OSCILLATOR], seed, count)
             notes = [without_places(note) for note in outcome.notes[:TOLD]]
-            told = json.dumps({"counts": dict(outcome.counts), "notes": notes})
+            kept = {"counts": dict(outcome.counts), "notes": notes, "rows": outcome.rows}
+            told = json.dumps(kept)
             seconds = processor_time() - clock
             rows.append((outcome.done, outcome.findings, outcome.worst, seconds, seed, told))
         names = ("done", "findings", "worst", "seconds", "seed", "told")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from .campaign import Campaign
 from .records import Record
@@ -119,12 +120,27 @@ def reached(campaign: Campaign, every: Sequence[Record], before: Sequence[Record
     return lines
 
 
+def rows_of(runs: Sequence[Record]) -> list[list[Any]]:
+    """What was measured of each unit, of the longest runs of each seed."""
+    return [row for record in longest(runs) for row in record.rows]
+
+
+def draw(records: Sequence[Record], folder: Path = PAGE.parent) -> None:
+    """Draw the pictures of all campaigns that have any."""
+    for campaign in CAMPAIGNS.values():
+        rows = rows_of(all_of(records, campaign))
+        if rows:
+            campaign.draw(rows, folder)
+
+
 def section(campaign: Campaign, runs: Sequence[Record], before: Sequence[Record]) -> list[str]:
     """Return one campaign."""
     lines = [f"(trust-{campaign.name})=", f"## {campaign.title}", "", campaign.asks, ""]
     if not runs:
         return [*lines, "Not run yet.", ""]
     lines += [*reached(campaign, runs, before), ""]
+    rows = rows_of(runs)
+    lines += campaign.report(rows) if rows else []
     lines += [f"- {note}" for note in dict.fromkeys(n for record in runs for n in record.notes)]
     if lines[-1]:
         lines.append("")

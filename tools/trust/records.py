@@ -12,7 +12,7 @@ import platform
 import re
 import time
 from collections import Counter
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +57,10 @@ class Record:
     date, version, fmu, package, machine : str
         ``fmu`` is the GUID of the FMU, ``package`` a digest of the sources of ``orchestrate``,
     campaigns : str
-        and this one of the campaigns' own; empty in records from before there was one.
+        and this one of the campaigns' own and the benches'; empty in records from before there was
+        one.
+    rows : list of list
+        What was measured of each unit, where the campaign keeps that.
     """
 
     campaign: str
@@ -76,6 +79,7 @@ class Record:
     package: str
     machine: str
     campaigns: str = ""
+    rows: list[list[Any]] = field(default_factory=list)
 
     def command(self) -> str:
         """Return what does it again."""
@@ -111,15 +115,17 @@ def record_of(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> Reco
         package=digest(PACKAGE),
         machine=machine(),
         campaigns=str(answer.attrs["sources"]),
+        rows=[row for part in told for row in part["rows"]],
     )
 
 
-def digest(folder: Path) -> str:
+def digest(*folders: Path) -> str:
     """Return a digest of a program's sources, with their names."""
     hashed = hashlib.sha256()
-    for path in sorted(path for path in folder.rglob("*") if path.suffix in SOURCES):
-        content = path.read_bytes()
-        hashed.update(f"{path.relative_to(folder).as_posix()} {len(content)}\n".encode() + content)
+    for folder in folders:
+        for path in sorted(path for path in folder.rglob("*") if path.suffix in SOURCES):
+            content, name = path.read_bytes(), path.relative_to(folder).as_posix()
+            hashed.update(f"{name} {len(content)}\n".encode() + content)
     return hashed.hexdigest()[:16]
 
 
@@ -145,6 +151,8 @@ def append(record: Record, path: Path = RECORDS) -> bool:
     if any(record.is_copy(other) for other in read(path)):
         return False
     row: dict[str, Any] = asdict(record)
+    if not record.rows:
+        del row["rows"]
     with path.open("a", encoding="utf-8") as file:
         file.write(json.dumps(row) + "\n")
     return True

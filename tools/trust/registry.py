@@ -6,6 +6,7 @@ from .attractors import Attractors
 from .bits import Grids
 from .campaign import Campaign
 from .clusters import Clusters
+from .diagnosis import Diagnosis
 from .faults import Faults
 from .flights import Energy, Impacts, Roots
 from .fuzzing import Fuzzing
@@ -19,6 +20,7 @@ CAMPAIGNS: dict[str, Campaign] = {
     campaign.name: campaign
     for campaign in (
         *(Impacts(), Roots(), Grids(), Restores(), Energy(), Fuzzing()),
-        *(Attractors(), Verdicts(), Faults(), Clusters(), Hostile(), Mutants(), Leaks()),
+        *(Attractors(), Verdicts(), Diagnosis(), Faults(), Clusters(), Hostile()),
+        *(Mutants(), Leaks()),
     )
 }

@@ -123,22 +123,7 @@ def track_orders(
     wanted = checked_orders(orders)
     length = checked_number("periods", periods, 2.0, 1e4)
     part = checked_number("overlap", overlap, 0.0, 0.95)
-    measured = phase is None
-    angle = measured_phase(channels) if measured else given_phase(channels, phase)
-    if isinstance(phase, SteppedSine):
-        windows = list(dwells(channels, phase, angle))
-    else:
-        windows = list(divide(channels, angle, length, part, smooth=measured))
-    if not windows:
-        turns = abs(float(angle[-1] - angle[0])) / TURN
-        raise InputError(
-            f"periods = {periods!r}: the record has {turns:.4g}; expected fewer in a window"
-        )
-    fits = [fit(channels, window, wanted) for window in windows]
-    complex_amplitudes = np.stack([fitted[0] for fitted in fits], axis=-1)
-    residual = np.stack([fitted[1] for fitted in fits], axis=-1)
-    if measured:
-        complex_amplitudes = against_box(channels, complex_amplitudes, residual, wanted)
+    windows, complex_amplitudes, residual = fit_windows(channels, wanted, phase, length, part)
     over = ("channel", "order", "time")
     rate = [window.rate for window in windows]
     frequency = [window.frequency for window in windows]
@@ -159,6 +144,46 @@ def track_orders(
         },
         attributes("orders", "Orders", channels.title, periods=length, overlap=part),
     )
+
+
+def fit_windows(
+    channels: Channels,
+    orders: tuple[float, ...],
+    phase: SweptSine | SteppedSine | ArrayLike | None,
+    periods: float,
+    overlap: float,
+) -> tuple[list[Window], Floats, Floats]:
+    """Fit orders in all windows of a record.
+
+    Returns
+    -------
+    windows : list of Window
+    amplitudes : ndarray, shape (channels, orders, windows)
+        Complex, see :func:`fit`.
+    residual : ndarray, shape (channels, windows)
+
+    Raises
+    ------
+    InputError
+        As :func:`track_orders`.
+    """
+    measured = phase is None
+    angle = measured_phase(channels) if measured else given_phase(channels, phase)
+    if isinstance(phase, SteppedSine):
+        windows = list(dwells(channels, phase, angle))
+    else:
+        windows = list(divide(channels, angle, periods, overlap, smooth=measured))
+    if not windows:
+        turns = abs(float(angle[-1] - angle[0])) / TURN
+        raise InputError(
+            f"periods = {periods!r}: the record has {turns:.4g}; expected fewer in a window"
+        )
+    fits = [fit(channels, window, orders) for window in windows]
+    amplitudes = np.stack([fitted[0] for fitted in fits], axis=-1)
+    residual = np.stack([fitted[1] for fitted in fits], axis=-1)
+    if measured:
+        amplitudes = against_box(channels, amplitudes, residual, orders)
+    return windows, amplitudes, residual
 
 
 def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:

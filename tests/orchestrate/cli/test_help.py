@@ -21,6 +21,7 @@ COMMANDS = (
         "simulate",
         "shake",
         "analyse",
+        "diagnose",
         "resonance",
         "spectra",
         "sweep",
@@ -29,7 +30,7 @@ COMMANDS = (
         "attractors",
     ),
     *("basin", "orbit", "branch", "border", "couple", "capture", "passage", "jump-voltages"),
-    *("drive-branch", "explore", "paper"),
+    *("drive-branch", "explore", "report", "paper"),
 )
 
 

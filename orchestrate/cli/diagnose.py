@@ -1,0 +1,209 @@
+"""``diagnose``: records in, a verdict on each beam and a report out."""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import InputError
+from .options import Commands, add_set, plain_float, structure_of
+from .output import (
+    FORMATS,
+    PLOTS,
+    add_results,
+    check_output,
+    digest,
+    draw_picture,
+    endings_of,
+    export_formats,
+    running_of,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..structures import Structure
+
+EXAMPLES = """  {program} diagnose record.csv --structure beam.toml
+  {program} diagnose left.csv right.uff --structure beam.toml --set e=0.4 --jobs 2
+  {program} diagnose up.csv --other down.csv --other louder.csv --structure beam.toml
+  {program} diagnose export.txt --columns 0,3,4 --unit g --sample-rate 2000 --structure beam.toml
+
+what it needs:
+  a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
+  table, the clamp) and of one face of the beam, or of both faces; and a guess of the beam in a
+  file, within some 10 %: masses of both halves and their natural frequencies, see 'quantities'.
+  Several records are of several beams, and give a verdict each.
+what it gives:
+  delaminated      the faces part and strike each other
+  no opening seen  up to the level and over the frequencies of the record; never "intact"
+  not described    the beam, its clamp or the sensors do something else
+  undecided        this record does not tell; the report says which one would
+  and for each record a report to read, print and sign (.html), the answers (.nc), a picture"""
+CHANNELS = ("time", "box_acceleration", "acceleration1", "acceleration2")
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "whether a measured beam is delaminated: a verdict, its evidence, a report"
+    parser = commands.add("diagnose", run, text, EXAMPLES)
+    files = "measured: .csv, .txt, .uff, .unv, .mat, .nc; one beam each"
+    parser.add_argument("records", type=Path, nargs="+", metavar="FILE", help=files)
+    guess = parser.add_argument_group("the guess")
+    guess.add_argument(
+        "--structure", metavar="FILE", help="TOML file with a [structure], or the name of a set"
+    )
+    add_set(guess, "one of its parameters, such as f1=42; may be repeated")
+    option = parser.add_argument_group("records").add_argument
+    other = "record of the same beam at another level or in the other direction, for the signs"
+    option("--other", type=Path, action="append", default=[], metavar="FILE", help=other)
+    option("--unit", metavar="UNIT", help="m/s2, g ... (default: what the file says)")
+    columns = "of time, base, face 1 and face 2, by name or number from 0 (default: by usual names)"
+    option("--columns", metavar="A,B,...", help=columns)
+    rate = "where the file has no times; then --columns begins with the base"
+    option("--sample-rate", type=plain_float, metavar="HZ", help=rate)
+    option = parser.add_argument_group("report").add_argument
+    option("--notes", default="", metavar="WORDS", help="below the title: which beam, who, when")
+    add_results(parser, store=False)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    formats = endings_of("--format", arguments.format, FORMATS)
+    plots = endings_of("--plot", arguments.plot, PLOTS)
+    check_output(arguments.output)
+    guess = guess_of(arguments)
+    others = [read(arguments, path) for path in arguments.other]
+    if others and len(arguments.records) > 1:
+        raise InputError("--other: of one beam; expected one record with it")
+    records = {path: read(arguments, path) for path in dict.fromkeys(arguments.records)}
+    names = {path: name_of(path, guess, arguments) for path in records}
+    verdicts = verdicts_of(arguments, records, names, guess)
+    for path, verdict in verdicts.items():
+        print_verdict(path, verdict)
+        signs = signs_of(records[path], others, guess)
+        write(arguments, names[path], {"": verdict, "_signs": signs}, formats, plots)
+
+
+def name_of(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
+    """Name of the files of a record: another content, guess or way to read it has another one."""
+    read_as = [arguments.columns, arguments.unit, arguments.sample_rate]
+    return f"diagnose_{path.stem}_{digest(checksum(path), guess.parameters(), read_as)}"
+
+
+def checksum(path: Path) -> str:
+    """SHA-256 of a file."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def guess_of(arguments: argparse.Namespace) -> Structure:
+    """The guess of the beam.
+
+    Raises
+    ------
+    InputError
+        Where there is none: no usual structure is a guess of somebody's beam.
+    """
+    if arguments.structure is None:
+        text = "expected a TOML file with a guess of the beam, within some 10 %"
+        raise InputError(f"--structure: nothing given; {text}")
+    return structure_of(arguments)
+
+
+def read(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
+    """A record from its file."""
+    from .. import read_record
+
+    columns = columns_of(arguments)
+    record = read_record(
+        path, columns=columns, unit=arguments.unit, sample_rate=arguments.sample_rate
+    )
+    if "acceleration1" not in record and "acceleration2" not in record:
+        text = "expected the acceleration of a face beside the base's (--columns)"
+        raise InputError(f"{path}: no acceleration1; {text}")
+    return record
+
+
+def columns_of(arguments: argparse.Namespace) -> dict[str, str | int] | None:
+    """Columns of the channels in a file, by name or number.
+
+    Raises
+    ------
+    InputError
+    """
+    if arguments.columns is None:
+        return None
+    texts = [text.strip() for text in arguments.columns.split(",")]
+    names = CHANNELS[arguments.sample_rate is not None :]
+    if not 2 <= len(texts) <= len(names) or not all(texts):
+        expected = f"expected columns of {', '.join(names)}, the last one if it is there"
+        raise InputError(f"--columns {arguments.columns}: {expected}")
+    numbers = (int(text) if text.isdecimal() else text for text in texts)
+    return dict(zip(names, numbers, strict=False))
+
+
+def verdicts_of(
+    arguments: argparse.Namespace,
+    records: Mapping[Path, xr.Dataset],
+    names: Mapping[Path, str],
+    guess: Structure,
+) -> dict[Path, xr.Dataset]:
+    """The verdict on each record, stored by its name."""
+    from .. import detect_all
+
+    named = {names[path]: record for path, record in records.items()}
+    running = running_of(arguments, arguments.output)
+    verdicts = detect_all(named, guess, **running)
+    return {
+        path: verdicts[name].assign_attrs(
+            record_file=path.name,
+            record_sha256=checksum(path),
+            guess_file=str(arguments.structure),
+        )
+        for path, name in names.items()
+    }
+
+
+def signs_of(record: xr.Dataset, others: list[xr.Dataset], guess: Structure) -> xr.Dataset:
+    """The model-free signs of a record."""
+    from .. import signs
+
+    return signs(record, other=others, structure=guess)
+
+
+def write(
+    arguments: argparse.Namespace,
+    stem: str,
+    answers: Mapping[str, xr.Dataset],
+    formats: tuple[str, ...],
+    plots: tuple[str, ...],
+) -> None:
+    """Write answers, pictures and the report, and print their places."""
+    from .. import plot, report
+    from ..files import open_folder
+    from ..running.store import write_netcdf
+
+    folder = open_folder(arguments.output)
+    for ending, answer in answers.items():
+        place = folder / f"{stem}{ending}.nc"
+        if ending:  # the verdict is stored already
+            write_netcdf(answer, place)
+        pictures = draw_picture(place, plots, True, partial(plot, answer))
+        for file in (place, *export_formats(answer, place, formats, fresh=True), *pictures):
+            print(file)
+    print(report(*answers.values(), output=folder / f"{stem}.html", notes=arguments.notes))
+
+
+def print_verdict(path: Path, verdict: xr.Dataset) -> None:
+    """Print the verdict and what it rests on, in a few lines."""
+    from ..reports.verdict import verdict_of
+
+    said = verdict_of(verdict)
+    print(f"{path}: {said.word} {said.sentence}")
+    for name, words in (("reason", "decided by"), ("settle", "to settle it")):
+        if verdict.attrs.get(name):
+            print(f"  {words}: {verdict.attrs[name]}")

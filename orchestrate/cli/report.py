@@ -1,0 +1,38 @@
+"""``report``: stored results as one page to read, print and sign."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .options import Commands
+from .output import check_output
+from .question import read_stored
+
+EXAMPLES = """  {program} report results/sweep.nc --title Beam --notes November
+  {program} report results/map.nc results/resonance.nc --output study"""
+
+
+def add_parser(commands: Commands) -> None:
+    """Declare the command."""
+    text = "stored results as one page with pictures and numbers, to read, print and sign"
+    parser = commands.add("report", run, text, EXAMPLES)
+    files = "results of earlier commands; a verdict of diagnose comes first"
+    parser.add_argument("results", type=Path, nargs="+", metavar="FILE.nc", help=files)
+    option = parser.add_argument_group("page").add_argument
+    option("--title", default="", metavar="WORDS", help="by default that of the first result")
+    option("--notes", default="", metavar="WORDS", help="below the title: what, who, when")
+    place = "folder of the page (default: results)"
+    option("--output", type=Path, default=Path("results"), metavar="FOLDER", help=place)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Carry it out."""
+    import orchestrate
+
+    from ..files import open_folder
+
+    check_output(arguments.output)
+    answers = [read_stored("FILE", path) for path in arguments.results]
+    page = open_folder(arguments.output) / f"report_{arguments.results[0].stem}.html"
+    print(orchestrate.report(*answers, output=page, title=arguments.title, notes=arguments.notes))

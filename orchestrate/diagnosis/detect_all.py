@@ -1,0 +1,84 @@
+"""Verdicts on many records, side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from ..access import finder
+from ..errors import InputError
+from ..running.runner import gather
+from ..structures import Structure
+from .detect import DetectJob
+from .fit import checked_data, checked_free, delaminated_guess
+from .hypotheses import FREE
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+
+def detect_all(
+    records: Mapping[str, xr.Dataset],
+    guess: Structure,
+    *,
+    free: Sequence[str] = FREE,
+    **running: Unpack[Running],
+) -> dict[str, xr.Dataset]:
+    """Say of many records whether each is that of a delaminated structure.
+
+    Parameters
+    ----------
+    records : mapping of str to xarray.Dataset
+        By names of your own, which are the names of the files. Each as for
+        :func:`orchestrate.detect`.
+    guess : Structure
+        Of all of them.
+    free : sequence of str
+        As for :func:`orchestrate.detect`.
+    **running
+        ``jobs``, ``cluster``, ``store`` and others, see
+        :class:`orchestrate.running.options.Running`; ``store`` is a folder, a file for each record.
+
+    Returns
+    -------
+    dict of str to xarray.Dataset
+        What :func:`orchestrate.detect` answers, by the records' names.
+
+    Raises
+    ------
+    InputError
+        It names the record that is wrong.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.01)
+    >>> sweep = orchestrate.SweptSine(first=40.0, last=56.0, duration=6.0, acceleration=4.0)
+    >>> history = orchestrate.shake(beam.as_bonded(), sweep, sample_rate=600.0)
+    >>> answers = orchestrate.detect_all({"left": history}, beam.replace(f1=44.0))
+    >>> str(answers["left"].verdict.values)
+    'no opening seen'
+    """
+    if not isinstance(records, Mapping) or not records:
+        raise InputError("records: expected one record or more, by names")
+    chosen, structure = checked_free(free), delaminated_guess(guess)
+    jobs = [job_of(name, record, structure, chosen) for name, record in records.items()]
+    return dict(zip(records, gather(jobs, running, finder(running)), strict=True))
+
+
+def job_of(name: str, record: xr.Dataset, guess: Structure, free: tuple[str, ...]) -> DetectJob:
+    """The job of one record.
+
+    Raises
+    ------
+    InputError
+        It names the record.
+    """
+    try:
+        data = checked_data(record)
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+    return DetectJob(name=name, data=data, guess=guess, free=free)

@@ -1,0 +1,95 @@
+"""Signs of a run on a weak drive: where its speed jumps, and the power that it takes before."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+NEEDED = ("time", "speed", "voltage", "motor")
+FEWEST = 8  # speeds that both runs have
+
+
+def is_drive_run(data: object) -> bool:
+    """Whether a dataset is a run of a motor, one row a revolution."""
+    return "revolution" in getattr(data, "dims", ()) and all(
+        name in data.variables  # type: ignore[attr-defined]
+        for name in NEEDED
+    )
+
+
+def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> tuple[dict[str, float], dict[str, float]]:
+    """Fall of the jump voltage and extra power of a run against one of the sound beam.
+
+    Parameters
+    ----------
+    run, sound : xarray.Dataset
+        Of :func:`orchestrate.couple`, or measured: over ``revolution`` time, speed, voltage and
+        the ``motor``'s work.
+
+    Returns
+    -------
+    values, floors : dict of str to float
+        By the sign's name; NaN where a run does not show it.
+    """
+    first, second = jump_voltage(run), jump_voltage(sound)
+    fall = 1.0 - first / second
+    lag = sum(jump_error(one) / voltage for one, voltage in ((run, first), (sound, second)))
+    power, scatter = extra_power(run, sound)
+    return (
+        {"jump_voltage_fall": fall, "extra_power": power},
+        {"jump_voltage_fall": lag, "extra_power": scatter},
+    )
+
+
+def jump_voltage(run: xr.Dataset) -> float:
+    """Voltage at which the speed jumps up, V; NaN where the run has none."""
+    if "jumps" not in run or "jump" not in run.coords or "up" not in run.jump.values:
+        return math.nan
+    return float(run.jumps.sel(jump="up"))
+
+
+def jump_error(run: xr.Dataset) -> float:
+    """What the ramp has added to the voltage of the jump, V; NaN where that is not known."""
+    return abs(float(run.jump_lag.sel(jump="up"))) if "jump_lag" in run else math.nan
+
+
+def extra_power(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:
+    """Mean power over that of the sound beam at the same speeds, less 1, and its standard error."""
+    speeds, powers = below_the_jump(run)
+    other_speeds, other_powers = below_the_jump(sound)
+    if min(len(speeds), len(other_speeds)) < FEWEST:
+        return math.nan, math.nan
+    low, high = max(speeds[0], other_speeds[0]), min(speeds[-1], other_speeds[-1])
+    common = (speeds >= low) & (speeds <= high)
+    if common.sum() < FEWEST:
+        return math.nan, math.nan
+    reference = np.interp(speeds[common], other_speeds, other_powers)
+    mean = float(reference.mean())
+    if not mean > 0.0:
+        return math.nan, math.nan
+    rest = powers[common] - reference
+    error = float(np.std(rest, ddof=1)) / math.sqrt(float(common.sum())) / mean
+    return float(rest.mean()) / mean, error
+
+
+def below_the_jump(run: xr.Dataset) -> tuple[Floats, Floats]:
+    """Mean speeds up to the jump on the way up, ascending, and the motor's power at them."""
+    time, work, voltage = (run[name].values for name in ("time", "motor", "voltage"))
+    speed = run.speed.values
+    if not len(time) > 1:
+        raise InputError("record: a run of less than two revolutions; expected more of them")
+    power = np.diff(work) / np.diff(time)
+    jump = jump_voltage(run)
+    end = jump if math.isfinite(jump) else float(voltage.max())
+    last = int(np.argmax(voltage >= end)) or len(voltage) - 1
+    order = np.argsort(speed[1 : last + 1], kind="stable")
+    return speed[1 : last + 1][order], power[:last][order]

@@ -1,0 +1,77 @@
+"""The force that would open the faces of a sound structure, in closed form.
+
+While the faces stay together both masses move as one, and the force between them is that of a
+linear oscillator. Faces that are pressed together by a larger force never part, and no record can
+tell such a structure from a sound one.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..constants import TURN
+
+if TYPE_CHECKING:
+    from ..structures import Structure
+
+Floats = NDArray[np.float64]
+
+
+def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
+    """Amplitude of the force between the faces of a bonded structure, over the box's acceleration.
+
+    With M = m1 + m2, K = k1 + k2, D = d1 + d2 and the box's acceleration A sin(w t), the motion of
+    both masses in the box has the complex amplitude X = -M A/(K - w^2 M + i w D), and the force on
+    mass 2 is m2 A + (k2 - w^2 m2 + i w d2) X.
+
+    Parameters
+    ----------
+    structure : Structure
+    frequency : array_like
+        Hz.
+
+    Returns
+    -------
+    ndarray
+        kg, that is N for each m/s2; 0 at all frequencies where both halves alone move alike.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> halves = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "zeta1": 0.01, "zeta2": 0.01}
+    >>> alike = Structure.from_halves(f2=42.0, **halves)
+    >>> bool(opening_force(alike, 30.0) < 1e-12)
+    True
+    >>> bool(opening_force(Structure.from_halves(f2=55.0, **halves), 30.0) > 0.1)
+    True
+    """
+    w = TURN * np.asarray(frequency, dtype=float)
+    m, k = structure.m1 + structure.m2, structure.k1 + structure.k2
+    motion = -m / (k - w**2 * m + 1j * w * (structure.d1 + structure.d2))
+    own = structure.k2 - w**2 * structure.m2 + 1j * w * structure.d2
+    return np.asarray(np.abs(structure.m2 + own * motion))
+
+
+def sweep_rate(f: float, zeta: float) -> float:
+    """Fastest linear sweep that shows a resonance as a steady sine does, Hz/s.
+
+    54 f^2/Q^2 Hz/min with Q = 1/(2 zeta): ISO 7626-2, and Gloth and Sinapius, Mech. Syst. Signal
+    Process. 18 (2004) 1421-1441.
+
+    Parameters
+    ----------
+    f : float
+        Natural frequency, Hz.
+    zeta : float
+        Damping ratio.
+
+    Examples
+    --------
+    >>> round(sweep_rate(50.0, 0.01), 3)
+    0.9
+    """
+    return 54.0 * math.pow(2.0 * zeta * f, 2) / 60.0

@@ -1,0 +1,463 @@
+"""Where a test shows the difference between the delaminated and the sound structure best."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+from ..laboratory.analysis.channels import Channels, attributes, checked_number
+from ..laboratory.analysis.orders import fit_windows
+from ..laboratory.sensors import Sensor, measure, sensors_of
+from ..laboratory.shake import shake
+from ..laboratory.swept_sine import SweptSine
+from ..response.labels import variable, yes_or_no
+from ..running.options import Running
+from ..structures import Structure
+from .opening import opening_force, sweep_rate
+from .sound import SoundStructure
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+Floats = NDArray[np.float64]
+ORDERS = (1.0, 2.0, 3.0)
+SPLITS = (1.0, 0.2)  # parts of the guess's difference between its halves that are computed
+SAMPLES = 20.0  # of the computed records, in a period of the highest frequency
+LONGEST = 120.0  # s of a computed sweep; a lighter damping would ask for more
+MARGIN = 2.0  # of the threshold, that a recommended level has
+ROOM = 0.1  # of the recommended range, on both sides
+BOX = "box_acceleration"
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Orders of a computed sweep over the frequency.
+
+    Attributes
+    ----------
+    delaminated, sound : ndarray, shape (channels, orders, frequencies)
+        Complex amplitudes, m/s2.
+    opening : ndarray, shape (frequencies,)
+        Largest gap around a frequency, m.
+    peak : float
+        Largest reading, m/s2.
+    level : float
+        Of the box, m/s2.
+    """
+
+    delaminated: Floats
+    sound: Floats
+    opening: Floats
+    peak: float
+    level: float
+
+    def at(self, level: float) -> Sweep:
+        """The same at another level, of a structure that is the same at all levels."""
+        scale = level / self.level
+        return Sweep(
+            scale * self.delaminated,
+            scale * self.sound,
+            scale * self.opening,
+            scale * self.peak,
+            level,
+        )
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What sensors add to an order in a window.
+
+    Attributes
+    ----------
+    density : ndarray, shape (channels,)
+        One-sided, (m/s2)/sqrt(Hz).
+    periods : float
+        In a window.
+    gain_error : float
+        Of the sensors against each other, relative.
+    """
+
+    density: Floats
+    periods: float
+    gain_error: float
+
+    def distances(self, sweep: Sweep, frequency: Floats) -> tuple[Floats, Floats]:
+        """Distance between both structures by order 1, and by orders 2 and 3.
+
+        In standard deviations of a complex amplitude. Least squares with Hann's weights over n
+        samples of a noise of variance s^2 have the variance 6 s^2/n; with a density of c^2 at the
+        rate r that is s^2 = c^2 r/2, and n = r periods/f.
+
+        Returns
+        -------
+        (ndarray, ndarray)
+            Of shape (frequencies,).
+        """
+        variance = 3.0 * self.density[:, None] ** 2 * frequency / self.periods
+        gap = np.abs(sweep.delaminated - sweep.sound) ** 2
+        doubt = (self.gain_error * np.abs(sweep.sound[:, 0])) ** 2
+        first = (gap[:, 0] / (variance + doubt)).sum(axis=0)
+        higher = (np.nansum(gap[:, 1:], axis=1) / variance).sum(axis=0)
+        return np.sqrt(first), np.sqrt(higher)
+
+
+def plan_test(
+    structure: Structure,
+    *,
+    sensor: Sensor | dict[str, Sensor],
+    levels: ArrayLike,
+    frequencies: ArrayLike,
+    periods: float = 16.0,
+    gain_error: float = 0.03,
+    threshold: float = 5.0,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Find frequencies and levels at which a delamination shows best.
+
+    Parameters
+    ----------
+    structure : Structure
+        A guess of the delaminated beam; the sound one is its bonded form.
+    sensor : Sensor or mapping of str to Sensor
+        As for :func:`orchestrate.measure`; its noise must be known.
+    levels : array_like
+        Peak accelerations of the box, m/s2.
+    frequencies : array_like
+        Hz, ascending, two at least.
+    periods : float
+        Of the excitation, in a window of the orders.
+    gain_error : float
+        Doubt about the sensors' gains, relative: it makes differences of order 1 worth less.
+    threshold : float
+        Standard deviations from which a difference counts.
+    **running
+        As for :func:`orchestrate.shake`, but for ``store``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``level`` in m/s2 and ``frequency`` in Hz: ``distance`` between the delaminated and
+        the sound structure in standard deviations of the noise in one window, and its parts
+        ``distance_first`` (order 1, which a sound beam of other numbers may imitate) and
+        ``distance_harmonics`` (orders 2 and 3, which no linear one has); ``opening``, the largest
+        gap in m; ``closing_force`` in N: faces pressed together by more stay shut there.
+        Over ``frequency``: ``smallest_level`` in m/s2 from which orders 2 and 3 count, and
+        ``opening_level`` in m/s2 from which a preloaded structure opens (0 without preload). Over
+        ``level``: ``smallest_opening`` in m and ``smallest_split`` (difference between the halves'
+        frequencies, relative to the guess's) that count at the best frequency, and ``overload``,
+        whether the readings reach the sensor's range. Scalars ``recommended_level``,
+        ``recommended_first``, ``recommended_last`` and ``recommended_duration`` of a swept sine,
+        and ``counts``, whether orders 2 and 3 count there.
+
+    Raises
+    ------
+    InputError
+
+    Notes
+    -----
+    One sweep over all frequencies is computed for the guess, and one for a fifth of its split, at
+    most 120 s long. A structure without clearance is the same at all levels; one with a clearance
+    is computed at each. The recommended sweep is as slow as ISO 7626-2 asks for; sweep it up and
+    down.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_file("beam").replace(D=0.02)
+    >>> sensor = orchestrate.Sensor(bandwidth=500.0, noise=1e-3)
+    >>> plan = orchestrate.plan_test(
+    ...     beam, sensor=sensor, levels=[0.02, 0.2], frequencies=[10.0, 11.0, 12.0, 13.0, 14.0]
+    ... )
+    >>> float(plan.distance_harmonics.max("frequency").argmax()), bool(plan.counts)
+    (1.0, True)
+    """
+    if structure.bonded:
+        raise InputError("structure: bonded; expected a guess of the delaminated one")
+    f = checked_frequencies(frequencies)
+    wanted = checked_levels(levels)
+    sensors = sensors_of(sensor)
+    limit = checked_number("threshold", threshold, 1e-3, 1e6)
+    noise = noise_of(sensors, checked_number("periods", periods, 2.0, 1e4), gain_error)
+    if running.get("store") is not None:
+        raise InputError("store: expected none; the answer is small, write it by to_netcdf")
+    test = Test(structure, sensors, f, noise, running)
+    sweeps = test.at_levels(wanted)
+    return dataset(test, sweeps, limit, test.largest_distances(sweeps[-1]))
+
+
+@dataclass(frozen=True)
+class Test:
+    """What is computed of a structure under test.
+
+    Attributes
+    ----------
+    structure : Structure
+    sensors : dict of str to Sensor
+    frequency : ndarray
+        Hz.
+    noise : Noise
+    running : dict
+        Keywords of :class:`orchestrate.running.options.Running`.
+    """
+
+    __test__ = False  # a name that pytest would collect
+
+    structure: Structure
+    sensors: dict[str, Sensor]
+    frequency: Floats
+    noise: Noise
+    running: Running
+
+    @property
+    def sound(self) -> SoundStructure:
+        """The bonded structure."""
+        return SoundStructure.from_structure(self.structure)
+
+    @property
+    def duration(self) -> float:
+        """Of a sweep over all frequencies, s, as ISO 7626-2 asks for."""
+        rate = max(sweep_rate(self.sound.f, self.sound.zeta), 1e-9)
+        fewest = 4.0 * self.noise.periods / self.frequency[0]
+        return max(float(self.frequency[-1] - self.frequency[0]) / rate, fewest)
+
+    def at_levels(self, levels: Floats) -> list[Sweep]:
+        """A sweep at each level."""
+        if self.structure.clearance:
+            return [self.computed(self.structure, level) for level in levels]
+        computed = self.computed(self.structure, float(levels[-1]))
+        return [computed.at(level) for level in levels]
+
+    def largest_distances(self, highest: Sweep) -> Floats:
+        """Largest distances by orders 2 and 3 at the highest level, of each split in ``SPLITS``."""
+        sweeps = [
+            highest
+            if part == 1.0
+            else self.computed(with_split(self.structure, part), highest.level)
+            for part in SPLITS
+        ]
+        return np.array(
+            [float(self.noise.distances(one, self.frequency)[1].max()) for one in sweeps]
+        )
+
+    def computed(self, structure: Structure, level: float) -> Sweep:
+        """A sweep over all frequencies, and its orders."""
+        f = self.frequency
+        sine = SweptSine(
+            first=float(f[0]),
+            last=float(f[-1]),
+            duration=min(self.duration, LONGEST),
+            acceleration=level,
+        )
+        rate = SAMPLES * float(f[-1])
+        history = shake(structure, sine, sample_rate=rate, **self.running)
+        quiet = {
+            name: replace(one, noise=0.0, range=math.inf, resolution=0.0, sample_rate=rate)
+            for name, one in {BOX: next(iter(self.sensors.values())), **self.sensors}.items()
+        }
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit
+            channels = Channels.from_record(measure(history, quiet, excitation=sine), (BOX,))
+        names, responses = channels.responses()
+        linear = self.sound.acceleration(channels)
+        rows = np.concatenate([channels.values[:1], responses, linear[None]])
+        both = Channels(channels.time, rate, (BOX, *names, "sound"), rows, channels.title)
+        windows, amplitudes, _ = fit_windows(both, ORDERS, None, self.noise.periods, 0.5)
+        at = np.array([window.frequency for window in windows])
+        found = along(f, at, amplitudes[1:])
+        sound = np.zeros_like(found[:-1])
+        sound[:, 0] = found[-1, 0]
+        gaps = [largest_gap(history, both.time[one.part]) for one in windows]
+        peak = float(np.abs(responses).max())
+        return Sweep(found[:-1], sound, np.interp(f, at, gaps), peak, level)
+
+
+def along(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:
+    """Amplitudes at other frequencies, straight between the windows."""
+    flat = amplitudes.reshape(-1, len(at))
+    return np.array([np.interp(frequency, at, row) for row in flat]).reshape(
+        *amplitudes.shape[:-1], len(frequency)
+    )
+
+
+def largest_gap(history: xr.Dataset, times: Floats) -> float:
+    """Largest gap of a history in a window, m."""
+    return float(history.x_rel.sel(time=slice(times[0], times[-1])).max())
+
+
+def with_split(structure: Structure, part: float) -> Structure:
+    """A structure whose halves differ by a part of what they did; bonded it is the same."""
+    share = structure.m1 / (structure.m1 + structure.m2)
+    k, d = structure.k1 + structure.k2, structure.d1 + structure.d2
+    k1 = share * k + part * (structure.k1 - share * k)
+    d1 = share * d + part * (structure.d1 - share * d)
+    return structure.replace(k1=k1, k2=k - k1, d1=d1, d2=d - d1)
+
+
+# -- what is asked --------------------------------------------------------------------------------
+
+
+def checked_frequencies(frequencies: ArrayLike) -> Floats:
+    """Ascending frequencies, Hz.
+
+    Raises
+    ------
+    InputError
+    """
+    f = numbers("frequencies", frequencies, "Hz")
+    if len(f) < 2 or not (np.diff(f) > 0.0).all():
+        text = "expected two at least, ascending, in Hz"
+        raise InputError(f"frequencies = {frequencies!r}: {text}")
+    return f
+
+
+def checked_levels(levels: ArrayLike) -> Floats:
+    """Levels in ascending order, m/s2."""
+    return np.unique(numbers("levels", levels, "m/s2"))
+
+
+def numbers(name: str, given: ArrayLike, unit: str) -> Floats:
+    """Numbers > 0.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        values = np.atleast_1d(np.asarray(given, dtype=float))
+    except (TypeError, ValueError):
+        values = np.array([np.nan])
+    if values.ndim != 1 or not len(values) or not (np.isfinite(values) & (values > 0.0)).all():
+        raise InputError(f"{name} = {given!r}: expected numbers > 0 in {unit}")
+    return values
+
+
+def noise_of(sensors: dict[str, Sensor], periods: float, gain_error: float) -> Noise:
+    """Noise of the responses' sensors.
+
+    Raises
+    ------
+    InputError
+        Where a sensor has none, or there is none on the structure.
+    """
+    error = checked_number("gain_error", gain_error, 0.0, 1.0)
+    responses = {name: one for name, one in sensors.items() if name != BOX}
+    if not responses:
+        raise InputError("sensor: on the box alone; expected one on acceleration1 or acceleration2")
+    for name, one in responses.items():
+        if not one.noise:
+            text = "expected its density in (m/s2)/sqrt(Hz), > 0: without it every level counts"
+            raise InputError(f"sensor on {name}: noise = 0.0; {text}")
+    return Noise(np.array([one.noise for one in responses.values()]), periods, error)
+
+
+# -- the answer -----------------------------------------------------------------------------------
+
+
+def dataset(
+    test: Test, sweeps: Sequence[Sweep], limit: float, split_distances: Floats
+) -> xr.Dataset:
+    """The answer, from a sweep at each level."""
+    import xarray as xr
+
+    f, levels = test.frequency, np.array([sweep.level for sweep in sweeps])
+    distances = [test.noise.distances(one, f) for one in sweeps]
+    first, higher = (np.stack(rows) for rows in zip(*distances, strict=True))
+    opening = np.stack([sweep.opening for sweep in sweeps])
+    over, unit = ("level", "frequency"), "standard deviations of the noise in a window"
+    kept = levels[:, None] * opening_force(test.structure, f)
+    splits = smallest_splits(levels, limit, split_distances)
+    split = "smallest difference between the halves that counts, relative to the guess's"
+    answer = xr.Dataset(
+        {
+            "distance": variable(over, np.hypot(first, higher), "1", f"difference in {unit}"),
+            "distance_first": variable(over, first, "1", f"of order 1, in {unit}"),
+            "distance_harmonics": variable(over, higher, "1", f"of orders 2 and 3, in {unit}"),
+            "opening": variable(over, opening, "m", "largest gap"),
+            "closing_force": variable(over, kept, "N", "preload above which the faces stay shut"),
+            "threshold": variable((), limit, "1", f"difference that counts, in {unit}"),
+            "smallest_split": variable("level", splits, "1", split),
+            **thresholds(test, sweeps, limit, higher, opening),
+        },
+        {
+            "level": variable("level", levels, "m/s2", "peak acceleration of the box"),
+            "frequency": variable("frequency", f, "Hz", "frequency of the box"),
+        },
+        attributes("plan_test", "Plan of a test", test.structure.label()),
+    )
+    return answer.assign(recommended(test, answer))
+
+
+def thresholds(
+    test: Test, sweeps: Sequence[Sweep], limit: float, higher: Floats, opening: Floats
+) -> dict[str, Any]:
+    """From which level and which opening on orders 2 and 3 count, and where readings are cut.
+
+    Parameters
+    ----------
+    test : Test
+    sweeps : sequence of Sweep
+    limit : float
+        Difference that counts.
+    higher, opening : ndarray, shape (levels, frequencies)
+        Distance by orders 2 and 3, and the largest gap in m.
+    """
+    force = opening_force(test.structure, test.frequency)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        smallest = np.where(higher[-1] > 0.0, limit * sweeps[-1].level / higher[-1], np.inf)
+        open_from = test.structure.preload / force
+        told = np.where(higher > 0.0, opening * limit / higher, np.inf).min(axis=1)
+    ranges = min(one.range for name, one in test.sensors.items() if name != BOX)
+    cut = np.array([sweep.peak > ranges for sweep in sweeps])
+    level, opens = "level from which orders 2 and 3 count", "level from which the faces open"
+    return {
+        "smallest_level": variable("frequency", smallest, "m/s2", level),
+        "opening_level": variable("frequency", open_from, "m/s2", opens),
+        "smallest_opening": variable("level", told, "m", "smallest gap that counts"),
+        "overload": yes_or_no("level", cut, "whether readings reach the sensor's range"),
+    }
+
+
+def smallest_splits(levels: Floats, limit: float, distances: Floats) -> Floats:
+    """Smallest part of the guess's split that counts at each level; infinite where none does.
+
+    Between the computed splits the distance is a power of the split; below the smallest one it is
+    taken to be proportional to it.
+    """
+    log_distance, log_split = np.log(np.maximum(distances, 1e-300)), np.log(SPLITS)
+    wanted = np.log(limit * levels[-1] / levels)
+    ascending = np.maximum.accumulate(log_distance[::-1])
+    inside = np.interp(wanted, ascending, log_split[::-1])
+    below = log_split[-1] + np.minimum(wanted - log_distance[-1], 0.0)
+    parts = np.where(wanted < log_distance[-1], below, inside)
+    return np.where(wanted > ascending[-1], np.inf, np.exp(parts))
+
+
+def recommended(test: Test, answer: xr.Dataset) -> dict[str, Any]:
+    """A swept sine: the lowest level with a margin, over the frequencies that count there."""
+    higher, limit = answer.distance_harmonics.values, float(answer.threshold)
+    fits = np.flatnonzero(answer.overload.values == 0)
+    enough = [i for i in fits if higher[i].max() >= MARGIN * limit]
+    row = int(enough[0] if enough else fits[-1] if len(fits) else 0)
+    f, curve = test.frequency, higher[row]
+    counting = np.flatnonzero(curve >= min(limit, 0.5 * float(curve.max())))
+    low, high = float(f[counting[0]]), float(f[counting[-1]])
+    room = ROOM * max(high - low, test.sound.f)
+    first, last = max(low - room, float(f[0])), min(high + room, float(f[-1]))
+    rate = sweep_rate(test.sound.f, test.sound.zeta)
+    duration = max((last - first) / max(rate, 1e-9), 4.0 * test.noise.periods / first)
+    text = "whether orders 2 and 3 count in the recommended sweep"
+    return {
+        "recommended_level": variable((), answer.level.values[row], "m/s2", "level to test at"),
+        "recommended_first": variable((), first, "Hz", "frequency to begin at"),
+        "recommended_last": variable((), last, "Hz", "frequency to end at"),
+        "recommended_duration": variable((), duration, "s", "time of the sweep, one way"),
+        "counts": yes_or_no((), bool(curve.max() >= limit), text),
+    }

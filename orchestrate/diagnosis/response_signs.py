@@ -1,0 +1,370 @@
+"""Signs of accelerations over time: orders, coherence, moments, differences between responses."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..laboratory.analysis.averaging import averaging
+from ..laboratory.analysis.channels import BOX, Channels
+from ..laboratory.analysis.frf import EXCITED
+from ..laboratory.analysis.orders import Window, fit_windows
+
+Floats = NDArray[np.float64]
+OFF_ORDERS = (2.37, 3.37)  # where no motion with a period has a line: what is there is noise
+ORDERS = (0.5, 1.0, 2.0, 2.37, 3.0, 3.37, 4.0, 5.0)
+HARMONICS = (2.0, 3.0, 4.0, 5.0)
+OF_ORDERS = {"order_2": 2.0, "order_3": 3.0, "order_half": 0.5}
+OVERLAP = 0.5
+ABOVE = (3.3, 6.0)  # times the highest frequency of the excitation: where the high band begins
+USUAL, HIGHEST = 0.3, 0.4  # of the sampling rate: where it begins at the latest, and may begin
+NOISE_LINES = (0.36, 0.44)  # of the sampling rate: lines for the noise where there is no sweep
+SAME_LEVEL = 1.1  # ratio of levels below which two records have the same
+FEWEST = 4  # windows of a curve
+SHORTEST = 0.1  # of all windows: fewer that go one way are noise, or a turn
+SMOOTHED = 15  # windows of a running median
+GAUSSIAN = 3.0  # kurtosis
+
+
+@dataclass(frozen=True)
+class Curve:
+    """The response over the box along a frequency that goes one way.
+
+    Attributes
+    ----------
+    direction : int
+        1 up, -1 down, 0 where all frequencies come at once.
+    level : float
+        Root mean square of the box's order 1, or of its acceleration, m/s2.
+    frequency : ndarray, shape (n,)
+        Ascending, Hz.
+    response : ndarray, shape (rows, n)
+        Complex.
+    floor : ndarray, shape (rows,)
+        What noise makes of the root mean square of the response, relative to it.
+    """
+
+    direction: int
+    level: float
+    frequency: Floats
+    response: Floats
+    floor: Floats
+
+
+@dataclass(frozen=True)
+class ResponseSigns:
+    """Signs of the rows of a record.
+
+    Attributes
+    ----------
+    values, floors, frequencies : dict of str to ndarray
+        By the sign's name, of shape (rows,); frequencies in Hz, where a sign is largest.
+    curves : list of Curve
+    noise : ndarray, shape (rows,)
+        Root mean square of the noise, m/s2.
+    highest : float
+        Highest frequency of the excitation, Hz.
+    """
+
+    values: dict[str, Floats]
+    floors: dict[str, Floats]
+    frequencies: dict[str, Floats]
+    curves: list[Curve]
+    noise: Floats
+    highest: float
+
+
+def response_signs(
+    channels: Channels, swept: bool, periods: float, high_band: float | None
+) -> ResponseSigns:
+    """The signs that one record has by itself.
+
+    Parameters
+    ----------
+    channels : Channels
+        The box, then any number of responses.
+    swept : bool
+        Whether the box moves as a sine.
+    periods : float
+        Of the excitation, in a window of the orders.
+    high_band : float, optional
+        Frequency above which the signs at high frequencies are taken, Hz.
+    """
+    own = signs_of_orders(channels, periods) if swept else signs_of_spectra(channels)
+    edge = usual_band(channels, own.highest) if high_band is None else high_band
+    moments = signs_of_moments(channels, edge)
+    values, floors = coherence_loss(channels, own.noise)
+    return ResponseSigns(
+        {**own.values, **moments[0], "coherence_loss": values},
+        {**own.floors, **moments[1], "coherence_loss": floors},
+        own.frequencies,
+        own.curves,
+        own.noise,
+        own.highest,
+    )
+
+
+def usual_band(channels: Channels, highest: float) -> float:
+    """Where the high band begins, Hz; NaN where the sampling rate does not reach so far."""
+    lowest, usual = (factor * highest for factor in ABOVE)
+    edge = min(usual, USUAL * channels.sample_rate)
+    return edge if edge >= lowest else math.nan
+
+
+def is_swept(channels: Channels, periods: float) -> bool:
+    """Whether the box moves as a sine whose orders can be tracked."""
+    box = Channels(channels.time, channels.sample_rate, (BOX,), channels.box[None], channels.title)
+    try:
+        fit_windows(box, (1.0,), None, periods, OVERLAP)
+    except InputError:
+        return False
+    return True
+
+
+# -- a swept sine ---------------------------------------------------------------------------------
+
+
+def signs_of_orders(channels: Channels, periods: float) -> ResponseSigns:
+    """Orders over the first one, and the response of order 1."""
+    windows, amplitudes, _ = fit_windows(channels, ORDERS, None, periods, OVERLAP)
+    box, rows = amplitudes[0], amplitudes[1:]
+    frequency = np.array([window.frequency for window in windows])
+    power = {order: np.abs(rows[:, ORDERS.index(order)]) ** 2 for order in ORDERS}
+    sums = {order: mean(power[order]) for order in ORDERS}
+    off = np.fmin(*(sums[order] for order in OFF_ORDERS))
+    values = {name: np.sqrt(sums[order] / sums[1.0]) for name, order in OF_ORDERS.items()}
+    floors = {name: np.sqrt(off / sums[1.0]) for name in OF_ORDERS}
+    peaks = {name: frequency[peak_of(power[order])] for name, order in OF_ORDERS.items()}
+    total = np.nansum([power[order] for order in HARMONICS], axis=0)
+    values["distortion"] = np.sqrt(mean(total) / sums[1.0])
+    floors["distortion"] = np.sqrt(len(HARMONICS) * off / sums[1.0])
+    peaks["distortion"] = frequency[peak_of(total)]
+    noise = noise_of(windows, [power[order] for order in OFF_ORDERS])
+    first = ORDERS.index(1.0)
+    curves = curves_of(windows, box[first], rows[:, first], floors["order_2"])
+    return ResponseSigns(values, floors, peaks, curves, noise, float(frequency.max()))
+
+
+def mean(power: Floats) -> Floats:
+    """Mean value over the windows that have one; NaN where none has."""
+    known = np.isfinite(power)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.where(known, power, 0.0).sum(axis=-1) / known.sum(axis=-1))
+
+
+def peak_of(power: Floats) -> NDArray[np.intp]:
+    """Number of the window with the largest value of each row."""
+    return np.asarray(np.nan_to_num(power, nan=-1.0).argmax(axis=-1))
+
+
+def noise_of(windows: Sequence[Window], powers: Sequence[Floats]) -> Floats:
+    """Root mean square of a white noise that would give the off-orders what they have, m/s2.
+
+    Least squares with Hann's weights over n samples make of white noise of variance s^2 an
+    amplitude whose square is 6 s^2/n on average, and 6 ln(2) s^2/n in the median: impacts raise few
+    windows, and the median hardly.
+    """
+    samples = np.array([window.part.stop - window.part.start for window in windows])
+    medians = [np.nanmedian(power * samples, axis=-1) for power in powers]
+    return np.asarray(np.sqrt(np.fmin.reduce(medians) / (6.0 * math.log(2.0))))
+
+
+def curves_of(windows: Sequence[Window], box: Floats, rows: Floats, floor: Floats) -> list[Curve]:
+    """Responses of order 1, upwards and downwards."""
+    frequency = np.array([window.frequency for window in windows])
+    rate = smooth_rate(np.array([window.rate for window in windows]))
+    curves = []
+    for direction in (1, -1):
+        chosen = np.flatnonzero(rate * direction > 0.0)
+        if len(chosen) >= max(FEWEST, SHORTEST * len(windows)):
+            chosen = chosen[np.argsort(frequency[chosen])]
+            level = math.sqrt(float(np.mean(np.abs(box[chosen]) ** 2)))
+            response = rows[:, chosen] / box[chosen]
+            curves.append(Curve(direction, level, frequency[chosen], response, floor))
+    return curves
+
+
+def smooth_rate(rate: Floats) -> Floats:
+    """Running median of the sweep's rate, which noise on the box moves in single windows."""
+    from scipy.ndimage import median_filter
+
+    size = min(SMOOTHED, len(rate))
+    return np.asarray(median_filter(rate, size=size, mode="nearest"))
+
+
+# -- any excitation -------------------------------------------------------------------------------
+
+
+def signs_of_spectra(channels: Channels) -> ResponseSigns:
+    """The response at the lines that the box excites; there are no orders."""
+    frequency, box, rows, cross = spectra(channels)
+    excited = is_excited(frequency, box)
+    density = np.median(rows[:, in_noise_lines(frequency, channels.sample_rate)], axis=-1)
+    response = cross[:, excited] / box[excited]
+    curve = Curve(
+        0,
+        float(channels.box.std()),
+        frequency[excited],
+        response,
+        np.full(len(rows), np.nan),
+    )
+    noise = np.sqrt(0.5 * channels.sample_rate * density)
+    curves = [curve] if excited.sum() >= FEWEST else []
+    highest = float(frequency[excited].max()) if excited.any() else math.nan
+    return ResponseSigns({}, {}, {}, curves, noise, highest)
+
+
+def spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
+    """Frequencies, power densities of the box and of the rows, and between them."""
+    from scipy.signal import csd, welch
+
+    options = averaging(channels, None, "hann", OVERLAP, fewest=2).options
+    rows = channels.values[1:]
+    frequency, box = welch(channels.box, channels.sample_rate, **options)
+    return (
+        frequency,
+        box,
+        welch(rows, channels.sample_rate, **options)[1],
+        csd(channels.box, rows, channels.sample_rate, **options)[1],
+    )
+
+
+def is_excited(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
+    """Lines that the box excites."""
+    return np.asarray((box >= EXCITED * box.max()) & (frequency > 0.0))
+
+
+def in_noise_lines(frequency: Floats, rate: float) -> NDArray[np.bool_]:
+    """Lines that are taken for noise."""
+    low, high = NOISE_LINES
+    return np.asarray((frequency >= low * rate) & (frequency <= high * rate))
+
+
+def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
+    """Mean of 1 less the coherence where the box excites the structure; and that of noise alone."""
+    try:
+        segments = averaging(channels, None, "hann", OVERLAP, fewest=2)
+    except InputError:
+        unknown = np.full(len(noise), np.nan)
+        return unknown, unknown
+    frequency, box, rows, cross = spectra(channels)
+    excited = is_excited(frequency, box)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        power = rows[:, excited]
+        coherence = np.abs(cross[:, excited]) ** 2 / (box[excited] * power)
+        share = 2.0 * noise[:, None] ** 2 / channels.sample_rate / power
+        floor = np.minimum(share, 1.0).mean(axis=-1) + 1.0 / segments.independent
+    return 1.0 - coherence.mean(axis=-1), np.minimum(floor, 1.0)
+
+
+def signs_of_moments(
+    channels: Channels, edge: float
+) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Kurtosis and skewness, of all and of what is above a frequency; and those of Gaussian noise.
+
+    Parameters
+    ----------
+    channels : Channels
+    edge : float
+        Hz.
+    """
+    from scipy.signal import butter, sosfiltfilt
+    from scipy.stats import kurtosis, skew
+
+    rows, count = channels.values[1:], len(channels.time)
+    bands = {"": rows}
+    if 0.0 < edge <= HIGHEST * channels.sample_rate:
+        sections = butter(4, edge, "highpass", fs=channels.sample_rate, output="sos")
+        bands["_high"] = sosfiltfilt(sections, rows)
+    values: dict[str, Floats] = {}
+    for ending in ("", "_high"):
+        band = bands.get(ending)
+        moves = band is not None and np.ptp(band, axis=-1).min() > 0.0
+        unknown = np.full(len(rows), np.nan)
+        values[f"kurtosis{ending}"] = kurtosis(band, axis=-1, fisher=False) if moves else unknown
+        values[f"skewness{ending}"] = np.abs(skew(band, axis=-1)) if moves else unknown
+    noise = {"kurtosis": GAUSSIAN, "skewness": 2.0 * math.sqrt(6.0 / count)}
+    floors = {name: np.full(len(rows), noise[name.partition("_")[0]]) for name in values}
+    return values, floors
+
+
+# -- differences between responses ----------------------------------------------------------------
+
+
+def sensor_differences(curves: Sequence[Curve], channels: int) -> tuple[Floats, Floats]:
+    """Difference between two sensors, the best complex gain taken out; and what noise makes of it.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        Their rows are pairs of sensors, one pair after the other.
+    channels : int
+        Sensors; NaN where they are not two.
+
+    Returns
+    -------
+    (ndarray, ndarray)
+        Of shape (rows,), the same for both of a pair.
+    """
+    rows = len(curves[0].response) if curves else 0
+    if channels != 2 or not rows:
+        unknown = np.full(rows, np.nan)
+        return unknown, unknown
+    every = np.concatenate([curve.response for curve in curves], axis=-1)
+    one, other = every[0::2], every[1::2]
+    gain = (other.conj() * one).sum(axis=-1) / (np.abs(other) ** 2).sum(axis=-1)
+    rest = np.linalg.norm(one - gain[:, None] * other, axis=-1) / np.linalg.norm(one, axis=-1)
+    floor = np.linalg.norm(curves[0].floor.reshape(-1, 2), axis=-1)
+    return np.repeat(rest, 2), np.repeat(floor, 2)
+
+
+def difference(one: Curve, other: Curve) -> Floats:
+    """Root mean square of the difference between two curves, over that of the first, of each row;
+    NaN where they have no frequency in common.
+    """
+    low, high = other.frequency[0], other.frequency[-1]
+    common = (one.frequency >= low) & (one.frequency <= high)
+    if common.sum() < FEWEST:
+        return np.full(len(one.response), np.nan)
+    at, first = one.frequency[common], one.response[:, common]
+    second = np.array([np.interp(at, other.frequency, row) for row in other.response])
+    rest = np.linalg.norm(second - first, axis=-1) / np.linalg.norm(first, axis=-1)
+    return np.asarray(rest)
+
+
+def differences(curves: Sequence[Curve]) -> Mapping[str, tuple[Floats, Floats]]:
+    """Largest differences over level and over direction, and what noise makes of them.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        Of one record or of several.
+
+    Returns
+    -------
+    dict of str to (ndarray, ndarray)
+        By the sign's name: of shape (rows,), NaN where the curves do not show it.
+    """
+    rows = len(curves[0].response) if curves else 0
+    best = {
+        name: (np.full(rows, np.nan), np.full(rows, np.nan))
+        for name in ("level_dependence", "direction_difference")
+    }
+    for one, other in combinations(curves, 2):
+        same_level = 1.0 / SAME_LEVEL < one.level / other.level < SAME_LEVEL
+        if one.direction == other.direction and not same_level:
+            name = "level_dependence"
+        elif one.direction != other.direction and same_level:
+            name = "direction_difference"
+        else:
+            continue
+        first, second = sorted((one, other), key=lambda curve: (-curve.direction, curve.level))
+        value, floor = difference(first, second), np.hypot(first.floor, second.floor)
+        best[name] = np.fmax(best[name][0], value), np.fmax(best[name][1], floor)
+    return best

@@ -1,0 +1,315 @@
+"""Model-free signs of a record, and those of a sound structure with the same noise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import checked_integer
+from ..errors import InputError
+from ..laboratory.analysis.channels import BOX, Channels, attributes, checked_number
+from ..response.labels import flags, variable
+from ..structures import Structure
+from .drive_signs import drive_signs, is_drive_run
+from .indicators import INDICATORS
+from .response_signs import (
+    HIGHEST,
+    ResponseSigns,
+    differences,
+    is_swept,
+    response_signs,
+    sensor_differences,
+)
+from .sound import SoundStructure
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+EXCEEDS = 2.0  # times what noise and a sound structure show
+MEANINGS = {-1: "unknown", 0: "no", 1: "yes"}
+
+
+def signs(
+    record: xr.Dataset,
+    *,
+    other: xr.Dataset | Sequence[xr.Dataset] | None = None,
+    structure: Structure | None = None,
+    noise: float | None = None,
+    seeds: int = 8,
+    periods: float = 16.0,
+    high_band: float | None = None,
+) -> xr.Dataset:
+    """Model-free signs of delamination in a record.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        As for :func:`orchestrate.frf`; or a run of :func:`orchestrate.couple`, for the signs of a
+        weak drive.
+    other : xarray.Dataset or sequence of them, optional
+        Records of the same beam at other levels or in the other direction, for the signs that
+        compare records; of a run on a weak drive that of the sound beam, which it must have.
+    structure : Structure, optional
+        A guess of the beam. Its bonded form is the sound structure; by default that is the linear
+        oscillator whose acceleration is nearest to the record's.
+    noise : float, optional
+        Root mean square of the noise of each response, m/s2; by default from the record.
+    seeds : int
+        How many sound structures are simulated, each with a noise of its own.
+    periods : float
+        Of the excitation, in a window of the orders.
+    high_band : float, optional
+        Hz above which the signs at high frequencies are taken; by default six times the highest
+        frequency of the excitation or, where that is lower, 0.3 of the sampling rate. Where that
+        is less than 3.3 times the highest frequency there are none.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``sign`` and ``channel``: ``value``; ``floor``, what noise alone makes of it; ``sound``
+        and ``sound_highest``, the median and the largest value of sound structures under the same
+        box with the same noise; ``exceeds``, whether the value is above twice the larger of floor
+        and ``sound_highest`` (or ``unknown``); ``frequency`` in Hz, where an order is largest. All
+        signs are numbers without a unit, NaN where the record cannot show them. Coordinates over
+        ``sign``: its ``meaning``, ``formula``, ``source`` and what else is known to move it,
+        ``moved_by``. Over ``channel``: ``noise`` in m/s2. ``sound_f`` in Hz and ``sound_zeta`` are
+        the sound structure's. The attribute ``seeds`` has the seeds.
+
+    Raises
+    ------
+    InputError
+
+    Notes
+    -----
+    A sign is no verdict: each is moved by other things too. Where the box moves as a sine the noise
+    is what two orders without meaning, 2.37 and 3.37, have in the median window: a line of a
+    motion with a period is never there. Else it is what stands at 0.36 to 0.44 of the sampling
+    rate, impacts included: then it is too large rather than too small.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_file("beam")
+    >>> sweep = orchestrate.SweptSine(first=10.0, last=14.0, duration=30.0, acceleration=0.2)
+    >>> record = orchestrate.measure(
+    ...     orchestrate.shake(beam, sweep), orchestrate.Sensor(bandwidth=200.0, noise=1e-3)
+    ... )
+    >>> answer = orchestrate.signs(record, structure=beam, seeds=2).sel(channel="acceleration1")
+    >>> bool(answer.exceeds.sel(sign="order_2") == 1)
+    True
+    """
+    others = other_records(other)
+    if is_drive_run(record):
+        return signs_of_a_drive(record, others)
+    length = checked_number("periods", periods, 2.0, 1e4)
+    count = checked_integer("seeds", seeds, 1, 1000)
+    every = [Channels.from_record(one, (BOX,)) for one in (record, *others)]
+    names = checked_responses(every)
+    edge = None if high_band is None else checked_band(high_band, every[0].sample_rate)
+    level = None if noise is None else checked_number("noise", noise, 0.0, math.inf, "m/s2", True)
+    swept = [is_swept(channels, length) for channels in every]
+    own = [
+        response_signs(channels, sine, length, edge)
+        for channels, sine in zip(every, swept, strict=True)
+    ]
+    noises = [one.noise if level is None else np.full(len(names), level) for one in own]
+    sound = sound_of(structure, own[0], every[0])
+    values, floors = with_comparisons(own, len(names))
+    made = [
+        response_signs(sound.records(channels, rms, range(count)), sine, length, edge)
+        for channels, rms, sine in zip(every, noises, swept, strict=True)
+    ]
+    rows = np.stack(list(with_comparisons(made, len(names))[0].values()))
+    shown = rows.reshape(len(rows), count, len(names)).transpose(1, 0, 2)
+    described = {
+        "seeds": f"0 to {count - 1}",
+        "noise_from": "given" if level is not None else noise_source(swept[0]),
+        "sound_from": "nearest oscillator" if structure is None else "the guess, bonded",
+    }
+    answer = dataset(every[0].title, names, values, floors, shown, described)
+    return answer.assign(frequency=peaks(own[0], names), **of_sound(sound, noises[0]))
+
+
+def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Dataset]:
+    """The records beside the first one."""
+    import xarray as xr
+
+    if other is None:
+        return []
+    return [other] if isinstance(other, xr.Dataset) else list(other)
+
+
+def noise_source(swept: bool) -> str:
+    """Where the noise comes from."""
+    return "off-orders 2.37 and 3.37" if swept else "lines at 0.36 to 0.44 of the sampling rate"
+
+
+def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
+    """Names of the responses, which all records must have.
+
+    Raises
+    ------
+    InputError
+    """
+    names = every[0].responses()[0]
+    if not names:
+        raise InputError("record: no acceleration1; expected it beside the box's, in m/s2")
+    for number, channels in enumerate(every[1:]):
+        if channels.responses()[0] != names:
+            have = " and ".join(channels.responses()[0]) or "none"
+            raise InputError(f"other[{number}]: {have}; expected {' and '.join(names)}")
+    return names
+
+
+def checked_band(high_band: float, rate: float) -> float:
+    """The frequency above which signs at high frequencies are taken, Hz."""
+    return checked_number("high_band", high_band, 1e-9, HIGHEST * rate, "Hz")
+
+
+def sound_of(structure: Structure | None, own: ResponseSigns, channels: Channels) -> SoundStructure:
+    """The sound structure: of the guess, or the oscillator nearest to the record.
+
+    Raises
+    ------
+    InputError
+        Where there is no guess, and the record has no response to find it from.
+    """
+    if structure is not None:
+        return SoundStructure.from_structure(structure)
+    if not own.curves:
+        text = "too short, or the box does not move; expected structure="
+        raise InputError(f"record: {text}")
+    curve = own.curves[0]
+    return SoundStructure.nearest(curve.frequency, curve.response, channels)
+
+
+def with_comparisons(
+    own: Sequence[ResponseSigns], channels: int
+) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Values and floors of all signs, in the order of the table; NaN where there is none."""
+    first = own[0]
+    rows = len(first.noise)
+    values, floors = dict(first.values), dict(first.floors)
+    compared = differences([curve for one in own for curve in one.curves])
+    for name, (value, floor) in compared.items():
+        values[name], floors[name] = value, floor
+    unknown = np.full(rows, np.nan)
+    if first.curves:
+        value, floor = sensor_differences(first.curves, channels)
+        values["sensor_difference"], floors["sensor_difference"] = value, floor
+    return (
+        {name: values.get(name, unknown) for name in INDICATORS},
+        {name: floors.get(name, unknown) for name in INDICATORS},
+    )
+
+
+# -- results --------------------------------------------------------------------------------------
+
+
+def dataset(
+    title: str,
+    names: Sequence[str],
+    values: dict[str, Floats],
+    floors: dict[str, Floats],
+    shown: Floats,
+    described: dict[str, Any],
+) -> xr.Dataset:
+    """The answer.
+
+    Parameters
+    ----------
+    title : str
+        Of the record.
+    names : sequence of str
+        Of the channels.
+    values, floors : dict of str to ndarray
+        By the sign's name.
+    shown : ndarray, shape (seeds, signs, channels)
+        Of sound structures.
+    described : dict
+        Attributes.
+    """
+    import xarray as xr
+
+    over = ("sign", "channel")
+    value, floor = np.stack(list(values.values())), np.stack(list(floors.values()))
+    highest = np.fmax.reduce(shown)
+    limit = EXCEEDS * np.fmax(floor, highest)
+    known = np.isfinite(value) & np.isfinite(highest)
+    exceeds = np.where(known, value > limit, -1)
+    texts = {
+        "meaning": ("long_name", "what the sign is"),
+        "formula": ("formula", "formula"),
+        "source": ("source", "where it is described"),
+        "moved_by": ("moved_by", "what else than delamination moves it"),
+    }
+    return xr.Dataset(
+        {
+            "value": variable(over, value, "1", "sign of the record"),
+            "floor": variable(over, floor, "1", "what noise alone makes of it"),
+            "sound": variable(over, median(shown), "1", "the same of a sound structure, median"),
+            "sound_highest": variable(over, highest, "1", "the same of a sound structure, largest"),
+            "exceeds": flags(over, exceeds, f"whether it is above {EXCEEDS:g} times all", MEANINGS),
+        },
+        {
+            "sign": ("sign", np.array(list(INDICATORS)), {"long_name": "sign"}),
+            "channel": ("channel", np.array(names), {"long_name": "channel of the record"}),
+            **{
+                name: (
+                    "sign",
+                    np.array([getattr(one, field) for one in INDICATORS.values()]),
+                    {"long_name": text},
+                )
+                for name, (field, text) in texts.items()
+            },
+        },
+        attributes("signs", "Signs", title, **described),
+    )
+
+
+def median(shown: Floats) -> Floats:
+    """Median over the seeds; NaN where there is none."""
+    known = np.isfinite(shown).all(axis=0)
+    return np.asarray(np.where(known, np.median(np.nan_to_num(shown), axis=0), np.nan))
+
+
+def peaks(own: ResponseSigns, names: Sequence[str]) -> Any:
+    """Where an order is largest, Hz."""
+    unknown = np.full(len(names), np.nan)
+    rows = np.stack([own.frequencies.get(name, unknown) for name in INDICATORS])
+    text = "frequency of the excitation where it is largest"
+    return variable(("sign", "channel"), rows, "Hz", text)
+
+
+def of_sound(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
+    """The sound structure, and the noise on it."""
+    return {
+        "noise": variable("channel", noise, "m/s2", "root mean square of the noise"),
+        "sound_f": variable((), sound.f, "Hz", "natural frequency of the sound structure"),
+        "sound_zeta": variable((), sound.zeta, "1", "damping ratio of the sound structure"),
+    }
+
+
+def signs_of_a_drive(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Signs of a run on a weak drive.
+
+    Raises
+    ------
+    InputError
+        Where the run of the sound beam is missing.
+    """
+    if len(others) != 1 or not is_drive_run(others[0]):
+        raise InputError("other: expected the run of the sound beam on the same drive")
+    own, lags = drive_signs(run, others[0])
+    names = ["motor"]
+    values = {name: np.array([own.get(name, np.nan)]) for name in INDICATORS}
+    floors = {name: np.array([lags.get(name, np.nan)]) for name in INDICATORS}
+    itself = [0.0 if name in own else math.nan for name in INDICATORS]  # against itself
+    shown = np.array(itself)[None, :, None]
+    described = {"seeds": "none", "sound_from": "the run of the sound beam"}
+    return dataset(str(run.attrs.get("title", "run")), names, values, floors, shown, described)

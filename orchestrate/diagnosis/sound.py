@@ -1,0 +1,120 @@
+"""The sound structure that a record is compared with: a linear oscillator under the same box."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..constants import TURN
+from ..laboratory.analysis.channels import BOX, Channels
+from ..laboratory.analysis.shock_spectrum import ramp_invariant
+from ..structures import Structure
+
+Floats = NDArray[np.float64]
+FIRST_DAMPING = (0.003, 0.02, 0.1)  # ratios that the search for the nearest oscillator begins at
+
+
+@dataclass(frozen=True)
+class SoundStructure:
+    """The bonded structure: both masses move as one.
+
+    Attributes
+    ----------
+    f : float
+        Natural frequency, Hz.
+    zeta : float
+        Damping ratio.
+    """
+
+    f: float
+    zeta: float
+
+    @classmethod
+    def from_structure(cls, structure: Structure) -> SoundStructure:
+        """The bonded structure of both halves."""
+        m, k = structure.m1 + structure.m2, structure.k1 + structure.k2
+        damping = (structure.d1 + structure.d2) / (2.0 * math.sqrt(k * m))
+        return cls(math.sqrt(k / m) / TURN, min(damping, 0.999))
+
+    @classmethod
+    def nearest(cls, frequency: Floats, response: Floats, channels: Channels) -> SoundStructure:
+        """The oscillator whose acceleration is nearest to a record's.
+
+        Parameters
+        ----------
+        frequency : ndarray, shape (n,)
+            Hz.
+        response : ndarray, shape (channels, n)
+            Complex, acceleration over the box's: what the search begins with, since a sweep that
+            is fast moves its peak.
+        channels : Channels
+            The record.
+        """
+        from scipy.optimize import least_squares
+
+        peak = float(frequency[int(np.abs(response).max(axis=0).argmax())])
+        measured = channels.responses()[1]
+
+        def of_response(logs: Floats) -> Floats:
+            rest = (transmissibility(frequency, *np.exp(logs)) - response).ravel()
+            return np.concatenate([rest.real, rest.imag])
+
+        def of_record(logs: Floats) -> Floats:
+            return np.asarray((cls(*np.exp(logs)).acceleration(channels) - measured).ravel())
+
+        low, high = math.log(0.2 * frequency[0]), math.log(5.0 * frequency[-1])
+        bounds = ([low, math.log(1e-4)], [high, math.log(0.9)])
+        starts = [(math.log(peak), math.log(ratio)) for ratio in FIRST_DAMPING]
+        fits = [least_squares(of_response, start, bounds=bounds) for start in starts]
+        best = min(fits, key=lambda fitted: float(fitted.cost))
+        f, zeta = np.exp(least_squares(of_record, best.x, bounds=bounds, x_scale=(0.01, 1.0)).x)
+        return cls(float(f), float(zeta))
+
+    def acceleration(self, channels: Channels) -> Floats:
+        """Acceleration in space under the box of a record, m/s2.
+
+        It is exact for a box that is straight between the samples.
+        """
+        from scipy.signal import lfilter
+
+        filters = ramp_invariant(self.f, self.zeta, channels.sample_rate)
+        return np.asarray(lfilter(*filters, channels.box))
+
+    def records(self, channels: Channels, noise: Floats, seeds: Sequence[int]) -> Channels:
+        """What sensors on this structure would have read: one row for each seed and channel.
+
+        Parameters
+        ----------
+        channels : Channels
+            The record: its box is taken as it is.
+        noise : ndarray, shape (channels,)
+            Root mean square of each response's noise, m/s2.
+        seeds : sequence of int
+
+        Returns
+        -------
+        Channels
+            The box, then the responses of the first seed, of the second one, and so on.
+        """
+        steady = self.acceleration(channels)
+        rows = [channels.box]
+        for seed in seeds:
+            for number, level in enumerate(noise):
+                generator = np.random.default_rng([seed, number])
+                rows.append(steady + level * generator.standard_normal(len(steady)))
+        names = (BOX, *(f"sound {number}" for number in range(1, len(rows))))
+        return Channels(channels.time, channels.sample_rate, names, np.stack(rows), channels.title)
+
+
+def transmissibility(frequency: Floats, f: float, zeta: float) -> Floats:
+    """Acceleration of an oscillator in space over that of its base, complex.
+
+    As sines of both: (1 + 2 i zeta r)/(1 - r^2 + 2 i zeta r) with r the ratio of the frequencies.
+    """
+    r = frequency / f
+    loss = 2.0j * zeta * r
+    return np.asarray((1.0 + loss) / (1.0 - r**2 + loss))

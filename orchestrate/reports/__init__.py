@@ -1,0 +1,12 @@
+"""Reports: stored answers as one HTML page, for a person who reads, prints and signs it.
+
+==================  ===============================================================================
+module              idea
+==================  ===============================================================================
+:mod:`.report`      answers in, one page out
+:mod:`.page`        what a page is made of, and its HTML
+:mod:`.verdict`     the sections of a verdict on a beam
+:mod:`.answers`     the sections of any other answer: picture, numbers
+:mod:`.origin`      where answers come from: files, versions, identities
+==================  ===============================================================================
+"""

@@ -1,0 +1,117 @@
+"""The sections of any answer: its picture, its single numbers, its table of signs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from ..errors import InputError
+from ..figures.plot import plot, question_of
+from .page import Picture, Section, Table, text_of
+from .verdict import verdict_sections
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+WORDS = {-1: "not in this record", 0: "no", 1: "yes"}
+MOST_ROWS = 60
+
+
+def sections_of(answer: xr.Dataset) -> list[Section]:
+    """The sections of an answer."""
+    kind = question_of(answer)
+    if kind == "detect":
+        return verdict_sections(answer)
+    if kind == "signs":
+        return [signs_section(answer)]
+    return [study_section(answer)]
+
+
+def picture_of(answer: xr.Dataset, words: str) -> Picture | None:
+    """The picture of an answer; none where there is none."""
+    try:
+        return Picture.from_figure(plot(answer), words)
+    except InputError:
+        return None
+
+
+def study_section(answer: xr.Dataset) -> Section:
+    """Picture and numbers of an answer."""
+    title = str(answer.attrs.get("title") or question_of(answer))
+    tables = [table for table in (scalar_table(answer), parameter_table(answer)) if table.rows]
+    return Section(title, picture=picture_of(answer, title), tables=tables)
+
+
+def scalar_table(answer: xr.Dataset) -> Table:
+    """All that is one number in an answer."""
+    rows = []
+    for name, array in answer.data_vars.items():
+        if not array.dims and array.dtype.kind in "iufb":
+            value = text_of(float(array), str(array.attrs.get("units", "")), 5)
+            rows.append((str(name), str(array.attrs.get("long_name", "")), word_of(array) or value))
+    return Table(("name", "what it is", "value"), rows[:MOST_ROWS])
+
+
+def word_of(array: xr.DataArray) -> str:
+    """The word that a flag stands for; empty where it is none."""
+    words = str(array.attrs.get("flag_meanings", "")).split()
+    numbers = [int(number) for number in array.attrs.get("flag_values", [])]
+    return words[numbers.index(int(array))] if words and int(array) in numbers else ""
+
+
+def parameter_table(answer: xr.Dataset) -> Table:
+    """Parameters of the structure, and what else was asked, from the attributes."""
+    from ..structures.ranges import EXCITATION, STRUCTURE
+
+    known = {**STRUCTURE, **EXCITATION}
+    rows = [
+        (name, known[name].description, text_of(float(answer.attrs[name]), known[name].unit, 6))
+        for name in known
+        if name in answer.attrs and not isinstance(answer.attrs[name], str)
+    ]
+    return Table(("parameter", "what it is", "value"), rows)
+
+
+def is_known(one: xr.Dataset) -> bool:
+    """Whether the record shows a sign."""
+    return bool((one.exceeds >= 0).any())
+
+
+def in_a_row(values: Iterable[float]) -> str:
+    """Numbers of several sensors in one cell."""
+    return " · ".join(text_of(float(value)) for value in values)
+
+
+def signs_section(answer: xr.Dataset) -> Section:
+    """Signs with their floors, and what else moves those that stand out."""
+    shown = [one for sign in answer.sign.values if is_known(one := answer.sel(sign=sign))]
+    rows = [
+        (
+            str(one.meaning.values),
+            *(in_a_row(one[name].values) for name in ("value", "floor", "sound_highest")),
+            " · ".join(WORDS[int(number)] for number in one.exceeds.values),
+        )
+        for one in shown
+    ]
+    marked = [number for number, one in enumerate(shown) if bool((one.exceeds == 1).any())]
+    columns = ("sign", "value", "noise alone", "sound structure", "stands out")
+    moved = [
+        f"{one.meaning.values}: {one.formula.values} ({one.source.values}). "
+        f"Also moved by: {one.moved_by.values}."
+        for one in (shown[number] for number in marked)
+    ]
+    both = ", for sensor 1 and sensor 2" if answer.sizes["channel"] > 1 else ""
+    text = (
+        "A sign stands out where it is above twice what noise and a sound structure with the same "
+        "noise show. Signs know nothing of the model; each is moved by other things too. "
+        f"Numbers have no unit{both}."
+    )
+    origin = f"Noise from {answer.attrs.get('noise_from', 'the record')}; sound structure: "
+    origin += f"{answer.attrs.get('sound_from', '')}, seeds {answer.attrs.get('seeds', '')}."
+    return Section(
+        "Signs that need no model",
+        [text, origin],
+        moved,
+        picture_of(answer, "Signs of the record over what noise and a sound structure show"),
+        [Table(columns, rows, frozenset(marked))],
+    )

@@ -1,0 +1,67 @@
+"""Where answers come from: their questions, the FMUs, the versions, their identities."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING
+
+from .page import Section, Table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+PACKAGES = ("numpy", "scipy", "xarray", "fmpy", "lmfit", "matplotlib")
+LONGEST = 160  # letters of an attribute
+
+
+def origin(answers: Sequence[xr.Dataset]) -> Section:
+    """Versions and identities of all answers of a page."""
+    rows: list[tuple[str, str]] = []
+    for number, answer in enumerate(answers, 1):
+        begin = f"{number}. " if len(answers) > 1 else ""
+        rows += [(begin + name, text) for name, text in described(answer)]
+    versions = ", ".join(f"{name} {found}" for name in PACKAGES if (found := installed(name)))
+    rows.append(("versions", f"Python {platform.python_version()}, {versions}"))
+    return Section("Where it comes from", tables=[Table(("what", "value"), rows)])
+
+
+def described(answer: xr.Dataset) -> list[tuple[str, str]]:
+    """What an answer's attributes say of its origin."""
+    attributes = {str(name): str(text) for name, text in answer.attrs.items()}
+    shown = [
+        ("title", "title"),
+        ("record_file", "record"),
+        ("record_sha256", "SHA-256 of the record"),
+        ("guess_file", "guess"),
+        ("sensors", "sensors"),
+        ("source", "computed by"),
+    ]
+    rows = [(label, shortened(attributes[name])) for name, label in shown if attributes.get(name)]
+    if "history" in attributes:
+        rows.append(("computed on", attributes["history"].partition(": ")[0]))
+    if "call" in attributes and "record_file" not in attributes:
+        rows.append(("what was asked", shortened(attributes["call"])))
+    for name in sorted(attributes):
+        if name.startswith("fmu_guid"):
+            model = attributes.get(name.replace("guid", "model"), "")
+            rows.append((f"FMU {model}".rstrip(), attributes[name]))
+    if "identity" in attributes:
+        digest = hashlib.sha256(attributes["identity"].encode()).hexdigest()[:16]
+        rows.append(("identity of question, FMU and code", digest))
+    return rows
+
+
+def shortened(text: str) -> str:
+    """A text of a length that fits a page."""
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
+
+
+def installed(name: str) -> str:
+    """Version of a package; empty where it is not installed."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return ""

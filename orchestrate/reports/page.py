@@ -1,0 +1,195 @@
+"""What a page is made of, and its HTML: no network, no script, all texts escaped."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from ..figures.files import png_of, size_of
+from ..running.store import now
+from ..version import __version__
+
+MISSING = "–"  # in place of a number
+TONES = ("bad", "good", "unclear", "open")  # of a verdict, for its colour
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture inside the page.
+
+    Attributes
+    ----------
+    png : bytes
+    words : str
+        What it shows, for those who do not see it, and below it.
+    """
+
+    png: bytes
+    words: str
+
+    @classmethod
+    def from_figure(cls, figure: Any, words: str) -> Picture:
+        """Of a :class:`matplotlib.figure.Figure`."""
+        return cls(png_of(figure), words)
+
+    @property
+    def source(self) -> str:
+        """The picture as an address."""
+        return f"data:image/png;base64,{base64.b64encode(self.png).decode()}"
+
+    @property
+    def size(self) -> dict[str, int]:
+        """Width and height in pixels."""
+        return size_of(self.png)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of texts.
+
+    Attributes
+    ----------
+    columns : tuple of str
+    rows : sequence of tuple of str
+    marked : frozenset of int
+        Rows that stand out.
+    words : str
+        Above it.
+    """
+
+    columns: tuple[str, ...]
+    rows: Sequence[tuple[str, ...]]
+    marked: frozenset[int] = frozenset()
+    words: str = ""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page.
+
+    Attributes
+    ----------
+    heading : str
+    paragraphs : list of str
+    points : list of str
+        Of a list.
+    picture : Picture, optional
+    tables : list of Table
+    """
+
+    heading: str
+    paragraphs: list[str] = field(default_factory=list)
+    points: list[str] = field(default_factory=list)
+    picture: Picture | None = None
+    tables: list[Table] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the page says first.
+
+    Attributes
+    ----------
+    word : str
+    sentence : str
+    tone : str
+        Of ``TONES``.
+    """
+
+    word: str
+    sentence: str
+    tone: str
+
+
+@dataclass(frozen=True)
+class Page:
+    """A report.
+
+    Attributes
+    ----------
+    title : str
+    about : str
+        Below the title.
+    sections : list of Section
+    verdict : Verdict, optional
+    signed : bool
+        Whether there is a place for a signature.
+    """
+
+    title: str
+    about: str
+    sections: list[Section]
+    verdict: Verdict | None = None
+    signed: bool = False
+
+    def html(self) -> str:
+        """The page."""
+        environment = jinja2.Environment(
+            loader=jinja2.PackageLoader("orchestrate.reports"),
+            autoescape=True,
+            undefined=jinja2.StrictUndefined,
+        )
+        style = environment.get_template("report.css").render()
+        return environment.get_template("report.html.j2").render(
+            page=self,
+            style=Markup(style),
+            policy=content_security_policy(style),
+            version=__version__,
+            date=now().replace("T", " ").removesuffix(":00Z").removesuffix("Z"),
+        )
+
+
+def content_security_policy(style: str) -> str:
+    """What a browser lets the page do: show its own pictures in its own style, and nothing else."""
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    allowed = f"default-src 'none'; style-src 'sha256-{digest}'; img-src data:"
+    return f"{allowed}; base-uri 'none'; form-action 'none'"
+
+
+# -- numbers as texts -----------------------------------------------------------------------------
+
+
+def text_of(value: float, unit: str = "", digits: int = 3) -> str:
+    """A number for a person, a dash where there is none.
+
+    Examples
+    --------
+    >>> text_of(0.012345, "Hz"), text_of(float("nan")), text_of(12.0, "1"), text_of(2e-6, "m")
+    ('0.0123 Hz', '–', '12', '2 µm')
+    """
+    if not math.isfinite(value):
+        return MISSING
+    factor, shown = scaled(abs(value), unit)
+    return f"{value / factor:.{digits}g} {shown}".rstrip()
+
+
+def with_error(value: float, error: float, unit: str = "") -> str:
+    """A number with its standard error, as many digits as that has two of.
+
+    Examples
+    --------
+    >>> with_error(42.12345, 0.0213, "Hz"), with_error(42.0, float("nan"), "Hz")
+    ('42.123 ± 0.021 Hz', '42 Hz')
+    >>> with_error(8437.5, 120.0, "N/m"), with_error(-3.4e-7, 4.4e-7, "m")
+    ('8438 ± 120 N/m', '-0.34 ± 0.44 µm')
+    """
+    if not (math.isfinite(error) and error > 0.0):
+        return text_of(value, unit, 4)
+    factor, shown = scaled(max(abs(value), error), unit)
+    value, error = value / factor, error / factor
+    places = max(0, 1 - math.floor(math.log10(error)))
+    return f"{value:.{places}f} ± {error:.{places}f} {shown}".rstrip()
+
+
+def scaled(size: float, unit: str) -> tuple[float, str]:
+    """A factor, and the unit that it makes of one: short lengths are in micrometres."""
+    if unit == "m" and 0.0 < size < 1e-3:
+        return 1e-6, "µm"
+    return 1.0, "" if unit == "1" else unit.replace("s2", "s²")

@@ -1,0 +1,81 @@
+"""Answers in, one page out."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import InputError
+from ..figures.plot import question_of
+from ..files import write_whole
+from .answers import sections_of
+from .origin import origin
+from .page import Page
+from .verdict import verdict_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def report(
+    *answers: xr.Dataset,
+    output: str | PathLike[str] = "report.html",
+    title: str = "",
+    notes: str = "",
+) -> Path:
+    """Write answers as one HTML page, for a person who reads, prints and signs it.
+
+    Parameters
+    ----------
+    *answers : xarray.Dataset
+        Of any questions, stored ones too. A verdict of :func:`orchestrate.detect` comes first,
+        with its sentence, what was measured over the fits, parameters with errors, what was
+        assumed and what would change it; :func:`orchestrate.signs` of the same record beside it.
+    output : path-like
+        The file.
+    title : str
+        By default that of the first answer.
+    notes : str
+        A sentence below the title: who, which beam, which test.
+
+    Returns
+    -------
+    Path
+        The file. It needs no network and runs no script.
+
+    Raises
+    ------
+    InputError
+        Where there is no answer.
+    StoreError
+        Where the file cannot be written.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_file("beam")
+    >>> motion = orchestrate.simulate(beam, frequency=78.0, amplitude=1e-3)
+    >>> page = orchestrate.report(motion, output="motion.html", notes="A trial.")
+    >>> "A trial." in page.read_text(encoding="utf-8")
+    True
+    """
+    if not answers:
+        raise InputError("report: no answer given; expected one at least")
+    ordered = sorted(answers, key=lambda answer: not is_verdict(answer))
+    first = ordered[0]
+    sections = [section for answer in ordered for section in sections_of(answer)]
+    page = Page(
+        title or str(first.attrs.get("title") or question_of(first)),
+        notes or str(first.attrs.get("record_file", "")),
+        [*sections, origin(ordered)],
+        verdict_of(first) if is_verdict(first) else None,
+        signed=is_verdict(first),
+    )
+    text = page.html().encode()
+    return write_whole(Path(output), lambda place: place.write_bytes(text))
+
+
+def is_verdict(answer: xr.Dataset) -> bool:
+    """Whether an answer is a verdict on a beam."""
+    return question_of(answer) == "detect"

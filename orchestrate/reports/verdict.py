@@ -1,0 +1,222 @@
+"""The sections of a verdict on a beam."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..figures.diagnosis import PARTED, draw_detect, draw_misfit
+from .page import MISSING, Picture, Section, Table, Verdict, text_of, with_error
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+TONES = {"delaminated": "bad", "no opening seen": "good", "not described": "unclear"}
+ALWAYS_ASSUMED = (
+    "Two masses stand for the beam: waves and higher modes are left out.",
+    "Impacts take no time and lose energy by one number e.",
+)
+WORTH = (
+    "This page is the result of a calculation on one record. It is no certificate, for flight or "
+    "for anything else. Faces that are pressed together, or glued in part, may be delaminated and "
+    "not open in a test."
+)
+BEST = 3  # hypotheses in the table of parameters
+
+
+def verdict_of(answer: xr.Dataset) -> Verdict:
+    """The verdict in one sentence."""
+    word = str(answer.verdict.values)
+    return Verdict(
+        f"{word[0].upper()}{word[1:]}.", SENTENCES[word](answer), TONES.get(word, "open")
+    )
+
+
+def range_text(answer: xr.Dataset) -> str:
+    """Levels and frequencies that the record has."""
+    low, high = number(answer, "frequency_low"), number(answer, "frequency_high")
+    level = number(answer, "level_high")
+    return f"up to {text_of(level)} m/s² over {text_of(low)} to {text_of(high)} Hz"
+
+
+def delaminated(answer: xr.Dataset) -> str:
+    """What is said of a delaminated beam."""
+    ratio = number(answer, "ratio")
+    better = "" if math.isnan(ratio) else f", {text_of(ratio)} times closer than any sound one"
+    return (
+        "The record is that of two halves that part and strike each other: the delaminated "
+        f"structure describes it{better}."
+    )
+
+
+def no_opening(answer: xr.Dataset) -> str:
+    """What is said where nothing opens; never that the beam is intact."""
+    smallest = number(answer, "smallest_opening")
+    seen = ""
+    if math.isfinite(smallest):
+        seen = f" An opening of {text_of(1e6 * smallest)} µm or more would have been seen."
+    return f"No opening of the faces was seen {range_text(answer)}.{seen}"
+
+
+def not_described(answer: xr.Dataset) -> str:
+    """What is said where no hypothesis fits."""
+    return (
+        "None of the structures that were tried, sound or delaminated, describes this record: "
+        "the beam, its clamp or the sensors do something else."
+    )
+
+
+def undecided(answer: xr.Dataset) -> str:
+    """What is said where it is close."""
+    return "This record does not tell a delaminated beam from a sound one."
+
+
+SENTENCES = {
+    "delaminated": delaminated,
+    "no opening seen": no_opening,
+    "not described": not_described,
+    "undecided": undecided,
+}
+
+
+def number(answer: xr.Dataset, name: str) -> float:
+    """A single number of an answer, NaN where it has none."""
+    return float(answer[name]) if name in answer else math.nan
+
+
+def verdict_sections(answer: xr.Dataset) -> list[Section]:
+    """All that a verdict rests on."""
+    made = [decision(answer), fits(answer), misfits(answer), parameters(answer), assumed(answer)]
+    return [section for section in made if section is not None]
+
+
+def decision(answer: xr.Dataset) -> Section:
+    """What decided, and what would change it."""
+    reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
+    points = [f"What decided: {full(reason)}"] if reason else []
+    odds = number(answer, "odds")
+    if math.isfinite(odds):
+        points.append(
+            f"Odds of the delaminated against the best sound structure: {ratio_of(odds)}."
+        )
+    if settle:
+        points.append(f"What would change or settle it: {full(settle)}")
+    return Section("Why", [WORTH], points)
+
+
+def ratio_of(odds: float) -> str:
+    """Odds as people give them.
+
+    Examples
+    --------
+    >>> ratio_of(23.7), ratio_of(0.0005)
+    ('24 to 1', '1 to 2000')
+    """
+    return f"{odds:.2g} to 1" if odds >= 1.0 else f"1 to {float(f'{1.0 / odds:.2g}'):g}"
+
+
+def full(words: str) -> str:
+    """Words as a sentence: a capital at the beginning, a point at the end.
+
+    Examples
+    --------
+    >>> full("gains agree"), full("They do.")
+    ('Gains agree.', 'They do.')
+    """
+    return f"{words[:1].upper()}{words[1:].rstrip('.')}."
+
+
+def fits(answer: xr.Dataset) -> Section | None:
+    """The measurement over the fits."""
+    if "measured" not in answer or "fitted" not in answer:
+        return None
+    words = "What was measured, and what the best structures of each kind do, order by order"
+    return Section(
+        "The measurement over the fits",
+        picture=Picture.from_figure(draw_detect(answer), words),
+        tables=[hypotheses(answer)],
+    )
+
+
+def misfits(answer: xr.Dataset) -> Section | None:
+    """The misfit over the frequency."""
+    if "misfit_at" not in answer:
+        return None
+    words = "How far each structure is from the measurement, over the frequency"
+    text = "1 is as far as the noise and the stated error of a good model allow."
+    picture = Picture.from_figure(draw_misfit(answer), words)
+    return Section("Where they miss it", [text], picture=picture)
+
+
+def hypotheses(answer: xr.Dataset) -> Table:
+    """The hypotheses, the best first."""
+    ordered = answer.sortby("misfit")
+    rows = []
+    for position in range(ordered.sizes["hypothesis"]):
+        one = ordered.isel(hypothesis=position)
+        row = [str(one.hypothesis.values), text_of(float(one.misfit))]
+        row.append(f"{int(np.isfinite(one.minima).sum())}" if "minima" in one else MISSING)
+        row.append(text_of(number(one, "evaluations"), digits=6))
+        rows.append(tuple(row))
+    columns = ("structure", "misfit", "minima found", "motions computed")
+    return Table(columns, rows, frozenset(decided(answer, [row[0] for row in rows])[:1]))
+
+
+def decided(answer: xr.Dataset, names: Sequence[str]) -> list[int]:
+    """Places of the hypotheses that the verdict goes by, the best first."""
+    parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
+    return [place for place, name in enumerate(names) if name.startswith(PARTED) == parted]
+
+
+def parameters(answer: xr.Dataset) -> Section | None:
+    """Parameters with their errors, of the best structures."""
+    if "value" not in answer or "parameter" not in answer.dims:
+        return None
+    shown = by_misfit(answer)
+    names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
+    units = dict(zip(answer.parameter.values, answer.unit.values, strict=True))
+    rows = [
+        (str(name), *(parameter_text(one.sel(parameter=name), str(units[name])) for one in shown))
+        for name in answer.parameter.values
+    ]
+    columns = [0] + [
+        place for place in range(1, 1 + len(shown)) if any(row[place] != MISSING for row in rows)
+    ][:BEST]
+    known = [
+        tuple(row[place] for place in columns)
+        for row in rows
+        if any(row[place] != MISSING for place in columns[1:])
+    ]
+    heads = ("parameter", *(names[place - 1] for place in columns[1:]))
+    text = (
+        "Errors are standard errors from blocks of the record and from what the structure misses. "
+        f"What a structure does not have, or the record does not hold, has a dash ({MISSING})."
+    )
+    if str(answer.verdict.values) in ("not described", "undecided"):
+        text += " This record confirms none of these structures: do not rely on their numbers."
+    return Section("Parameters", [text], tables=[Table(heads, known)])
+
+
+def by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
+    """The hypotheses of an answer one by one, the best first; itself where it has one only."""
+    if "hypothesis" not in answer.dims:
+        return [answer]
+    ordered = answer.sortby("misfit")
+    return [ordered.isel(hypothesis=position) for position in range(ordered.sizes["hypothesis"])]
+
+
+def parameter_text(at: xr.Dataset, unit: str) -> str:
+    """A parameter of one hypothesis, with its error."""
+    value = float(at.value)
+    return (
+        with_error(value, number(at, "standard_error"), unit) if math.isfinite(value) else MISSING
+    )
+
+
+def assumed(answer: xr.Dataset) -> Section:
+    """What was assumed."""
+    own = [text.strip() for text in str(answer.attrs.get("assumed", "")).split(";")]
+    return Section("What was assumed", points=[*ALWAYS_ASSUMED, *map(full, filter(None, own))])

@@ -1,0 +1,194 @@
+"""``diagnose`` and ``report``: records in, verdicts and pages out."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import re
+from contextlib import redirect_stdout
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate.cli import main
+
+from .commands import ROOT
+
+RECORDS = ROOT / "docs" / "records"
+GUESS = RECORDS / "beam.toml"
+
+
+def write_csv(path, *columns, heading="time [s];base [m/s2];acc 1 [m/s2]"):
+    table = np.stack(columns, axis=1)
+    rows = "".join(";".join(f"{value:.6g}" for value in row) + "\n" for row in table)
+    path.write_text(f"{heading}\n{rows}")
+    return path
+
+
+@pytest.fixture
+def sine(tmp_path):
+    time = np.arange(400) / 200.0
+    return write_csv(tmp_path / "sine.csv", time, np.sin(60.0 * time), np.cos(60.0 * time))
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["FILE"], ["--structure: nothing given", "guess of the beam"]),
+        (["lost.csv", "--structure", GUESS], ["lost.csv", "expected a file to read"]),
+        (["FILE", "--structure", "lost.toml"], ["lost.toml"]),
+        (["FILE", "--structure", GUESS, "--columns", "0"], ["--columns 0", "acceleration1"]),
+        (["FILE", "--structure", GUESS, "--columns", "0,1,9"], ["9"]),
+        (["FILE", "--structure", GUESS, "--columns", "0,1"], ["no acceleration1", "--columns"]),
+        (["FILE", "FILE", "--structure", GUESS, "--other", "FILE"], ["--other: of one beam"]),
+        (["FILE", "--structure", GUESS, "--set", "f1=-3"], ["f1 = -3"]),
+        (["FILE", "--structure", GUESS, "--plot", "gif"], ["--plot gif"]),
+        (["FILE", "--structure", GUESS, "--unit", "furlong"], ["furlong"]),
+    ],
+)
+def test_mistakes_are_one_line_and_nothing_is_written(ask, tmp_path, sine, options, words):
+    given = [sine if option == "FILE" else option for option in options]
+    ask("diagnose", *given).complaint(*words)
+    assert not (tmp_path / "results").exists() or not any((tmp_path / "results").iterdir())
+
+
+def test_the_help_teaches_what_is_needed_and_what_comes_out(ask):
+    text = ask("diagnose", "--help").out
+    for words in ("swept sine", "guess", "no opening seen", 'never "intact"', "--other", "--notes"):
+        assert words in text
+
+
+# -- two small records, from their files to pages --------------------------------------------------
+
+GUESSED = (
+    "[structure]\nm1 = 1.5\nm2 = 1.2\nf1_hz = 44.0\nf2_hz = 52.0\nzeta1 = 0.01\nzeta2 = 0.01\n"
+)
+
+
+def make_records(folder):
+    """A beam that opens, and the same one bonded, as a sensor reads them."""
+    beam = orchestrate.Structure.from_halves(
+        m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.01, zeta2=0.01, e=0.5
+    )
+    sweep = orchestrate.SweptSine(first=40.0, last=56.0, duration=4.0, acceleration=4.0)
+    sensor = orchestrate.Sensor(bandwidth=250.0, sample_rate=600.0, noise=0.005)
+    for name, structure in (("parted", beam), ("whole", beam.as_bonded())):
+        history = orchestrate.shake(structure, sweep, sample_rate=600.0, progress=False)
+        felt = orchestrate.measure(history, sensor, excitation=sweep).drop_vars("acceleration2")
+        orchestrate.write_record(felt, folder / f"{name}.csv")
+    (folder / "beam.toml").write_text(GUESSED)
+
+
+@pytest.fixture(scope="module")
+def run(exported, tmp_path_factory):
+    """A function that diagnoses both records, and returns what was printed."""
+    folder = tmp_path_factory.mktemp("diagnosed")
+    make_records(folder)
+
+    def diagnose():
+        said = io.StringIO()
+        records = [str(folder / f"{name}.csv") for name in ("parted", "whole")]
+        options = ["--structure", str(folder / "beam.toml"), "--notes", "Tested <here>"]
+        with redirect_stdout(said):
+            code = main(["diagnose", *records, *options, "--output", str(folder), "--jobs", "1"])
+        assert code == 0
+        return said.getvalue()
+
+    return folder, diagnose, diagnose()
+
+
+def test_each_record_has_a_verdict_with_its_reason(run):
+    _, _, said = run
+    assert "parted.csv: Delaminated. The record is that of two halves that part" in said
+    assert "whole.csv: No opening seen. No opening of the faces was seen up to 4" in said
+    assert said.count("decided by: ") == said.count("to settle it: ") == 2
+    assert "intact" not in said
+
+
+def test_each_record_has_a_page_with_its_evidence(run):
+    folder, _, said = run
+    for name, word in (("parted", "Delaminated."), ("whole", "No opening seen.")):
+        (page,) = folder.glob(f"diagnose_{name}_*.html")
+        assert str(page) in said
+        text = page.read_text(encoding="utf-8")
+        assert text.index(word) < text.index("<h2>Why</h2>") < text.index("Read and signed")
+        assert "Tested &lt;here&gt;" in text and text.count("data:image/png;base64,") == 3
+        assert hashlib.sha256((folder / f"{name}.csv").read_bytes()).hexdigest() in text
+        assert re.search(r"FMU TwoMassImpactOscillator</td><td[^>]*>\{[0-9a-f-]{36}\}", text)
+        assert "intact" not in text and "no certificate" in text
+
+
+def test_numbers_are_told_where_the_record_holds_them(run):
+    folder, _, _ = run
+    pages = {
+        name: next(folder.glob(f"diagnose_{name}_*.html")).read_text(encoding="utf-8")
+        for name in ("parted", "whole")
+    }
+    row = r'<td data-label="parameter">f1</td><td[^>]*>([\d.]+) ± ([\d.]+) Hz'
+    f1, error = map(float, re.search(row, pages["parted"]).groups())
+    assert abs(f1 - 42.0) < 4.0 * error < 2.0
+    assert not re.search(row, pages["whole"])
+
+
+def test_answers_are_stored_and_taken_again(run):
+    folder, diagnose, said = run
+    verdicts = [path for path in folder.glob("diagnose_*.nc") if not path.stem.endswith("_signs")]
+    assert len(verdicts) == 2
+    before = {path: path.read_bytes() for path in verdicts}
+    assert diagnose() == said
+    assert {path: path.read_bytes() for path in verdicts} == before
+    for path in verdicts:
+        stored = xr.load_dataset(path)
+        assert "identity" in stored.attrs and "fmu_guid" in stored.attrs
+        assert len(orchestrate.plot(stored).axes) == stored.sizes["order"]
+
+
+def test_another_guess_has_files_of_its_own(run):
+    folder, _, _ = run
+    (signs,) = folder.glob("diagnose_parted_*_signs.nc")
+    assert xr.load_dataset(signs).exceeds.sel(sign="order_2").item() == 1
+    names = set()
+    for setting in ("e=0.4", "e=0.6"):
+        from orchestrate.cli import diagnose, make_parser
+
+        words = ["diagnose", str(folder / "parted.csv"), "--structure", "beam", "--set", setting]
+        arguments = make_parser().parse_args(words)
+        names.add(diagnose.name_of(arguments.records[0], diagnose.guess_of(arguments), arguments))
+    assert len(names) == 2
+
+
+def test_a_record_that_is_no_sweep_is_refused_by_its_name(ask, sine, tmp_path):
+    still = write_csv(tmp_path / "still.csv", *np.random.default_rng(0).normal(size=(3, 400)))
+    rows = np.loadtxt(still, delimiter=";", skiprows=1)
+    write_csv(still, np.arange(400) / 200.0, *rows.T[1:])
+    line = ask("diagnose", still, "--structure", GUESS).complaint("still", "sine")
+    assert "expected" in line
+
+
+# -- stored results --------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def stored(ask, tmp_path):
+    options = ("--structure", "beam", "--frequency", "78", "--amplitude", "0.001", "--plot", "none")
+    ask("simulate", *options, "--periods", "3").success()
+    (path,) = (tmp_path / "results").glob("simulate*.nc")
+    return path
+
+
+def test_a_stored_result_becomes_a_page(ask, tmp_path, stored):
+    page = tmp_path / "results" / f"report_{stored.stem}.html"
+    done = ask("report", stored, "--title", "A <study>", "--notes", "Us").success()
+    assert str(page) in done.out
+    text = page.read_text(encoding="utf-8")
+    assert "A &lt;study&gt;" in text and "data:image/png;base64," in text
+    assert xr.load_dataset(stored).attrs["fmu_guid"] in text
+
+
+def test_mistakes_of_a_page(ask, tmp_path):
+    ask("report", tmp_path / "lost.nc").complaint("lost.nc", "no such file")
+    xr.Dataset({"x": ("y", [1.0])}).to_netcdf(tmp_path / "other.nc")
+    ask("report", tmp_path / "other.nc").complaint("no answer of a question")
+    assert not list((tmp_path / "results").glob("*.html"))

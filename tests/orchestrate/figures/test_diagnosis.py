@@ -1,0 +1,71 @@
+"""Pictures of signs and of a test's plan."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate.diagnosis.indicators import INDICATORS
+from orchestrate.figures.diagnosis import FEWEST_DECADES
+
+
+def texts(figure):
+    figure.canvas.draw()
+    words = [text.get_text() for axes in figure.axes for text in axes.texts]
+    words += [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    return words + [label.get_text() for axes in figure.axes for label in axes.get_yticklabels()]
+
+
+@pytest.fixture(scope="module")
+def signs():
+    time = np.arange(4000) / 1000.0
+    angle = 2.0 * np.pi * (20.0 * time + 5.0 * time**2)
+    box, response = 2.0 * np.sin(angle), 6.0 * np.sin(angle) + 0.6 * np.sin(2.0 * angle)
+    noise = 0.01 * np.random.default_rng(2).normal(size=(2, 4000))
+    names = {"box_acceleration": box, "acceleration1": response + noise[0]}
+    names["acceleration2"] = response + noise[1]
+    record = xr.Dataset({name: ("time", values) for name, values in names.items()}, {"time": time})
+    return orchestrate.signs(record, seeds=1)
+
+
+def test_every_sign_has_its_bar_or_says_that_it_is_unknown(signs):
+    figure = orchestrate.plot(signs, title="Beam A")
+    words = texts(figure)
+    assert all(one.long_name in words for one in INDICATORS.values())
+    unknown = int((signs.exceeds < 0).sum())
+    assert words.count("not in this record") == unknown > 0
+    widths = {bar.get_width() for bar in figure.axes[0].patches}
+    usual = np.fmax(signs.floor, signs.sound_highest)
+    order_2 = (signs.value / usual).sel(sign="order_2").values
+    assert all(any(np.isclose(width, wanted) for width in widths) for wanted in order_2)
+    low, high = figure.axes[0].get_xlim()
+    assert low == FEWEST_DECADES[0] and high > float(order_2.max())
+    assert figure.get_suptitle() == "Beam A"
+
+
+@pytest.fixture(scope="module")
+def plan(exported):
+    beam = orchestrate.Structure.from_file("beam").replace(D=0.03)
+    sensor = orchestrate.Sensor(bandwidth=200.0, noise=1e-3)
+    frequencies = np.linspace(10.0, 15.0, 11)
+    return orchestrate.plan_test(
+        beam, sensor=sensor, levels=[0.02, 0.2], frequencies=frequencies, progress=False
+    )
+
+
+def test_a_plan_shows_map_recommended_sweep_and_preload(plan):
+    figure = orchestrate.plot(plan)
+    words = texts(figure)
+    assert {"level that counts", "recommended sweep", "at 0.02 m/s$^2$"} <= set(words)
+    (box,) = (patch for patch in figure.axes[0].patches if patch.get_width() > 0.0)
+    assert box.get_x() == float(plan.recommended_first)
+    low, high = box.get_y(), box.get_y() + box.get_height()
+    assert low < float(plan.recommended_level) < high
+    assert len(figure.axes[1].lines) == 2
+
+
+def test_a_plan_at_one_level_shows_curves(plan):
+    figure = orchestrate.plot(plan.isel(level=[1]))
+    assert {"orders 2 and 3", "order 1"} <= set(texts(figure))

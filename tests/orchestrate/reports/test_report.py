@@ -1,0 +1,140 @@
+"""The page of a report: it carries all it needs, escapes every text, and fits paper and phone."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate.errors import InputError
+from orchestrate.reports.page import Page, Section, Table, Verdict, text_of, with_error
+
+EVIL = "<script>alert(\"1\")</script> & 'others'"
+RATE = 1000.0
+
+
+class Tags(HTMLParser):
+    """Tags and texts of a page."""
+
+    def __init__(self):
+        super().__init__()
+        self.tags, self.open, self.texts = [], [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        if tag not in ("meta", "img"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+
+def parsed(html):
+    page = Tags()
+    page.feed(html)
+    assert page.open == []
+    return page
+
+
+@pytest.fixture(scope="module")
+def signs():
+    time = np.arange(4000) / RATE
+    angle = 2.0 * np.pi * (20.0 * time + 5.0 * time**2)
+    generator = np.random.default_rng(2)
+    response = 6.0 * np.sin(angle) + np.sin(2.0 * angle) + 0.01 * generator.normal(size=4000)
+    record = xr.Dataset(
+        {
+            "box_acceleration": ("time", 2.0 * np.sin(angle)),
+            "acceleration1": ("time", response),
+        },
+        {"time": time},
+        {"title": EVIL},
+    )
+    return orchestrate.signs(record, seeds=1)
+
+
+@pytest.fixture
+def html(signs, tmp_path):
+    return orchestrate.report(signs, output=tmp_path / "r.html", notes=EVIL).read_text("utf-8")
+
+
+def test_every_text_is_escaped(html):
+    page = parsed(html)
+    assert "script" not in {tag for tag, _ in page.tags}
+    assert EVIL in page.texts  # as a text, twice: the notes and the title's part
+    assert not any(name.startswith("on") for _, attributes in page.tags for name in attributes)
+
+
+def test_it_needs_no_network_and_its_style_is_the_one_allowed(html):
+    assert "http:" not in html and "https:" not in html
+    policy = re.search(r'Content-Security-Policy" content="([^"]+)"', html)[1]
+    style = re.search(r"<style>(.*?)</style>", html, re.DOTALL)[1]
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    assert f"'sha256-{digest}'" in policy.replace("&#39;", "'")
+    assert "default-src" in policy and "unsafe" not in policy and "script-src" not in policy
+    assert not any("style" in attributes for _, attributes in parsed(html).tags)
+
+
+def test_it_is_made_for_paper_and_phone(html):
+    assert "@page { size: A4" in html and "@media print" in html
+    assert "width=device-width" in html
+    cells = [attributes for tag, attributes in parsed(html).tags if tag == "td"]
+    assert cells and all(attributes.get("data-label") for attributes in cells)
+
+
+def test_pictures_are_inside_with_their_size_and_words(html):
+    images = [attributes for tag, attributes in parsed(html).tags if tag == "img"]
+    assert len(images) == 1
+    assert images[0]["src"].startswith("data:image/png;base64,") and images[0]["alt"]
+    assert int(images[0]["width"]) > 600 and int(images[0]["height"]) > 300
+
+
+def test_signs_are_told_with_floors_and_what_else_moves_them(html):
+    words = "\n".join(parsed(html).texts)
+    assert "order 2 over order 1" in words and "Also moved by: a shaker or a sensor" in words
+    assert "fall of the jump voltage" not in words  # this record does not show it
+    assert "numpy" in words and "vibroimpact" in words
+
+
+def test_any_stored_answer_has_a_page(exported, tmp_path):
+    beam = orchestrate.Structure.from_file("beam")
+    motion = orchestrate.simulate(beam, frequency=78.0, amplitude=1e-3, periods=3)
+    motion.to_netcdf(tmp_path / "motion.nc")
+    stored = xr.load_dataset(tmp_path / "motion.nc")
+    text = orchestrate.report(stored, output=tmp_path / "m.html", title="A motion").read_text()
+    words = "\n".join(parsed(text).texts)
+    assert "A motion" in words and motion.attrs["fmu_guid"] in words
+    assert "8437.5 N/m" in words and "0.001 m" in words
+    assert "Read and signed" not in words
+    assert len([tag for tag, _ in parsed(text).tags if tag == "img"]) == 1
+
+
+def test_a_verdict_comes_first_and_is_signed():
+    sections = [Section("Why", points=[EVIL], tables=[Table(("a", "b"), [("1", EVIL)])])]
+    page = parsed(Page("T", "", sections, Verdict("Undecided.", EVIL, "open"), True).html())
+    words = "\n".join(page.texts)
+    assert words.index("Undecided.") < words.index("Why") < words.index("Signature")
+    assert ("p", {"class": "verdict open"}) in page.tags
+
+
+def test_numbers_have_the_digits_of_their_errors():
+    assert with_error(0.57123, 0.0312) == "0.571 ± 0.031"
+    assert with_error(0.57123, np.nan) == "0.5712"
+    assert text_of(np.inf, "Hz") == "–"
+
+
+def test_nothing_is_no_report(tmp_path):
+    with pytest.raises(InputError, match="no answer given"):
+        orchestrate.report(output=tmp_path / "r.html")
+    with pytest.raises(InputError, match="no answer of a question"):
+        orchestrate.report(xr.Dataset(), output=tmp_path / "r.html")
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,253 @@
+"""The integration of benches against closed forms and an adaptive method with tight tolerances."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import ellipk
+
+from tools.benches import restitution
+from tools.benches.bench import Bench
+from tools.benches.excitation import Swept
+from tools.benches.integrator import Escaped, equilibrium, integrate
+from tools.benches.lumped import TURN, Clamp, Faces, Halves, change_of, cubic_for
+from tools.benches.recipe import OPENED
+
+HALVES = Halves(zeta1=0.03, zeta2=0.03)
+LAWS = ("linear", "hunt-crossley", "hertz")
+
+
+def driven(frequency, seconds, step, level=5.0):
+    """A sine at the ends and middles of steps."""
+    steps = round(seconds / step)
+    return level * np.sin(TURN * frequency * 0.5 * step * np.arange(2 * steps + 1))
+
+
+def test_a_bonded_beam_has_the_closed_transfer_function():
+    system, step = HALVES.bonded(), 1.0 / 24_000.0
+    whole = HALVES.whole()
+    for frequency in (25.0, whole.f, 80.0):
+        moved = integrate(system, driven(frequency, 4.0, step), step).acceleration
+        r = frequency / whole.f
+        ratio = (1.0 + 2j * whole.zeta * r) / (1.0 - r * r + 2j * whole.zeta * r)
+        times = step * np.arange(moved.shape[1])
+        closed = 5.0 * np.imag(ratio * np.exp(1j * TURN * frequency * times))
+        assert np.abs(moved - closed)[:, -24_000:].max() < 2e-7 * 5.0 * abs(ratio)
+
+
+def test_a_linear_motion_converges_with_the_fourth_power_of_the_step():
+    system = HALVES.bonded()
+    ends = [
+        integrate(system, driven(40.0, 0.5, step), step).position[0]
+        for step in (1e-3, 5e-4, 2.5e-4, 1e-5)
+    ]
+    errors = np.abs(np.array(ends[:-1]) - ends[-1])
+    assert (np.log2(errors[:-1] / errors[1:]) > 3.8).all()
+
+
+def reference(system, base, times):
+    """Speeds of two masses with contact at some times, by an adaptive method."""
+    contacts, w, zeta = system.contacts, system.frequency, system.damping_ratio
+    (k,), (c,) = contacts.stiffness, contacts.damping
+    (gap_row,), (clearance,) = contacts.rows, contacts.clearance
+
+    def slope(t, y):
+        q, v = y[:2], y[2:]
+        depth, speed = -(gap_row @ q) - clearance, -(gap_row @ v)
+        force = k * depth + c * speed if contacts.law == "linear" else k * depth * (1 + c * speed)
+        force *= math.sqrt(max(depth, 0.0)) if contacts.law == "hertz" else 1.0
+        force = max(force, 0.0) if depth > 0.0 else 0.0
+        forced = gap_row * force - system.participation * base(t)
+        return np.concatenate([v, forced - w * w * q - 2 * zeta * w * v])
+
+    start = np.concatenate([equilibrium(system), np.zeros(2)])
+    tight = {"rtol": 1e-10, "atol": 1e-14, "max_step": 2e-4}
+    return solve_ivp(slope, (0.0, times[-1]), start, "DOP853", times, **tight).y[2:]
+
+
+def speeds(system, base, times, parts):
+    """The same by the benches' integration, each time ``parts`` steps after the one before."""
+    step = float(times[1] - times[0]) / parts
+    q, v, found, impacts = equilibrium(system), np.zeros(2), [np.zeros(2)], 0.0
+    for begin in times[:-1]:
+        moved = integrate(system, base(begin + 0.5 * step * np.arange(2 * parts + 1)), step, q, v)
+        q, v, impacts = moved.position, moved.velocity, impacts + moved.impacts[0]
+        found.append(v)
+    return np.array(found).T, impacts
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("clearance", [0.0, 3e-4, -2e-4])
+def test_motion_with_contact_is_that_of_an_adaptive_method(law, clearance):
+    """The stated error: half a percent of the largest speed through the first impacts, 2 % where a
+    dashpot's force jumps at each of them.
+
+    Later motions part, as chaotic ones do. A quarter of the step leaves a third of it or less.
+    """
+    system = HALVES.delaminated(Faces(law=law, clearance=clearance))
+    times = np.linspace(0.0, 0.25, 101)
+
+    def base(t):
+        return 8.0 * np.sin(TURN * 44.0 * np.asarray(t))
+
+    known = reference(system, base, times)
+    worst = []
+    for steps in (60, 240):
+        found, impacts = speeds(system, base, times, round(steps * 1000.0 * float(times[1])))
+        assert clearance < 0.0 or impacts > 5
+        worst.append(np.abs(found - known).max() / np.abs(known).max())
+    stated = 2e-2 if law == "linear" else 5e-3
+    assert worst[0] < stated and worst[1] < max(worst[0] / 3.0, 1e-6), worst
+
+
+def free(faces):
+    """Two masses on nearly no springs."""
+    return Halves(m1=1.5, m2=0.7, f1=1e-4, f2=1e-4, zeta1=0.0, zeta2=0.0).delaminated(faces)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("e", [0.3, 0.6, 0.9])
+def test_a_collision_has_the_restitution_that_was_asked_for(law, e):
+    speed, step = 0.05, 1e-6
+    system = free(Faces(law=law, restitution=e, speed=speed, frequency=800.0))
+    apart = np.array([-5e-6, 0.0])  # of mass 1 from mass 2, m
+    start = apart * np.sqrt([1.5, 0.7])
+    velocity = np.array([speed, 0.0]) * np.sqrt([1.5, 0.7])
+    done = integrate(system, np.zeros(8001), step, start, velocity)
+    v1, v2 = done.velocity / np.sqrt([1.5, 0.7])
+    assert (v2 - v1) / speed == pytest.approx(e, rel=1e-3)
+    assert 1.5 * v1 + 0.7 * v2 == pytest.approx(1.5 * speed, rel=1e-9)
+    assert done.impacts[0] == 1 and done.restitution[0] == pytest.approx(e, rel=2e-2)
+
+
+def test_hunt_and_crossley_at_small_speeds():
+    """Their own approximation e = 1 - 2/3 c v."""
+    for speed in (1e-3, 1e-2):
+        assert restitution.hunt_crossley(0.5, speed) == pytest.approx(
+            1.0 - speed / 3.0, abs=speed**2
+        )
+    damping = restitution.hunt_crossley_damping(0.4, 0.2)
+    assert restitution.hunt_crossley(damping, 0.2) == pytest.approx(0.4)
+    assert restitution.hunt_crossley(damping, 0.02) > 0.8, "slow impacts lose less"
+
+
+def test_a_dashpot_that_pulled_would_lose_more():
+    for ratio in (0.05, 0.3, 0.7):
+        pulling = math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2))
+        assert pulling < restitution.linear(ratio) < 1.0
+    assert restitution.linear(restitution.linear_ratio(0.5)) == pytest.approx(0.5)
+
+
+def test_pressed_faces_rest_where_the_forces_balance():
+    clearance = -5e-4
+    system = HALVES.delaminated(Faces(clearance=clearance))
+    x1, x2 = equilibrium(system) / np.sqrt([HALVES.m1, HALVES.m2])
+    k1, k2 = HALVES.m1 * (TURN * HALVES.f1) ** 2, HALVES.m2 * (TURN * HALVES.f2) ** 2
+    contact = system.contacts.stiffness[0]
+    force = -clearance / (1.0 / k1 + 1.0 / k2 + 1.0 / contact)
+    assert (x1, x2) == (pytest.approx(-force / k1, rel=1e-6), pytest.approx(force / k2, rel=1e-6))
+
+
+@pytest.mark.parametrize(("part", "opens"), [(0.93, True), (1.07, False)])
+def test_pressed_faces_part_where_the_dynamic_force_is_larger(part, opens):
+    """It is what mass 1 needs beside its own spring to move as the bonded beam does."""
+    own, frequency, level = HALVES, 44.0, 5.0
+    whole, w = own.whole(), TURN * frequency
+    r = frequency / whole.f
+    moved = -level / (TURN * whole.f) ** 2 / (1.0 - r * r + 2j * whole.zeta * r)
+    w1 = TURN * own.f1
+    force = own.m1 * abs(level + (w1 * w1 - w * w + 2j * own.zeta1 * w1 * w) * moved)
+    compliance = sum(1.0 / (m * (TURN * f) ** 2) for m, f in ((own.m1, own.f1), (own.m2, own.f2)))
+    faces = Faces(law="linear", frequency=3000.0, clearance=-part * force * compliance)
+    base = driven(frequency, 1.5, 1e-5, level)
+    slowly = 200_000.0  # half steps, so that it does not overshoot
+    base *= np.minimum(np.arange(len(base)) / slowly, 1.0)
+    gap = integrate(own.delaminated(faces), base, 1e-5).largest_gap[0]
+    assert (gap > OPENED) == opens and abs(gap) > 1e-9
+
+
+@pytest.mark.parametrize("change", [0.3, -0.1])
+def test_a_cubic_spring_changes_the_frequency_as_asked(change):
+    """Its free period by an elliptic integral."""
+    f, amplitude, step = 45.0, 2e-3, 1e-5
+    own = Halves(f1=f, f2=f, zeta1=0.0, zeta2=0.0)
+    cubic = cubic_for(change, f, amplitude)
+    assert change_of(cubic, f, amplitude) == pytest.approx(change)
+    start = np.array([amplitude * math.sqrt(own.whole().mass)])
+    moved = integrate(own.bonded(cubic=cubic), np.zeros(20_001), step, start)
+    signs = np.flatnonzero(np.diff(np.signbit(moved.acceleration[0])))
+    period = 2.0 * step * (signs[-1] - signs[0]) / (len(signs) - 1)
+    w2, part = (TURN * f) ** 2, cubic * amplitude**2
+    exact = 4.0 * float(ellipk(0.5 * part / (w2 + part))) / math.sqrt(w2 + part)
+    assert period == pytest.approx(exact, rel=1e-3)
+    assert 1.0 / (f * period) - 1.0 == pytest.approx(change, rel=0.06)
+    assert moved.spring_peaks[0] == pytest.approx(amplitude)
+
+
+def test_a_spring_that_sags_makes_even_orders():
+    """By harmonic balance: order 2 over 1 of the acceleration is 2 c s X/w^2 for small X."""
+    own, step, w2 = Halves(f1=45.0, f2=45.0, zeta1=0.0, zeta2=0.0), 1e-5, (TURN * 45.0) ** 2
+    cubic, sag, amplitude = cubic_for(0.02, 45.0, 2e-3), 1e-3, 2e-4
+    start = np.array([amplitude * math.sqrt(own.whole().mass)])
+    for offset in (sag, 0.0):
+        moved = integrate(own.bonded(cubic=cubic, sag=offset), np.zeros(80_001), step, start)
+        stiffer = w2 + 3.0 * cubic * offset**2
+        window = np.hanning(40_001)
+        lines = np.abs(np.fft.rfft(moved.acceleration[0] * window, 1 << 19))
+        first = round(math.sqrt(stiffer) / TURN * step * (1 << 19))
+        ratio = lines[2 * first - 60 : 2 * first + 60].max() / lines[first - 60 : first + 60].max()
+        expected = 4.0 * 1.5 * cubic * offset * amplitude / (3.0 * stiffer)  # of accelerations
+        assert ratio == pytest.approx(expected, rel=0.05, abs=2e-4)
+
+
+def test_a_soft_spring_gives_way():
+    system = Halves(zeta1=0.0, zeta2=0.0).bonded(cubic=cubic_for(-0.15, 46.7, 1e-3))
+    with pytest.raises(Escaped, match="after"):
+        integrate(system, driven(46.0, 5.0, 1e-4, 50.0), 1e-4)
+
+
+def test_dry_friction_takes_the_same_from_each_swing():
+    f, step, dry = 45.0, 1e-5, 0.4
+    own = Halves(f1=f, f2=f, zeta1=0.0, zeta2=0.0)
+    root = math.sqrt(own.whole().mass)
+    w2 = (TURN * f) ** 2
+    moved = integrate(
+        own.bonded(friction=dry), np.zeros(2 * 8889 + 1), step, np.array([2e-3 * root])
+    )
+    assert 8889 * step == pytest.approx(4.0 / f, rel=1e-3)
+    assert abs(moved.position[0] / root) == pytest.approx(2e-3 - 4 * 4.0 * dry / w2, rel=5e-3)
+
+
+def test_friction_of_faces_needs_their_pressure():
+    """Of two beams that never touch it takes nothing."""
+    base = driven(44.0, 0.5, 2e-5)
+    for clearance, alike in ((1.0, True), (0.0, False)):
+        rubbed, smooth = (
+            integrate(
+                HALVES.delaminated(Faces(clearance=clearance, friction=friction)), base, 2e-5
+            ).acceleration
+            for friction in (0.3, 0.0)
+        )
+        assert np.array_equal(rubbed, smooth) == alike
+
+
+def test_a_clamp_that_is_pressed_holds_like_one_spring_more():
+    """Pressed on one side it does not open at small levels: two masses with one spring more."""
+    own = Halves(zeta1=0.02, zeta2=0.02)
+    clamp = Clamp(faces=Faces(law="linear", restitution=0.999), play=-1e-3, both_sides=False)
+    system = own.in_rattling_clamp(clamp)
+    moved = integrate(system, driven(30.0, 1.5, 1e-5, 0.2), 1e-5)
+    assert moved.time_open[0] == 0.0
+    loose = integrate(system, driven(30.0, 1.5, 1e-5, 200.0), 1e-5)
+    assert 0.0 < loose.time_open[0] < 1.5
+
+
+def test_steps_of_a_bench_resolve_its_fastest_oscillation():
+    bench = Bench(excitation=Swept(20.0, 90.0, 1.0, 5.0))
+    for frequency in (500.0, 1500.0):
+        system = HALVES.delaminated(Faces(law="linear", frequency=frequency))
+        rate = bench.factor_for(system) * bench.rate
+        assert bench.steps <= rate / frequency < 1.2 * bench.steps + bench.rate / frequency

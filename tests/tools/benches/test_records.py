@@ -1,0 +1,163 @@
+"""What shakers do, what sensors read, random beams, and the records of the manual's tutorial."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy.signal import butter, freqs, welch
+
+import orchestrate
+from tools.benches import recipe, tutorial
+from tools.benches.__main__ import main
+from tools.benches.bench import Bench
+from tools.benches.excitation import Random, Stepped, Swept
+from tools.benches.lumped import TURN, Halves
+from tools.benches.sensors import Sensor
+
+
+@pytest.mark.parametrize("log", [False, True])
+@pytest.mark.parametrize("ends", [(20.0, 90.0), (90.0, 20.0)])
+def test_a_sweep_goes_from_end_to_end(log, ends):
+    sweep = Swept(*ends, duration=10.0, level=3.0, log=log)
+    time = np.linspace(0.0, 10.0, 100_001)
+    frequency = np.gradient(sweep.phase(time), time) / TURN
+    assert (frequency[1], frequency[-2]) == (pytest.approx(ends[0], rel=1e-3),) + (
+        pytest.approx(ends[1], rel=1e-3),
+    )
+    middle = math.sqrt(20.0 * 90.0) if log else 55.0
+    assert frequency[50_000] == pytest.approx(middle, rel=1e-6)
+    assert abs(sweep(time)).max() == pytest.approx(3.0, rel=1e-3)
+    assert sweep(time)[0] == 0.0 == pytest.approx(sweep(time)[-1], abs=1e-9)
+
+
+def test_a_stepped_sine_holds_its_frequencies_without_a_jump():
+    stepped = Stepped(20.0, 40.0, duration=10.0, level=2.0, steps=5)
+    time = np.arange(100_000) / 1e4
+    values = stepped(time)
+    assert np.abs(np.diff(values)).max() < 2.0 * TURN * 40.0 * 1.01e-4
+    spectrum = np.abs(np.fft.rfft(values[42_000:58_000] * np.hanning(16_000)))
+    assert np.argmax(spectrum) / 1.6 == pytest.approx(30.0, abs=0.7)
+
+
+def test_noise_has_its_band_and_its_level():
+    noise = Random(20.0, 90.0, duration=60.0, level=3.0, seed=4)
+    time = np.arange(60_000) / 1e3
+    values = noise(time)
+    assert values.std() == pytest.approx(3.0, rel=0.03)
+    frequency, density = welch(values, 1e3, nperseg=4000)
+    inside = (frequency > 22.0) & (frequency < 88.0)
+    assert density[inside].mean() == pytest.approx(9.0 / 70.0, rel=0.05)
+    assert density[(frequency < 18.0) | (frequency > 92.0)].max() < 1e-3 * density[inside].mean()
+    assert np.array_equal(values, Random(20.0, 90.0, 60.0, 3.0, seed=4)(time))
+
+
+def test_a_sensor_filters_delays_and_scales():
+    rate, factor, frequency = 80_000.0, 40, 300.0
+    time = np.arange(80_000) / rate
+    sensor = Sensor(bandwidth=1000.0, order=2, gain=1.03, delay=1e-4, noise=0.0)
+    read = sensor.read(np.sin(TURN * frequency * time), rate, factor, np.random.default_rng(0))
+    response = freqs(*butter(2, TURN * 1000.0, analog=True), [TURN * frequency])[1][0]
+    response *= 1.03 * np.exp(-1j * TURN * frequency * 1e-4)
+    expected = np.imag(response * np.exp(1j * TURN * frequency * time[::factor]))
+    assert np.abs(read - expected)[200:-200].max() < 2e-3
+
+
+def test_nothing_above_half_the_sampling_rate_comes_back():
+    rate, factor = 80_000.0, 40
+    time = np.arange(80_000) / rate
+    sensor = Sensor(bandwidth=20_000.0, noise=0.0)
+    for frequency, passed in ((700.0, True), (1100.0, False), (3300.0, False)):
+        read = sensor.read(np.sin(TURN * frequency * time), rate, factor, np.random.default_rng(0))
+        peak = np.abs(read[200:-200]).max()
+        assert peak == pytest.approx(1.0, abs=2e-3) if passed else peak < 2e-4
+
+
+def test_noise_is_a_part_of_what_is_read():
+    signal = np.sin(TURN * 50.0 * np.arange(400_000) / 40_000.0)
+    clean, noisy = (
+        Sensor(noise=noise).read(signal, 40_000.0, 20, np.random.default_rng(3))
+        for noise in (0.0, 0.05)
+    )
+    assert (noisy - clean).std() == pytest.approx(0.05 / math.sqrt(2.0), rel=0.03)
+
+
+def test_a_record_has_the_channels_that_are_measured():
+    bench = Bench(excitation=Swept(40.0, 50.0, 1.0, 5.0), rate=1000.0)
+    record, motion = bench.measure(Halves().bonded(), seed=1)
+    assert dict(record.sizes) == {"time": 1001} and "acceleration2" not in record
+    both = dataclasses.replace(bench, face2=Sensor())
+    second, _ = both.measure(Halves().bonded(), seed=1)
+    assert second.acceleration2.values.std() == pytest.approx(
+        second.acceleration1.values.std(), 0.02
+    )
+    assert np.array_equal(record.acceleration1, second.acceleration1), "noise by seed"
+    assert motion.acceleration.shape[0] == 2 and motion.impacts.size == 0
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Records of some seconds."""
+    monkeypatch.setattr(recipe, "DURATION", 4.0)
+
+
+FAST = [kind for kind in recipe.KINDS if "elements" not in kind]
+
+
+@pytest.mark.parametrize("kind", FAST)
+def test_a_beam_of_each_kind(kind, short):
+    """All but the guess of a beam is the same for one seed; the truth is what moved."""
+    for seed in range(2):
+        conditions = recipe.Conditions(noise=(0.001, 0.1), excitation="any")
+        case = recipe.draw(np.random.default_rng(seed), kind, conditions)
+        again = recipe.draw(np.random.default_rng(seed), kind, conditions)
+        assert case.record.identical(again.record) and case.truth.setup == again.truth.setup
+        assert case.guess == again.guess
+        truth, guess = case.truth, case.guess
+        assert truth.is_delaminated == (kind in recipe.SPLIT)
+        assert not (truth.opened and not truth.is_delaminated)
+        assert np.isfinite(case.record.acceleration1).all()
+        if truth.is_delaminated:
+            assert guess.f1 == pytest.approx(truth.f1, rel=0.1001)
+        assert 0.001 <= truth.setup.noise <= 0.1 and 2.0 <= truth.setup.level <= 10.0
+
+
+def test_beams_of_finite_elements(short):
+    case = recipe.draw(np.random.default_rng(1), "elements", recipe.Conditions(size=(0.6, 0.6)))
+    assert case.truth.size == pytest.approx(0.6) and case.truth.opened
+    intact = recipe.draw(np.random.default_rng(1), "intact elements")
+    assert not intact.truth.is_delaminated and intact.truth.size == 0.0
+
+
+def test_the_records_of_the_tutorial_are_read_as_they_are():
+    """Three files, small enough for the repository; what they say of themselves, and the signs."""
+    ratios = {}
+    for name in tutorial.BEAMS:
+        path = tutorial.FOLDER / f"{name}.csv"
+        assert path.stat().st_size < 1.2e6
+        head = path.read_text("utf-8")[:400]
+        assert head.startswith("Virtual bench with compliant contact: computed, not measured\n")
+        record = orchestrate.read_record(path)
+        assert record.sample_rate == tutorial.RATE and record.sizes["time"] == 50_001
+        assert set(record.data_vars) == {"box_acceleration", "acceleration1"}
+        orders = orchestrate.track_orders(record).amplitude.sel(channel="acceleration1")
+        ratios[name] = float((orders.sel(order=2) / orders.sel(order=1)).median())
+    assert ratios["beam_a"] > 0.1 > 0.03 > max(ratios["beam_b"], ratios["beam_c"])
+    guess = orchestrate.Structure.from_file(tutorial.FOLDER / "beam.toml")
+    for name in ("m1", "m2", "f1", "f2"):
+        assert getattr(guess, name) == pytest.approx(getattr(tutorial.BEAM, name), rel=0.1)
+
+
+def test_the_command_writes_them(tmp_path, monkeypatch, capsys):
+    """The first second is the committed one: the sweep begins alike, and no beam rattles yet."""
+    short = dataclasses.replace(tutorial.BENCH, excitation=Swept(20.0, 90.0, 1.0, 4.0))
+    monkeypatch.setattr(tutorial.write, "__defaults__", (tmp_path, short))
+    main(["tutorial", "--folder", str(tmp_path)])
+    assert capsys.readouterr().out.count("sha256") == 3
+    for name in tutorial.BEAMS:
+        written = (tmp_path / f"{name}.csv").read_text("utf-8")
+        kept = (tutorial.FOLDER / f"{name}.csv").read_text("utf-8")
+        assert written.splitlines()[:7] == kept.splitlines()[:7]
+        assert orchestrate.read_record(tmp_path / f"{name}.csv").sizes["time"] == 1251

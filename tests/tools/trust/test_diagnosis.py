@@ -1,0 +1,173 @@
+"""The campaign on verdicts: what counts as wrong, the signs beside it, its curves and tables."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+import orchestrate
+from tools.benches import recipe, tutorial
+from tools.benches.recipe import Setup, Truth
+from tools.trust import __main__ as ledger
+from tools.trust import diagnosis, diagnosis_tables, page, records, roc, signs
+from tools.trust.campaign import HERE, sources
+from tools.trust.diagnosis import Diagnosis, judged, wrong_in
+
+SOUND = Truth(
+    kind="sound",
+    is_delaminated=False,
+    opened=False,
+    touched=False,
+    f1=45.0,
+    f2=45.0,
+    zeta1=0.01,
+    zeta2=0.01,
+    setup=Setup(4.0, 0.02, 1, "up"),
+)
+SPLIT = dataclasses.replace(
+    SOUND, kind="delaminated", is_delaminated=True, opened=True, touched=True, largest_gap=1e-3
+)
+SHUT = dataclasses.replace(SPLIT, kind="preloaded", opened=False, largest_gap=-1e-6)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "truth", "expected"),
+    [
+        ("delaminated", SOUND, "is sound"),
+        ("delaminated", SHUT, "did not open"),
+        ("delaminated", SPLIT, ""),
+        ("no opening seen", SPLIT, "opened by 1 mm"),
+        ("no opening seen", dataclasses.replace(SPLIT, largest_gap=1e-5), ""),
+        ("no opening seen", dataclasses.replace(SPLIT, touched=False), ""),
+        ("no opening seen", SHUT, ""),
+        ("no opening seen", SOUND, ""),
+        ("not described", SOUND, ""),
+        ("undecided", SPLIT, ""),
+    ],
+)
+def test_what_is_wrong(verdict, truth, expected):
+    found = wrong_in(verdict, truth)
+    assert found.endswith(expected) and bool(found) == bool(expected)
+
+
+def test_the_signs_tell_the_tutorials_beams_apart():
+    numbers = {}
+    for name in tutorial.BEAMS:
+        record = orchestrate.read_record(tutorial.FOLDER / f"{name}.csv")
+        numbers[name] = signs.order_ratio(record), signs.kurtosis_above(record)
+    assert numbers["beam_a"][0] > 0.1 and numbers["beam_a"][1] > 20.0
+    assert numbers["beam_b"][0] < 5e-3 and numbers["beam_b"][1] == pytest.approx(3.0, abs=0.1)
+    assert numbers["beam_c"][0] < 1e-2 and numbers["beam_c"][1] > 5.0, "it rattles elsewhere"
+
+
+def test_the_ratio_of_orders_is_that_of_a_made_signal():
+    time = np.arange(20_000) / 1000.0
+    phase = 2.0 * np.pi * (20.0 + time) * time
+    made = orchestrate.record(
+        time=time,
+        box_acceleration=np.sin(phase),
+        acceleration1=3.0 * np.sin(phase + 0.4) + 0.6 * np.sin(2.0 * phase),
+    )
+    assert signs.order_ratio(made) == pytest.approx(0.2, rel=2e-2)
+    still = made.assign(box_acceleration=("time", np.random.default_rng(1).normal(size=20_000)))
+    assert math.isnan(signs.order_ratio(still)), "there is no sweep"
+
+
+def test_curves_of_numbers_with_a_known_area():
+    rng = np.random.default_rng(2)
+    numbers = np.concatenate([rng.normal(1.5, 1.0, 4000), rng.normal(0.0, 1.0, 4000)])
+    found = roc.curve(numbers, np.arange(8000) < 4000)
+    exact = norm.cdf(1.5 / math.sqrt(2.0))
+    assert abs(found.area - exact) < 3.0 * roc.area_error(exact, 4000, 4000) < 0.02
+    assert found.true_at(0.05) == pytest.approx(norm.sf(norm.isf(0.05) - 1.5), abs=0.03)
+    assert roc.curve([2.0, 3.0, 1.0, 0.0], [True, True, False, False]).area == 1.0
+    assert roc.curve([1.0, 1.0, 1.0], [True, False, False]).area == 0.5
+    assert roc.curve([np.nan, 1.0, 0.0], [True, True, False]).area == pytest.approx(0.5)
+    with pytest.raises(ValueError, match="negative"):
+        roc.curve([1.0], [True])
+
+
+def test_intervals_of_parts():
+    """Wilson's, against a table: 2 of 100."""
+    assert roc.interval(2, 100) == (pytest.approx(0.0055, abs=1e-4), pytest.approx(0.07, abs=1e-3))
+    low, high = roc.interval(0, 50)
+    assert low == pytest.approx(0.0, abs=1e-12) and 0.05 < high < 0.08
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Short records, and a detector that reads the truth, but errs about hardening beams."""
+    monkeypatch.setattr(recipe, "DURATION", 3.0)
+    monkeypatch.setattr(diagnosis, "KINDS", ("sound", "delaminated", "hardening", "gap"))
+
+    def asked(case):
+        truth = case.truth
+        wrong = truth.kind == "hardening"
+        verdict = "delaminated" if truth.opened or wrong else "no opening seen"
+        return verdict, {"f1": 1.02 * truth.f1, "f2": 0.97 * truth.f2}
+
+    monkeypatch.setattr(diagnosis, "asked", asked)
+
+
+def test_a_run_keeps_a_row_for_each_beam(quick, exported):
+    found = Diagnosis().run(exported, 4, 4)
+    assert found.done == 4 and found.findings == 1 and len(found.rows) == 4
+    assert found.notes[0].startswith("seed 4, beam 2: hardening") and "is sound" in found.notes[0]
+    assert found.worst == pytest.approx(3.0) and found.counts["sound, no opening seen:"] == 1
+    assert json.loads(json.dumps(found.rows)) == [list(row) for row in found.rows]
+    first = dict(zip(diagnosis.COLUMNS, found.rows[1], strict=True))
+    assert (first["f1 error"], first["f2 error"]) == (0.02, -0.03)
+    assert first == {**judged(diagnosis.case_of(4, 1)), "seconds": first["seconds"]}
+
+
+def made_rows(count):
+    """Beams, half of them delaminated, with signs that overlap."""
+    rng, rows = np.random.default_rng(5), []
+    for number in range(count):
+        split = number % 2
+        row = dict.fromkeys(diagnosis.COLUMNS, 0)
+        row |= {"kind": "delaminated" if split else "sound", "delaminated": split}
+        row |= {"opened": split, "touched": split, "gap": 1e-3 * split, "size": None, "wrong": ""}
+        row |= {"noise": 0.02, "level": 5.0, "excitation": "up", "seconds": 2.0}
+        row |= {"order ratio": float(rng.normal(split)), "kurtosis": 3.0 + 10.0 * split}
+        row |= {"verdict": "delaminated" if split else "no opening seen"}
+        row |= {"f1 error": 0.01 if split else None, "f2 error": -0.02 if split else None}
+        rows.append([row[name] for name in diagnosis.COLUMNS])
+    rows[0][diagnosis.COLUMNS.index("verdict")] = "delaminated"
+    rows[0][diagnosis.COLUMNS.index("wrong")] = "called delaminated, and is sound"
+    return rows
+
+
+def test_tables_and_picture(tmp_path):
+    text = "\n".join(diagnosis_tables.lines(made_rows(200)))
+    assert "| sound | 1 | 99 | 0 | 0 | 0 | 1 |" in text
+    assert "two masses, sound or delaminated: wrong 0.5 % of 200 (0.1 to 2.8)" in text
+    assert "median error 1.50 %, nine of ten within 2.00 %" in text
+    assert "1.000 ± 0.000; 100 % | 100.0 % of 100" in text
+    path = diagnosis_tables.draw(made_rows(200), tmp_path / "diagnosis.png")
+    assert path.stat().st_size > 10_000
+
+
+def test_rows_go_into_the_record_and_onto_the_page(quick, exported, tmp_path):
+    run = ledger.run(Diagnosis(), 4, 5, tmp_path, jobs=1, progress=False)
+    assert len(run.rows) == 5 and run.findings == 1
+    place = tmp_path / "trust.jsonl"
+    assert records.append(run, place) and records.read(place) == [run]
+    text = page.text([run])
+    assert "| hardening | 1 | 0 | 0 | 0 | 0 | 1 |" in text
+    without = dataclasses.replace(run, rows=[])
+    records.append(without, tmp_path / "other.jsonl")
+    assert "rows" not in json.loads((tmp_path / "other.jsonl").read_text())
+
+
+def test_other_benches_are_another_campaign():
+    assert sources() == records.digest(HERE, HERE.parent / "benches") != records.digest(HERE)
+
+
+def test_each_kind_of_beam_is_asked_about():
+    assert set(diagnosis.KINDS) == set(recipe.KINDS)

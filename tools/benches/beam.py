@@ -1,0 +1,290 @@
+"""An Euler-Bernoulli beam of finite elements with a through-width delamination.
+
+Over the delamination the beam is two beams, one upon the other, each with its own axis, that share
+the cross-sections where the delamination ends: the four beams of Mujumdar and Suryanarayan (Journal
+of Sound and Vibration 125, 1988, 441-461). Their nodes touch by a penalty. What moves is a sum of
+modes of the beam without contact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+
+from .lumped import TURN, Faces
+from .system import Contacts, Floats, ModalSystem
+
+AXIAL, DEFLECTION, SLOPE = range(3)  # of a node's displacements
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """A rectangular cross-section: stiffness EI in N m2, EA in N, mass in kg/m."""
+
+    bending: float
+    axial: float
+    mass: float
+
+    def stiffness(self, length: float) -> Floats:
+        """Of an element, for (u, w, slope) at both ends."""
+        b = self.bending / length**3
+        k = np.zeros((6, 6))
+        k[np.ix_([0, 3], [0, 3])] = self.axial / length * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        half, full = 6.0 * length, 2.0 * length**2
+        rows = [
+            [12.0, half, -12.0, half],
+            [half, 2.0 * full, -half, full],
+            [-12.0, -half, 12.0, -half],
+            [half, full, -half, 2.0 * full],
+        ]
+        k[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] = b * np.array(rows)
+        return k
+
+    def inertia(self, length: float) -> Floats:
+        """Consistent masses of an element, without rotary inertia."""
+        m = np.zeros((6, 6))
+        m[np.ix_([0, 3], [0, 3])] = self.mass * length / 6.0 * np.array([[2.0, 1.0], [1.0, 2.0]])
+        a, b, c = 22.0 * length, 13.0 * length, length**2
+        rows = [
+            [156.0, a, 54.0, -b],
+            [a, 4.0 * c, b, -3.0 * c],
+            [54.0, b, 156.0, -a],
+            [-b, -3.0 * c, -a, 4.0 * c],
+        ]
+        m[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] = self.mass * length / 420.0 * np.array(rows)
+        return m
+
+
+@dataclass(frozen=True, kw_only=True)
+class DelaminatedBeam:
+    """A beam clamped at one end or at both, delaminated between two places.
+
+    Attributes
+    ----------
+    length, thickness, width : float
+        m
+    modulus, density : float
+        N/m2, kg/m3
+    first, last : float
+        Where the delamination begins and ends, parts of the length; equal where there is none.
+        ``last = 1`` opens at the free end.
+    share : float
+        Thickness of the upper beam, parts of the whole.
+    clamped_both : bool
+    elements : int
+        Over the whole length.
+    """
+
+    length: float = 0.5
+    thickness: float = 0.0148
+    width: float = 0.03
+    modulus: float = 40e9
+    density: float = 1800.0
+    first: float = 0.4
+    last: float = 1.0
+    share: float = 0.4
+    clamped_both: bool = False
+    elements: int = 40
+
+    def section(self, share: float) -> Section:
+        """Of a part of the thickness."""
+        h = share * self.thickness
+        area = h * self.width
+        inertia = self.width * h**3 / 12.0
+        stiffness = self.modulus
+        return Section(
+            bending=stiffness * inertia, axial=stiffness * area, mass=self.density * area
+        )
+
+    @cached_property
+    def nodes(self) -> Floats:
+        """Places of the nodes, m: the delamination's ends are among them."""
+        ends = np.unique([0.0, self.first, self.last, 1.0])
+        counts = [max(2, round(part * self.elements)) for part in np.diff(ends)]
+        parts = [
+            np.linspace(a, b, n, endpoint=False)
+            for a, b, n in zip(ends[:-1], ends[1:], counts, strict=True)
+        ]
+        return self.length * np.append(np.concatenate(parts), 1.0)
+
+    @property
+    def is_delaminated(self) -> bool:
+        """Whether there is a delamination at all."""
+        return self.last > self.first
+
+    def is_inside(self, place: Floats) -> NDArray[np.bool_]:
+        """Whether places lie in the delamination, its ends counted."""
+        margin = 1e-9
+        low, high = self.first - margin, self.last + margin
+        share = place / self.length
+        return np.asarray(self.is_delaminated & (share >= low) & (share <= high))
+
+    @cached_property
+    def places(self) -> dict[tuple[int, int], int]:
+        """Number of each pair (layer, node); layer 0 is the whole beam, 1 and 2 its halves."""
+        inside = self.is_inside(self.nodes)
+        pairs = []
+        for i, split in enumerate(inside):
+            pairs += [(1, i), (2, i)] if split else [(0, i)]
+        return {pair: number for number, pair in enumerate(pairs)}
+
+    def axis(self, layer: int) -> float:
+        """Height of a layer's axis above that of the whole beam, m."""
+        return {0: 0.0, 1: 1.0 - self.share, 2: -self.share}[layer] * 0.5 * self.thickness
+
+    def sections(self) -> dict[int, Section]:
+        """By layer."""
+        return {i: self.section(s) for i, s in enumerate((1.0, self.share, 1.0 - self.share))}
+
+    @cached_property
+    def matrices(self) -> tuple[Floats, Floats, Floats]:
+        """Stiffness, masses, and the base's pull, of the displacements that are free.
+
+        The pull is the inertia times a unit displacement of base and beam.
+        """
+        size = 3 * len(self.places)
+        stiffness, inertia = np.zeros((size, size)), np.zeros((size, size))
+        sections, inside = self.sections(), self.is_inside(self.nodes)
+        for i, length in enumerate(np.diff(self.nodes)):
+            for layer in (1, 2) if inside[i] and inside[i + 1] else (0,):
+                to = np.concatenate([self.placed(layer, i), self.placed(layer, i + 1)])
+                used = np.flatnonzero(to.any(axis=0))
+                to, where = to[:, used], np.ix_(used, used)
+                stiffness[where] += to.T @ sections[layer].stiffness(length) @ to
+                inertia[where] += to.T @ sections[layer].inertia(length) @ to
+        kept, rigid = self.kept(), np.zeros(size)
+        rigid[DEFLECTION::3] = 1.0
+        return kept.T @ stiffness @ kept, kept.T @ inertia @ kept, kept.T @ inertia @ rigid
+
+    def placed(self, layer: int, node: int) -> Floats:
+        """(3, all) matrix that gives a layer's displacements at a node.
+
+        Where the whole beam ends at a node that belongs to the layers, they are those of layer 1,
+        referred to its own axis.
+        """
+        size = 3 * len(self.places)
+        known = (layer, node) in self.places
+        number = self.places[layer, node] if known else self.places[1, node]
+        matrix = np.zeros((3, size))
+        matrix[:, 3 * number : 3 * number + 3] = np.eye(3)
+        if not known:  # the axial displacement at the height z is u - z slope
+            matrix[AXIAL, 3 * number + SLOPE] = self.axis(1) - self.axis(layer)
+        return matrix
+
+    def kept(self) -> Floats:
+        """(all, free) matrix: clamps hold their nodes, and layers share their last sections."""
+        size = 3 * len(self.places)
+        matrix, dropped = np.eye(size), []
+        inside, last = self.is_inside(self.nodes), len(self.nodes) - 1
+        clamped = {0, last} if self.clamped_both else {0}
+        for (layer, node), number in self.places.items():
+            own = slice(3 * number, 3 * number + 3)
+            if node in clamped:
+                matrix[own] = 0.0
+                dropped += [3 * number + i for i in range(3)]
+            elif layer == 2 and self.is_tip(node, inside):
+                above = 3 * self.places[1, node]
+                matrix[own] = matrix[above : above + 3]
+                matrix[own.start, above + SLOPE] = self.axis(1) - self.axis(2)
+                dropped += [3 * number + i for i in range(3)]
+        return np.delete(matrix, dropped, axis=1)
+
+    def is_tip(self, node: int, inside: NDArray[np.bool_]) -> bool:
+        """Whether the delamination ends at a node inside the beam."""
+        before = node > 0 and not inside[node - 1]
+        after = node < len(inside) - 1 and not inside[node + 1]
+        return bool(inside[node] and (before or after))
+
+    def modes(self, count: int) -> tuple[Floats, Floats, Floats]:
+        """The lowest modes of the beam without contact.
+
+        Returns
+        -------
+        frequency : ndarray
+            rad/s
+        shapes : ndarray
+            (all displacements, modes), mass-normalised.
+        participation : ndarray
+        """
+        stiffness, inertia, pull = self.matrices
+        squares, shapes = eigh(stiffness, inertia, subset_by_index=[0, count - 1])
+        return np.sqrt(squares), self.kept() @ shapes, shapes.T @ pull
+
+    def deflection_rows(self, shapes: Floats, layer: int, places: Floats) -> Floats:
+        """(places, modes): deflection of a layer, linear between the nodes."""
+        values = []
+        for node in range(len(self.nodes)):
+            known = (layer, node) if (layer, node) in self.places else (0, node)
+            values.append(shapes[3 * self.places[known] + DEFLECTION])
+        table = np.array(values)
+        return np.array([np.interp(places, self.nodes, column) for column in table.T]).T
+
+    def where_it_moves_as_one(self) -> float:
+        """The place where the intact beam's first mode moves as a mass on a spring would, m."""
+        whole = replace(self, first=0.0, last=0.0)
+        _, shapes, participation = whole.modes(1)
+        moved = participation[0] * whole.deflection_rows(shapes, 0, whole.nodes)[:, 0]
+        top = int(moved.argmax())
+        return float(np.interp(1.0, moved[: top + 1], whole.nodes[: top + 1]))
+
+    def system(
+        self,
+        faces: Faces,
+        zeta: float = 0.008,
+        modes: int = 16,
+        sensor: float | None = None,
+        contact_every: int = 1,
+    ) -> ModalSystem:
+        """Modes with contact at the delamination's nodes.
+
+        Parameters
+        ----------
+        faces : Faces
+            Their frequency is that of the layers' masses between two nodes on the penalty.
+        zeta : float
+            Damping ratio of all modes.
+        modes : int
+        sensor : float, optional
+            Place of the accelerometers on both faces, m; by default
+            :meth:`where_it_moves_as_one`.
+        contact_every : int
+            Nodes from one contact to the next.
+        """
+        frequency, shapes, participation = self.modes(modes)
+        place = np.array([self.where_it_moves_as_one() if sensor is None else sensor])
+        faces_rows = [self.deflection_rows(shapes, layer, place)[0] for layer in (1, 2)]
+        return ModalSystem(
+            frequency=frequency,
+            damping_ratio=np.full(modes, zeta),
+            participation=participation,
+            output_rows=np.array(faces_rows),
+            contacts=self.contacts(faces, shapes, contact_every),
+        )
+
+    def contacts(self, faces: Faces, shapes: Floats, every: int) -> Contacts | None:
+        """Pairs of nodes in the delamination; none where there is no delamination."""
+        inside = self.is_inside(self.nodes)
+        apart = [i for i, split in enumerate(inside) if split and not self.is_tip(i, inside)]
+        pairs = [i for i in reversed(apart) if i > 0][::every]
+        if not pairs:
+            return None
+        upper, lower = (
+            np.array([shapes[3 * self.places[layer, i] + DEFLECTION] for i in pairs])
+            for layer in (1, 2)
+        )
+        upper_part, lower_part = self.section(self.share), self.section(1.0 - self.share)
+        mass = upper_part.mass * lower_part.mass / (upper_part.mass + lower_part.mass)
+        mass *= every * self.length / self.elements
+        return faces.contacts(upper - lower, np.full(len(pairs), faces.clearance), mass)
+
+
+def intact_frequency(beam: DelaminatedBeam) -> float:
+    """First natural frequency of the intact beam in closed form, Hz."""
+    root = 4.730040744862704 if beam.clamped_both else 1.8751040687119611
+    whole = beam.section(1.0)
+    return root**2 / beam.length**2 * math.sqrt(whole.bending / whole.mass) / TURN

@@ -1,0 +1,98 @@
+"""A system on a shaker with sensors on it: what is recorded."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from orchestrate import record
+
+from .excitation import Excitation
+from .integrator import highest_stiffness, integrate
+from .sensors import Sensor
+from .system import Floats, ModalSystem, Motion
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+STEPS = 60.0  # in a period of the fastest oscillation, contacts closed
+PIECE = 100_000  # numbers that are computed at once
+BASE = 1.0 / 3000.0  # s: longest step, for what the base does
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bench:
+    """What a beam is measured with.
+
+    Attributes
+    ----------
+    excitation : Excitation
+    box, face1, face2 : Sensor
+        ``face2`` is None where there is one accelerometer only.
+    rate : float
+        Samples of the record, Hz.
+    steps : float
+        Of the integration, in a period of the fastest oscillation.
+    """
+
+    excitation: Excitation
+    box: Sensor = field(default_factory=Sensor)
+    face1: Sensor = field(default_factory=Sensor)
+    face2: Sensor | None = None
+    rate: float = 2000.0
+    steps: float = STEPS
+
+    def factor_for(self, system: ModalSystem) -> int:
+        """Steps of the integration in a sample."""
+        fastest = math.sqrt(highest_stiffness(system)) / (2.0 * math.pi)
+        return math.ceil(max(self.steps * fastest, 1.0 / BASE, 8.0 * self.rate) / self.rate)
+
+    def move(self, system: ModalSystem) -> tuple[Floats, Motion, int]:
+        """The base's acceleration and the motion at all steps, and how many make a sample."""
+        factor = self.factor_for(system)
+        step = 1.0 / (factor * self.rate)
+        samples = int(self.excitation.duration * self.rate)
+        base = np.empty(2 * samples * factor + 1)
+        for begin in range(0, len(base), PIECE):
+            part = slice(begin, min(begin + PIECE, len(base)))
+            base[part] = self.excitation(
+                0.5 * step * np.arange(part.start, part.stop, dtype=np.float64)
+            )
+        return base[::2], integrate(system, base, step), factor
+
+    def measure(self, system: ModalSystem, seed: int) -> tuple[xr.Dataset, Motion]:
+        """Shake, and record.
+
+        Parameters
+        ----------
+        system : ModalSystem
+            Its outputs are what the sensors of both faces feel.
+        seed : int
+            Of the noise.
+
+        Returns
+        -------
+        record : xarray.Dataset
+        motion : Motion
+        """
+        base, motion, factor = self.move(system)
+        rngs = np.random.default_rng(seed).spawn(3)
+        fine = factor * self.rate
+        signals = (base, *motion.acceleration)
+        sensors = (self.box, self.face1, self.face2)
+        readings = [
+            None if sensor is None else sensor.read(signal, fine, factor, rng)
+            for sensor, signal, rng in zip(sensors, signals, rngs, strict=True)
+        ]
+        box, face1, face2 = readings
+        measured = record(
+            time=np.arange(len(signals[0][::factor])) / self.rate,
+            box_acceleration=box,
+            acceleration1=face1,
+            acceleration2=face2,
+            source="virtual bench",
+        )
+        return measured, motion

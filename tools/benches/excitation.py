@@ -1,0 +1,111 @@
+"""What the base does, at any times: accelerations in m/s2."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from .system import Floats
+
+TURN = 2.0 * math.pi
+
+
+class Excitation(Protocol):
+    """A base's acceleration over a duration, s."""
+
+    @property
+    def duration(self) -> float:
+        """s"""
+        ...
+
+    def __call__(self, time: Floats) -> Floats:
+        """The acceleration, m/s2."""
+        ...
+
+
+def ramped(time: Floats, ramp: float, duration: float) -> Floats:
+    """From 0 to 1 in the first ``ramp`` seconds, and back in the last ones, as shakers do."""
+    values = np.ones(time.shape)
+    ends = (time < ramp) | (time > duration - ramp)
+    inside = np.clip(np.minimum(time[ends], duration - time[ends]) / ramp, 0.0, 1.0)
+    values[ends] = np.sin(0.5 * np.pi * inside) ** 2
+    return values
+
+
+@dataclass(frozen=True)
+class Swept:
+    """A sine from ``first`` to ``last`` Hz, up or down, of the amplitude ``level`` in m/s2."""
+
+    first: float
+    last: float
+    duration: float
+    level: float
+    log: bool = False
+    ramp: float = 0.25
+
+    def phase(self, time: Floats) -> Floats:
+        """rad"""
+        rate = (self.last - self.first) / self.duration
+        if not self.log:
+            return np.asarray(TURN * (self.first + 0.5 * rate * time) * time)
+        growth = math.log(self.last / self.first) / self.duration
+        return np.asarray(TURN * self.first / growth * np.expm1(growth * time))
+
+    def __call__(self, time: Floats) -> Floats:
+        """The acceleration."""
+        return self.level * ramped(time, self.ramp, self.duration) * np.sin(self.phase(time))
+
+
+@dataclass(frozen=True)
+class Stepped:
+    """A sine of ``steps`` frequencies in equal steps, each held as long; the phase goes on."""
+
+    first: float
+    last: float
+    duration: float
+    level: float
+    steps: int = 40
+    ramp: float = 0.25
+
+    def __call__(self, time: Floats) -> Floats:
+        """The acceleration."""
+        held = self.duration / self.steps
+        frequency = np.linspace(self.first, self.last, self.steps)
+        number = np.minimum((time / held).astype(int), self.steps - 1)
+        before = np.concatenate([[0.0], np.cumsum(frequency) * held])[number]
+        turns = before + frequency[number] * (time - number * held)
+        return self.level * ramped(time, self.ramp, self.duration) * np.sin(TURN * turns)
+
+
+@dataclass(frozen=True)
+class Random:
+    """Normal noise of equal density between ``first`` and ``last`` Hz; ``level`` is its rms."""
+
+    first: float
+    last: float
+    duration: float
+    level: float
+    seed: int = 0
+    ramp: float = 0.25
+
+    @cached_property
+    def spline(self) -> CubicSpline:
+        """Through samples at twenty times the highest frequency."""
+        rate = 20.0 * self.last
+        count = int(rate * (self.duration + 2.0 * self.ramp)) + 8
+        rng = np.random.default_rng(self.seed)
+        lines = np.fft.rfftfreq(count, 1.0 / rate)
+        inside = (lines >= self.first) & (lines <= self.last)
+        parts = rng.normal(size=(2, *lines.shape)) * inside
+        values = np.fft.irfft(parts[0] + 1j * parts[1], count)
+        return CubicSpline(np.arange(count) / rate, values / values.std())
+
+    def __call__(self, time: Floats) -> Floats:
+        """The acceleration."""
+        ramp = ramped(time, self.ramp, self.duration)
+        return np.asarray(self.level * ramp * self.spline(time))

@@ -1,0 +1,219 @@
+"""Two masses with compliant contact, a bonded one, and a bonded one in a rattling clamp."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+
+from . import restitution
+from .system import Contacts, CubicSprings, Floats, Frictions, ModalSystem
+
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class Faces:
+    """How two faces touch.
+
+    Attributes
+    ----------
+    law : str
+        ``"linear"``, ``"hunt-crossley"`` or ``"hertz"``.
+    frequency : float
+        Hz, of both masses on the contact's stiffness.
+    restitution : float
+        At the closing speed ``speed``, in m/s.
+    speed : float
+    clearance : float
+        m; negative where the faces are pressed into each other.
+    friction : float
+        Coefficient with which sliding of closed faces brakes the bending of both.
+    """
+
+    law: str = "hunt-crossley"
+    frequency: float = 1000.0
+    restitution: float = 0.6
+    speed: float = 0.05
+    clearance: float = 0.0
+    friction: float = 0.0
+
+    def contacts(self, rows: Floats, clearance: Floats, mass: float) -> Contacts:
+        """Contacts along rows, between bodies of the reduced mass ``mass``, kg."""
+        w = TURN * self.frequency
+        if self.law == "linear":
+            damping = 2.0 * restitution.linear_ratio(self.restitution) * w * mass
+        else:
+            damping = restitution.hunt_crossley_damping(self.restitution, self.speed)
+        stiffness = mass * w * w
+        if self.law == "hertz":  # as deep at the speed as the linear spring
+            stiffness *= 1.25 / math.sqrt(self.speed / w)
+        count = len(rows)
+        return Contacts(
+            rows,
+            clearance,
+            np.full(count, stiffness),
+            np.full(count, damping),
+            self.law,
+            longest_impact=1.5 / self.frequency,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Halves:
+    """Both halves of a beam.
+
+    Attributes
+    ----------
+    m1, m2 : float
+        kg
+    f1, f2 : float
+        Hz, natural frequency of each half alone.
+    zeta1, zeta2 : float
+        Damping ratio of each half alone.
+    """
+
+    m1: float = 1.5
+    m2: float = 1.2
+    f1: float = 42.0
+    f2: float = 52.0
+    zeta1: float = 0.008
+    zeta2: float = 0.008
+
+    def delaminated(self, faces: Faces, cubic: float = 0.0) -> ModalSystem:
+        """Two masses that touch.
+
+        Parameters
+        ----------
+        faces : Faces
+        cubic : float
+            N/(kg m3) of each mass: both harden (or soften, below 0) alike.
+        """
+        roots = np.sqrt([self.m1, self.m2])
+        gap = np.array([[-1.0, 1.0]]) / roots
+        reduced = self.m1 * self.m2 / (self.m1 + self.m2)
+        own = np.eye(2) / roots
+        masses = np.array([self.m1, self.m2])
+        sliding = Frictions(own, np.zeros(2), 0.5 * np.full(2, faces.friction), np.full(2, 1e-3))
+        return ModalSystem(
+            frequency=TURN * np.array([self.f1, self.f2]),
+            damping_ratio=np.array([self.zeta1, self.zeta2]),
+            participation=roots,
+            output_rows=own,
+            contacts=faces.contacts(gap, np.array([faces.clearance]), reduced),
+            springs=CubicSprings(own, cubic * masses, np.zeros(2)) if cubic else None,
+            frictions=sliding if faces.friction else None,
+        )
+
+    def bonded(self, cubic: float = 0.0, friction: float = 0.0, sag: float = 0.0) -> ModalSystem:
+        """One mass, on which both sensors are.
+
+        Parameters
+        ----------
+        cubic : float
+            N/(kg m3)
+        friction : float
+            Dry friction of the support, N/kg.
+        sag : float
+            m from where the cubic spring is at its softest (or stiffest) to the place at rest.
+        """
+        whole = self.whole()
+        row = np.array([[1.0 / math.sqrt(whole.mass)]])
+        dry = Frictions(row, np.array([friction * whole.mass]), np.zeros(1), np.array([1e-3]))
+        return ModalSystem(
+            frequency=np.array([TURN * whole.f]),
+            damping_ratio=np.array([whole.zeta]),
+            participation=np.array([math.sqrt(whole.mass)]),
+            output_rows=np.vstack([row, row]),
+            springs=CubicSprings(row, np.array([cubic * whole.mass]), np.array([sag]))
+            if cubic
+            else None,
+            frictions=dry if friction else None,
+        )
+
+    def whole(self) -> Whole:
+        """Both glued together."""
+        masses, turns = np.array([self.m1, self.m2]), TURN * np.array([self.f1, self.f2])
+        mass, stiffness = masses.sum(), (masses * turns**2).sum()
+        damper = (2.0 * masses * turns * [self.zeta1, self.zeta2]).sum()
+        w = math.sqrt(stiffness / mass)
+        return Whole(float(mass), w / TURN, float(damper / (2.0 * mass * w)))
+
+    def in_rattling_clamp(self, clamp: Clamp) -> ModalSystem:
+        """Both glued together, held by a clamp that has play."""
+        whole = self.whole()
+        root = clamp.mass * whole.mass
+        spring = whole.mass * (TURN * whole.f) ** 2
+        centring = clamp.centring * spring
+        masses = np.array([root, whole.mass])
+        stiffness = np.array([[spring + centring, -spring], [-spring, spring]])
+        squares, shapes = eigh(stiffness, np.diag(masses))
+        stops = np.array([shapes[0], -shapes[0]])
+        play = np.array([clamp.play, clamp.play if clamp.both_sides else np.inf])
+        touching = slice(None) if clamp.both_sides else slice(1)
+        frequency = np.sqrt(squares)
+        return ModalSystem(
+            frequency=frequency,
+            damping_ratio=np.full(2, whole.zeta),
+            participation=shapes.T @ masses,
+            output_rows=np.array([shapes[1], shapes[1]]),
+            contacts=clamp.faces.contacts(stops[touching], play[touching], root),
+        )
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A bonded beam: mass in kg, natural frequency in Hz, damping ratio."""
+
+    mass: float
+    f: float
+    zeta: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clamp:
+    """A clamp that the root of a sound beam knocks against.
+
+    Attributes
+    ----------
+    faces : Faces
+        Of the root and the stops; its clearance is not used.
+    play : float
+        m from the root at rest to each stop; negative where it is pressed against it.
+    both_sides : bool
+        Whether there are two stops.
+    mass : float
+        Of the root, parts of the beam's.
+    centring : float
+        Stiffness that holds the root, parts of the beam's.
+    """
+
+    faces: Faces
+    play: float = 2e-4
+    both_sides: bool = True
+    mass: float = 0.1
+    centring: float = 3.0
+
+
+def cubic_for(change: float, f: float, amplitude: float) -> float:
+    """The cubic stiffness over mass, N/(kg m3), of a relative change of the frequency.
+
+    By the first approximation of Duffing's oscillator, ``w**2 = w0**2 + 3/4 cubic amplitude**2``.
+
+    Parameters
+    ----------
+    change : float
+        0.3 where the frequency at the amplitude is 30 % higher, below 0 where it is lower.
+    f : float
+        Hz, at small amplitudes.
+    amplitude : float
+        m
+    """
+    return 4.0 / 3.0 * (TURN * f) ** 2 * ((1.0 + change) ** 2 - 1.0) / amplitude**2
+
+
+def change_of(cubic: float, f: float, amplitude: float) -> float:
+    """The relative change of :func:`cubic_for` at another amplitude, m."""
+    return math.sqrt(max(1.0 + 0.75 * cubic * amplitude**2 / (TURN * f) ** 2, 0.0)) - 1.0

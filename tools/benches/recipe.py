@@ -1,0 +1,400 @@
+"""Random beams on random benches, the truth about each, and a guess of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from orchestrate import Structure
+
+from .beam import DelaminatedBeam
+from .bench import Bench
+from .excitation import Excitation, Random, Stepped, Swept
+from .integrator import Escaped
+from .lumped import TURN, Clamp, Faces, Halves, change_of, cubic_for
+from .sensors import Sensor
+from .system import ModalSystem, Motion
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+OPENED = 1e-6  # m: a gap that counts; a penalty lets go of less where nothing opens
+FIRST, LAST, DURATION = 20.0, 90.0, 40.0  # Hz, Hz, s
+SPLIT = ("delaminated", "gap", "preloaded")
+EXCITATIONS = ("up", "down", "log", "stepped", "random")
+MOST_APART = 1.5  # frequencies of a guess; the second mode of a hardly delaminated beam is far away
+TRIES = 20  # of a softening beam whose motion escapes
+
+
+@dataclass(frozen=True)
+class Setup:
+    """How a beam was tested.
+
+    Attributes
+    ----------
+    level : float
+        Peak of the base, m/s2; of noise twice the root mean square.
+    noise : float
+        Of the accelerometers, over the root mean square of what they read.
+    sensors : int
+    excitation : str
+    """
+
+    level: float
+    noise: float
+    sensors: int
+    excitation: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Truth:
+    """What is so, whatever is said of the record.
+
+    Attributes
+    ----------
+    kind : str
+        Of the recipe.
+    is_delaminated : bool
+    opened : bool
+        Whether the faces parted by more than ``OPENED`` in the record.
+    touched : bool
+        Whether they touched.
+    f1, f2, zeta1, zeta2 : float
+        Of both halves alone, Hz and 1; of a sound beam both are those of the whole.
+    clearance : float
+        m
+    restitution : float
+        Mean over the impacts; NaN where there was none, and of finite elements.
+    largest_gap : float
+        m
+    change : float
+        Relative change of the frequency at the largest deflection, of a beam that hardens.
+    size : float
+        Length of the delamination over that of the beam; NaN for two masses.
+    setup : Setup
+    """
+
+    kind: str
+    is_delaminated: bool
+    opened: bool
+    touched: bool
+    f1: float
+    f2: float
+    zeta1: float
+    zeta2: float
+    clearance: float = 0.0
+    restitution: float = math.nan
+    largest_gap: float = 0.0
+    change: float = 0.0
+    size: float = math.nan
+    setup: Setup
+
+
+@dataclass(frozen=True)
+class Case:
+    """A record, what is guessed of the beam before it is looked at, and the truth."""
+
+    record: xr.Dataset
+    guess: Structure
+    truth: Truth
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """A beam, and what is known about it before it is shaken."""
+
+    system: ModalSystem
+    m1: float
+    m2: float
+    f1: float
+    f2: float
+    zeta1: float
+    zeta2: float
+    clearance: float = 0.0
+    cubic: float = 0.0
+    size: float = math.nan
+    sound: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Conditions:
+    """Of a test, beside the beam. Ranges are drawn from evenly in the logarithm.
+
+    Attributes
+    ----------
+    noise : (float, float)
+    level : (float, float)
+        m/s2
+    excitation : str
+        One of ``EXCITATIONS``, or ``"any"``: one up in ten is log, stepped, random.
+    sensors : int
+        1 or 2, or 0 for either.
+    size : (float, float)
+        Length of the delamination of a beam of finite elements.
+    off : float
+        How far guesses may be off.
+    """
+
+    noise: tuple[float, float] = (0.01, 0.05)
+    level: tuple[float, float] = (2.0, 10.0)
+    excitation: str = "up"
+    sensors: int = 0
+    size: tuple[float, float] = (0.1, 0.9)
+    off: float = 0.1
+
+
+def between(rng: np.random.Generator, low: float, high: float) -> float:
+    """A number drawn evenly in the logarithm."""
+    return float(np.exp(rng.uniform(math.log(low), math.log(high))))
+
+
+def halves(rng: np.random.Generator) -> Halves:
+    """Two halves whose bonded beam is well inside the sweep."""
+    middle, apart = rng.uniform(33.0, 62.0), rng.uniform(1.06, 1.4)
+    slow, fast = middle / math.sqrt(apart), middle * math.sqrt(apart)
+    f1, f2 = (slow, fast) if rng.random() < 0.5 else (fast, slow)
+    m1 = rng.uniform(0.5, 3.0)
+    m2 = m1 * between(rng, 0.6, 1.67)
+    damping = between(rng, 0.004, 0.02)
+    second = damping * between(rng, 0.7, 1.4)
+    return Halves(m1=m1, m2=m2, f1=f1, f2=f2, zeta1=damping, zeta2=second)
+
+
+def faces(rng: np.random.Generator, clearance: float = 0.0) -> Faces:
+    """A contact law with its numbers; one in four slides with friction."""
+    return Faces(
+        law=str(rng.choice(["linear", "hunt-crossley", "hertz"])),
+        frequency=between(rng, 500.0, 1500.0),
+        restitution=rng.uniform(0.35, 0.85),
+        clearance=clearance,
+        friction=rng.uniform(0.0, 0.3) if rng.random() < 0.25 else 0.0,
+    )
+
+
+def split(own: Halves, touching: Faces) -> Specimen:
+    """Two masses that touch."""
+    numbers = (own.m1, own.m2, own.f1, own.f2, own.zeta1, own.zeta2)
+    return Specimen(own.delaminated(touching), *numbers, touching.clearance)
+
+
+def whole(own: Halves, system: ModalSystem, cubic: float = 0.0) -> Specimen:
+    """A bonded beam."""
+    one = own.whole()
+    numbers = (own.m1, own.m2, one.f, one.f, one.zeta, one.zeta)
+    return Specimen(system, *numbers, cubic=cubic, sound=True)
+
+
+def delaminated(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Halves that lie upon each other."""
+    return split(halves(rng), faces(rng))
+
+
+def with_gap(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Halves with a gap of 0.1 to 2 mm at rest."""
+    return split(halves(rng), faces(rng, between(rng, 1e-4, 2e-3)))
+
+
+def preloaded(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Halves pressed together by 0.1 to 1.6 times the force that opens them at the resonance."""
+    own = halves(rng)
+    k1, k2 = own.m1 * (TURN * own.f1) ** 2, own.m2 * (TURN * own.f2) ** 2
+    one = own.whole()
+    peak = level / (2.0 * one.zeta)  # acceleration over the base
+    force = own.m1 * peak * abs((own.f1 / one.f) ** 2 - 1.0)
+    clearance = -rng.uniform(0.1, 1.6) * force * (1.0 / k1 + 1.0 / k2)
+    return split(own, faces(rng, clearance))
+
+
+def sound(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """A bonded beam."""
+    own = halves(rng)
+    return whole(own, own.bonded())
+
+
+def hardening(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """A bonded beam whose frequency at the peak is up to 30 % higher, or 15 % lower."""
+    own = halves(rng)
+    one = own.whole()
+    change = rng.uniform(0.03, 0.3) if rng.random() < 0.7 else -rng.uniform(0.02, 0.15)
+    peak = level / (2.0 * one.zeta * (TURN * one.f) ** 2 * (1.0 + change))
+    cubic = cubic_for(change, one.f, peak)
+    return whole(own, own.bonded(cubic=cubic), cubic)
+
+
+def sagging(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """A bonded beam that hardens by up to 15 %, and is stiffer to one side than to the other."""
+    own = halves(rng)
+    one = own.whole()
+    change = rng.uniform(0.02, 0.15)
+    peak = level / (2.0 * one.zeta * (TURN * one.f) ** 2 * (1.0 + change))
+    cubic, sag = cubic_for(change, one.f, peak), peak * rng.uniform(0.1, 0.5)
+    found = whole(own, own.bonded(cubic=cubic, sag=sag), cubic)
+    stiffer = math.sqrt(1.0 + 3.0 * cubic * sag**2 / (TURN * one.f) ** 2)
+    return replace(found, f1=one.f * stiffer, f2=one.f * stiffer)
+
+
+def friction(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """A bonded beam with dry friction of 5 to 50 % of what moves it."""
+    own = halves(rng)
+    return whole(own, own.bonded(friction=level * rng.uniform(0.05, 0.5)))
+
+
+def clamp(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """A bonded beam that knocks against its clamp, pressed against one side of it or loose."""
+    own = halves(rng)
+    play = between(rng, 2e-5, 3e-4) * (-1.0 if rng.random() < 0.3 else 1.0)
+    stops = Faces(frequency=between(rng, 400.0, 1000.0), restitution=rng.uniform(0.3, 0.8))
+    held = Clamp(
+        faces=stops,
+        play=play,
+        both_sides=play > 0.0 and bool(rng.random() < 0.7),
+        mass=rng.uniform(0.1, 0.5),
+        centring=between(rng, 0.3, 3.0),
+    )
+    return whole(own, own.in_rattling_clamp(held))
+
+
+def elements(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """A cantilever of finite elements, delaminated from its free end on."""
+    size = rng.uniform(*conditions.size)
+    share = 0.5 + float(rng.choice([-1.0, 1.0])) * rng.uniform(0.03, 0.2)
+    thickness = DelaminatedBeam.thickness * rng.uniform(0.9, 1.5)
+    beam = DelaminatedBeam(first=1.0 - size, thickness=thickness, share=share)
+    touching = replace(faces(rng), law="hunt-crossley", friction=0.0)
+    system = beam.system(touching, between(rng, 0.005, 0.02), modes=12)
+    f1, f2 = system.frequency[:2] / TURN
+    zeta = float(system.damping_ratio[0])
+    return Specimen(system, share, 1.0 - share, float(f1), float(f2), zeta, zeta, size=size)
+
+
+def intact_elements(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """The same cantilever without a delamination."""
+    thickness = DelaminatedBeam.thickness * rng.uniform(0.9, 1.5)
+    beam = DelaminatedBeam(first=0.0, last=0.0, thickness=thickness)
+    system = beam.system(Faces(), between(rng, 0.005, 0.02), modes=4)
+    f, zeta = float(system.frequency[0]) / TURN, float(system.damping_ratio[0])
+    return Specimen(system, 0.5, 0.5, f, f, zeta, zeta, sound=True, size=0.0)
+
+
+Maker = Callable[[np.random.Generator, float, Conditions], Specimen]
+KINDS: Mapping[str, Maker] = {
+    "sound": sound,
+    "hardening": hardening,
+    "sagging": sagging,
+    "friction": friction,
+    "clamp": clamp,
+    "delaminated": delaminated,
+    "gap": with_gap,
+    "preloaded": preloaded,
+    "elements": elements,
+    "intact elements": intact_elements,
+}
+
+
+def excitation(rng: np.random.Generator, name: str, level: float) -> tuple[str, Excitation]:
+    """What the base does, and its name where any may be drawn."""
+    if name == "any":
+        name = str(rng.choice(EXCITATIONS, p=(0.6, 0.15, 0.1, 0.1, 0.05)))
+    ends = (LAST, FIRST) if name == "down" else (FIRST, LAST)
+    if name == "random":
+        return name, Random(*ends, DURATION, 0.5 * level, int(rng.integers(1 << 31)))
+    if name == "stepped":
+        return name, Stepped(*ends, DURATION, level, steps=80)
+    return name, Swept(*ends, DURATION, level, log=name == "log")
+
+
+def sensor(rng: np.random.Generator, noise: float, bandwidth: float) -> Sensor:
+    """Gain off by 3 %, a delay of up to 50 us beside that of the filter."""
+    gain, delay = rng.uniform(0.97, 1.03), rng.uniform(0.0, 5e-5)
+    return Sensor(bandwidth=bandwidth, gain=gain, delay=delay, noise=noise)
+
+
+def guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure:
+    """Masses and frequencies off by some percent, damping by a factor of up to two.
+
+    Of a sound beam the guess has two halves a little apart, as one who asks has to assume.
+    """
+
+    def near(value: float) -> float:
+        return value * float(rng.uniform(1.0 - off, 1.0 + off))
+
+    f1, f2 = own.f1, min(own.f2, MOST_APART * own.f1)
+    if own.sound:
+        apart = math.sqrt(rng.uniform(1.06, 1.4))
+        f1, f2 = f1 / apart, f2 * apart
+    return Structure.from_halves(
+        m1=near(own.m1),
+        m2=near(own.m2),
+        f1=near(f1),
+        f2=near(f2),
+        zeta1=own.zeta1 * between(rng, 0.5, 2.0),
+        zeta2=own.zeta2 * between(rng, 0.5, 2.0),
+        e=0.6,
+    )
+
+
+def draw(
+    rng: np.random.Generator, kind: str, conditions: Conditions | None = None, rate: float = 2000.0
+) -> Case:
+    """Draw a beam and a bench, shake, and record.
+
+    Parameters
+    ----------
+    rng : numpy.random.Generator
+        All depends on it.
+    kind : str
+        One of ``KINDS``.
+    conditions : Conditions, optional
+    rate : float
+        Samples of the record, Hz.
+    """
+    conditions = conditions or Conditions()
+    level, noise = between(rng, *conditions.level), between(rng, *conditions.noise)
+    name, shaker = excitation(rng, conditions.excitation, level)
+    count = conditions.sensors or int(rng.integers(1, 3))
+    bandwidth = between(rng, 1000.0, 4000.0)
+    box, face1, face2 = (sensor(rng, noise, bandwidth) for _ in range(3))
+    bench = Bench(
+        excitation=shaker,
+        box=replace(box, noise=min(noise, 0.02)),
+        face1=face1,
+        face2=face2 if count == 2 else None,
+        rate=rate,
+        steps=30.0 if "elements" in kind else 60.0,
+    )
+    for _ in range(TRIES):
+        own = KINDS[kind](rng, level, conditions)
+        try:
+            record, motion = bench.measure(own.system, int(rng.integers(1 << 31)))
+        except Escaped:
+            continue
+        truth = truth_of(kind, own, motion, Setup(level, noise, count, name))
+        return Case(record, guess(rng, own, conditions.off), truth)
+    raise Escaped(f"{kind}: {TRIES} beams, and none whose motion stays bounded")
+
+
+def truth_of(kind: str, own: Specimen, motion: Motion, setup: Setup) -> Truth:
+    """The truth, by what was drawn and how it moved."""
+    two_masses = math.isnan(own.size) and len(motion.restitution) == 1
+    peak = float(motion.spring_peaks.max()) if own.cubic else 0.0
+    gap = float(motion.largest_gap.max()) if len(motion.largest_gap) else 0.0
+    return Truth(
+        kind=kind,
+        is_delaminated=not own.sound,
+        opened=not own.sound and gap > OPENED,
+        touched=not own.sound and bool((motion.largest_force > 0.0).any()),
+        f1=own.f1,
+        f2=own.f2,
+        zeta1=own.zeta1,
+        zeta2=own.zeta2,
+        clearance=own.clearance,
+        restitution=float(motion.restitution[0]) if two_masses else math.nan,
+        largest_gap=gap,
+        change=change_of(own.cubic, own.f1, peak),
+        size=own.size,
+        setup=setup,
+    )

@@ -1,0 +1,52 @@
+"""What a contact law makes of a closing speed, in closed form, and the other way round."""
+
+from __future__ import annotations
+
+import math
+
+from scipy.optimize import brentq
+
+
+def linear(ratio: float) -> float:
+    """Restitution of a spring with a dashpot that never pulls.
+
+    Parameters
+    ----------
+    ratio : float
+        Damping ratio of the contact, 0 to 1.
+
+    Notes
+    -----
+    The contact ends where its force is zero, before the depth is: with cos(b) = ratio that is at
+    the phase 2 b, and ``e = exp(-2 b ratio/sqrt(1 - ratio**2))``.
+    """
+    return math.exp(-2.0 * math.acos(ratio) * ratio / math.sqrt(1.0 - ratio * ratio))
+
+
+def linear_ratio(e: float) -> float:
+    """The damping ratio of :func:`linear` for a restitution above exp(-2)."""
+    return float(brentq(lambda ratio: linear(ratio) - e, 0.0, 1.0 - 1e-9))
+
+
+def hunt_crossley(damping: float, speed: float) -> float:
+    """Restitution of ``k d**n (1 + damping d')`` at a closing speed, for any k and n.
+
+    Notes
+    -----
+    The law's power balance can be integrated over the depth: with y = damping speed,
+    ``y (1 + e) = ln((1 + y)/(1 - e y))``. For small y, e = 1 - 2 y/3.
+    """
+    y = damping * speed
+    if y < 1e-9:
+        return 1.0 - 2.0 * y / 3.0
+    high = min(1.0, (1.0 - 1e-15) / y)
+
+    def balance(e: float) -> float:
+        return y * (1.0 + e) - math.log1p(y) + math.log1p(-e * y)
+
+    return float(brentq(balance, 0.0, high)) if balance(high) < 0.0 else high
+
+
+def hunt_crossley_damping(e: float, speed: float) -> float:
+    """The damping, s/m, with which a closing speed has a restitution below 1."""
+    return float(brentq(lambda c: hunt_crossley(c, speed) - e, 1e-6 / speed, 100.0 / speed))

@@ -1,0 +1,89 @@
+"""The records of the manual's tutorial: three beams on one shaker, as an analyser writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .bench import Bench
+from .excitation import Swept
+from .lumped import Clamp, Faces, Halves
+from .sensors import Sensor
+from .system import ModalSystem
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FOLDER = Path(__file__).resolve().parents[2] / "docs" / "records"
+GRAVITY = 9.80665  # m/s2
+LEVEL = 0.4  # g
+SWEEP = Swept(first=20.0, last=90.0, duration=40.0, level=LEVEL * GRAVITY)
+RATE = 1250.0  # Hz
+BEAM = Halves(m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.008, zeta2=0.009)
+FACES = Faces(law="hunt-crossley", frequency=1000.0, restitution=0.6, speed=0.05)
+CLAMP = Clamp(faces=Faces(frequency=600.0), play=1e-4, mass=0.2, centring=1.0)
+BENCH = Bench(
+    excitation=SWEEP,
+    box=Sensor(noise=0.01),
+    face1=Sensor(noise=0.02, gain=1.02),
+    rate=RATE,
+)
+HEADING = """\
+Virtual bench with compliant contact: computed, not measured
+Test;Swept sine {first:g}-{last:g} Hz, linear, {duration:g} s, {level} g
+Beam;{name}
+Sampling rate [Hz];{rate:g}
+Channel 1;Base, on the shaker's table
+Channel 2;Acc 1, on the face of the beam, 2,0 kHz
+"""
+COLUMNS = "Time [s];Base [g];Acc 1 [g]\n"
+
+
+@dataclass(frozen=True)
+class Beam:
+    """One of the tutorial's beams: what it is called, what it is, and the seed of its noise."""
+
+    name: str
+    system: Callable[[], ModalSystem]
+    seed: int
+
+
+BEAMS: Mapping[str, Beam] = {
+    "beam_a": Beam("A", lambda: BEAM.delaminated(FACES), 71),
+    "beam_b": Beam("B", BEAM.bonded, 72),
+    "beam_c": Beam("C", lambda: BEAM.in_rattling_clamp(CLAMP), 73),
+}
+
+
+def text_of(record: xr.Dataset, name: str) -> str:
+    """A record as text: headings, semicolons, decimal commas, accelerations in g."""
+    head = HEADING.format(
+        **{"first": SWEEP.first, "last": SWEEP.last, "duration": SWEEP.duration},
+        **{"level": LEVEL, "name": name, "rate": RATE},
+    )
+    base, face = (record[c].values / GRAVITY for c in ("box_acceleration", "acceleration1"))
+    table = np.stack([record.time.values, base, face], axis=1)
+    rows = "".join(f"{t:.4f};{b:.4f};{a:.3f}\n" for t, b, a in table.tolist())
+    return (head + COLUMNS + rows).replace(".", ",")
+
+
+def write(folder: Path = FOLDER, bench: Bench = BENCH) -> list[Path]:
+    """Shake the three beams and write what is recorded.
+
+    Parameters
+    ----------
+    folder : Path
+    bench : Bench
+        With the tutorial's rate and excitation unless a test makes it shorter.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for stem, beam in BEAMS.items():
+        record, _ = bench.measure(beam.system(), beam.seed)
+        paths.append(folder / f"{stem}.csv")
+        paths[-1].write_text(text_of(record, beam.name), encoding="utf-8", newline="\n")
+    return paths

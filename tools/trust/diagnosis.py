@@ -1,0 +1,172 @@
+"""Verdicts on random beams of the virtual benches, beside two signs that need no model."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import orchestrate
+from orchestrate.errors import VibroimpactError
+from tools.benches.recipe import Case, Conditions, Truth, draw
+
+from . import signs
+from .campaign import Campaign, Outcome
+
+DELAMINATED, NO_OPENING = "delaminated", "no opening seen"
+NOT_DESCRIBED, UNDECIDED = "not described", "undecided"
+REFUSED, NOT_ASKED = "refused", "not asked"
+KINDS = (  # one after the other: the two that the targets are about are drawn more often
+    *("sound", "delaminated", "hardening", "delaminated", "friction", "gap"),
+    *("sound", "preloaded", "clamp", "delaminated", "intact elements", "elements", "sagging"),
+)
+USUAL, WIDE = (0.01, 0.05), (0.001, 0.1)  # noise: of the targets, and of all curves
+PART_USUAL = 0.6
+VISIBLE = 2e-5  # m: a gap that opens less may be overlooked
+COLUMNS = (
+    *("kind", "delaminated", "opened", "touched", "gap", "noise", "level", "sensors"),
+    *("excitation", "size", "clearance", "change", "order ratio", "kurtosis"),
+    *("verdict", "f1 error", "f2 error", "seconds", "wrong"),
+)
+
+
+class Diagnosis(Campaign):
+    """The promise about verdicts."""
+
+    name = "diagnosis"
+    title = "Is this beam delaminated?"
+    asks = (
+        "`detect` is asked about records of beams that are none of its models: two masses with "
+        "compliant contact (a spring with a dashpot, Hunt and Crossley, Hertz), with a gap, "
+        "pressed together, with friction; bonded beams that are linear, harden or soften, sag, "
+        "have dry friction, or rattle in their clamp; cantilevers of finite elements, delaminated "
+        "from their free end or not. Swept 20 to 90 Hz in 40 s or otherwise, one or two sensors "
+        "with gains off by 3 %, delays, noise of 0.1 to 10 %; masses and frequencies of the guess "
+        "off by up to 10 %. A finding is a sound beam, or one that did not open, that is called "
+        "delaminated; or no opening seen in a beam whose faces parted by more than 0.02 mm and "
+        "struck each other. Random excitation is refused: the detector goes by orders."
+    )
+    unit = "beams"
+    target = 500
+    batch = 4
+    measures = "error of f1 or f2, in percent, where a beam is rightly called delaminated"
+    package = True
+
+    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+        """Draw beams, shake them, and ask."""
+        rows, notes, counts = [], [], Counter[str]()
+        for number in range(count):
+            case = case_of(seed, number)
+            row = judged(case)
+            rows.append([row[name] for name in COLUMNS])
+            counts[f"{row['kind']}, {row['verdict']}:"] += 1
+            if row["wrong"]:
+                notes.append(f"seed {seed}, beam {number}: {described(case.truth)}: {row['wrong']}")
+        errors = [abs(e) for row in rows for e in (row[-4], row[-3]) if e is not None]
+        worst = 100.0 * max(errors, default=0.0)
+        return Outcome(count, len(notes), worst, dict(counts), tuple(notes), tuple(rows))
+
+    def report(self, rows: Sequence[Sequence[Any]]) -> list[str]:
+        """Tables for the page."""
+        from . import diagnosis_tables
+
+        return diagnosis_tables.lines(rows)
+
+    def draw(self, rows: Sequence[Sequence[Any]], folder: Path) -> list[Path]:
+        """The curves."""
+        from . import diagnosis_tables
+
+        return [diagnosis_tables.draw(rows, folder / diagnosis_tables.PICTURE)]
+
+
+def case_of(seed: int, number: int) -> Case:
+    """A beam of a batch; its kind comes from its place and its batch."""
+    rng = np.random.default_rng([seed, number])
+    kind = KINDS[(seed + number) % len(KINDS)]
+    noise = USUAL if rng.random() < PART_USUAL else WIDE
+    return draw(rng, kind, Conditions(noise=noise, excitation="any"))
+
+
+def judged(case: Case) -> dict[str, Any]:
+    """A row of the results: what was so, what the signs and the detector say."""
+    truth, setup = case.truth, case.truth.setup
+    begin = time.perf_counter()
+    verdict, parameters = asked(case)
+    seconds = time.perf_counter() - begin
+    errors = errors_of(parameters, truth) if verdict == DELAMINATED else {}
+    return {
+        "kind": truth.kind,
+        "delaminated": int(truth.is_delaminated),
+        "opened": int(truth.opened),
+        "touched": int(truth.touched),
+        "gap": rounded(truth.largest_gap),
+        "noise": rounded(setup.noise),
+        "level": rounded(setup.level),
+        "sensors": setup.sensors,
+        "excitation": setup.excitation,
+        "size": rounded(truth.size),
+        "clearance": rounded(truth.clearance),
+        "change": rounded(truth.change),
+        "order ratio": rounded(signs.order_ratio(case.record)),
+        "kurtosis": rounded(signs.kurtosis_above(case.record)),
+        "verdict": verdict,
+        "f1 error": errors.get("f1"),
+        "f2 error": errors.get("f2"),
+        "seconds": rounded(seconds),
+        "wrong": wrong_in(verdict, truth),
+    }
+
+
+def asked(case: Case) -> tuple[str, Mapping[str, float]]:
+    """The verdict on a case, and the frequencies that come with it."""
+    detect = getattr(orchestrate, "detect", None)
+    if detect is None:
+        return NOT_ASKED, {}
+    try:
+        answer = detect(case.record, case.guess)
+    except VibroimpactError:
+        return REFUSED, {}
+    return str(answer.attrs["verdict"]), {}
+
+
+def errors_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
+    """Relative errors of the frequencies of two masses; of finite elements there are none."""
+    if not math.isnan(truth.size) or not truth.is_delaminated:
+        return {}
+    return {
+        name: rounded(parameters[name] / getattr(truth, name) - 1.0)
+        for name in ("f1", "f2")
+        if name in parameters
+    }
+
+
+def wrong_in(verdict: str, truth: Truth) -> str:
+    """What is wrong with a verdict; empty where nothing is."""
+    if verdict == DELAMINATED and not truth.is_delaminated:
+        return "called delaminated, and is sound"
+    if verdict == DELAMINATED and not truth.opened:
+        return "called delaminated, and did not open"
+    visible = truth.opened and truth.touched and truth.largest_gap > VISIBLE
+    if verdict == NO_OPENING and visible:
+        return f"no opening seen, and it opened by {1e3 * truth.largest_gap:.3g} mm"
+    return ""
+
+
+def described(truth: Truth) -> str:
+    """A beam in some words."""
+    setup = truth.setup
+    text = f"{truth.kind}, {setup.excitation}, {setup.level:.3g} m/s2, noise {setup.noise:.2g}"
+    text += f", {setup.sensors} sensors"
+    more = {"size": truth.size, "clearance": truth.clearance, "change": truth.change}
+    shown = (f", {name} {value:.2g}" for name, value in more.items() if value and value == value)
+    return text + "".join(shown)
+
+
+def rounded(value: float) -> float | None:
+    """Three digits; None where there is no number."""
+    return float(f"{value:.3g}") if math.isfinite(value) else None

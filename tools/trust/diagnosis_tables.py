@@ -1,0 +1,202 @@
+"""Rates and curves of the campaign on verdicts, from the rows of its records."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from . import roc
+from .diagnosis import (
+    COLUMNS,
+    DELAMINATED,
+    NO_OPENING,
+    NOT_ASKED,
+    NOT_DESCRIBED,
+    REFUSED,
+    UNDECIDED,
+    USUAL,
+)
+
+VERDICTS = (DELAMINATED, NO_OPENING, NOT_DESCRIBED, UNDECIDED, REFUSED)
+LABELS = {"order ratio": "order 2 over order 1", "kurtosis": "kurtosis above 300 Hz"}
+SIGNS = tuple(LABELS)
+PICTURE = "diagnosis.png"
+NOISE, LEVEL, SIZE = (0.001, 0.01, 0.03, 0.1), (2.0, 4.5, 10.0), (0.1, 0.3, 0.5, 0.7, 0.9)
+FALSE = 0.05  # part of false ones at which signs are compared
+
+
+def table_of(rows: Sequence[Sequence[Any]]) -> pd.DataFrame:
+    """Rows with their names."""
+    return pd.DataFrame(list(rows), columns=list(COLUMNS))
+
+
+def part(count: int, of: int) -> str:
+    """A part with its 95 % interval, in percent."""
+    low, high = roc.interval(count, of)
+    if not of:
+        return "none"
+    return f"{100.0 * count / of:.1f} % of {of} ({100.0 * low:.1f} to {100.0 * high:.1f})"
+
+
+def lines(rows: Sequence[Sequence[Any]]) -> list[str]:
+    """All tables."""
+    table = table_of(rows)
+    return [
+        *verdict_lines(table),
+        "",
+        *target_lines(table),
+        "",
+        *curve_lines(table),
+        "",
+        "![Curves](diagnosis.png)",
+        "",
+    ]
+
+
+def verdict_lines(table: pd.DataFrame) -> list[str]:
+    """Verdicts by kind of beam."""
+    head = " | ".join(VERDICTS)
+    found = [f"| beam | {head} | wrong |", "|---" * (len(VERDICTS) + 2) + "|"]
+    for kind, own in table.groupby("kind", sort=True):
+        counts = [int((own.verdict == verdict).sum()) for verdict in VERDICTS]
+        cells = [str(kind), *map(str, counts), str(int((own.wrong != "").sum()))]
+        found.append(f"| {' | '.join(cells)} |")
+    return found
+
+
+def target_lines(table: pd.DataFrame) -> list[str]:
+    """What the targets are about."""
+    usual = table[table.noise.between(*USUAL)]
+    compliant = usual[usual.kind.isin(("sound", "delaminated"))]
+    nonlinear = usual[usual.kind.isin(("hardening", "friction", "clamp"))]
+    calm = nonlinear[nonlinear.verdict == DELAMINATED]
+    errors = np.abs(compliant[["f1 error", "f2 error"]].astype(float).to_numpy().ravel())
+    errors = 100.0 * errors[np.isfinite(errors)]
+    wrong, undecided = (compliant.wrong != "").sum(), (compliant.verdict == UNDECIDED).sum()
+    found = [
+        "At 1 to 5 % noise:",
+        "",
+        f"- two masses, sound or delaminated: wrong {part(int(wrong), len(compliant))}; "
+        f"undecided {part(int(undecided), len(compliant))};",
+        f"- sound but not linear: called delaminated {part(len(calm), len(nonlinear))};",
+    ]
+    if len(errors):
+        median, nine = np.quantile(errors, (0.5, 0.9))
+        found.append(
+            f"- f1 and f2 of two masses called delaminated ({len(errors)} numbers): median error "
+            f"{median:.2f} %, nine of ten within {nine:.2f} %;"
+        )
+    seconds = table.seconds.astype(float)
+    found.append(
+        f"- a verdict takes {seconds.median():.1f} s in the median, {seconds.max():.1f} s at most."
+    )
+    return found
+
+
+def curve_lines(table: pd.DataFrame) -> list[str]:
+    """Areas under the curves of the signs, and the detector's rates, by noise, level and size."""
+    found = [
+        "Beams that opened against sound ones: of each sign the area under its curve with its "
+        f"standard error, and the part of opened beams above the threshold that {100 * FALSE:.0f} "
+        "% of the sound ones pass; of the detector the parts called delaminated.",
+        "",
+        "| beams | opened, sound | order 2 over 1 | kurtosis | detector: opened | sound |",
+        "|---|---|---|---|---|---|",
+    ]
+    for name, own in groups(table):
+        opened = own[(own.opened == 1) & (own.gap.astype(float) > 0.0)]
+        sound = own[own.delaminated == 0]
+        if len(opened) < 2 or len(sound) < 2:
+            continue
+        both = pd.concat([opened, sound])
+        cells = [name, f"{len(opened)}, {len(sound)}"]
+        cells += [sign_cell(both, sign) for sign in SIGNS]
+        cells += [part(int((g.verdict == DELAMINATED).sum()), len(g)) for g in (opened, sound)]
+        found.append(f"| {' | '.join(cells)} |")
+    return found
+
+
+def sign_cell(table: pd.DataFrame, sign: str) -> str:
+    """A sign's area and its rate."""
+    known = table[table[sign].notna()]
+    positive = known.opened.to_numpy() == 1
+    if positive.all() or not positive.any():
+        return "none"
+    found = roc.curve(known[sign].astype(float), positive)
+    error = roc.area_error(found.area, int(positive.sum()), int((~positive).sum()))
+    return f"{found.area:.3f} ± {error:.3f}; {100.0 * found.true_at(FALSE):.0f} %"
+
+
+def groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """All beams, and those of equal noise, level, or length of the delamination."""
+    masses = table[table["size"].isna()]
+    found = [("all", table), ("two masses", masses)]
+    for low, high in roc.bins(NOISE):
+        found.append(
+            (f"noise {100 * low:g} to {100 * high:g} %", within(masses, "noise", low, high))
+        )
+    for low, high in roc.bins(LEVEL):
+        found.append((f"level {low:g} to {high:g} m/s²", within(masses, "level", low, high)))
+    beams = table[table["size"].notna()]
+    for low, high in roc.bins(SIZE):
+        size = beams["size"].astype(float)
+        own = beams[(beams.delaminated == 0) | ((size >= low) & (size < high))]
+        found.append((f"finite elements, {low:g} to {high:g} of the length", own))
+    return found
+
+
+def within(table: pd.DataFrame, name: str, low: float, high: float) -> pd.DataFrame:
+    """Rows with a number in an interval."""
+    values = table[name].astype(float)
+    return table[(values >= low) & (values < high)]
+
+
+def draw(rows: Sequence[Sequence[Any]], path: Path) -> Path:
+    """Curves of both signs and the detector's rates: by noise, level and size of delamination."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    shown = [(name, own) for name, own in groups(table_of(rows)) if has_both(own)]
+    across = 4
+    down = -(-len(shown) // across)
+    figure = Figure(figsize=(3.2 * across, 3.3 * down), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = np.atleast_1d(figure.subplots(down, across, sharex=True, sharey=True)).ravel()
+    for panel in panels[len(shown) :]:
+        panel.set_visible(False)
+    for panel, (name, own) in zip(panels, shown, strict=False):
+        draw_panel(panel, name, own)
+    panels[0].legend(fontsize=7, loc="lower right")
+    figure.supxlabel("sound beams called delaminated")
+    figure.supylabel("opened beams called delaminated")
+    figure.savefig(path, dpi=80)
+    return path
+
+
+def has_both(table: pd.DataFrame) -> bool:
+    """Whether there are opened and sound beams."""
+    return bool((table.opened == 1).sum() > 1 and (table.delaminated == 0).sum() > 1)
+
+
+def draw_panel(panel: Any, name: str, table: pd.DataFrame) -> None:
+    """One group: the curve of each sign, the detector as a point with its 95 % intervals."""
+    opened, sound = table[table.opened == 1], table[table.delaminated == 0]
+    both = pd.concat([opened, sound])
+    for sign, colour in zip(SIGNS, ("#1f5f99", "#c06020"), strict=True):
+        known = both[both[sign].notna()]
+        found = roc.curve(known[sign].astype(float), known.opened.to_numpy() == 1)
+        panel.plot(found.false, found.true, color=colour, label=LABELS[sign])
+    if (table.verdict != NOT_ASKED).any():
+        counts = [(int((own.verdict == DELAMINATED).sum()), len(own)) for own in (sound, opened)]
+        at = np.array([count / of for count, of in counts])
+        ends = np.array([roc.interval(*one) for one in counts])
+        bars = np.abs(ends - at[:, np.newaxis])[:, :, np.newaxis]
+        style = {"fmt": "o", "color": "black", "label": "detect, with 95 % intervals"}
+        panel.errorbar(*at, xerr=bars[0], yerr=bars[1], **style)
+    panel.set_title(f"{name} ({len(opened)}, {len(sound)})", fontsize=8)
+    panel.set(xlim=(-0.02, 1.02), ylim=(-0.02, 1.02))
+    panel.grid(alpha=0.3)

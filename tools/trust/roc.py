@@ -1,0 +1,79 @@
+"""Receiver operating characteristics: how often a number above a threshold is right, and wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+
+class Curve(NamedTuple):
+    """Rates over thresholds that fall.
+
+    Attributes
+    ----------
+    false, true : ndarray
+        Parts of the negative and of the positive cases above the threshold, from (0, 0) to (1, 1).
+    threshold : ndarray
+    """
+
+    false: Floats
+    true: Floats
+    threshold: Floats
+
+    @property
+    def area(self) -> float:
+        """Chance that a positive case has the larger number, ties half."""
+        return float(np.trapezoid(self.true, self.false))
+
+    def true_at(self, false: float) -> float:
+        """Largest part of the positive cases at no more than a part of false ones."""
+        return float(self.true[self.false <= false].max())
+
+
+def curve(numbers: ArrayLike, is_positive: ArrayLike) -> Curve:
+    """The curve of a sign.
+
+    Parameters
+    ----------
+    numbers : array_like
+        Larger ones speak for the positive case; NaN is below all.
+    is_positive : array_like
+        The truth; both kinds have to be there.
+    """
+    values = np.nan_to_num(np.asarray(numbers, dtype=float), nan=-np.inf)
+    positive = np.asarray(is_positive, dtype=bool)
+    if positive.all() or not positive.any():
+        raise ValueError("a curve needs positive and negative cases")
+    thresholds = np.unique(values)[::-1]
+    above = values[np.newaxis, :] >= thresholds[:, np.newaxis]
+    true = above[:, positive].mean(axis=1)
+    false = above[:, ~positive].mean(axis=1)
+    return Curve(np.append(0.0, false), np.append(0.0, true), np.append(np.inf, thresholds))
+
+
+def area_error(area: float, positive: int, negative: int) -> float:
+    """Standard error of an area (Hanley and McNeil 1982)."""
+    both = area / (2.0 - area), 2.0 * area**2 / (1.0 + area)
+    square = area * (1.0 - area)
+    square += (positive - 1) * (both[0] - area**2) + (negative - 1) * (both[1] - area**2)
+    return float(np.sqrt(max(square, 0.0) / (positive * negative)))
+
+
+def interval(count: int, of: int) -> tuple[float, float]:
+    """Wilson's 95 % interval of a part."""
+    if not of:
+        return 0.0, 1.0
+    z, part = 1.96, count / of
+    middle = (part + z * z / (2.0 * of)) / (1.0 + z * z / of)
+    half = z / (1.0 + z * z / of) * np.sqrt(part * (1.0 - part) / of + z * z / (4.0 * of * of))
+    return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
+
+
+def bins(edges: Sequence[float]) -> list[tuple[float, float]]:
+    """Neighbouring pairs."""
+    return list(zip(edges[:-1], edges[1:], strict=True))
