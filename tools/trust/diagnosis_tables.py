@@ -92,7 +92,8 @@ def target_lines(table: pd.DataFrame) -> list[str]:
         )
     seconds = table.seconds.astype(float)
     found.append(
-        f"- a verdict takes {seconds.median():.1f} s in the median, {seconds.max():.1f} s at most."
+        f"- a verdict takes {seconds.median():.1f} s of one processor in the median, "
+        f"{seconds.max():.1f} s at most."
     )
     return found
 
