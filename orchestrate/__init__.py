@@ -18,6 +18,7 @@ What is asked
     of it, :func:`record`, :func:`read_record` and :func:`write_record` what was measured;
     :func:`frf`, :func:`psd`, :func:`track_orders`, :func:`harmonics`, :func:`spectrogram`,
     :func:`shock_spectrum` and :func:`probability_density` of such a record, or of a measured one;
+    :func:`fit` a structure to it and :func:`detect` whether it is delaminated;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
     :func:`couple_all`,
     :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
@@ -40,6 +41,8 @@ from typing import TYPE_CHECKING, Any
 from .version import __version__
 
 if TYPE_CHECKING:
+    from .diagnosis.detect import detect
+    from .diagnosis.fit import fit
     from .dynamics.attractors import attractors
     from .dynamics.basins import basin
     from .dynamics.borders import border
@@ -107,8 +110,10 @@ __all__ = [
     "capture",
     "couple",
     "couple_all",
+    "detect",
     "drive_branch",
     "drive_spectra",
+    "fit",
     "frf",
     "harmonics",
     "impact_statistics",
@@ -157,6 +162,8 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "laboratory.analysis.spectrogram": ("spectrogram",),
     "laboratory.analysis.shock_spectrum": ("shock_spectrum",),
     "laboratory.analysis.density": ("probability_density",),
+    "diagnosis.fit": ("fit",),
+    "diagnosis.detect": ("detect",),
     "response.simulate": ("simulate",),
     "response.resonance": ("resonance",),
     "response.sweep": ("sweep",),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -23,3 +24,17 @@ def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUN
     if not is_integer or not minimum <= value <= maximum:
         raise InputError(f"{name} = {value!r}: expected a whole number from {minimum} to {maximum}")
     return int(value)
+
+
+def checked_word(name: str, value: Any, known: Iterable[str]) -> str:
+    """Return a word that is one of the known ones.
+
+    Raises
+    ------
+    InputError
+        Where it is none.
+    """
+    words = tuple(known)
+    if value not in words:
+        raise InputError(f"{name} = {value!r}: expected one of {', '.join(words)}")
+    return str(value)

@@ -37,10 +37,12 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "response": BELOW_ANSWERS,
     "dynamics": BELOW_ANSWERS | {"response"},
     "laboratory": BELOW_ANSWERS | {"response"},
+    "diagnosis": BELOW_ANSWERS | {"response", "laboratory"},
     "weak_drive": BELOW_ANSWERS | {"response", "dynamics"},
     "figures": GROUND,
     "paper": BELOW_ANSWERS | {"response", "dynamics", "weak_drive", "figures"},
-    "__init__": BELOW_ANSWERS | {"response", "dynamics", "laboratory", "weak_drive", "figures"},
+    "__init__": BELOW_ANSWERS
+    | {"response", "dynamics", "laboratory", "diagnosis", "weak_drive", "figures"},
     "explorer": BELOW_ANSWERS,
     "cli": BELOW_ANSWERS
     | {"__init__", "laboratory", "weak_drive", "figures", "paper", "explorer"}

@@ -11,6 +11,8 @@ module               idea
 :mod:`.library`      binaries of FMUs, loaded once per process
 :mod:`.instance`     a co-simulation instance: set, step, read, save its state
 :mod:`.events`       a motion computed impact by impact
+:mod:`.event_loop`   its loop over pieces of the input, samples and impacts, compiled
+:mod:`.impacts`      the impacts of a motion
 :mod:`.begin`        start of a motion, and its states at equal times
 :mod:`.play`         a motion under a box acceleration given as cubics
 :mod:`.channel`      fast calls on one instance, for co-simulation masters
@@ -19,20 +21,23 @@ module               idea
 ===================  =================================================================
 """
 
-from .begin import REST, begin, last_samples, sampled, samples_per_step
+from .begin import REST, begin, gap_between, last_samples, sampled, samples_per_step
 from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
-from .events import STATE, EventInstance, Impacts
+from .event_loop import Played
+from .events import NO_INPUT, EventInstance
 from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_of, up_to_date
+from .impacts import STATE, Impacts
 from .instance import Instance
 from .models import OSCILLATOR, SHAKER
-from .play import PLAYED, Played, play
+from .play import PLAYED, Player
 from .webassembly import build_web_kernels
 
 __all__ = [
     "FORMS",
     "MODELS",
+    "NO_INPUT",
     "OSCILLATOR",
     "PLAIN_FORMS",
     "PLAYED",
@@ -45,6 +50,7 @@ __all__ = [
     "Impacts",
     "Instance",
     "Played",
+    "Player",
     "begin",
     "build",
     "build_libraries",
@@ -52,8 +58,8 @@ __all__ = [
     "describe",
     "find",
     "finder",
+    "gap_between",
     "last_samples",
-    "play",
     "samples_per_step",
     "sampled",
     "sources_of",

@@ -7,10 +7,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..structures import Excitation, Structure
-from .events import STATE
+from .impacts import STATE
 from .instance import Instance
 
 REST = (0.0, 0.0, 0.0, 0.0)
+TOUCHING = 2.0**-50  # relative: a gap that is no more than the rounding of displacements
 START_PARAMETERS = tuple(f"{name}_start" for name in STATE)
 SAMPLE_SERIES = tuple(f"{name}_sample" for name in STATE)
 
@@ -30,7 +31,8 @@ def begin(
     structure : Structure
     excitation : Excitation
     start : array-like of 4 floats
-        x1, x2 in m, v1, v2 in m/s.
+        x1, x2 in m from the unloaded springs, v1, v2 in m/s. All zero, ``REST``: at rest, with a
+        preload at ``structure.at_rest``.
     **values
         Further start values and inputs, by the FMU's names. ``x_rel_max`` is off unless asked for
         here (``x_rel_max_on=True``).
@@ -42,12 +44,46 @@ def begin(
     FmuError
         Where the FMU refuses a value; masses that overlap among them.
     """
-    state = dict(zip(START_PARAMETERS, four_numbers(start), strict=True))
+    start_state = from_rest(structure, four_numbers(start))
+    state = dict(zip(START_PARAMETERS, start_state, strict=True))
     start_values = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}
     instance.reset()
     instance.initialize(**{**start_values, **values})
     if instance.EVENTS:
         instance.call("enterStepMode")
+
+
+def from_rest(structure: Structure, state: list[float]) -> list[float]:
+    """Return a state as the FMU takes it, its displacements from the position at rest."""
+    if structure.gap_offset >= 0.0 or not any(state):
+        return state
+    (x1, x2, *velocities), (rest_1, rest_2) = state, structure.at_rest
+    touching = float(gap_between(np.array(state), structure.gap_offset)) == 0.0
+    return [x1 - rest_1, x1 - rest_1 if touching else x2 - rest_2, *velocities]
+
+
+def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDArray[np.float64]:
+    """Return the gap of states; with a clearance, 0 where it is no more than rounding.
+
+    Parameters
+    ----------
+    states : ndarray, shape (..., 4)
+        x1, x2 from the unloaded springs, v1, v2.
+    gap_offset : array-like
+        The gap between unloaded springs, see :attr:`.Structure.gap_offset`; in the states' unit.
+
+    Returns
+    -------
+    ndarray, shape (...)
+    """
+    x1, x2 = states[..., 0], states[..., 1]
+    gap: NDArray[np.float64] = x2 - x1
+    if not np.any(gap_offset):
+        return gap
+    offset = np.asarray(gap_offset, dtype=float)
+    gap = gap + offset
+    size = np.abs(x1) + np.abs(x2) + np.abs(offset)
+    return np.where((np.abs(gap) <= TOUCHING * size) & (offset != 0.0), 0.0, gap)
 
 
 def four_numbers(start: ArrayLike) -> list[float]:

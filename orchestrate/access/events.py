@@ -7,61 +7,18 @@ the last bit.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from ctypes import byref, c_bool, c_double
-from dataclasses import dataclass
 from os import PathLike
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..structures import Structure
+from .event_loop import EventLoop, event_loop_of
+from .impacts import Impacts
 from .instance import Instance
 
-STATE = ("x1", "x2", "v1", "v2")
-EVENT_OUTPUTS = (*STATE, "impact_velocity")
-
-
-@dataclass(frozen=True)
-class Impacts:
-    """The impacts of a motion, in order.
-
-    Attributes
-    ----------
-    time : ndarray, shape (n,)
-        s.
-    state : ndarray, shape (n, 4)
-        x1, x2 in m, v1, v2 in m/s just after each.
-    closing : ndarray, shape (n,)
-        Closing speed before it, m/s, >= 0.
-    sticks : ndarray of bool, shape (n,)
-        Whether permanent contact follows (17).
-    """
-
-    time: NDArray[np.float64]
-    state: NDArray[np.float64]
-    closing: NDArray[np.float64]
-    sticks: NDArray[np.bool_]
-
-    def before(self, structure: Structure) -> NDArray[np.float64]:
-        """Return the states just before the impacts, shape (n, 4), by (15) read backwards."""
-        mu = structure.mu
-        state, part = self.state.copy(), self.closing / (1.0 + mu)
-        common = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
-        state[:, 2], state[:, 3] = common + mu * part, common - part
-        return state
-
-    def impulse(self, structure: Structure) -> NDArray[np.float64]:
-        """Return the impulse of each impact on each mass, N s, shape (n,) (15); plastic where
-        contact begins.
-
-        Of non-dimensional impacts it is over omega a eta^2, so that its unit is that of a mass.
-        """
-        m1, m2 = structure.m1, structure.m2
-        restitution = np.where(self.sticks, 0.0, structure.e)
-        impulse: NDArray[np.float64] = (1.0 + restitution) * m1 * m2 / (m1 + m2) * self.closing
-        return impulse
+NO_INPUT, NO_TIMES = np.empty((1, 0)), np.empty(0)
 
 
 class EventInstance(Instance):
@@ -82,6 +39,7 @@ class EventInstance(Instance):
     EVENTS = {"eventModeUsed": True, "earlyReturnAllowed": True}
 
     def __init__(self, path: str | PathLike[str], name: str = "instance") -> None:
+        self._loops: dict[tuple[tuple[str, ...], ...], EventLoop] = {}
         super().__init__(path, name)
         if not self.is_fmi3:
             version = self.description.fmi_version
@@ -102,21 +60,15 @@ class EventInstance(Instance):
         self.call("enterStepMode")
 
     def impacts(self, time: float, target: float) -> Impacts:
-        """Return all impacts of (time, target], s.
+        """Return all impacts of (time, target], s."""
+        return self.event_loop().run(np.array([time, target]), NO_INPUT, NO_TIMES).impacts
 
-        The inner loop of all that follows, so it calls the binary itself.
-        """
-        stuck, step, handle = self.flag("in_contact"), self.stepper(), self.event_handler()
-        times, rows, contacts = [], [], []
-        while time < target:
-            event, time = step(time, target - time)
-            if event:
-                rows.append(self.read(*EVENT_OUTPUTS).tolist())
-                times.append(time)
-                contacts.append(stuck())
-                handle()
-        table = np.array(rows).reshape(-1, len(EVENT_OUTPUTS))
-        return Impacts(np.array(times), table[:, :4], table[:, 4], np.array(contacts, dtype=bool))
+    def event_loop(self, inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> EventLoop:
+        """Return the loop through events with these inputs and outputs, made once."""
+        key = tuple(inputs), tuple(outputs)
+        if key not in self._loops:
+            self._loops[key] = event_loop_of(self, *key)
+        return self._loops[key]
 
     def stepper(self) -> Callable[[float, float], tuple[bool, float]]:
         """Return a fast ``fmi3DoStep``: from time and step length to whether there was an event,

@@ -5,87 +5,69 @@ Each cubic is set where it begins and runs on, so the motion does not depend on 
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from .channel import Channel
-from .events import EVENT_OUTPUTS, EventInstance, Impacts
+from ..structures import Excitation, Structure
+from .begin import REST, begin
+from .event_loop import Played
+from .events import EventInstance
 
 CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
 PLAYED = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force")
 
 
-class Played(NamedTuple):
-    """Sampled motion and impacts that :func:`play` returns.
+class Player(EventInstance):
+    """Instance of ``TwoMassImpactOscillator`` for any number of motions under given cubics.
 
-    Attributes
-    ----------
-    rows : ndarray, shape (n, 7)
-        In the order of ``PLAYED``.
-    touching : ndarray of bool, shape (n,)
-        Whether the masses were in permanent contact.
-    impacts : Impacts
+    The FMU is unpacked and its binary loaded once; another motion, of another structure too, takes
+    a reset of the instance.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from orchestrate.access import OSCILLATOR, Player, find
+    >>> from orchestrate.structures import Structure
+    >>> nodes, cubics = np.array([0.0, 20.0]), np.array([[1.0, 0.0, 0.0, 0.0]])
+    >>> with Player(find(OSCILLATOR).path) as player:
+    ...     for e in (0.3, 0.9):
+    ...         player.start(Structure.nondimensional(e=e))
+    ...         print(player.play(nodes, cubics, nodes).impacts.time.round(3))
+    [ 6.024 12.036 18.048]
+    [ 6.024 12.05  18.045]
     """
 
-    rows: NDArray[np.float64]
-    touching: NDArray[np.bool_]
-    impacts: Impacts
+    def start(self, structure: Structure, start: ArrayLike = REST) -> None:
+        """Begin a motion at time 0 in a box at rest.
 
+        Parameters
+        ----------
+        structure : Structure
+        start : array-like of 4 floats
+            x1, x2 in m, v1, v2 in m/s.
+        """
+        begin(self, structure, Excitation(frequency=structure.omega, amplitude=0.0), start)
 
-def play(
-    instance: EventInstance,
-    nodes: NDArray[np.float64],
-    derivatives: NDArray[np.float64],
-    samples: NDArray[np.float64],
-) -> Played:
-    """Compute the motion under a box acceleration given as consecutive cubics.
+    def play(
+        self,
+        nodes: NDArray[np.float64],
+        derivatives: NDArray[np.float64],
+        samples: NDArray[np.float64],
+    ) -> Played:
+        """Compute the motion under a box acceleration given as consecutive cubics.
 
-    Parameters
-    ----------
-    instance : EventInstance
-        At the first node.
-    nodes : ndarray, shape (n + 1,)
-        Where the cubics begin and where the last one ends, s.
-    derivatives : ndarray, shape (n, 4)
-        Of each at its beginning, m/s2 to m/s5.
-    samples : ndarray
-        When the motion is read: from the first node to the last, ascending, s.
-    """
-    channel = Channel(instance, CUBIC, PLAYED)
-    events = Channel(instance, (), EVENT_OUTPUTS)
-    step, handle, touch = instance.stepper(), instance.event_handler(), instance.flag("in_contact")
-    rows, touching = np.empty((len(samples), len(PLAYED))), np.empty(len(samples), dtype=bool)
-    times: list[float] = []
-    after: list[list[float]] = []
-    sticks: list[bool] = []
+        Parameters
+        ----------
+        nodes : ndarray, shape (n + 1,)
+            Where the cubics begin and where the last one ends, s; the motion is at the first.
+        derivatives : ndarray, shape (n, 4)
+            Of each at its beginning, m/s2 to m/s5.
+        samples : ndarray
+            When the motion is read: from the first node to the last, ascending, s.
 
-    def advance(time: float, target: float) -> float:
-        while time < target:
-            event, time = step(time, target - time)
-            if event:
-                times.append(time)
-                after.append(events.get())
-                sticks.append(touch())
-                handle()
-        return time
-
-    def read(index: int) -> None:
-        rows[index], touching[index] = channel.get(), touch()
-
-    time, done = float(nodes[0]), 0
-    ends = np.searchsorted(samples, nodes[1:], side="left").tolist()
-    for cubic, target, last in zip(derivatives.tolist(), nodes[1:].tolist(), ends, strict=True):
-        channel.put(*cubic)
-        for index in range(done, last):
-            time = advance(time, float(samples[index]))
-            read(index)
-        time, done = advance(time, target), last
-    for index in range(done, len(samples)):  # at the last node
-        read(index)
-    channel.close()
-    table = np.array(after).reshape(-1, len(EVENT_OUTPUTS))
-    contacts = np.array(sticks, dtype=bool)
-    impacts = Impacts(np.array(times), table[:, :4], table[:, 4], contacts)
-    return Played(rows, touching, impacts)
+        Returns
+        -------
+        Played
+            Its rows in the order of ``PLAYED``.
+        """
+        return self.event_loop(CUBIC, PLAYED).run(nodes, derivatives, samples)

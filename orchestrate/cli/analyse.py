@@ -120,7 +120,8 @@ def run(arguments: argparse.Namespace) -> None:
             for label, record in records.items()
         }
         report(name, results)
-        told = digest([str(path) for path in paths.values()], settings[name], arguments.begin)
+        read = {label: str(path) for label, path in paths.items()}
+        told = digest(read, settings[name], arguments.begin, arguments.end)
         stem = f"analyse_{name}_{arguments.record.stem}_{told}"
         write(arguments.output / f"{stem}.nc", results, formats, plots)
 

@@ -75,6 +75,43 @@ def carry_out(
     return data
 
 
+def carry_out_beside(
+    arguments: argparse.Namespace,
+    structure: Structure,
+    question: Question,
+    report: Callable[[xr.Dataset], None],
+    draw: Callable[..., Any],
+) -> None:
+    """Ask a question about a motion, with ``--beside`` of the bonded structure first.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        With ``beside``; see :func:`carry_out`.
+    structure : Structure
+    question : mapping
+        With the ``start`` of the motion.
+    report : callable
+    draw : callable
+        Takes the bonded structure's result too, as ``bonded=``.
+
+    Raises
+    ------
+    InputError
+        Where ``--beside`` has a store or a start, which one of both structures alone could have.
+    """
+    if not arguments.beside:
+        carry_out(arguments, structure, question, report, draw)
+        return
+    if arguments.store is not None or question["start"] is not None:
+        option = "--store" if arguments.store is not None else "--start"
+        raise InputError(f"--beside: of two structures; expected it without {option}")
+    bonded = carry_out(arguments, structure.as_bonded(), question, report, None)
+    print("delaminated:")
+    picture = partial(draw, bonded=bonded)
+    carry_out(arguments, structure.as_delaminated(), question, report, picture, "with_bonded")
+
+
 def picture_of(data: xr.Dataset) -> Any:
     """Draw an answer that needs no more than the answer."""
     from ..figures.plot import DRAW

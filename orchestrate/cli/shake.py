@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
@@ -21,7 +20,7 @@ from .options import (
     structure_of,
 )
 from .output import add_results
-from .question import carry_out
+from .question import carry_out_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -95,16 +94,7 @@ def run(arguments: argparse.Namespace) -> None:
     }
     if arguments.sample_rate is not None:
         question["sample_rate"] = number_of("--sample-rate", arguments.sample_rate)
-    if not arguments.beside:
-        carry_out(arguments, structure, question, report, picture_of)
-        return
-    if arguments.store is not None or start is not None:
-        given = "--store" if arguments.store is not None else "--start"
-        raise InputError(f"--beside: of two structures; expected it without {given}")
-    bonded = carry_out(arguments, structure.as_bonded(), question, report, None)
-    draw = partial(picture_of, bonded=bonded)
-    print("delaminated:")
-    carry_out(arguments, structure.as_delaminated(), question, report, draw, "with_bonded")
+    carry_out_beside(arguments, structure, question, report, picture_of)
 
 
 def signal_of(arguments: argparse.Namespace) -> Random | Sampled | Shock | SweptSine:

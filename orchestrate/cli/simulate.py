@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ..errors import InputError
 from .options import (
     Commands,
     add_excitation,
@@ -18,7 +16,7 @@ from .options import (
     structure_of,
 )
 from .output import add_results
-from .question import carry_out
+from .question import carry_out_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,16 +54,7 @@ def run(arguments: argparse.Namespace) -> None:
         **numbers_of(arguments, "periods", "transient", "points", "phase"),
         "start": start,
     }
-    if not arguments.beside:
-        carry_out(arguments, structure, question, report, picture_of)
-        return
-    if arguments.store is not None or start is not None:
-        option = "--store" if arguments.store is not None else "--start"
-        raise InputError(f"--beside: of two structures; expected it without {option}")
-    bonded = carry_out(arguments, structure.as_bonded(), question, report, None)
-    draw = partial(picture_of, bonded=bonded)
-    print("delaminated:")
-    carry_out(arguments, structure.as_delaminated(), question, report, draw, "with_bonded")
+    carry_out_beside(arguments, structure, question, report, picture_of)
 
 
 def picture_of(data: xr.Dataset, bonded: xr.Dataset | None = None) -> Any:

@@ -15,7 +15,15 @@ from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, finder, s
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, si_state, variable
-from ..response.questions import Numbers, Point, SeriesQuestion, numbers, positive, series_arguments
+from ..response.questions import (
+    Numbers,
+    Point,
+    SeriesQuestion,
+    numbers,
+    positive,
+    series_arguments,
+    without_clearance,
+)
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -507,6 +515,7 @@ def attractors(
     >>> found.multiplicity.values[0], found.share.values[0]
     (array([1., 2.]), array([0.825, 0.175]))
     """
+    without_clearance(structure, "attractors", over)
     job = AttractorsJob(
         **series_arguments(structure, eta, frequency, amplitude, over, values),
         name=f"attractors_{structure.label()}",

@@ -15,7 +15,7 @@ from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, fi
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import si_state, variable
-from ..response.questions import Point, Question, one_point, state
+from ..response.questions import Point, Question, one_point, state, without_clearance
 from ..response.respond import sample
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -333,6 +333,7 @@ def basin(
     >>> found.attractor_of.dims, found.multiplicity.values.tolist()
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
+    without_clearance(structure, "basin")
     point = one_point(structure, eta, frequency, amplitude)
     settings = attractor_settings(
         transient=transient,

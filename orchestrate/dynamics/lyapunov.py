@@ -20,7 +20,7 @@ from ..access import Impacts, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import Point, positive, series_arguments
+from ..response.questions import Point, positive, series_arguments, without_clearance
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -323,6 +323,7 @@ def lyapunov(
     >>> found.verdict.values.tolist(), float(found.exponent[1].round(3))
     ([1, -1], -0.007)
     """
+    without_clearance(structure, "lyapunov", over)
     question = series_arguments(structure, eta, frequency, amplitude, over, values)
     name = f"exponent_{structure.label()}"
     job = LyapunovJob(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -34,7 +35,7 @@ class Sampled(ExcitationSignal):
     InputError
     """
 
-    acceleration: tuple[float, ...] = field(repr=False)
+    acceleration: tuple[float, ...]
     sample_rate: float
     duration: float = field(init=False)
 
@@ -56,6 +57,13 @@ class Sampled(ExcitationSignal):
         put(self, "acceleration", tuple(values.tolist()))
         put(self, "sample_rate", checked(HERTZ, "sample_rate", self.sample_rate))
         put(self, "duration", (len(values) - 1) / self.sample_rate)
+
+    def __repr__(self) -> str:
+        """Return its make-up, since there may be millions of samples; others have another one."""
+        values = np.array(self.acceleration)
+        digest = hashlib.sha256(values.tobytes()).hexdigest()[:16]
+        made = f"acceleration={len(values)} values of {digest}, sample_rate={self.sample_rate!r}"
+        return f"{type(self).__name__}({made})"
 
     @classmethod
     def from_record(cls, record: xr.Dataset) -> Sampled:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..checks import checked_word
 from ..errors import InputError
 from ..structures import Structure
 from ..structures.ranges import Quantity, plain
@@ -17,7 +18,7 @@ from .pieces import Pieces
 from .reconstruction import Motion, SmoothParts, smooth_parts
 from .record import CHANNELS, record
 from .sampled import Sampled
-from .signals import HERTZ, ExcitationSignal, checked, one_of_words
+from .signals import HERTZ, ExcitationSignal, checked
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,7 +82,7 @@ class Sensor:
         put(self, "bandwidth", checked(HERTZ, "bandwidth", self.bandwidth))
         rate = 2.56 * self.bandwidth if self.sample_rate is None else self.sample_rate
         put(self, "sample_rate", checked(HERTZ, "sample_rate", rate))
-        one_of_words("kind", self.kind, FILTERS)
+        checked_word("kind", self.kind, FILTERS)
         put(self, "order", checked_whole("order", self.order, 1, 10))
         put(self, "seed", checked_whole("seed", self.seed, 0, 2**63))
         smallest, largest = 5e-324, math.inf
@@ -279,4 +280,5 @@ def structure_of(history: xr.Dataset) -> Structure:
     if not known or history.sizes.get("time", 0) < 4:
         raise InputError("history: expected an answer of shake or simulate, of 4 samples or more")
     numbers = {name: float(attributes[name]) for name in names}
+    numbers["clearance"] = float(attributes.get("clearance", 0.0))  # of today's histories
     return Structure(**numbers, bonded=bool(attributes.get("bonded", False)))

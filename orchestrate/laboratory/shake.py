@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, PLAYED, REST, EventInstance, begin, finder, play
+from ..access import OSCILLATOR, PLAYED, REST, Player, finder
 from ..errors import InputError
 from ..response.equations import absolute_accelerations
 from ..response.labels import variable, yes_or_no
@@ -20,7 +20,7 @@ from ..response.questions import Question, checked_structure, positive, state
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Inputs, Table
 from ..running.runner import answer
-from ..structures import Excitation, Structure
+from ..structures import Structure
 from .pieces import Pieces
 from .signals import ExcitationSignal
 
@@ -96,13 +96,12 @@ class ShakeJob(Question):
         times = self.times()
         end = None if last == self.count() else np.searchsorted(times, nodes[-1])
         samples = times[np.searchsorted(times, nodes[0]) : end]
-        at_rest = Excitation(frequency=self.structure.omega, amplitude=0.0)
-        with EventInstance(fmus[OSCILLATOR]) as instance:
-            begin(instance, self.structure, at_rest, self.start)
+        with Player(fmus[OSCILLATOR]) as player:
+            player.start(self.structure, self.start)
             if previous is not None:
-                instance.restore_state(previous["fmu_state"][-1].tobytes())
-            played = play(instance, nodes, pieces.derivatives[first:last], samples)
-            kept = np.frombuffer(instance.save_state(), dtype=np.uint8)[np.newaxis]
+                player.restore_state(previous["fmu_state"][-1].tobytes())
+            played = player.play(nodes, pieces.derivatives[first:last], samples)
+            kept = np.frombuffer(player.save_state(), dtype=np.uint8)[np.newaxis]
         one, two = absolute_accelerations(played.rows[:, :4], self.structure, played.touching).T
         return {
             **dict(zip(PLAYED, played.rows.T, strict=True)),

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..checks import checked_word
 from ..errors import InputError
 from ..structures.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, divided, phase_step
-from .signals import LEVEL, SECONDS, ExcitationSignal, checked, one_of_words
+from .signals import LEVEL, SECONDS, ExcitationSignal, checked
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +53,7 @@ class Shock(ExcitationSignal):
         put(self, "peak", checked(LEVEL, "peak", self.peak))
         put(self, "length", checked(SECONDS, "length", self.length))
         put(self, "delay", checked(Quantity("delay", "s", "", 0.0, 1e7), "delay", self.delay))
-        one_of_words("shape", self.shape, ("half-sine", "sawtooth", "trapezoid"))
+        checked_word("shape", self.shape, ("half-sine", "sawtooth", "trapezoid"))
         end = self.delay + self.length
         put(
             self,

@@ -7,7 +7,6 @@ Each knows how to tell itself to the FMU: as cubic pieces with a bound of their 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 from itertools import pairwise
@@ -31,13 +30,6 @@ def checked(quantity: Quantity, name: str, value: object) -> float:
     """A number in a quantity's range, named as the user named it."""
     own = Quantity(name, quantity.unit, "", quantity.minimum, quantity.maximum)
     return own.check(value)
-
-
-def one_of_words(name: str, value: object, words: Sequence[str]) -> str:
-    """A word that is known."""
-    if value not in words:
-        raise InputError(f"{name} = {value!r}: expected one of {', '.join(words)}")
-    return str(value)
 
 
 def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..checks import checked_word
 from ..constants import TURN
 from ..errors import InputError
 from ..structures.ranges import Quantity
@@ -22,7 +23,6 @@ from .signals import (
     along_profile,
     checked,
     checked_profile,
-    one_of_words,
 )
 
 
@@ -69,7 +69,7 @@ class SweptSine(ExcitationSignal):
         put = object.__setattr__
         put(self, "first", checked(HERTZ, "first", self.first))
         put(self, "last", checked(HERTZ, "last", self.last))
-        one_of_words("spacing", self.spacing, ("linear", "log"))
+        checked_word("spacing", self.spacing, ("linear", "log"))
         if self.first == self.last:
             raise InputError(f"last = {self.last!r} Hz: expected another frequency than first")
         put(self, "acceleration", self._checked_acceleration())

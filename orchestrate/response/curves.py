@@ -86,13 +86,13 @@ def merge_by_time(
     order = np.lexsort((rank, time))
     pieces = [states, impacts.before(point.structure), impacts.state]
     state, time = np.concatenate(pieces)[order], time[order]
-    kind = kinds(time, state, impacts)
+    kind = kinds(time, state, impacts, point.structure.gap_offset)
     omega = point.structure.omega
     return Curve(omega * time - omega * grid[0], state / point.scale, kind)
 
 
 def kinds(
-    time: NDArray[np.float64], state: NDArray[np.float64], impacts: Impacts
+    time: NDArray[np.float64], state: NDArray[np.float64], impacts: Impacts, gap_offset: float = 0.0
 ) -> NDArray[np.int8]:
     """Classify each point by the three states of Figure 5.
 
@@ -109,5 +109,5 @@ def kinds(
             first -= 1
         begins = impacts.time[max(first - 1, 0)]
         kind[(time >= begins) & (time <= impacts.time[stick])] = SEQUENCE
-    kind[in_touch(state)] = CONTACT
+    kind[in_touch(state, gap_offset)] = CONTACT
     return kind

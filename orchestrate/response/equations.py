@@ -10,8 +10,9 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from ..access import gap_between
 from ..structures import Structure
 
 Floats = NDArray[np.float64]
@@ -25,20 +26,25 @@ class Rates(NamedTuple):
     ----------
     stiffness, damping : ndarray, shape (3, n)
         A column a structure; of shape (2, ...) where it is what each mass feels.
+    push : ndarray, shape (2, n), optional
+        Acceleration of each mass in contact by the other one's spring, which a clearance loads
+        where the mass itself is at 0, m/s2; None where there is no clearance.
     """
 
     stiffness: Floats
     damping: Floats
+    push: Floats | None = None
 
     @classmethod
     def from_structures(cls, structures: Iterable[Structure]) -> Rates:
         """Return the rates of n structures."""
-        rows = [(s.m1, s.m2, s.k1, s.k2, s.d1, s.d2) for s in structures]
-        m1, m2, k1, k2, d1, d2 = np.array(rows).T
+        rows = [(s.m1, s.m2, s.k1, s.k2, s.d1, s.d2, s.gap_offset) for s in structures]
+        m1, m2, k1, k2, d1, d2, offset = np.array(rows).T
         both = m1 + m2
         stiffness = [k1 / m1, k2 / m2, (k1 + k2) / both]
         damping = [d1 / m1, d2 / m2, (d1 + d2) / both]
-        return cls(np.array(stiffness), np.array(damping))
+        push = np.array([k2 / both, -k1 / both]) * offset if offset.any() else None
+        return cls(np.array(stiffness), np.array(damping), push)
 
     def effective(self, touching: Flags) -> Rates:
         """Return the rates that act on each mass: its own, or those of both while they touch.
@@ -48,11 +54,26 @@ class Rates(NamedTuple):
         touching : ndarray of bool, shape (n, ...)
         """
 
-        def chosen(rates: Floats) -> Floats:
-            columns = rates.reshape(*rates.shape, *(1,) * (touching.ndim - 1))
-            return np.where(touching, columns[2:], columns[:2])
+        def columns(rates: Floats) -> Floats:
+            return rates.reshape(*rates.shape, *(1,) * (touching.ndim - 1))
 
-        return Rates(chosen(self.stiffness), chosen(self.damping))
+        def chosen(rates: Floats) -> Floats:
+            each = columns(rates)
+            return np.where(touching, each[2:], each[:2])
+
+        push = None if self.push is None else np.where(touching, columns(self.push), 0.0)
+        return Rates(chosen(self.stiffness), chosen(self.damping), push)
+
+    def part(self, rows: NDArray[np.intp]) -> Rates:
+        """Return the rates of some structures' masses in flight."""
+        return Rates(self.stiffness[:2, rows], self.damping[:2, rows])
+
+    def acceleration(self, x: Floats, v: Floats) -> Floats:
+        """Return the acceleration in space of each mass, by the rates that act on it; shape (2,
+        ...).
+        """
+        restoring = self.restoring_acceleration(x, v)
+        return restoring if self.push is None else restoring + self.push
 
     def restoring_acceleration(self, x: Floats, v: Floats) -> Floats:
         """Return ``-(k x + d v)/m`` of each mass, by the rates that act on it; shape (2, ...)."""
@@ -60,16 +81,19 @@ class Rates(NamedTuple):
         return acceleration
 
 
-def in_touch(states: Floats) -> Flags:
+def in_touch(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
     """Return whether states are of permanent contact: there the FMU gives both masses the same
-    numbers.
+    velocity and no gap.
 
     Parameters
     ----------
     states : ndarray, shape (..., 4)
         x1, x2, v1, v2.
+    gap_offset : array_like
+        The gap between unloaded springs, as by :func:`.access.gap_between`.
     """
-    touching: Flags = (states[..., 0] == states[..., 1]) & (states[..., 2] == states[..., 3])
+    together = gap_between(states, gap_offset) == 0.0
+    touching: Flags = together & (states[..., 2] == states[..., 3])
     return touching
 
 
@@ -97,7 +121,7 @@ def absolute_accelerations(
     >>> absolute_accelerations(np.array([[-1.0, 1.0, 0.0, 0.0]]), Structure(d1=0.0, d2=0.0))
     array([[ 1. , -1.2]])
     """
-    together = in_touch(states) if touching is None else touching
+    together = in_touch(states, structure.gap_offset) if touching is None else touching
     felt = Rates.from_structures([structure]).effective(together[None])
     columns = states.T[:, None, :]
-    return felt.restoring_acceleration(columns[:2], columns[2:])[:, 0].T
+    return felt.acceleration(columns[:2], columns[2:])[:, 0].T

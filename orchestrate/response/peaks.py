@@ -51,7 +51,7 @@ class Motion(NamedTuple):
             Minus the box's acceleration, and its time derivative.
         """
         x, v = states[:2], states[2:]
-        absolute = rates.restoring_acceleration(x, v)
+        absolute = rates.acceleration(x, v)
         relative = absolute + forces[0]
         rate = rates.restoring_acceleration(v, relative)
         value, slope = np.concatenate([x, absolute]), np.concatenate([v, rate])
@@ -154,7 +154,8 @@ def peaks(
     angles = 2.0 * np.pi * np.outer(kinds, np.arange(count + 1)) / count
     angle = angles[kind]
     width = angle[:, 1:2] / speed
-    touching = in_touch(states)
+    offsets = np.array([[point.structure.gap_offset] for point in points])
+    touching = in_touch(states, offsets)
     columns = np.ascontiguousarray(np.moveaxis(states, -1, 0))
     forces = drive.forcing(np.sin(angles)[kind], np.cos(angles)[kind])
     motion = Motion.from_states(columns, rates.effective(touching), forces)
@@ -164,9 +165,9 @@ def peaks(
     include_cubic_extrema(largest, np.broadcast_to(smooth, left.value.shape), left, right, width)
     index = np.nonzero(~smooth & ~touching[:, :-1])
     sides = left.part(index), right.part(index)
-    cut = ImpactIntervals(index[0], *sides, width[index[0], 0], angle[index]).that_can_exceed(
-        largest
-    )
+    rows = index[0]
+    cut = ImpactIntervals(rows, *sides, width[rows, 0], angle[index], offsets[rows, 0])
+    cut = cut.that_can_exceed(largest)
     if len(cut.row):
         include_impacts(largest, cut, points, rates, drive)
     return dict(zip(PEAKS, largest, strict=True))
@@ -214,23 +215,26 @@ def include_cubic_extrema(
 
 
 class ImpactIntervals(NamedTuple):
-    """Intervals with an impact: rows of their points, both ends, length, phase at the left one."""
+    """Intervals with an impact: rows of their points, both ends, length, phase at the left one, and
+    the gap between unloaded springs.
+    """
 
     row: Rows
     left: Motion
     right: Motion
     width: Floats
     angle: Floats
+    gap_offset: Floats
 
     def part(self, chosen: Flags) -> ImpactIntervals:
         """Return some of the intervals."""
-        row, left, right, width, angle = self
+        row, left, right, *numbers = self
         ends = left.part((chosen,)), right.part((chosen,))
-        return ImpactIntervals(row[chosen], *ends, width[chosen], angle[chosen])
+        return ImpactIntervals(row[chosen], *ends, *(each[chosen] for each in numbers))
 
     def that_can_exceed(self, largest: Floats) -> ImpactIntervals:
         """Return the intervals in which a larger value is possible: most cannot reach so far."""
-        _, left, right, width, _ = self
+        left, right, width = self.left, self.right, self.width
         reach = np.maximum(np.abs(left.value), np.abs(right.value))
         reach += width * (np.abs(left.slope) + np.abs(right.slope))
         return self.part(np.any(reach > largest[:, self.row], axis=0))
@@ -245,7 +249,7 @@ def include_impacts(
     time = first_touch(cut)
     touches = np.isfinite(time)
     cut, time = cut.part(touches), time[touches]
-    effective_rates = Rates(*(part[:2, cut.row] for part in rates))
+    effective_rates = rates.part(cut.row)
     drive = BoxMotion(drive.frequency[cut.row, 0], drive.amplitude[cut.row, 0])
     forcing = drive.forcing_at(cut.angle + drive.frequency * time)
     before = taylor_step(cut.left, time)
@@ -277,6 +281,7 @@ def first_touch(cut: ImpactIntervals, iterations: int = 20) -> Floats:
     """
     taylor = (cut.left.value[:2], cut.left.slope[:2], cut.left.bend[:2], cut.left.bend[2:])
     g = [part[1] - part[0] for part in taylor]
+    g[0] = np.where(cut.gap_offset == 0.0, g[0], g[0] + cut.gap_offset)
 
     def gap(s: Floats) -> Floats:
         distance: Floats = g[0] + s * (g[1] + s * (g[2] / 2.0 + s * g[3] / 6.0))

@@ -16,7 +16,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import REST
+from ..access import REST, gap_between
 from ..checks import MAX_COUNT
 from ..errors import InputError
 from ..running.job import Job, brief
@@ -235,6 +235,30 @@ def checked_structure(structure: object) -> Structure:
     return structure
 
 
+def without_clearance(structure: object, question: str, *varied: object) -> Structure:
+    """Return the structure; raise if it has a clearance, which the question does not know yet.
+
+    Parameters
+    ----------
+    structure : object
+    question : str
+        Name of the function asked.
+    *varied : object
+        Names of parameters that take values.
+
+    Raises
+    ------
+    InputError
+        Also where it is no structure.
+    """
+    checked = checked_structure(structure)
+    if checked.clearance != 0.0:
+        raise InputError(f"clearance = {checked.clearance!r} m: {question} expects clearance = 0")
+    if "clearance" in varied:
+        raise InputError(f"clearance: {question} does not vary it; expected another parameter")
+    return checked
+
+
 def numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
     """Return a number or a list of numbers, each in the parameter's range.
 
@@ -294,12 +318,16 @@ def positive(name: str, value: Any) -> float:
 def states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[np.float64]:
     """Return states x1, x2 in m, v1, v2 in m/s of a structure, shape (n, 4); rest by default.
 
+    Displacements count from the unloaded springs; zeros mean rest, with a preload too.
+
     Raises
     ------
     InputError
         Where these are no states the structure can be in.
     """
     expected = "expected x1, x2 in m, v1, v2 in m/s with x2 >= x1"
+    if structure.gap_offset:
+        expected += f" - clearance, clearance = {structure.clearance!r} m"
     try:
         rows = np.atleast_2d(np.asarray(REST if value is None else value, dtype=float))
     except (TypeError, ValueError):
@@ -307,7 +335,9 @@ def states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[
         raise InputError(f"{name} = {text}: {expected}") from None
     if rows.ndim != 2 or rows.shape[1] != 4 or not len(rows):
         raise InputError(f"{name}: shape {rows.shape}; {expected}")
-    wrong = ~np.isfinite(rows).all(axis=1) | (rows[:, 1] < rows[:, 0])
+    with np.errstate(invalid="ignore"):
+        overlapping = (gap_between(rows, structure.gap_offset) < 0.0) & rows.any(axis=1)
+    wrong = ~np.isfinite(rows).all(axis=1) | overlapping
     if structure.bonded:
         expected = "expected x2 = x1 and v2 = v1 of a bonded structure"
         wrong |= (rows[:, 0] != rows[:, 1]) | (rows[:, 2] != rows[:, 3])

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import STATE, Instance, begin, last_samples, samples_per_step
+from ..access import STATE, Instance, begin, gap_between, last_samples, samples_per_step
 from ..structures import Excitation, Structure
 from .multiplicity import Decision, Repetition, decide, repetition, scale_states
 from .questions import Point
@@ -38,6 +38,8 @@ class Response:
         Of the excitation, rad/s.
     tolerance : float
         Within which a state repeats, over the motion's size: see :mod:`.multiplicity`.
+    gap_offset : float
+        The gap between unloaded springs, m.
     """
 
     samples: NDArray[np.float64]
@@ -47,6 +49,7 @@ class Response:
     permanent_contact: bool
     frequency: float
     tolerance: float
+    gap_offset: float = 0.0
 
     @cached_property
     def states(self) -> NDArray[np.float64]:
@@ -71,15 +74,17 @@ class Response:
     @property
     def gap(self) -> NDArray[np.float64]:
         """Gap at the samples, m."""
-        return self.samples[:, 1] - self.samples[:, 0]
+        return gap_between(self.samples, self.gap_offset)
 
     @cached_property
     def end(self) -> tuple[float, ...]:
         """State at the last sample, from which a next response starts."""
-        return round_state(self.samples[-1])
+        return round_state(self.samples[-1], self.gap_offset)
 
 
-def round_state(state: NDArray[np.float64], bits: int = 44) -> tuple[float, ...]:
+def round_state(
+    state: NDArray[np.float64], gap_offset: float = 0.0, bits: int = 44
+) -> tuple[float, ...]:
     """Round a state to 13 digits, so that it does not depend on how its response was reached.
 
     Rounding never settles: what has converged to one response from two sides goes on to differ in
@@ -90,6 +95,8 @@ def round_state(state: NDArray[np.float64], bits: int = 44) -> tuple[float, ...]
     ----------
     state : ndarray, shape (4,)
         x1, x2, v1, v2.
+    gap_offset : float
+        The gap between unloaded springs, m.
     bits : int
         Kept of the larger displacement, and of the larger velocity: the gap stays >= 0.
 
@@ -99,7 +106,11 @@ def round_state(state: NDArray[np.float64], bits: int = 44) -> tuple[float, ...]
     (0.25, 0.30000000000001137, 1.0, -1.0)
     """
     x1, x2, v1, v2 = state.tolist()
-    return (*round_to_bits(x1, x2, bits), *round_to_bits(v1, v2, bits))
+    velocities = round_to_bits(v1, v2, bits)
+    if gap_offset == 0.0:
+        return (*round_to_bits(x1, x2, bits), *velocities)
+    face_1, face_2 = round_to_bits(x1, x1 + float(gap_between(state, gap_offset)), bits)
+    return (face_1, face_2 - gap_offset, *velocities)
 
 
 def round_to_bits(first: float, second: float, bits: int) -> tuple[float, float]:
@@ -156,6 +167,7 @@ def respond(
         permanent_contact=bool(touching) or contacts_after > contacts,
         frequency=excitation.frequency,
         tolerance=tolerance,
+        gap_offset=structure.gap_offset,
     )
 
 
@@ -214,6 +226,7 @@ def follow(
     transient: int,
     samples: int,
     tolerance: float,
+    gap_offset: float | None = None,
 ) -> Iterator[Response]:
     """Yield responses one after the other, each from the final state of the one before.
 
@@ -225,8 +238,13 @@ def follow(
         Of the first one.
     transient, samples, tolerance
         As in :func:`respond`.
+    gap_offset : float, optional
+        The gap between unloaded springs in the structure that ``start`` is a state of; by default
+        that of the first point. Where it changes from point to point, the gap goes on.
     """
     for structure, excitation in points:
+        if gap_offset is not None and gap_offset != structure.gap_offset and np.any(start):
+            start = np.add(start, (0.0, gap_offset - structure.gap_offset, 0.0, 0.0))
         response = respond(instance, structure, excitation, start, transient, samples, tolerance)
         yield response
-        start = response.end
+        start, gap_offset = response.end, response.gap_offset

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, EventInstance, Impacts, begin, finder
+from ..access import NO_INPUT, OSCILLATOR, REST, EventInstance, Impacts, begin, finder
 from ..checks import checked_integer
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -37,7 +37,7 @@ IN_TIME = {  # units, long name
     "a1_abs": ("m/s2", f"acceleration of mass 1 {IN_SPACE}"),
     "a2_abs": ("m/s2", f"acceleration of mass 2 {IN_SPACE}"),
     "box_acceleration": ("m/s2", "acceleration of the box"),
-    "x_rel": ("m", "gap x2 - x1"),
+    "x_rel": ("m", "gap x2 - x1 + clearance"),
     "v_rel": ("m/s", "velocity of the gap"),
     "contact_force": ("N", "compressive force between the masses in permanent contact (18)"),
 }
@@ -86,7 +86,9 @@ class SimulateJob(Question):
         with EventInstance(fmus[OSCILLATOR]) as instance:
             begin(instance, *items[0], self.start)
             instance.advance(0.0, float(grid[0]))
-            rows, touching, impacts = run_grid(instance, grid)
+            ends = grid[[0, -1]]
+            loop = instance.event_loop((), OUTPUTS)
+            rows, touching, impacts = loop.run(ends, NO_INPUT, grid)
         columns = dict(zip(OUTPUTS, rows.T, strict=True))
         columns["in_contact"] = touching
         columns |= impact_columns(impacts, self.structure)
@@ -151,37 +153,6 @@ def impact_columns(impacts: Impacts, structure: Structure) -> Table:
         "impulse": impacts.impulse(structure),
         "sticks": impacts.sticks,
     }
-
-
-def run_grid(
-    instance: EventInstance, grid: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.bool_], Impacts]:
-    """Return a motion at communication points, and its impacts between them.
-
-    Parameters
-    ----------
-    instance : EventInstance
-        At the first point.
-    grid : ndarray, shape (n,)
-        s.
-
-    Returns
-    -------
-    rows : ndarray, shape (n, 8)
-        In the order of ``OUTPUTS``.
-    touching : ndarray of bool, shape (n,)
-    impacts : Impacts
-    """
-    touch = instance.flag("in_contact")
-    rows, touching = np.empty((len(grid), len(OUTPUTS))), np.empty(len(grid), dtype=bool)
-    rows[0], touching[0] = instance.read(*OUTPUTS), touch()
-    pieces = []
-    for index in range(1, len(grid)):
-        pieces.append(instance.impacts(float(grid[index - 1]), float(grid[index])))
-        rows[index], touching[index] = instance.read(*OUTPUTS), touch()
-    names = ("time", "state", "closing", "sticks")
-    joined = [np.concatenate([getattr(piece, name) for piece in pieces]) for name in names]
-    return rows, touching, Impacts(*joined)
 
 
 def simulate(

@@ -114,8 +114,10 @@ class SweepJob(SeriesQuestion):
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
         """Compute a chunk of responses; each starts from the end of the one before."""
-        start = self.start if previous is None else previous["end"][-1]
-        settings = self.transient, self.samples, self.tolerance
+        start, offset = self.start, self.structure.gap_offset
+        if previous is not None:
+            start, offset = previous["end"][-1], float(previous["gap_offset"][-1])
+        settings = self.transient, self.samples, self.tolerance, offset
         with Instance(fmus[OSCILLATOR]) as instance:
             rows = [
                 self.row(instance, point, response)
@@ -140,6 +142,7 @@ class SweepJob(SeriesQuestion):
         return {
             "gap": response.gap,
             "end": response.end,
+            "gap_offset": response.gap_offset,
             "x_rel_max": response.x_rel_max,
             "impacts_per_period": impacts,
             "permanent_contact": response.permanent_contact,

@@ -95,7 +95,9 @@ def quantities_of(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Q
     }
 
 
-STRUCTURE = quantities_of(oscillator.VARIABLES, ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma"))
+STRUCTURE = quantities_of(
+    oscillator.VARIABLES, ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma", "clearance")
+)
 DRIVE = quantities_of(
     motor_shaker.VARIABLES,
     (

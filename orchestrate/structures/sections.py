@@ -30,7 +30,8 @@ TO_RAD_S: dict[str, Callable[[float], float]] = {
     "rad_s": lambda value: value,
     "rpm": lambda value: TURN * value / 60.0,
 }
-COMMON_KEYS = ("e", "gamma", "bonded")
+COMMON_NUMBERS = ("e", "gamma", "clearance")
+COMMON_KEYS = (*COMMON_NUMBERS, "bonded")
 SI_STRUCTURE = ("m1", "m2", "k1", "k2", "d1", "d2")
 OMEGAS = tuple(f"omega_{unit}" for unit in TO_RAD_S)
 HALVES = ("f1_hz", "f2_hz", "zeta1", "zeta2")
@@ -147,7 +148,7 @@ class Section:
 def read_structure(section: Section) -> Structure:
     """Read the structure of ``[structure]``."""
     section.allow(*COMMON_KEYS, *SI_STRUCTURE, *HALVES, *RATIOS)
-    values: dict[str, Any] = section.numbers(("e", "gamma"))
+    values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
     if "bonded" in section.values:
         try:
             values["bonded"] = check_flag("bonded", section.values["bonded"])

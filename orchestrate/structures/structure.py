@@ -100,6 +100,10 @@ class Structure:
         Coefficient of restitution, 0 to 1.
     gamma : float
         End of chattering, as a time in units of 1/omega, see (17).
+    clearance : float
+        Gap between the faces where both springs are unloaded, m. Below zero the masses are pressed
+        together: at rest with the force ``preload``, at the displacements ``at_rest``. A bonded
+        structure ignores it.
     bonded : bool
         The undamaged structure: both masses glued for good.
 
@@ -134,6 +138,7 @@ class Structure:
     d2: float = STRUCTURE["d2"].default
     e: float = STRUCTURE["e"].default
     gamma: float = STRUCTURE["gamma"].default
+    clearance: float = STRUCTURE["clearance"].default
     bonded: bool = False
 
     def __post_init__(self) -> None:
@@ -155,6 +160,7 @@ class Structure:
         *,
         m1: float = 1.0,
         omega: float = 1.0,
+        clearance: float = STRUCTURE["clearance"].default,
     ) -> Structure:
         """Make a structure from the paper's numbers, (2) and (8).
 
@@ -170,6 +176,9 @@ class Structure:
             As in :class:`Structure`.
         m1, omega : float
             The scale: kg, and sqrt(k1/m1) in rad/s. With 1 and 1, every SI number is the paper's.
+        clearance : float
+            As in :class:`Structure`, m: the paper's numbers have none, and no unit of length. Under
+            ``eta=`` it counts in units of xi.
 
         Examples
         --------
@@ -191,6 +200,7 @@ class Structure:
                 d2=damping(v.get("D2", v["D"]), v["omega"], m1) * v["mu"],
                 e=e,
                 gamma=gamma,
+                clearance=clearance,
                 bonded=bonded,
             ),
         )
@@ -207,6 +217,7 @@ class Structure:
         zeta2: float = 0.0,
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
+        clearance: float = STRUCTURE["clearance"].default,
         bonded: bool = False,
     ) -> Structure:
         """Make a structure from natural frequency and damping ratio of each half alone.
@@ -221,7 +232,7 @@ class Structure:
             Damping ratios d_i/(2 sqrt(k_i m_i)) of each half at its own frequency; 0.007 is 0.7 %.
             The paper's ``D_i`` (8) refer to the frequency of mass 1 instead: ``D1`` is ``zeta1``,
             ``D2`` is ``zeta2 f2/f1``.
-        e, gamma, bonded
+        e, gamma, clearance, bonded
             As in :class:`Structure`.
 
         Raises
@@ -249,6 +260,7 @@ class Structure:
                 d2=damping(v["zeta2"], 2.0 * math.pi * v["f2"], m2),
                 e=e,
                 gamma=gamma,
+                clearance=clearance,
                 bonded=bonded,
             ),
         )
@@ -263,6 +275,7 @@ class Structure:
         thicknesses: tuple[float, float],
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
+        clearance: float = STRUCTURE["clearance"].default,
         bonded: bool = False,
     ) -> Structure:
         """Split the measured mode of the undamaged beam between two layers.
@@ -289,7 +302,7 @@ class Structure:
             Its damping ratio.
         thicknesses : tuple of float
             Of the layers 1 and 2, in any unit: their ratio counts.
-        e, gamma, bonded
+        e, gamma, clearance, bonded
             As in :class:`Structure`.
 
         Raises
@@ -320,6 +333,7 @@ class Structure:
                 d2=soft * d,
                 e=e,
                 gamma=gamma,
+                clearance=clearance,
                 bonded=bonded,
             ),
         )
@@ -419,8 +433,23 @@ class Structure:
         """
         return self.kappa == self.mu and self.D1 == self.D2
 
+    @property
+    def gap_offset(self) -> float:
+        """The gap where both springs are unloaded, m: the clearance, 0 where bonded."""
+        return 0.0 if self.bonded else self.clearance
+
+    @property
+    def preload(self) -> float:
+        """Force that presses the masses together at rest, N: F = -clearance k1 k2/(k1 + k2)."""
+        return max(0.0, -self.gap_offset) * self.k2 / (1.0 + self.kappa)
+
+    @property
+    def at_rest(self) -> tuple[float, float]:
+        """Displacements x1, x2 at rest, m: -F/k1 and F/k2 with the preload F."""
+        return 0.0 - self.preload / self.k1, self.preload / self.k2
+
     def as_bonded(self) -> Structure:
-        """Return the undamaged structure, both masses glued."""
+        """Return the undamaged structure, both masses glued; it keeps its clearance unused."""
         return dataclasses.replace(self, bonded=True)
 
     def as_delaminated(self) -> Structure:
@@ -546,13 +575,13 @@ class Structure:
         if (self.m1, self.k1) == (1.0, 1.0):
             damping_ratios = dict.fromkeys((short(self.D1), short(self.D2)))
             parts = [f"e{short(self.e)}", f"D{'-'.join(damping_ratios)}"]
-            names: tuple[str, ...] = ("mu", "kappa", "gamma")
+            names: tuple[str, ...] = ("mu", "kappa", "gamma", "clearance")
         else:
             masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
             halves = [self._pair(letter) for letter in ("f", "zeta")]
             shorter = self._is_by_halves() and len("".join(halves)) < len("".join(si))
             parts = [f"e{short(self.e)}", masses, *(halves if shorter else si)]
-            names = ("gamma",)
+            names = ("gamma", "clearance")
         for name in names:
             if self.get(name) != default.get(name):
                 parts.append(f"{name}{short(self.get(name))}")

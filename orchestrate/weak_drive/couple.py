@@ -19,6 +19,7 @@ from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
 from ..response.labels import Variable, flags
+from ..response.questions import without_clearance
 from ..running.job import Chunk, Inputs, Job, Table
 from ..running.options import Running
 from ..structures.drive import Drive
@@ -49,7 +50,17 @@ def oscillator_start(structure: Structure) -> dict[str, float | bool]:
     off.
     """
     off = {"box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
-    return {**structure.parameters(), **off}
+    return {**require_no_clearance(structure).parameters(), **off}
+
+
+def require_no_clearance(structure: Structure) -> Structure:
+    """Return a structure; raise if it has a clearance.
+
+    Raises
+    ------
+    InputError
+    """
+    return without_clearance(structure, "the weak drive")
 
 
 @dataclass(frozen=True)
@@ -544,6 +555,7 @@ def couple_job(
     ------
     InputError
     """
+    require_no_clearance(structure)
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
     if speed_start is None:

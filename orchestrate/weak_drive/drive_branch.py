@@ -29,7 +29,7 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import require_motor
+from .couple import require_motor, require_no_clearance
 from .drive_tracer import (
     ENDS,
     HALVED,
@@ -342,6 +342,7 @@ def drive_branch(
     [1.5831]
     """
     require_motor(drive)
+    require_no_clearance(structure)
     omega = structure.omega
     resonance = averaged.resonance(structure, drive) * omega
     first, last = (0.95 * resonance, 1.25 * resonance) if speed is None else map(float, speed)

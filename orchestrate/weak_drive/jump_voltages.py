@@ -23,7 +23,7 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import couple_job, require_motor, schedule_of, scheme_of
+from .couple import couple_job, require_motor, require_no_clearance, schedule_of, scheme_of
 from .master import Scheme
 from .schedule import Ramp, Schedule
 
@@ -246,6 +246,7 @@ def jump_voltages(
     True
     """
     require_motor(drive)
+    require_no_clearance(structure)
     unit = drive.volts(structure) * structure.omega
     volt_rates = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
     if len(set(volt_rates)) < 2:

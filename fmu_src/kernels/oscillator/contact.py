@@ -14,8 +14,13 @@ HIGHEST = 5
 
 
 def contact_force(m, x, v):
-    """The f of (18): the gap's acceleration at displacement ``x`` and common velocity ``v``."""
-    return m[at.FORCE_V] * v + m[at.FORCE_X] * x
+    """The f of (18): the gap's acceleration at displacement ``x`` of both masses from where they
+    rest together, and common velocity ``v``.
+    """
+    force = m[at.FORCE_V] * v + m[at.FORCE_X] * x
+    if m[at.PRELOAD] != 0.0:  # rarely
+        force += m[at.PRELOAD]
+    return force
 
 
 def forcing_derivative(m, order, sine, cosine, cubic):
@@ -58,6 +63,9 @@ def first_derivative(m, x, v, lowest):
         if order >= lowest:
             value = m[at.FORCE_V] * high + m[at.FORCE_X] * low
             size = abs(m[at.FORCE_V]) * high_size + abs(m[at.FORCE_X]) * low_size
+            if order == 0 and m[at.PRELOAD] != 0.0:  # rarely
+                value += m[at.PRELOAD]
+                size += abs(m[at.PRELOAD])
             if abs(value) > ROUNDING * size:
                 return order, value
         drive, drive_size = forcing_derivative(m, order, sine, cosine, cubic)

@@ -3,7 +3,7 @@
 In flight it is the gap ``xi_2 - xi_1`` (13), in permanent contact minus the contact force ``-f``
 (19). Both are one kind of signal, a harmonic, a cubic and up to two decaying free parts, and so is
 each derivative: written so, one root finder serves both, and every derivative is bounded in closed
-form for all later times.
+form for all later times. A clearance adds a constant to the signal, none to its derivatives.
 """
 
 from . import memory as at
@@ -16,7 +16,8 @@ AHEAD = 5.0  # spacings from an evaluation on for which its bound holds
 
 
 def set_gap(m):
-    """Event function of a flight: ``xi_2 - xi_1``."""
+    """Event function of a flight: ``xi_2 - xi_1`` and the clearance."""
+    m[at.EVENT_OFFSET] = m[at.GAP_OFFSET]
     for i in range(2):
         m[at.EVENT_HARMONIC + i] = m[at.HARMONIC_2 + i] - m[at.HARMONIC_1 + i]
         m[at.EVENT_FREE_A + i] = -m[at.FREE_A + i]
@@ -32,6 +33,7 @@ def set_contact_force(m):
     """Event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 - omega_2^2)
     xi_3`` (18).
     """
+    m[at.EVENT_OFFSET] = -m[at.PRELOAD]
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     h_cos, h_sin, eta = m[at.HARMONIC_3], m[at.HARMONIC_3 + 1], m[at.ETA]
     m[at.EVENT_HARMONIC] = p * eta * h_sin + q * h_cos
@@ -47,6 +49,21 @@ def set_contact_force(m):
     m[at.EVENT_FREE_B + 1] = 0.0
     if m[at.SECULAR] != 0.0:  # rarely
         set_event_drive(m)
+
+
+def is_constant(m):
+    """Whether the event function stays what it is, above zero: at rest with a clearance, or pressed
+    together by two oscillators that are alike.
+    """
+    if m[at.EVENT_OFFSET] <= 0.0 or m[at.SECULAR] != 0.0:
+        return False
+    size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
+    for i in range(2):
+        size += abs(m[at.EVENT_FREE_A + i]) + abs(m[at.EVENT_FREE_B + i])
+    if m[at.CUBIC_PRESENT] != 0.0:  # rarely
+        for i in range(4):
+            size += abs(m[at.EVENT_CUBIC + i])
+    return size == 0.0
 
 
 def force_phasor(m, x, v):
@@ -176,6 +193,8 @@ def values(m, plain, x, v, x_b, v_b, cosine, sine, tau):  # inline
     h0 += u
     h1 += eta * (m[at.EVENT_HARMONIC + 1] * cosine - m[at.EVENT_HARMONIC] * sine)
     h2 -= eta * eta * u
+    if m[at.EVENT_OFFSET] != 0.0:  # rarely
+        h0 += m[at.EVENT_OFFSET]
     if not plain and m[at.CUBIC_PRESENT] != 0.0:  # rarely
         q0, q1, q2 = cubic_values(m, tau)
         h0, h1, h2 = h0 + q0, h1 + q1, h2 + q2
@@ -241,12 +260,14 @@ def evaluate(m, tau):  # inline
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         q0, q1, q2 = cubic_values(m, tau)
         h0, h1, h2, h3 = h0 + q0, h1 + q1, h2 + q2, h3 + m[at.EVENT_CUBIC + 3]
+    if m[at.EVENT_OFFSET] != 0.0:  # rarely
+        h0 += m[at.EVENT_OFFSET]
     return h0, h1, h2, h3, h4, bound
 
 
 def rounding(m, tau):
     """What the event function's terms at ``tau`` may lose by rounding."""
-    size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
+    size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1]) + abs(m[at.EVENT_OFFSET])
     size += free_bound(m, branch_a(m), at.EVENT_FREE_A, 0) + free_bound(
         m, at.BRANCH_2, at.EVENT_FREE_B, 0
     )

@@ -82,7 +82,7 @@ def noise(m, tau):
     if m[at.SERIES] != 0.0:
         return 2.0 * EPS * m[at.SERIES_GAP + 1] * m[at.END]
     p = at.POINT
-    size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
+    size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1]) + abs(m[at.EVENT_OFFSET])
     size += envelope(m, at.BRANCH_1, m[p], m[p + 1]) + envelope(m, at.BRANCH_2, m[p + 2], m[p + 3])
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         power = 1.0

@@ -4,6 +4,11 @@ A state begins with its initial conditions (9), from which its closed form and i
 follow; it ends at the event function's first root, found once and kept. Communication points only
 look at it. Which state follows is decided on the boundary by the gap, then its velocity, then the
 first derivative that does not vanish.
+
+With a clearance each state has its own origin of displacements, in which its equations have no
+constant: a flight by the closed form the unloaded positions, all else the positions in which the
+masses rest together. So neither a small motion in a wide gap nor one under a large preload loses
+digits.
 """
 
 from ..numerics.elementary import fraction, sincos_turns
@@ -13,6 +18,7 @@ from .event_function import (
     begin_nodes,
     bounds,
     evaluate,
+    is_constant,
     set_contact_force,
     set_gap,
     set_values,
@@ -34,7 +40,7 @@ def state_at(m, tau):
     Returns
     -------
     x1, v1, x2, v2 : float
-        m, and m per unit of tau; ``x2 >= x1``.
+        m, and m per unit of tau, from the state's own origin; :func:`gap_between` has the gap.
     """
     if tau == 0.0:  # rarely
         # exactly what the state began with: a start from rest is at rest
@@ -80,11 +86,41 @@ def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
         x2, v2 = displacement(m, at.HARMONIC_2, at.CUBIC_B, tau, x_b, v_b, sine, cosine)
-        if x2 < x1:  # by rounding, at the very end of a flight
+        if x2 < x1 and m[at.GAP_OFFSET] == 0.0:  # by rounding, at the very end of a flight
             x1 = x2 = common_position(m, x1, x2)
         return x1, v1, x2, v2
     x3, v3 = displacement(m, at.HARMONIC_3, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
     return x3, v3, x3, v3
+
+
+def is_from_unloaded(m):  # inline
+    """Whether the present state's displacements count from the unloaded positions, not from where
+    the masses rest together.
+    """
+    return m[at.MODE] == at.FLIGHT and m[at.SERIES] == 0.0
+
+
+def gap_between(m, tau, x1, x2):  # inline
+    """The gap between the displacements of :func:`state_at`, >= 0."""
+    gap = x2 - x1
+    if m[at.GAP_OFFSET] != 0.0 and is_from_unloaded(m):  # rarely
+        gap = m[at.BEGIN_GAP] if tau == 0.0 else gap + m[at.GAP_OFFSET]
+        gap = gap if gap > 0.0 else 0.0
+    return gap
+
+
+def from_unloaded(m, x1, x2):  # inline
+    """The displacements of :func:`state_at` from the unloaded positions."""
+    if m[at.GAP_OFFSET] != 0.0 and not is_from_unloaded(m):  # rarely
+        x1, x2 = x1 + m[at.REST_1], x2 + m[at.REST_2]
+    return x1, x2
+
+
+def from_rest_together(m, x1, x2):
+    """The displacements of :func:`state_at` from where the masses rest together."""
+    if m[at.GAP_OFFSET] != 0.0 and is_from_unloaded(m):  # rarely
+        x1, x2 = x1 - m[at.REST_1], x2 - m[at.REST_2]
+    return x1, x2
 
 
 def state_and_phase_at(m, tau):  # inline
@@ -148,7 +184,7 @@ def set_turn(m, turns):
     m[at.COSINE] = cosine
 
 
-def begin(m, x1, v1, x2, v2, lowest):
+def begin(m, x1, v1, x2, v2, gap, lowest):
     """Begin the state that follows from displacements and velocities.
 
     Parameters
@@ -156,7 +192,10 @@ def begin(m, x1, v1, x2, v2, lowest):
     m : flat memory
         Origin and phase already moved to the new state's start.
     x1, v1, x2, v2 : float
-        m, and m per unit of tau.
+        m, and m per unit of tau; with a gap from the unloaded positions, without one from where
+        the masses rest together.
+    gap : float
+        Between the masses, m.
     lowest : int
         First derivative of f that may decide on the boundary: 1 where f is known to vanish, at a
         release, else 0.
@@ -165,8 +204,8 @@ def begin(m, x1, v1, x2, v2, lowest):
         begin_common(m, at.GLUED, x1, v1)
         m[at.CLEAR] = INFINITE
         return
-    if x2 > x1:
-        begin_flight(m, x1, v1, x2, v2)
+    if gap > 0.0:
+        begin_flight(m, x1, v1, x2, v2, gap)
         return
     x = common_position(m, x1, x2) if x2 < x1 else x1
     if v1 > v2:
@@ -176,7 +215,7 @@ def begin(m, x1, v1, x2, v2, lowest):
         return
     order, value = first_derivative(m, x, v1, lowest)
     if value > 0.0:
-        begin_flight(m, x, v1, x, v1)
+        begin_touching_flight(m, x, v1, v1)
         leave(m, order + 2, value)
         return
     if m[at.MODE] == at.FLIGHT:
@@ -197,8 +236,18 @@ def collide(m, x, v1, v2):
     return restitution(m, v1, v2)
 
 
-def begin_flight(m, x1, v1, x2, v2):
-    """A flight from initial conditions; its event function is the gap."""
+def begin_touching_flight(m, x, v1, v2):
+    """A flight from no gap, at displacement ``x`` of both masses from where they rest together."""
+    x1, x2 = x, x
+    if m[at.GAP_OFFSET] != 0.0:  # rarely
+        x1, x2 = x + m[at.REST_1], x + m[at.REST_2]
+    begin_flight(m, x1, v1, x2, v2, 0.0)
+
+
+def begin_flight(m, x1, v1, x2, v2, gap):
+    """A flight from initial conditions, from the unloaded positions; its event function is the
+    gap.
+    """
     m[at.MODE] = at.FLIGHT
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
@@ -208,32 +257,39 @@ def begin_flight(m, x1, v1, x2, v2):
     set_free(m, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
     set_free(m, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
     set_gap(m)
-    open_end(m, x1, v1, x2, v2)
+    open_end(m, x1, v1, x2, v2, gap)
     begin_nodes(m)
-    gap, slope = x2 - x1, v2 - v1
+    slope = v2 - v1
     m[at.LEFT_VALUES] = gap
     m[at.LEFT_VALUES + 1] = slope
+    x = x1 if m[at.GAP_OFFSET] == 0.0 else x1 - m[at.REST_1]
     m[at.LEFT_VALUES + 2] = (
-        contact_force(m, x1, v1)
+        contact_force(m, x, v1)
         - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
         - m[at.BRANCH_2 + at.OMEGA_SQUARED] * gap
     )
+    if is_constant(m):  # rarely
+        m[at.CLEAR] = INFINITE
 
 
 def begin_common(m, mode, x, v):
-    """Both masses as one, in contact or glued; its event function is the contact force."""
+    """Both masses as one, in contact or glued, from where they rest together; its event function is
+    the contact force.
+    """
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.CUBIC_AGE]))
     set_free(m, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
     set_contact_force(m)
-    open_end(m, x, v, x, v)
+    open_end(m, x, v, x, v, 0.0)
     begin_nodes(m)
     set_values(m, at.LEFT_VALUES, at.LEFT, 0.0)
+    if is_constant(m):  # rarely
+        m[at.CLEAR] = INFINITE
 
 
-def open_end(m, x1, v1, x2, v2):
+def open_end(m, x1, v1, x2, v2, gap):
     """The state begins here; its end is not known yet."""
     m[at.SERIES] = 0.0
     m[at.AT_END_NODE] = 0.0
@@ -241,6 +297,7 @@ def open_end(m, x1, v1, x2, v2):
     m[at.BEGIN + 1] = v1
     m[at.BEGIN + 2] = x2
     m[at.BEGIN + 3] = v2
+    m[at.BEGIN_GAP] = gap
     m[at.CLEAR] = 0.0
     m[at.END] = INFINITE
     m[at.END_KIND] = at.END_OPEN
@@ -258,13 +315,13 @@ def leave_impact(m, x, v1, v2):
         duration = short_flight(m, order)
         if duration > 0.0:
             m[at.MODE] = at.FLIGHT
-            open_end(m, x, v1, x, v2)
+            open_end(m, x, v1, x, v2, 0.0)
             m[at.SERIES] = order
             m[at.CLEAR] = duration
             m[at.END] = duration
             m[at.END_KIND] = at.END_EVENT
             return
-    begin_flight(m, x, v1, x, v2)
+    begin_touching_flight(m, x, v1, v2)
     if not leave_clear(m, slope, curvature):  # rarely
         set_series(m, x, v1, slope, 8)
         creep_away(m, slope, curvature, m[at.SERIES_GAP + 6], m[at.SERIES_GAP + 8])
@@ -332,15 +389,20 @@ def end_state(m):
     """Carry out the end of the present state and begin the next one."""
     m[at.WORK] += 1.0
     x1, v1, x2, v2 = state_at_end(m)
+    event = m[at.END_KIND] == at.END_EVENT
+    gap = gap_between(m, m[at.END], x1, x2)
+    flight = m[at.MODE] == at.FLIGHT
     if has_died_away(m, x1, v1, x2, v2):  # rarely
         x1 = v1 = x2 = v2 = 0.0
+        gap = max(m[at.GAP_OFFSET], 0.0)
+    elif event and flight:  # usually
+        x1, x2 = from_rest_together(m, x1, x2)
+        x1 = x2 = common_position(m, x1, x2)
+        gap = 0.0
+    elif gap <= 0.0:
+        x1, x2 = from_rest_together(m, x1, x2)
     move_to_end(m)
-    event = m[at.END_KIND] == at.END_EVENT
-    if event and m[at.MODE] == at.FLIGHT:
-        x = common_position(m, x1, x2)
-        begin(m, x, v1, x, v2, 0)
-    else:
-        begin(m, x1, v1, x2, v2, 1 if event else 0)
+    begin(m, x1, v1, x2, v2, gap, 1 if event and not flight else 0)
 
 
 def has_died_away(m, x1, v1, x2, v2):
@@ -351,4 +413,6 @@ def has_died_away(m, x1, v1, x2, v2):
     """
     if m[at.FORCING] != 0.0 or m[at.CUBIC_PRESENT] != 0.0:
         return False
+    if m[at.GAP_OFFSET] > FAINTEST and not is_from_unloaded(m):
+        return False  # together, but not at rest
     return max(abs(x1), abs(v1)) < FAINTEST and max(abs(x2), abs(v2)) < FAINTEST

@@ -4,7 +4,7 @@ from ..numerics.elementary import TWO_PI, fraction, sincos_turns
 from . import memory as at
 from .contact import contact_force
 from .excitation import box_derivative, cubic_at
-from .motion import state_and_phase_at
+from .motion import from_unloaded, gap_between, state_and_phase_at
 
 LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the range of numbers
 # of a radian of the fastest change: over shorter steps the momenta at both ends agree in so many
@@ -25,16 +25,18 @@ def look(m, tau):  # inline
     x1, v1, x2, v2, cosine, sine = state_and_phase_at(m, tau)
     omega = m[at.OMEGA]
     flight = m[at.MODE] == at.FLIGHT
-    gap, gap_speed = x2 - x1, omega * (v2 - v1)
+    gap, gap_speed = gap_between(m, tau, x1, x2), omega * (v2 - v1)
+    force = 0.0 if flight else -contact_force(m, x1, v1)
+    pull_1, pull_2 = m[at.K1] * x1, m[at.K2] * x2  # at rest together, the springs balance
+    x1, x2 = from_unloaded(m, x1, x2)
+    reduced_mass = m[at.M2] * m[at.SHARE]
+    contact = reduced_mass * omega * omega * force if force > 0.0 else 0.0
+    v1, v2 = omega * v1, omega * v2
+    box_force = pull_1 + m[at.D1] * v1 + pull_2 + m[at.D2] * v2
     unit = unit_of_length(m)
     xi1 = x1 / unit if unit != 0.0 else 0.0  # (3)
     xi2 = x2 / unit if unit != 0.0 else 0.0
     xi_rel = gap / unit if unit != 0.0 else 0.0
-    force = 0.0 if flight else -contact_force(m, x1, v1)
-    reduced_mass = m[at.M2] * m[at.SHARE]
-    contact = reduced_mass * omega * omega * force if force > 0.0 else 0.0
-    v1, v2 = omega * v1, omega * v2
-    box_force = m[at.K1] * x1 + m[at.D1] * v1 + m[at.K2] * x2 + m[at.D2] * v2
     phase = TWO_PI * fraction(m[at.TURN] + m[at.ETA_TURNS] * tau)
     phase = phase if phase < TWO_PI else 0.0
     touch = 0.0 if flight else 1.0
@@ -85,6 +87,8 @@ def accelerations(m, point):  # inline
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         drive += cubic_at(m, age)[0]
     x1, x2, v1, v2 = motion
+    if m[at.GAP_OFFSET] != 0.0 and m[at.MODE] != at.FLIGHT:  # rarely
+        x1 -= m[at.REST_1]
     return both_rates(m, drive, x1, v1, x2, v2)
 
 

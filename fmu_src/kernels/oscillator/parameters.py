@@ -1,4 +1,9 @@
-"""Masses, stiffnesses and dampers to the paper's numbers: omega, mu (2), omega_i (7), D_i (8)."""
+"""Masses, stiffnesses and dampers to the paper's numbers: omega, mu (2), omega_i (7), D_i (8).
+
+With a clearance the springs hold each other where the masses touch: with both masses at
+``REST_1`` and ``REST_2`` from the unloaded positions, the springs balance and the masses are
+together. Motions in contact count from there: their equation is the one without a clearance.
+"""
 
 import math
 
@@ -35,6 +40,11 @@ def derive(m):
     set_branch(m, at.BRANCH_3, damping_3, (1.0 + kappa) / (1.0 + mu))
     m[at.SPACING] = 0.0  # the nodes are to be set anew
     m[at.FASTEST] = max(1.0, math.sqrt(omega_2_squared))  # omega_3 lies between
+    clearance = m[at.CLEARANCE] if m[at.BONDED] == 0.0 else 0.0
+    m[at.GAP_OFFSET] = clearance
+    m[at.REST_1] = clearance * (kappa / (1.0 + kappa))
+    m[at.REST_2] = -clearance / (1.0 + kappa)
+    m[at.PRELOAD] = clearance * omega_2_squared * ((1.0 + mu) / (1.0 + kappa))
 
 
 def alike(m):

@@ -10,7 +10,7 @@ that runs.
 from ..numerics.elementary import sincos_turns
 from . import memory as at
 from .contact import first_derivative
-from .event_function import evaluate, rounding, set_values
+from .event_function import evaluate, is_constant, rounding, set_values
 from .excitation import begin_cubic, begin_segment
 from .motion import begin_common, begin_flight, set_turn
 from .nodes import BLOCK, LONGEST, seek
@@ -20,6 +20,7 @@ from .secular import clear_secular
 from .series import set_series, short_flight
 
 SLACK = 1e-9  # relative: sums of many roundings are far smaller, another state is not
+CLOSE = 1e-14  # relative: sums of a few roundings
 ROOT = 1e-6  # what an event function may be at its root, relative to its terms
 MOST_INPUT = 1e100
 MOST_WHOLE = 9007199254740992.0  # 2**53
@@ -198,17 +199,29 @@ def beginning_fits(m):
     """Whether the masses are where the state may begin, and the outputs where they may be."""
     x1, v1, x2, v2 = m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
     flight = m[at.MODE] == at.FLIGHT
-    if x2 < x1 or (not flight and x2 != x1) or (m[at.SERIES] != 0.0 and x2 != x1):
+    together = not flight or m[at.SERIES] != 0.0
+    if together and x2 != x1:
         return refused(m, at.BEGIN + 2, at.NO_GAP)
+    if not gap_fits(m, x1, x2, m[at.BEGIN_GAP], together):
+        return refused(m, at.BEGIN_GAP, at.NO_GAP)
     if (not flight and v2 != v1) or (m[at.SERIES] != 0.0 and v2 <= v1):
         return refused(m, at.BEGIN + 3, at.NO_GAP)
-    if m[at.X2] < m[at.X1]:
+    if m[at.GAP_OFFSET] == 0.0 and m[at.X2] < m[at.X1]:
         return refused(m, at.X2, at.NO_GAP)
-    if m[at.X_REL] != m[at.X2] - m[at.X1]:
+    if not gap_fits(m, m[at.X1], m[at.X2], m[at.X_REL], False):
         return refused(m, at.X_REL, at.NO_GAP)
     if m[at.SERIES] != 0.0 and not flight:
         return refused(m, at.SERIES, at.NO_SERIES)
     return at.OK
+
+
+def gap_fits(m, x1, x2, gap, together):
+    """Whether a gap is that between two displacements: with a clearance, but for rounding, and
+    both from the unloaded positions unless they are ``together``.
+    """
+    offset = 0.0 if together else m[at.GAP_OFFSET]
+    slack = CLOSE * (abs(x1) + abs(x2) + abs(offset)) if offset != 0.0 else 0.0
+    return gap >= 0.0 and abs(gap - ((x2 - x1) + offset)) <= slack
 
 
 def restored_series(m):
@@ -239,7 +252,7 @@ def restored_state(m):
         m[i] = 0.0
     x1, v1, x2, v2 = m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
     if m[at.MODE] == at.FLIGHT:
-        begin_flight(m, x1, v1, x2, v2)
+        begin_flight(m, x1, v1, x2, v2, m[at.BEGIN_GAP])
     else:
         begin_common(m, m[at.MODE], x1, v1)
     if node > 0.0:
@@ -258,8 +271,13 @@ def end_fits(m):
     """Whether the walk can have come to where it stands, and the end is one."""
     clear, end, kind = m[at.CLEAR], m[at.END], m[at.END_KIND]
     if clear == INFINITE:
-        forever = m[at.MODE] == at.GLUED or (
-            m[at.MODE] == at.CONTACT and first_derivative(m, m[at.BEGIN], m[at.BEGIN + 1], 1)[0] < 0
+        forever = (
+            m[at.MODE] == at.GLUED
+            or is_constant(m)
+            or (
+                m[at.MODE] == at.CONTACT
+                and first_derivative(m, m[at.BEGIN], m[at.BEGIN + 1], 1)[0] < 0
+            )
         )
         return at.OK if forever else refused(m, at.CLEAR, at.NO_TIME)
     if m[at.MODE] == at.GLUED or clear > m[at.RIGHT_AGE]:

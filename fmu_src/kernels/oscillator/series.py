@@ -3,7 +3,8 @@
 The closed form gives the gap as a difference of displacements, to within their rounding; a flight
 in chattering may be lower than that. The gap's own equation, ``g'' = -2 D_2 g' - omega_2^2 g + 2
 (D_1 - D_2) xi_1' + (omega_1^2 - omega_2^2) xi_1`` from (6), gives its derivatives at the start
-without any cancellation, and with them a short flight from start to end.
+without any cancellation, and with them a short flight from start to end. Displacements count from
+where the masses rest together: with a clearance, the preload is a constant in both equations.
 """
 
 from . import memory as at
@@ -37,13 +38,13 @@ def fifth_bound(m):
     1.35, 2.35, 4.1, 6.6 and 9.8 times ``R^k V``.
     """
     rate, part = m[at.RATE], m[at.RATE_INVERSE]
-    forcing = abs(m[at.FORCING])
+    forcing = abs(m[at.FORCING]) + abs(m[at.REST_1])
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         cubic_0, cubic_1, cubic_2, cubic_3 = cubic_at(m, m[at.CUBIC_AGE])
         growth = abs(cubic_1) + part * (abs(cubic_2) + part * abs(cubic_3))
         forcing += 1.35 * (abs(cubic_0) + part * growth)
     size = abs(m[at.SERIES_X]) + part * (abs(m[at.SERIES_X + 2]) + part * forcing)
-    drive = (abs(m[at.FORCE_V]) * rate + abs(m[at.FORCE_X])) * size
+    drive = (abs(m[at.FORCE_V]) * rate + abs(m[at.FORCE_X])) * size + abs(m[at.PRELOAD])
     square = rate * rate
     return 10.0 * square * square * (m[at.SERIES_GAP + 2] + 1.35 * part * drive)
 
@@ -63,6 +64,9 @@ def set_series(m, x, v, slope, order):
         cubic_0, cubic_1, cubic_2, cubic_3 = cubic_at(m, m[at.CUBIC_AGE])
     for k in range(7):
         set_derivatives(m, k + 2, drive + cubic_0)
+        if k == 0 and m[at.PRELOAD] != 0.0:  # rarely
+            m[at.SERIES_X + 4] -= m[at.REST_1]
+            m[at.SERIES_GAP + 4] += m[at.PRELOAD]
         drive, drive_next = drive_next, square * drive
         cubic_0, cubic_1, cubic_2, cubic_3 = cubic_1, cubic_2, cubic_3, 0.0
     if order > 8:

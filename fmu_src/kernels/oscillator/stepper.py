@@ -10,11 +10,23 @@ from .event_function import evaluate
 from .excitation import begin_segment, inputs_changed
 from .hermite import has_summit
 from .maximum import watch
-from .motion import begin, begin_common, begin_flight, end_state, move_origin, set_turn, state_at
+from .motion import (
+    begin,
+    begin_common,
+    begin_flight,
+    end_state,
+    from_rest_together,
+    from_unloaded,
+    gap_between,
+    move_origin,
+    set_turn,
+    state_at,
+)
 from .outputs import SHORT, found, impulse, look, short_impulse, total, write, written
 from .parameters import derive
 from .roots import lifted, walk
 
+TOUCHING = 4.440892098500626e-16  # 2**-51, relative: a gap at the start that is rounding alone
 WORK_BASE = 100000.0  # evaluations of the event function a step may take whatever its length,
 WORK_RATE = 256.0  # and in a time gamma, the shortest flight that is told from sticking,
 WORK_MOST = 1e7  # and at the very most: a second or two, compiled; EVALUATION_LIMIT may allow less
@@ -41,8 +53,10 @@ def initialize(m, time):
         m[i] = 0.0
     m[at.BOX_IMPULSE] = 0.0
     m[at.BOX_IMPULSE_MOMENT] = 0.0
-    if m[at.X2_START] < m[at.X1_START]:
-        return at.START_OVERLAP
+    x1, x2, gap = starting_point(m)
+    if gap < 0.0:
+        m[at.REPORT] = m[at.X1_START] - m[at.GAP_OFFSET]
+        return at.START_OVERLAP if m[at.GAP_OFFSET] <= 0.0 else at.START_BEYOND_CLEARANCE
     if m[at.BONDED] != 0.0 and (
         m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]
     ):
@@ -53,18 +67,29 @@ def initialize(m, time):
     m[at.CUBIC_SET] = 0.0
     m[at.WORK_LIMIT] = WORK_BASE
     m[at.MODE] = at.GLUED if m[at.BONDED] != 0.0 else at.CONTACT
-    begin(
-        m,
-        m[at.X1_START],
-        m[at.V1_START] / m[at.OMEGA],
-        m[at.X2_START],
-        m[at.V2_START] / m[at.OMEGA],
-        0,
-    )
+    begin(m, x1, m[at.V1_START] / m[at.OMEGA], x2, m[at.V2_START] / m[at.OMEGA], gap, 0)
     seen = look(m, 0.0)
     write(m, seen)
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     return finite(total(seen))
+
+
+def starting_point(m):
+    """Displacements at the start as :func:`.motion.begin` takes them, and the gap; below zero where
+    the masses overlap.
+
+    Start positions count from the position at rest: with a preload that is where the masses rest
+    together. With a clearance, a gap that is rounding alone is none.
+    """
+    x1, x2, clearance = m[at.X1_START], m[at.X2_START], m[at.GAP_OFFSET]
+    gap = x2 - x1
+    if clearance > 0.0:  # rarely
+        gap += clearance
+        if abs(gap) <= TOUCHING * (abs(x1) + abs(x2) + clearance):
+            return x1 - m[at.REST_1], x1 - m[at.REST_1], 0.0
+    elif clearance < 0.0 and gap > 0.0:  # rarely
+        return x1 + m[at.REST_1], x2 + m[at.REST_2], gap
+    return x1, x2, gap
 
 
 def local_time(m, time):
@@ -191,13 +216,18 @@ def renew_segment(m, now):
     Positions and phase are continuous; so is the cubic, where none of its inputs was set.
     """
     x1, v1, x2, v2 = state_at(m, now)
-    goes_on = now > 0.0 and m[at.MODE] != at.GLUED and (x2 > x1 or inside(m, now))
+    gap = gap_between(m, now, x1, x2)
+    goes_on = now > 0.0 and m[at.MODE] != at.GLUED and (gap > 0.0 or inside(m, now))
+    if gap > 0.0 or (goes_on and m[at.MODE] == at.FLIGHT):
+        x1, x2 = from_unloaded(m, x1, x2)
+    else:
+        x1, x2 = from_rest_together(m, x1, x2)
     move_origin(m, now)
     begin_segment(m)
     if not goes_on:
-        begin(m, x1, v1, x2, v2, 0)
+        begin(m, x1, v1, x2, v2, gap, 0)
     elif m[at.MODE] == at.FLIGHT:
-        begin_flight(m, x1, v1, x2, v2)
+        begin_flight(m, x1, v1, x2, v2, gap)
     else:
         begin_common(m, at.CONTACT, x1, v1)
 
@@ -231,12 +261,14 @@ def run_samples(m, start, time, now):
 def keep_sample(m, i, tau):
     """Keep the state at the present state's age ``tau`` as sample ``i``."""
     x1, v1, x2, v2 = state_at(m, tau)
+    gap = gap_between(m, tau, x1, x2)
+    x1, x2 = from_unloaded(m, x1, x2)
     m[at.X1_SAMPLE + i] = x1
     m[at.X2_SAMPLE + i] = x2
     m[at.V1_SAMPLE + i] = m[at.OMEGA] * v1
     m[at.V2_SAMPLE + i] = m[at.OMEGA] * v2
-    if m[at.X_REL_MAX_ON] != 0.0 and x2 - x1 > m[at.X_REL_MAX]:
-        m[at.X_REL_MAX] = x2 - x1
+    if m[at.X_REL_MAX_ON] != 0.0 and gap > m[at.X_REL_MAX]:
+        m[at.X_REL_MAX] = gap
 
 
 def run_states(m, time, now):

@@ -14,7 +14,7 @@ EXPECTED = {  # of a saved state, by complaint
     at.NO_PHASE: "a phase in turns from 0 to 1 with its sine and cosine",
     at.NO_TIME: "a time that fits the others: a state begins before the communication point and "
     "ends after it",
-    at.NO_GAP: "x2 >= x1, and both masses together in contact",
+    at.NO_GAP: "x_rel = x2 - x1 + clearance >= 0, and both masses together in contact",
     at.NO_EVENT: "the time of an impact or a release",
 }
 
@@ -33,6 +33,8 @@ MESSAGES = with_slots(
         "box_frequency = {BOX_FREQUENCY} rad/s, box_acceleration = {BOX_ACCELERATION} m/s2; "
         "expected values that keep it finite",
         at.START_OVERLAP: "x2_start = {X2_START} m: expected x2_start >= x1_start = {X1_START} m",
+        at.START_BEYOND_CLEARANCE: "x2_start = {X2_START} m: expected x2_start >= x1_start - "
+        "clearance = {REPORT} m, with x1_start = {X1_START} m and clearance = {CLEARANCE} m",
         at.START_BONDED: "bonded = true with x2_start = {X2_START} m, v2_start = {V2_START} m/s: "
         "expected x2_start = x1_start = {X1_START} m and "
         "v2_start = v1_start = {V1_START} m/s",

@@ -26,8 +26,11 @@ MECHANICS = ("m1", "m2", "k1", "k2", "d1", "d2")
 STARTS = ("x1_start", "x2_start", "v1_start", "v2_start")
 DRIVE = ("phase_start", "box_amplitude", "box_frequency")
 EXTRA = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
-MASS_1, MASS_2 = ("x1_start", "v1_start"), ("x2_start", "v2_start")
-ALL = MECHANICS + ("e", "gamma", "bonded") + STARTS + DRIVE + EXTRA  # after an impact at the start
+# with a preload, displacements at the start count from the loaded springs
+GAP = ("x1_start", "x2_start", "clearance", "bonded")
+PLACE = (*GAP, "k1", "k2")
+# after an impact at the start
+ALL = (*MECHANICS, "e", "gamma", "clearance", "bonded", *STARTS, *DRIVE, *EXTRA)
 
 
 def start(name: str, unit: str, description: str) -> Variable:
@@ -90,10 +93,30 @@ SCALARS = (
         maximum=1.0,
     ),
     parameter(
+        "clearance",
+        "m",
+        0.0,
+        "Gap between the faces where both springs are unloaded; below 0: the masses are pressed "
+        "together by so much, with the preload F = -clearance k1 k2/(k1 + k2) at rest; "
+        "ignored where bonded",
+        minimum=-HUGE,
+        maximum=HUGE,
+    ),
+    parameter(
         "bonded", "", 0.0, "true: the undamaged structure, both masses glued for good", type=BOOLEAN
     ),
-    start("x1_start", "m", "Displacement of mass 1 at the start"),
-    start("x2_start", "m", "Displacement of mass 2 at the start, not below x1_start"),
+    start(
+        "x1_start",
+        "m",
+        "Displacement of mass 1 at the start, from its place at rest: with a preload F that is "
+        "x1 = -F/k1, else x1 = 0",
+    ),
+    start(
+        "x2_start",
+        "m",
+        "Displacement of mass 2 at the start, from its place at rest: with a preload F that is "
+        "x2 = F/k2, else x2 = 0; so that the gap is not below 0",
+    ),
     start("v1_start", "m/s", "Velocity of mass 1 at the start"),
     start("v2_start", "m/s", "Velocity of mass 2 at the start"),
     parameter(
@@ -149,29 +172,33 @@ SCALARS = (
         0.0,
         "Third time derivative of box_acceleration when one of the four was set",
     ),
-    output("x1", "m", "Displacement of mass 1 relative to the box", MASS_1),
-    output("x2", "m", "Displacement of mass 2 relative to the box", MASS_2),
+    output(
+        "x1", "m", "Displacement of mass 1 relative to the box, from the unloaded spring", PLACE
+    ),
+    output(
+        "x2", "m", "Displacement of mass 2 relative to the box, from the unloaded spring", PLACE
+    ),
     output("v1", "m/s", "Velocity of mass 1 relative to the box", ALL),
     output("v2", "m/s", "Velocity of mass 2 relative to the box", ALL),
-    output("x_rel", "m", "Gap x2 - x1", ("x1_start", "x2_start"), minimum=0.0),
+    output("x_rel", "m", "Gap x2 - x1 + clearance", GAP, minimum=0.0),
     output("v_rel", "m/s", "Velocity of the gap v2 - v1", ALL),
     output(
         "xi1",
         "1",
         "Displacement of mass 1 over a eta^2, paper's (3); 0 where that is below 1e-200 m",
-        MASS_1 + DRIVE + ("k1", "m1"),
+        PLACE + DRIVE + ("m1",),
     ),
     output(
         "xi2",
         "1",
         "Displacement of mass 2 over a eta^2, paper's (3); 0 where that is below 1e-200 m",
-        MASS_2 + DRIVE + ("k1", "m1"),
+        PLACE + DRIVE + ("m1",),
     ),
     output(
         "xi_rel",
         "1",
         "Gap over a eta^2, paper's (21); 0 where that is below 1e-200 m",
-        ("x1_start", "x2_start", "k1", "m1") + DRIVE,
+        (*GAP, "k1", "m1", *DRIVE),
     ),
     output(
         "box_force",
@@ -222,7 +249,7 @@ SCALARS = (
         "x_rel_max",
         "m",
         "Largest gap over the last communication step, exact, not sampled",
-        ("x1_start", "x2_start", "x_rel_max_on"),
+        (*GAP, "x_rel_max_on"),
         minimum=0.0,
     ),
     output(

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...checks import checked_word
 from ...errors import InputError
-from .channels import Channels, checked_number, one_of
+from .channels import Channels, checked_number
 
 Floats = NDArray[np.float64]
 WINDOWS = ("hann", "hamming", "blackman", "blackmanharris", "flattop", "boxcar")
@@ -87,7 +88,7 @@ def averaging(
     ------
     InputError
     """
-    one_of("window", window, WINDOWS)
+    checked_word("window", window, WINDOWS)
     part = checked_number("overlap", overlap, 0.0, 0.95)
     count, rate = len(channels.time), channels.sample_rate
     if resolution is None:

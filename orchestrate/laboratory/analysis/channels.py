@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -201,15 +201,3 @@ def checked_number(
         text = f"expected {low:.4g} <= {name} {sign} {high:.4g}"
         raise InputError(f"{name} = {value!r}{' ' + unit if unit else ''}: {text}")
     return number
-
-
-def one_of(name: str, value: Any, known: Mapping[str, Any] | Sequence[str]) -> str:
-    """A word that is known.
-
-    Raises
-    ------
-    InputError
-    """
-    if value not in known:
-        raise InputError(f"{name} = {value!r}: expected one of {', '.join(known)}")
-    return str(value)

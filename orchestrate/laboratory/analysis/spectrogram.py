@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...checks import checked_word
 from ...response.labels import variable
 from .averaging import FEWEST_LINES, WINDOWS
 from .channels import (
@@ -14,7 +15,6 @@ from .channels import (
     channel_coordinate,
     checked_number,
     frequency_coordinate,
-    one_of,
 )
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def spectrogram(
     from scipy.signal import ShortTimeFFT
 
     channels = Channels.from_record(record)
-    one_of("window", window, WINDOWS)
+    checked_word("window", window, WINDOWS)
     most = round(checked_number("spectra", spectra, 1, 100_000))
     count, rate = len(channels.time), channels.sample_rate
     if resolution is None:

@@ -82,6 +82,12 @@ def test_three_records_in_one_picture(ask, tmp_path, files):
     assert all(map(shows_something, folder.glob("*.png")))
 
 
+def test_another_part_of_a_record_has_files_of_its_own(ask, tmp_path, files):
+    for end in ("1", "2", "3"):
+        ask("analyse", files["parted"], "--show", "psd", "--to", end, "--plot", "none").success()
+    assert len(list((tmp_path / "results").glob("*.nc"))) == 3
+
+
 def test_options_reach_the_analysis(ask, tmp_path, files):
     ask(
         *("analyse", files["parted"], "--show", "orders,shock,density,psd", "--plot", "none"),

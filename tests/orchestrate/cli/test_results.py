@@ -223,6 +223,15 @@ def test_shaken_as_in_the_laboratory(ask, folder, options, words):
     assert shows_something(next(folder.glob("*.png")))
 
 
+def test_another_record_has_files_of_its_own(ask, folder, tmp_path):
+    """Though it has as many samples at the same rate."""
+    for name, level in (("one", 1.0), ("other", 2.0)):
+        rows = [f"{i / 200.0!r},{level * (i % 7)!r}" for i in range(60)]
+        (tmp_path / f"{name}.csv").write_text("time [s],box [m/s2]\n" + "\n".join(rows) + "\n")
+        ask("shake", "--structure", "beam", "--record", tmp_path / f"{name}.csv").success()
+    assert len(list(folder.glob("*.nc"))) == 2
+
+
 def test_a_record_is_played_again(ask, folder, tmp_path):
     path = tmp_path / "base.csv"
     rows = (f"{i};{math.sin(0.2 * i):.6f};{0.02 * math.sin(0.075 * i):.6f}" for i in range(1500))

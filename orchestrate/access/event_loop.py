@@ -1,0 +1,245 @@
+"""The loop over the pieces of an input, the times at which a motion is read, and its impacts.
+
+``event_loop.c`` calls the FMU's functions itself, past Python: where the FMU is native and the
+library can be had, :func:`event_loop_of` makes a loop that runs so. The calls and their order are
+the same, so are the bits.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import logging
+from collections.abc import Sequence
+from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, cast
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import FmuError
+from .c_library import library
+from .channel import Channel
+from .impacts import EVENT_OUTPUTS, Impacts
+
+if TYPE_CHECKING:
+    from .events import EventInstance
+
+log = logging.getLogger(__name__)
+Floats = NDArray[np.float64]
+SOURCE = Path(__file__).with_suffix(".c")
+FUNCTIONS = (  # as Calls of the C source has them
+    *("SetFloat64", "GetFloat64", "GetBoolean", "DoStep"),
+    *("EnterEventMode", "UpdateDiscreteStates", "EnterStepMode"),
+)
+FAILED, DONE = -1, 0
+OUTPUTS_NOT_FINITE, IMPACT_NOT_FINITE = -1, -2  # statuses that FMI does not have
+IMPACT_CAPACITY = 1024  # impacts in the buffer that the compiled loop fills
+MAX_STEPS = 200_000  # of one call: between two of them an interrupt is heard
+
+
+class Played(NamedTuple):
+    """Motion read at given times, and its impacts.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (n, number of outputs)
+        The outputs at each time.
+    touching : ndarray of bool, shape (n,)
+        Whether the masses were in permanent contact.
+    impacts : Impacts
+    """
+
+    rows: Floats
+    touching: NDArray[np.bool_]
+    impacts: Impacts
+
+
+class Calls(ctypes.Structure):
+    """Instance as the library calls it."""
+
+    _fields_ = [
+        *((name, c_void_p) for name in ("instance", *FUNCTIONS)),
+        *((name, POINTER(c_uint)) for name in ("inputs", "outputs", "impact_outputs", "contact")),
+        *((name, c_size_t) for name in ("input_count", "output_count", "impact_output_count")),
+        ("failed", c_char_p),
+        ("status", c_int),
+    ]
+
+
+class Task(ctypes.Structure):
+    """What there is to do: addresses of arrays, and their sizes."""
+
+    _fields_ = [
+        *((name, c_void_p) for name in ("nodes", "derivatives", "samples")),
+        *((name, c_size_t) for name in ("piece_count", "sample_count")),
+        *((name, c_void_p) for name in ("rows", "contacts", "impacts")),
+        *((name, c_size_t) for name in ("impact_capacity", "max_steps")),
+    ]
+
+
+class Progress(ctypes.Structure):
+    """What is done."""
+
+    _fields_ = [
+        ("time", c_double),
+        *((name, c_size_t) for name in ("piece", "sample", "impact")),
+        ("piece_is_set", c_int),
+    ]
+
+
+@functools.cache
+def run_function() -> Any:
+    """Load the library's function, once per process; return None where there is no library."""
+    path = library(SOURCE)
+    if path is None:
+        return None
+    try:
+        run = ctypes.CDLL(str(path)).run
+    except OSError as reason:  # such as a folder from which nothing may be run
+        log.info("%s cannot be loaded, Python does the same: %s", path, reason)
+        return None
+    run.argtypes = [c_void_p] * 3
+    return run
+
+
+def event_loop_of(
+    instance: EventInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
+) -> EventLoop:
+    """Return the fastest loop that there is for an instance; see :class:`EventLoop`."""
+    native = not instance.description.needs_tool
+    kind = CompiledEventLoop if native and run_function() else EventLoop
+    return kind(instance, inputs, outputs)
+
+
+class EventLoop:
+    """A motion computed through all its events, under an input that is set piece by piece.
+
+    Parameters
+    ----------
+    instance : EventInstance
+    inputs : sequence of str
+        Real variables that are set where a piece of the input begins.
+    outputs : sequence of str
+        Real variables that are read.
+    """
+
+    def __init__(
+        self, instance: EventInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
+    ) -> None:
+        self.instance, self.inputs, self.outputs = instance, tuple(inputs), tuple(outputs)
+        self.channel = Channel(instance, inputs, outputs)
+        self.events = Channel(instance, (), EVENT_OUTPUTS)
+
+    def run(self, nodes: Floats, derivatives: Floats, samples: Floats) -> Played:
+        """Compute the motion over all pieces.
+
+        A piece's input is set where it begins and runs on; a time of reading that is a node belongs
+        to the piece that begins there. Each time of reading, and each impact, ends a step.
+
+        Parameters
+        ----------
+        nodes : ndarray, shape (n + 1,)
+            Where the pieces begin and where the last one ends, s; the instance is at the first.
+        derivatives : ndarray, shape (n, number of inputs)
+            Values of the inputs.
+        samples : ndarray
+            When the motion is read: from the first node to the last, ascending, s.
+
+        Raises
+        ------
+        FmuError
+            With what the FMU says where it answers another status than OK; where a number that it
+            answers is not finite.
+        """
+        step, handle = self.instance.stepper(), self.instance.event_handler()
+        touch = self.instance.flag("in_contact")
+        rows, touching = self._tables(samples)
+        table: list[list[float]] = []
+
+        def advance(time: float, target: float) -> float:
+            while time < target:
+                event, time = step(time, target - time)
+                if event:
+                    table.append([time, *self.events.get(), touch()])
+                    handle()
+            return time
+
+        def read(index: int) -> None:
+            if self.outputs:
+                rows[index] = self.channel.get()
+            touching[index] = touch()
+
+        time, done = float(nodes[0]), 0
+        ends = np.searchsorted(samples, nodes[1:], side="left").tolist()
+        for values, target, last in zip(
+            derivatives.tolist(), nodes[1:].tolist(), ends, strict=True
+        ):
+            if self.inputs:
+                self.channel.put(*values)
+            for index in range(done, last):
+                time = advance(time, float(samples[index]))
+                read(index)
+            time, done = advance(time, target), last
+        for index in range(done, len(samples)):  # at the last node
+            read(index)
+        return Played(rows, touching, Impacts.from_table(np.array(table)))
+
+    def _tables(self, samples: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+        """Return arrays for what is read."""
+        return np.empty((len(samples), len(self.outputs))), np.empty(len(samples), dtype=bool)
+
+
+class CompiledEventLoop(EventLoop):
+    """The same, compiled."""
+
+    def __init__(
+        self, instance: EventInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
+    ) -> None:
+        super().__init__(instance, inputs, outputs)
+        self._run = run_function()
+        self._buffer = np.empty((IMPACT_CAPACITY, len(EVENT_OUTPUTS) + 2))
+        names = self.inputs, self.outputs, EVENT_OUTPUTS, ("in_contact",)
+        dll = instance._fmu.dll
+        self._calls = Calls(
+            instance._fmu.component,
+            *(cast(dll[f"fmi3{name}"], c_void_p).value for name in FUNCTIONS),
+            *(references(instance, some) for some in names),
+            *map(len, names[:3]),
+        )
+
+    def run(self, nodes: Floats, derivatives: Floats, samples: Floats) -> Played:
+        """Compute the motion over all pieces, as :meth:`EventLoop.run`."""
+        arrays = [np.ascontiguousarray(part, float) for part in (nodes, derivatives, samples)]
+        if arrays[1].shape != (len(nodes) - 1, len(self.inputs)):
+            raise ValueError(f"derivatives of shape {derivatives.shape} for {len(nodes)} nodes")
+        rows, touching = self._tables(samples)
+        counts = len(nodes) - 1, len(samples)
+        outputs = (part.ctypes.data for part in (rows, touching, self._buffer))
+        inputs = (part.ctypes.data for part in arrays)
+        task = Task(*inputs, *counts, *outputs, len(self._buffer), MAX_STEPS)
+        progress = Progress(time=float(nodes[0]))
+        pointers, tables, answer = (byref(self._calls), byref(task), byref(progress)), [], 1
+        while answer != DONE:
+            self.channel.begin()
+            answer = self._run(*pointers)
+            if answer == FAILED:
+                raise self._failure(rows, progress)
+            tables.append(self._buffer[: progress.impact].copy())
+        return Played(rows, touching, Impacts.from_table(np.concatenate(tables)))
+
+    def _failure(self, rows: Floats, progress: Progress) -> FmuError:
+        """Return the error after a call that failed."""
+        status = self._calls.status
+        if status == OUTPUTS_NOT_FINITE:
+            return self.instance.not_finite_error(self.outputs, rows[progress.sample - 1])
+        if status == IMPACT_NOT_FINITE:
+            values = self._buffer[progress.impact, 1:-1]
+            return self.instance.not_finite_error(EVENT_OUTPUTS, values)
+        return self.channel.failure(self._calls.failed.decode(), status)
+
+
+def references(instance: EventInstance, names: Sequence[str]) -> Any:
+    """Return the value references of variables, as an array of C."""
+    return (c_uint * len(names))(*(instance.variable(name).valueReference for name in names))

@@ -1,0 +1,60 @@
+"""The impacts of a motion, as the FMU's events give them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..structures import Structure
+
+STATE = ("x1", "x2", "v1", "v2")
+EVENT_OUTPUTS = (*STATE, "impact_velocity")
+
+
+@dataclass(frozen=True)
+class Impacts:
+    """The impacts of a motion, in order.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        s.
+    state : ndarray, shape (n, 4)
+        x1, x2 in m, v1, v2 in m/s just after each.
+    closing : ndarray, shape (n,)
+        Closing speed before it, m/s, >= 0.
+    sticks : ndarray of bool, shape (n,)
+        Whether permanent contact follows (17).
+    """
+
+    time: NDArray[np.float64]
+    state: NDArray[np.float64]
+    closing: NDArray[np.float64]
+    sticks: NDArray[np.bool_]
+
+    @classmethod
+    def from_table(cls, table: NDArray[np.float64]) -> Impacts:
+        """Return impacts from rows of their time, ``EVENT_OUTPUTS`` and whether they stick."""
+        table = table.reshape(-1, len(EVENT_OUTPUTS) + 2)
+        return cls(table[:, 0], table[:, 1:5], table[:, 5], table[:, 6] != 0.0)
+
+    def before(self, structure: Structure) -> NDArray[np.float64]:
+        """Return the states just before the impacts, shape (n, 4), by (15) read backwards."""
+        mu = structure.mu
+        state, part = self.state.copy(), self.closing / (1.0 + mu)
+        common = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
+        state[:, 2], state[:, 3] = common + mu * part, common - part
+        return state
+
+    def impulse(self, structure: Structure) -> NDArray[np.float64]:
+        """Return the impulse of each impact on each mass, N s, shape (n,) (15); plastic where
+        contact begins.
+
+        Of non-dimensional impacts it is over omega a eta^2, so that its unit is that of a mass.
+        """
+        m1, m2 = structure.m1, structure.m2
+        restitution = np.where(self.sticks, 0.0, structure.e)
+        impulse: NDArray[np.float64] = (1.0 + restitution) * m1 * m2 / (m1 + m2) * self.closing
+        return impulse

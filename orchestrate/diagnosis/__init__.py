@@ -1,0 +1,18 @@
+"""The diagnosis: from a record to a verdict.
+
+====================  =============================================================================
+module                idea
+====================  =============================================================================
+:mod:`.orders`        orders of a record's channels in short windows, and the floor between them
+:mod:`.evidence`      what a record holds for a fit: orders with weights, the base as input
+:mod:`.single_mass`   a sound structure's motion: one mass on a spring that is not linear
+:mod:`.hypotheses`    what the structure may be: sound in several ways, or delaminated
+:mod:`.fitting`       the search for a hypothesis's numbers, from many starts
+:mod:`.errors`        standard errors from simulated noise and from blocks of windows
+:mod:`.even_orders`   whether faces part: order 2 above its floor
+:mod:`.search_job`    all searches of a record as a job, beside each other
+:mod:`.fit`           the numbers of a structure from a record
+:mod:`.verdicts`      the rule by which fits and signs become a verdict
+:mod:`.detect`        the verdict on a record
+====================  =============================================================================
+"""

@@ -1,0 +1,209 @@
+"""What a record holds for a fit: orders with weights, and what a computed motion misses of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..constants import TURN
+from ..laboratory.pieces import Pieces
+from ..laboratory.sampled import Sampled
+from .orders import ORDERS, Complexes, OrderWindows, RecordOrders, orders_of, record_orders, thinned
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+FITTED = (1.0, 2.0, 3.0)
+RELATIVE = (0.03, 0.03, 0.03)  # errors of a model's orders 1, 2, 3 over the size of order 1
+NEIGHBOURS = 2  # windows on each side over which that size is the largest
+IRREGULAR = 1.5  # errors of orders over the amplitude between the orders
+SKIPPED = 1.0  # s at the beginning where the start is not forgotten; at most a tenth of the record
+GAIN, DELAY = 0.03, 2e-4  # of a sensor against that of the base: standard deviations, 1 and s
+MOST_GAIN, MOST_DELAY = 0.12, 1e-3
+LOST = 30.0  # residual of a motion that has no bounds
+SENSORS = ("acceleration1", "acceleration2")
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Orders of a record with weights, and the input of the motions that are compared with them.
+
+    Attributes
+    ----------
+    orders : RecordOrders
+    pieces : Pieces
+        The base's acceleration, from the first sample on.
+    relative : tuple of float
+        Errors that a good model may have, see ``RELATIVE``.
+    """
+
+    orders: RecordOrders
+    pieces: Pieces
+    relative: tuple[float, ...] = RELATIVE
+
+    @classmethod
+    def from_record(cls, record: xr.Dataset) -> Evidence:
+        """Of a record; raises as :func:`.orders.record_orders`."""
+        orders = record_orders(record)
+        thin = thinned(orders.channels, float(orders.windows.frequency.max()))
+        if thin is not orders.channels:
+            orders = orders_of(thin)
+        rate = orders.channels.sample_rate
+        return cls(
+            orders, Sampled(acceleration=tuple(orders.channels.box), sample_rate=rate).pieces()
+        )
+
+    @property
+    def rate(self) -> float:
+        """Samples in a second, Hz."""
+        return self.orders.channels.sample_rate
+
+    @property
+    def samples(self) -> int:
+        """How many of each channel."""
+        return len(self.orders.channels.time)
+
+    @cached_property
+    def masses(self) -> tuple[int, ...]:
+        """Which mass each sensor is on, 0 or 1."""
+        return tuple(SENSORS.index(name) for name in self.orders.sensors)
+
+    @cached_property
+    def used(self) -> NDArray[np.intp]:
+        """Windows that count: those after the start."""
+        time = self.orders.windows.time - self.orders.channels.time[0]
+        skipped = min(SKIPPED, 0.1 * self.orders.channels.duration)
+        return np.flatnonzero(time > skipped)
+
+    @cached_property
+    def windows(self) -> OrderWindows:
+        """These windows, with the orders that are fitted."""
+        return self.orders.windows.chosen(self.used, len(FITTED))
+
+    @cached_property
+    def frequency(self) -> Floats:
+        """Of the excitation in these windows, Hz."""
+        return self.orders.windows.frequency[self.used]
+
+    @cached_property
+    def level(self) -> Floats:
+        """Amplitude of the base's order 1 there, m/s2."""
+        return self.orders.level[self.used]
+
+    @cached_property
+    def measured(self) -> Complexes:
+        """Orders 1, 2, 3 of the sensors, shape (sensors, 3, windows), m/s2."""
+        rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
+        numbers = [ORDERS.index(order) for order in FITTED]
+        return self.orders.amplitude[rows][:, numbers][:, :, self.used]
+
+    @cached_property
+    def size(self) -> Floats:
+        """Largest order 1 around each window, shape (sensors, windows), m/s2."""
+        size = np.abs(self.measured[:, 0])
+        width = 2 * NEIGHBOURS + 1
+        padded = np.pad(size, ((0, 0), (NEIGHBOURS, NEIGHBOURS)), mode="edge")
+        return np.lib.stride_tricks.sliding_window_view(padded, width, axis=1).max(axis=-1)
+
+    @cached_property
+    def noise(self) -> Floats:
+        """Standard deviation of order amplitudes by noise, shape (sensors,), m/s2."""
+        rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
+        return np.maximum(self.orders.noise[rows], 1e-9 * self.size.max())
+
+    @cached_property
+    def error(self) -> Floats:
+        """Weights: what is between the orders (noise, or motion that does not repeat) and what a
+        good model may miss, shape (sensors, 3, windows), m/s2.
+        """
+        rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
+        floor = np.maximum(IRREGULAR * self.orders.floor[rows][:, self.used], self.noise[:, None])
+        model = np.array(self.relative)[:, None] * self.size[:, None, :]
+        return np.sqrt(floor[:, None, :] ** 2 + model**2)
+
+    @cached_property
+    def base(self) -> Complexes:
+        """Orders 1, 2, 3 of the base, shape (3, windows), m/s2."""
+        return self.windows.amplitudes(self.orders.channels.box[np.newaxis])[0]
+
+    @cached_property
+    def resonance(self) -> float:
+        """Frequency at which the structure moves most for the base's amplitude, Hz."""
+        response = (np.abs(self.measured[:, 0]) / self.level).max(axis=0)
+        return float(self.frequency[np.argmax(response)])
+
+    @cached_property
+    def displacement(self) -> float:
+        """Largest amplitude of order 1 relative to the base, m, at the resonance."""
+        size = np.abs(self.measured[:, 0] - self.level)
+        return float((size / (TURN * self.frequency) ** 2).max())
+
+    def computed(self, motion: Floats) -> Complexes:
+        """Orders 1, 2, 3 that sensors would read of a motion, shape (sensors, 3, windows).
+
+        Parameters
+        ----------
+        motion : ndarray, shape (1 or 2, samples)
+            Displacements of the masses in the base at the record's samples, m.
+
+        Notes
+        -----
+        The second differences of displacements are means of the acceleration over two steps, with
+        the weights of a triangle: they hold the impulses of impacts exactly, and what would come
+        back from around the sampling rate is as small as there the square of the sinc is, by which
+        the orders are divided. The base's orders are added.
+        """
+        chosen = motion[[min(mass, len(motion) - 1) for mass in self.masses]]
+        second = np.diff(chosen, 2, axis=1) * self.rate**2
+        padded = np.pad(second, ((0, 0), (1, 1)), mode="edge")
+        found = self.windows.amplitudes(padded)
+        return found / np.sinc(np.outer(FITTED, self.frequency) / self.rate) ** 2 + self.base
+
+    def matched(self, computed: Complexes) -> Complexes:
+        """The same with each sensor's gain and delay, as order 1 asks for them in closed form.
+
+        A delay that all channels share is none: the base's is in the input already.
+        """
+        found = computed.copy()
+        for row in range(len(found)):
+            gain, delay = self.sensor_error(row, computed[row, 0])
+            turn = TURN * np.outer(FITTED, self.frequency) * delay
+            found[row] *= gain * np.exp(-1j * turn)
+        return found
+
+    def sensor_error(self, row: int, computed: Complexes) -> tuple[float, float]:
+        """Gain and delay (s) of a sensor that bring a computed order 1 closest to the measured."""
+        weight = 1.0 / self.error[row, 0]
+        slope = -1j * TURN * self.frequency * computed
+        columns = np.stack([computed * weight, slope * weight * DELAY / GAIN], axis=1)
+        target = (self.measured[row, 0] - computed) * weight
+        basis = np.concatenate([columns.real, columns.imag, np.eye(2) * math.sqrt(len(weight))])
+        basis[: 2 * len(weight)] *= GAIN
+        wanted = np.concatenate([target.real, target.imag, np.zeros(2)])
+        solution = np.linalg.lstsq(basis, wanted, rcond=None)[0]
+        gain = 1.0 + float(np.clip(GAIN * solution[0], -MOST_GAIN, MOST_GAIN))
+        return gain, float(np.clip(DELAY * solution[1], -MOST_DELAY, MOST_DELAY))
+
+    def residuals(self, motion: Floats) -> Floats:
+        """What a motion misses, over the errors; shape (sensors, 4, windows).
+
+        Order 1 as two numbers, the sizes of orders 2 and 3; 0 where an order is not resolved.
+        """
+        if not np.isfinite(motion).all():
+            return np.full((len(self.masses), 4, len(self.used)), LOST)
+        return self.missed(self.matched(self.computed(motion)))
+
+    def missed(self, computed: Complexes) -> Floats:
+        """What computed orders miss, over the errors; shape (sensors, 4, windows)."""
+        first = (computed[:, 0] - self.measured[:, 0]) / self.error[:, 0]
+        noise = self.noise[:, None, None]  # adds to both sizes alike
+        size, wanted = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])
+        higher = (np.sqrt(size**2 + noise**2) - wanted) / self.error[:, 1:]
+        found = np.concatenate([first.real[:, None], first.imag[:, None], higher], axis=1)
+        return np.clip(np.nan_to_num(found), -LOST, LOST)

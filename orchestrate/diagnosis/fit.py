@@ -1,0 +1,352 @@
+"""The numbers of a structure from a record: natural frequencies, damping, restitution, gap."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..access import finder
+from ..checks import checked_word
+from ..errors import InputError
+from ..response.labels import Variable, variable
+from ..response.questions import checked_structure
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Structure
+from .even_orders import EvenOrders, even_orders
+from .evidence import FITTED
+from .hypotheses import FREE, REPORTED, Hypothesis
+from .orders import checked_channels, orders_of
+from .search_job import RecordData, SearchJob
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+Floats = NDArray[np.float64]
+USUAL = ("f1", "f2", "zeta1", "zeta2", "e")
+DELAMINATED = "delaminated"
+SHORT = {  # names of the hypotheses as arguments
+    "bonded": 0,
+    "curved": 1,
+    "friction": 2,
+    "stop": 3,
+    "stop on the other side": 4,
+}
+AT_ALL = ("hypothesis", "channel", "order", "window")
+
+
+def fit(
+    record: xr.Dataset,
+    guess: Structure,
+    *,
+    free: Sequence[str] = USUAL,
+    hypothesis: str = DELAMINATED,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Fit a structure to a record of a swept or stepped sine.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        With ``box_acceleration`` and one or both of ``acceleration1`` and ``acceleration2``, as
+        :func:`orchestrate.record` or :func:`orchestrate.read_record` make it.
+    guess : Structure
+        Its masses are kept (their ratio alone acts), and all that is not free. Its frequencies may
+        be 10 % off: the search begins at the record's resonance.
+    free : sequence of str
+        What is fitted: ``f1``, ``f2``, ``zeta1``, ``zeta2``, ``e``, ``clearance``.
+    hypothesis : str
+        ``"delaminated"``; or one mass, that is ``"bonded"``, ``"curved"`` (a spring that hardens or
+        softens), ``"friction"`` (dry), ``"stop"`` or ``"stop on the other side"``.
+    **running
+        ``jobs``, ``progress``, ``store`` and others, see
+        :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``parameter``: ``value`` and ``standard_error``, with ``unit``; NaN where the record
+        does not hold it: both halves' frequencies where no opening is seen. Over ``parameter`` and
+        ``other_parameter``: ``correlation``. ``misfit``, 1 where the model misses 3 % of order 1 or
+        the noise, and ``evaluations``; ``minima`` over ``minimum``: misfits of those that differ;
+        ``misfit_at`` over ``window``. Over ``channel``, ``order`` and ``window``: the amplitudes
+        ``measured``, ``fitted`` and their ``floor`` in m/s2.
+
+    Raises
+    ------
+    InputError
+        Where the record is none of a swept or stepped sine, or an argument is no such name.
+
+    Notes
+    -----
+    The measured acceleration of the base is the FMU's input, as the cubic spline through its
+    samples. Compared are order 1 (as a complex number) and the sizes of orders 2 and 3 in windows
+    of about 0.25 s, over errors that have a relative part: 3 % of order 1 and what is between the
+    orders. A gain and a delay of each sensor against that of the base are found in closed form.
+    The standard errors are the larger of those by simulated noise and those by blocks of windows;
+    see :mod:`orchestrate.diagnosis.errors`.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.01)
+    >>> sweep = orchestrate.SweptSine(first=40.0, last=56.0, duration=6.0, acceleration=4.0)
+    >>> history = orchestrate.shake(beam.as_bonded(), sweep, sample_rate=600.0)
+    >>> answer = orchestrate.fit(history, beam.replace(f1=44.0), hypothesis="bonded")
+    >>> round(float(answer.value.sel(parameter="f")), 1)
+    46.7
+    """
+    chosen = checked_free(free)
+    kind = checked_hypothesis(hypothesis)
+    data = checked_data(record)
+    job = FitJob(
+        name=f"fit_{checked_structure(guess).label()}",
+        data=data,
+        guess=delaminated_guess(guess),
+        free=chosen,
+        sound=(0,) if kind in (DELAMINATED, "bonded") else (0, SHORT[kind]),
+        delaminated=kind == DELAMINATED,
+        kind=kind,
+    )
+    return answer(job, running, finder(running))
+
+
+def checked_hypothesis(hypothesis: str) -> str:
+    """A hypothesis by its name as an argument."""
+    return checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT))
+
+
+def checked_free(free: Sequence[str]) -> tuple[str, ...]:
+    """Names of parameters to be fitted.
+
+    Raises
+    ------
+    InputError
+    """
+    names = (free,) if isinstance(free, str) else tuple(free)
+    expected = f"expected some of {', '.join(FREE)}"
+    for name in names:
+        if name not in FREE:
+            raise InputError(f"free = {name!r}: {expected}")
+    if not names or len(set(names)) < len(names):
+        raise InputError(f"free = {names!r}: {expected}, each once")
+    return names
+
+
+def checked_data(record: xr.Dataset) -> RecordData:
+    """A record's channels, after a look at whether the base moves as a sine.
+
+    Raises
+    ------
+    InputError
+    """
+    channels = checked_channels(record)
+    orders_of(channels)
+    return RecordData.from_channels(channels)
+
+
+def delaminated_guess(guess: Structure) -> Structure:
+    """The guess without a glue.
+
+    Raises
+    ------
+    InputError
+        Where it has no spring or no mass of its own on a side.
+    """
+    structure = checked_structure(guess)
+    if not (structure.k1 > 0.0 and structure.k2 > 0.0):
+        text = "expected k1 > 0 and k2 > 0"
+        raise InputError(f"guess: k1 = {structure.k1!r} N/m, k2 = {structure.k2!r} N/m; {text}")
+    return structure.replace(bonded=False)
+
+
+# -- results --------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitJob(SearchJob):
+    """One hypothesis fitted.
+
+    Attributes
+    ----------
+    kind : str
+    """
+
+    kind: str
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Numbers, errors, and what is missed."""
+        import xarray as xr
+
+        results = Results.from_table(self, table)
+        place = len(self.hypotheses) - 1
+        every, coordinates = results.comparison()
+        made = xr.Dataset({**every, **results.parameters()}, coordinates).isel(hypothesis=place)
+        name = self.hypotheses[place].name
+        named = made.drop_vars("hypothesis").dropna("parameter", how="all", subset=["asked"])
+        made = named.drop_vars("asked").assign(
+            correlation=results.correlation(place, list(named.parameter.values)),
+        )
+        return made.assign_attrs(
+            analysis="fit", title=f"Fit: {name}", hypothesis=name, reason=results.reason()
+        )
+
+
+@dataclass(frozen=True)
+class Results:
+    """The end of a search job as arrays, one row a hypothesis.
+
+    Attributes
+    ----------
+    job : SearchJob
+    values, covariance, minima, misfit, residuals, fitted, evaluations : ndarray
+    """
+
+    job: SearchJob
+    values: Floats
+    covariance: Floats
+    minima: Floats
+    misfit: Floats
+    residuals: Floats
+    fitted: NDArray[np.complex128]
+    evaluations: Floats
+
+    @classmethod
+    def from_table(cls, job: SearchJob, table: Table) -> Results:
+        """Of a finished job."""
+        part = {name: table[f"end_{name}"][0] for name in ENDS}
+        real, imaginary = np.moveaxis(part.pop("fitted"), 1, 0)
+        return cls(job, fitted=real + 1j * imaginary, **part)
+
+    @property
+    def even(self) -> EvenOrders:
+        """Order 2 against that of the bonded structure."""
+        return even_orders(self.job.evidence, self.fitted[0])
+
+    def opened(self) -> bool:
+        """Whether faces are seen to part, or not to move as one."""
+        even = self.even
+        return even.seen or even.moved_apart > 1.0
+
+    def reason(self) -> str:
+        """Why the numbers of the halves are stated or not."""
+        even = self.even
+        size = f"order 2 is up to {100 * even.largest:.2g} % of order 1"
+        if self.opened():
+            return f"{size}, {even.excess:.2g} times the size from which it counts as seen"
+        return f"no opening is seen ({size}): the record does not hold f1 and f2"
+
+    def numbers(self, place: int) -> dict[str, tuple[float, float]]:
+        """Values and standard errors of a hypothesis as a user knows them."""
+        hypothesis, evidence = self.job.hypotheses[place], self.job.evidence
+        names = list(hypothesis.bounds(evidence))
+        here = dict(zip(names, self.values[place].tolist(), strict=False))
+        reported = hypothesis.reported(here, evidence)
+        slopes = self.slopes(hypothesis, here)
+        covariance = self.covariance[place][: len(names), : len(names)]
+        errors = np.sqrt(np.maximum(np.diag(slopes @ covariance @ slopes.T), 0.0))
+        known = dict(
+            zip(reported, zip(reported.values(), errors.tolist(), strict=True), strict=True)
+        )
+        if not self.opened():
+            known.update(dict.fromkeys(known.keys() & set(FREE), (math.nan, math.nan)))
+        return known
+
+    def slopes(self, hypothesis: Hypothesis, here: Mapping[str, float]) -> Floats:
+        """Derivatives of what is reported by what is fitted."""
+        evidence, columns = self.job.evidence, []
+        for name, value in here.items():
+            step = 1e-5 * max(abs(value), 0.1)
+            ends = [
+                list(hypothesis.reported({**here, name: value + sign * step}, evidence).values())
+                for sign in (1.0, -1.0)
+            ]
+            columns.append((np.array(ends[0]) - np.array(ends[1])) / (2.0 * step))
+        return np.stack(columns, axis=1)
+
+    def parameters(self) -> dict[str, Variable]:
+        """Values and standard errors; ``asked`` is 1 where a hypothesis has the parameter."""
+        every = [self.numbers(place) for place in range(len(self.values))]
+        shape = (len(every), len(REPORTED))
+        value, error, asked = np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, np.nan)
+        for row, known in enumerate(every):
+            for name, (number, deviation) in known.items():
+                column = list(REPORTED).index(name)
+                value[row, column], error[row, column] = number, deviation
+                asked[row, column] = 1.0
+        over = ("hypothesis", "parameter")
+        return {
+            "value": variable(over, value, "", "fitted value, in the parameter's unit"),
+            "standard_error": variable(over, error, "", "standard error, in the parameter's unit"),
+            "asked": variable(over, asked, "1", "1 where the hypothesis has the parameter"),
+        }
+
+    def correlation(self, place: int, names: list[str]) -> tuple[Any, ...]:
+        """Of a hypothesis's numbers."""
+        hypothesis, evidence = self.job.hypotheses[place], self.job.evidence
+        fitted = list(hypothesis.bounds(evidence))
+        here = dict(zip(fitted, self.values[place].tolist(), strict=False))
+        slopes = self.slopes(hypothesis, here)
+        covariance = slopes @ self.covariance[place][: len(fitted), : len(fitted)] @ slopes.T
+        size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+        order = [list(hypothesis.reported(here, evidence)).index(name) for name in names]
+        known = (covariance / np.outer(size, size))[np.ix_(order, order)]
+        return variable(("parameter", "other_parameter"), known, "1", "correlation of errors")
+
+    def comparison(self) -> tuple[dict[str, Variable], dict[str, Variable]]:
+        """What is measured and what is fitted, with coordinates."""
+        evidence = self.job.evidence
+        rows = [evidence.orders.channels.names.index(name) for name in evidence.orders.sensors]
+        floor = evidence.orders.floor[rows][:, None, evidence.used].repeat(len(FITTED), axis=1)
+        by_window = np.sqrt(np.mean(self.residuals**2, axis=(1, 2)))
+        over = ("channel", "order", "window")
+        variables = {
+            "misfit": variable("hypothesis", self.misfit, "1", "misfit over what is expected"),
+            "evaluations": variable(
+                "hypothesis", self.evaluations, "1", "motions that were computed"
+            ),
+            "minima": variable(
+                ("hypothesis", "minimum"), self.minima, "1", "misfits of the minima that differ"
+            ),
+            "misfit_at": variable(
+                ("hypothesis", "window"), by_window, "1", "misfit in each window"
+            ),
+            "measured": variable(over, np.abs(evidence.measured), "m/s2", "amplitude of orders"),
+            "floor": variable(over, floor, "m/s2", "amplitude between the orders"),
+            "fitted": variable(AT_ALL, np.abs(self.fitted), "m/s2", "amplitude of fitted orders"),
+        }
+        units, words = zip(*REPORTED.values(), strict=True)
+        coordinates = {
+            "hypothesis": (
+                "hypothesis",
+                [one.name for one in self.job.hypotheses],
+                named("hypothesis"),
+            ),
+            "parameter": ("parameter", list(REPORTED), named("parameter")),
+            "unit": ("parameter", list(units), named("unit of the parameter")),
+            "meaning": ("parameter", list(words), named("meaning of the parameter")),
+            "channel": ("channel", list(evidence.orders.sensors), named("channel of the record")),
+            "order": variable("order", np.array(FITTED), "1", "frequency over the excitation's"),
+            "time": variable("window", evidence.windows.time, "s", "middle of the window"),
+            "frequency": variable(
+                "window", evidence.frequency, "Hz", "frequency of the excitation"
+            ),
+            "level": variable("window", evidence.level, "m/s2", "amplitude of the base"),
+        }
+        return variables, coordinates
+
+
+ENDS = ("values", "covariance", "minima", "misfit", "residuals", "fitted", "evaluations")
+
+
+def named(words: str) -> dict[str, str]:
+    """Attributes of a text coordinate."""
+    return {"long_name": words}

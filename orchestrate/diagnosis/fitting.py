@@ -1,0 +1,187 @@
+"""Search for the numbers with which a hypothesis comes closest to a record, from many starts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .evidence import LOST, Evidence
+from .hypotheses import Hypothesis
+
+if TYPE_CHECKING:
+    from ..access import Player
+
+Floats = NDArray[np.float64]
+SOFT = 3.0  # residuals above count by their size, not its square: a jump may be a window off
+STEPS = {  # of the differences that make derivatives; f and common: parts of the resonance's
+    **{"common": 3e-4, "f": 1e-4, "split": 3e-3, "e": 0.02, "clearance": 0.01},
+    **{"log_zeta": 0.02, "log_zeta1": 0.05, "log_zeta2": 0.05},
+    **{"square": 0.01, "cube": 0.02, "friction": 0.01, "stop": 0.02, "position": 0.02},
+}
+ROUNDS = 8  # of polishing
+GAINED, SMALLEST = 2e-3, 0.1  # least gain of a round; of the clouds' variance
+SAME = 0.03  # relative difference of misfits below which two minima count as one
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A minimum of the misfit.
+
+    Attributes
+    ----------
+    name : str
+        Of the hypothesis.
+    values : dict of str to float
+    misfit : float
+        Root mean square of the residuals, large ones by their size: 1 is as far as ``RELATIVE``
+        and the noise allow.
+    """
+
+    name: str
+    values: Mapping[str, float]
+    misfit: float
+
+
+@dataclass
+class Search:
+    """A hypothesis and a record, and how often the motion was computed.
+
+    Attributes
+    ----------
+    hypothesis : Hypothesis
+    evidence : Evidence
+    player : Player, optional
+        For hypotheses that need the FMU.
+    evaluations : int
+    """
+
+    hypothesis: Hypothesis
+    evidence: Evidence
+    player: Player | None = None
+    evaluations: int = field(default=0, init=False)
+
+    def residuals(self, values: Mapping[str, float]) -> Floats:
+        """What the motion with these numbers misses, shape (sensors, 4, windows)."""
+        from ..errors import FmuError, InputError
+
+        self.evaluations += 1
+        try:
+            motion = self.hypothesis.displacements(values, self.evidence, self.player)
+        except (FmuError, InputError):  # numbers that the FMU refuses: nothing to be found there
+            return np.full((len(self.evidence.masses), 4, len(self.evidence.used)), LOST)
+        return self.evidence.residuals(motion)
+
+    def derivatives(self, values: Mapping[str, float], bounds: Mapping[str, Any]) -> Floats:
+        """Differences of the residuals over those of the numbers, shape (residuals, numbers)."""
+        here = self.residuals(values).ravel()
+        columns = []
+        for name in values:
+            step = step_of(self, name)
+            if values[name] + step > bounds[name][1]:
+                step = -step
+            there = self.residuals({**values, name: values[name] + step}).ravel()
+            columns.append((there - here) / step)
+        return np.stack(columns, axis=1)
+
+    def refine(self, start: Mapping[str, float], steps: int, tolerance: float) -> Solution:
+        """Go downhill from a start (trust region reflective, with bounds)."""
+        from lmfit import Minimizer
+
+        hypothesis, bounds = self.hypothesis, self.hypothesis.bounds(self.evidence)
+        minimizer = Minimizer(
+            lambda parameters: self.residuals(parameters.valuesdict()).ravel(),
+            hypothesis.parameters(start, self.evidence),
+        )
+        result = minimizer.minimize(
+            method="least_squares",
+            loss="soft_l1",
+            f_scale=SOFT,
+            x_scale="jac",
+            max_nfev=steps,
+            ftol=tolerance,
+            xtol=tolerance,
+            Dfun=lambda parameters: self.derivatives(parameters.valuesdict(), bounds),
+        )
+        values = dict(result.params.valuesdict())
+        return Solution(hypothesis.name, values, misfit(np.asarray(result.residual)))
+
+    def polish(self, start: Solution, rounds: int = ROUNDS) -> Solution:
+        """Go on from a minimum by regressions over clouds of points.
+
+        Impacts that come or stay away make the misfit rugged: a trust region that shrinks after a
+        step that failed ends on the first of its bumps. Here each round computes a cloud, as long
+        as the valley is, and tries the minimum of its linear model with several dampings.
+        """
+        from .linear import LinearModel
+
+        here, shape, size = start, np.diag([step_of(self, name) ** 2 for name in start.values]), 1.0
+        for number in range(rounds):
+            model = LinearModel.around(self, here.values, size * shape, number)
+            best = self.scan([*model.minima(self, here.values), model.best])[0]
+            shape = model.valley()
+            if best.misfit < (1.0 - GAINED) * here.misfit:
+                here, size = best, min(1.0, 1.5 * size)
+            elif size > SMALLEST:
+                size *= 0.2
+            else:
+                break
+        return here
+
+    def scan(self, starts: Sequence[Mapping[str, float]]) -> list[Solution]:
+        """The misfits of starts, the best first."""
+        names = self.hypothesis.bounds(self.evidence)
+        found = []
+        for start in starts:
+            values = {name: float(np.clip(start[name], *names[name])) for name in names}
+            size = misfit(self.residuals(values))
+            found.append(Solution(self.hypothesis.name, values, size))
+        return sorted(found, key=lambda solution: solution.misfit)
+
+    def best(
+        self,
+        starts: Sequence[Mapping[str, float]],
+        keep: int = 3,
+        coarse: int = 12,
+        fine: int = 25,
+    ) -> list[Solution]:
+        """The minima from the best starts, the best first, which is refined to the end.
+
+        Parameters
+        ----------
+        starts : sequence of mapping
+        keep : int
+            From how many of them to go downhill.
+        coarse, fine : int
+            Steps from each of them, and from the best at the end.
+        """
+        chosen = self.scan(starts)[:keep]
+        found = [self.refine(one.values, coarse, 3e-3) for one in chosen]
+        found.sort(key=lambda solution: solution.misfit)
+        if fine:
+            found[0] = self.refine(found[0].values, fine, 1e-5)
+        return found
+
+
+def step_of(search: Search, name: str) -> float:
+    """Step of a number for differences."""
+    return STEPS[name] * (search.evidence.resonance if name in ("f", "common") else 1.0)
+
+
+def misfit(residuals: Floats) -> float:
+    """Root mean square of residuals, large ones by their size."""
+    squares = 2.0 * SOFT**2 * (np.sqrt(1.0 + (residuals / SOFT) ** 2) - 1.0)
+    return math.sqrt(float(np.mean(squares)))
+
+
+def distinct(solutions: Sequence[Solution]) -> list[Solution]:
+    """Minima that differ, the best first."""
+    found: list[Solution] = []
+    for one in sorted(solutions, key=lambda solution: solution.misfit):
+        if not found or one.misfit > (1.0 + SAME) * found[-1].misfit:
+            found.append(one)
+    return found

@@ -1,0 +1,300 @@
+"""What the structure may be: sound in several ways, or delaminated; each with its parameters."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..constants import TURN
+from ..structures import Structure
+from .single_mass import SingleMass
+
+if TYPE_CHECKING:
+    from lmfit import Parameters
+
+    from ..access import Player
+    from .evidence import Evidence
+
+Floats = NDArray[np.float64]
+REPORTED = {  # units and long names
+    "f1": ("Hz", "natural frequency of half 1 alone"),
+    "f2": ("Hz", "natural frequency of half 2 alone"),
+    "zeta1": ("1", "damping ratio of half 1 alone"),
+    "zeta2": ("1", "damping ratio of half 2 alone"),
+    "e": ("1", "coefficient of restitution"),
+    "clearance": ("m", "gap between the faces at rest; below 0: pressed together"),
+    "f": ("Hz", "natural frequency of the sound structure"),
+    "zeta": ("1", "damping ratio of the sound structure"),
+    "square": ("1/m", "stiffness that goes with the square of the displacement"),
+    "cube": ("1/m2", "stiffness that goes with the cube of the displacement"),
+    "friction": ("m/s2", "dry friction over the mass"),
+    "stop": ("1", "stiffness of a stop over that of the spring"),
+    "position": ("m", "where the stop is met"),
+}
+FREE = tuple(REPORTED)[:6]  # of a delaminated structure
+Values = Mapping[str, float]
+DAMPING = (3e-4, 0.2)  # damping ratios that are looked for
+SPLIT = 0.9  # largest |ln(f2/f1)|
+RESTITUTION = (0.0, 0.95)
+SPLITS = (0.08, -0.08, 0.18, -0.18, 0.3, -0.3, 0.45, -0.45)  # ln(f2/f1) of the scan
+SLOW = 0.01  # of the largest speed: below it friction is viscous
+
+
+class Hypothesis(ABC):
+    """A kind of structure, with numbers that a fit is to find.
+
+    Attributes
+    ----------
+    name : str
+        In messages and results.
+    """
+
+    name: ClassVar[str]
+
+    @abstractmethod
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+        """Values to begin from."""
+
+    @abstractmethod
+    def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
+        """Smallest and largest value of each number that is fitted."""
+
+    @abstractmethod
+    def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
+        """The motion in the measured base, shape (1 or 2, samples), m."""
+
+    @abstractmethod
+    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
+        """The fitted numbers as a user knows them, by the names of ``REPORTED``, in SI."""
+
+    def parameters(self, start: Values, evidence: Evidence) -> Parameters:
+        """Return a start as lmfit takes it."""
+        from lmfit import Parameters
+
+        made = Parameters()
+        for name, (low, high) in self.bounds(evidence).items():
+            made.add(name, value=float(np.clip(start[name], low, high)), min=low, max=high)
+        return made
+
+
+# -- sound ----------------------------------------------------------------------------------------
+
+
+class Sound(Hypothesis):
+    """A bonded structure: one mass, whose spring may be of several kinds.
+
+    Numbers are ``f`` in Hz, ``log_zeta``, and those of ``extra``: of size 1 where what they stand
+    for is as large as the linear spring's force at the largest displacement.
+    """
+
+    extra: ClassVar[dict[str, tuple[float, float]]] = {}
+
+    def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
+        """Half to twice the frequency of the resonance."""
+        f = evidence.resonance
+        low, high = (math.log(zeta) for zeta in DAMPING)
+        return {"f": (0.5 * f, 2.0 * f), "log_zeta": (low, high), **self.extra}
+
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+        """The resonance's frequency and width."""
+        rest = dict.fromkeys(self.extra, 0.0)
+        return [{"f": evidence.resonance, "log_zeta": math.log(zeta), **rest} for zeta in (0.01,)]
+
+    def mass(self, values: Values, evidence: Evidence) -> SingleMass:
+        """The structure itself."""
+        return SingleMass(f=values["f"], zeta=math.exp(values["log_zeta"]))
+
+    def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
+        """The motion; NaN where it has no bounds."""
+        cubics, bound = evidence.pieces.derivatives, 30.0 * evidence.displacement
+        mass = self.mass(values, evidence)
+        return mass.displacements(cubics, 1.0 / evidence.rate, bound)[np.newaxis]
+
+    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
+        """Those of the single mass."""
+        mass = self.mass(values, evidence)
+        return {name: getattr(mass, name) for name in ("f", "zeta", *self.extra)}
+
+
+class Bonded(Sound):
+    """A linear spring."""
+
+    name = "bonded"
+
+
+class Curved(Sound):
+    """A spring that hardens or softens, the same or not in both directions."""
+
+    name = "bonded, hardening or softening"
+    extra = {"square": (-1.0, 1.0), "cube": (-0.9, 20.0)}
+
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+        """Hardening and softening of several sizes, with the resonance where it is seen."""
+        found = []
+        for cube in (-0.3, -0.1, 0.0, 0.1, 0.3, 0.7, 1.5):
+            f = evidence.resonance / math.sqrt(1.0 + 0.75 * cube)
+            for share in (1.0, 0.5):
+                f = evidence.resonance / math.sqrt(1.0 + 0.75 * cube * share)
+                start = {"f": f, "log_zeta": math.log(0.01), "square": 0.0, "cube": cube}
+                found.append(start)
+        return found
+
+    def mass(self, values: Values, evidence: Evidence) -> SingleMass:
+        """The structure itself."""
+        x = evidence.displacement
+        linear = super().mass(values, evidence)
+        return replace(linear, square=values["square"] / x, cube=values["cube"] / x**2)
+
+
+class Rubbing(Sound):
+    """A linear spring with dry friction."""
+
+    name = "bonded, with dry friction"
+    extra = {"friction": (0.0, 1.0)}
+
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+        """Little and much."""
+        plain = super().starts(evidence)[0]
+        return [{**plain, "friction": size} for size in (0.02, 0.2)]
+
+    def mass(self, values: Values, evidence: Evidence) -> SingleMass:
+        """The structure itself; friction over the base's usual acceleration."""
+        friction = values["friction"] * float(np.median(evidence.level))
+        slow = SLOW * TURN * evidence.resonance * evidence.displacement
+        return replace(super().mass(values, evidence), friction=friction, slow=slow)
+
+
+class Stopped(Sound):
+    """A linear spring and a stop on one side: a clamp that rattles, a cable that slackens."""
+
+    name = "bonded, with a stop on one side"
+    extra = {"stop": (-0.8, 5.0), "position": (-1.0, 1.0)}
+    side: ClassVar[float] = 1.0
+
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+        """A weak and a stiff stop, met early and late."""
+        found = []
+        for stop in (-0.3, 0.1, 0.5):
+            for position in (0.0, 0.3):
+                f = evidence.resonance / math.sqrt(1.0 + 0.5 * stop * (1.0 - position))
+                rest = {"stop": stop, "position": position}
+                found.append({"f": f, "log_zeta": math.log(0.01), **rest})
+        return found
+
+    def mass(self, values: Values, evidence: Evidence) -> SingleMass:
+        """The structure itself."""
+        linear = super().mass(values, evidence)
+        position = values["position"] * evidence.displacement
+        return replace(linear, stop=values["stop"], position=position, side=self.side)
+
+
+class StoppedBelow(Stopped):
+    """The same on the other side."""
+
+    name = "bonded, with a stop on the other side"
+    side = -1.0
+
+
+# -- delaminated ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Delaminated(Hypothesis):
+    """Two masses that touch: the model of the paper, computed by its FMU.
+
+    Numbers are ``common``, the frequency of both glued together in Hz; ``split``, ln(f2/f1);
+    ``log_zeta1``, ``log_zeta2``; ``e``; and ``clearance`` over the largest displacement.
+
+    Attributes
+    ----------
+    guess : Structure
+        Of which the masses are taken, and all that is not free.
+    free : tuple of str
+        Names of a structure's parameters.
+    """
+
+    guess: Structure
+    free: tuple[str, ...] = ("f1", "f2", "zeta1", "zeta2", "e")
+    name: ClassVar[str] = "delaminated"
+
+    def values_of(self, structure: Structure, evidence: Evidence) -> dict[str, float]:
+        """The numbers of a structure."""
+        zeta = [max(getattr(structure, f"zeta{half}"), DAMPING[0]) for half in (1, 2)]
+        common = math.sqrt((structure.k1 + structure.k2) / (structure.m1 + structure.m2)) / TURN
+        return {
+            "common": common,
+            "split": math.log(structure.f2 / structure.f1),
+            "log_zeta1": math.log(zeta[0]),
+            "log_zeta2": math.log(zeta[1]),
+            "e": structure.e,
+            "clearance": getattr(structure, "clearance", 0.0) / evidence.displacement,
+        }
+
+    def structure(self, values: Values, evidence: Evidence) -> Structure:
+        """The structure of numbers; what is not free is the guess's."""
+        m1, m2 = self.guess.m1, self.guess.m2
+        split = math.exp(values["split"])
+        f1 = values["common"] * math.sqrt((m1 + m2) / (m1 + m2 * split**2))
+        numbers = {
+            "f1": f1,
+            "f2": f1 * split,
+            "zeta1": math.exp(values["log_zeta1"]),
+            "zeta2": math.exp(values["log_zeta2"]),
+            "e": values["e"],
+            "clearance": values.get("clearance", 0.0) * evidence.displacement,
+        }
+        return self.guess.replace(bonded=False, **{name: numbers[name] for name in self.free})
+
+    def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
+        """Of what is free."""
+        f, (low, high) = evidence.resonance, [math.log(zeta) for zeta in DAMPING]
+        every = {
+            "common": (0.6 * f, 1.6 * f),
+            "split": (-SPLIT, SPLIT),
+            "log_zeta1": (low, high),
+            "log_zeta2": (low, high),
+            "e": RESTITUTION,
+            "clearance": (-2.0, 2.0),
+        }
+        names = {
+            **{"common": {"f1", "f2"}, "split": {"f1", "f2"}, "log_zeta1": {"zeta1"}},
+            **{"log_zeta2": {"zeta2"}, "e": {"e"}, "clearance": {"clearance"}},
+        }
+        return {name: every[name] for name, of in names.items() if of & set(self.free)}
+
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+        """A scan over the split of the halves, their common frequency and restitution."""
+        guess, found = self.values_of(self.guess, evidence), []
+        for split in SPLITS:
+            for shift in (0.96, 1.0, 1.04):
+                for e in (0.35, 0.7):
+                    common = shift * evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
+                    found.append({**guess, "common": common, "split": split, "e": e})
+        return found
+
+    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
+        """Those of the structure that are free."""
+        structure = self.structure(values, evidence)
+        return {name: float(structure.get(name)) for name in self.free}
+
+    def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
+        """The motion by the FMU."""
+        assert player is not None
+        player.start(self.structure(values, evidence))
+        nodes = evidence.pieces.nodes
+        return player.play(nodes, evidence.pieces.derivatives, nodes).rows[:, :2].T
+
+
+class DelaminatedWithClearance(Delaminated):
+    """The same with a gap between the faces at rest, or pressed together by a preload."""
+
+    name: ClassVar[str] = "delaminated, with clearance"
+
+
+SOUND = (Bonded(), Curved(), Rubbing(), Stopped(), StoppedBelow())

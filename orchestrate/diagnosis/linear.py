@@ -1,0 +1,111 @@
+"""Residuals around a minimum as a linear model, by regression over a cloud of points.
+
+Impacts that come or stay away make residuals rugged: differences over small steps are those of
+single impacts. Over a cloud of points they average out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .fitting import SOFT, Search, misfit
+
+Floats = NDArray[np.float64]
+POINTS = 5  # of a cloud, for each number
+SEED = 20_241
+VALLEY = 0.3  # by which part the squares grow in the cloud
+DAMPINGS = (0.0, 0.01, 0.1, 1.0)
+
+
+@dataclass(frozen=True)
+class LinearModel:
+    """Residuals ``residuals + slopes (values - here)``.
+
+    Attributes
+    ----------
+    residuals : ndarray, shape (sensors, 4, windows)
+    slopes : ndarray, shape (sensors, 4, windows, numbers)
+    best : dict of str to float
+        Numbers of the point of the cloud with the smallest misfit.
+    """
+
+    residuals: Floats
+    slopes: Floats
+    best: dict[str, float]
+
+    @classmethod
+    def around(
+        cls, search: Search, values: Mapping[str, float], covariance: Floats, seed: int = 0
+    ) -> LinearModel:
+        """Compute a cloud of points around numbers, and the regression over it.
+
+        Parameters
+        ----------
+        search : Search
+        values : mapping of str to float
+        covariance : ndarray
+            Of the cloud.
+        seed : int
+        """
+        bounds, count = search.hypothesis.bounds(search.evidence), len(values)
+        rng = np.random.default_rng([SEED, seed])
+        sizes, axes = np.linalg.eigh(covariance)
+        normal = rng.standard_normal((POINTS * count, count))
+        normal -= normal.mean(axis=0)
+        offsets = (normal * np.sqrt(np.maximum(sizes, 0.0))) @ axes.T
+        here = np.array(list(values.values()))
+        low, high = np.array([bounds[name] for name in values]).T
+        points = np.clip(here + offsets, low, high)
+        named = [dict(zip(values, point, strict=True)) for point in points.tolist()]
+        rows = np.stack([search.residuals(one) for one in named])
+        basis = np.column_stack([np.ones(len(points)), points - here])
+        solution = np.linalg.lstsq(basis, rows.reshape(len(rows), -1), rcond=None)[0]
+        shape = rows.shape[1:]
+        best = named[int(np.argmin([misfit(row) for row in rows]))]
+        slopes = solution[1:].T.reshape(*shape, count)
+        return cls(solution[0].reshape(shape), slopes, best)
+
+    @property
+    def weighted(self) -> Floats:
+        """Slopes times the weights of the soft loss, one row a residual."""
+        weights = 1.0 / np.sqrt(1.0 + (self.residuals / SOFT) ** 2)
+        return (self.slopes * weights[..., np.newaxis]).reshape(-1, self.slopes.shape[-1])
+
+    @property
+    def information(self) -> Floats:
+        """``J'WJ``."""
+        return self.weighted.T @ self.slopes.reshape(-1, self.slopes.shape[-1])
+
+    @property
+    def influence(self) -> Floats:
+        """``-(J'WJ)^-1``, scaled so that no unit matters."""
+        information = self.information
+        size = np.sqrt(np.maximum(np.diag(information), 1e-300))
+        scaled = information / np.outer(size, size)
+        return -np.linalg.pinv(scaled, hermitian=True, rcond=1e-9) / np.outer(size, size)
+
+    def valley(self) -> Floats:
+        """Covariance of a cloud in which the misfit grows by a given part."""
+        squares = float(np.sum(self.residuals.ravel() ** 2))
+        return np.asarray(-self.influence * VALLEY * squares / len(self.influence))
+
+    def minima(self, search: Search, values: Mapping[str, float]) -> list[dict[str, float]]:
+        """Numbers at the minimum of the model, with dampings from none to much."""
+        bounds = search.hypothesis.bounds(search.evidence)
+        information, slope = self.information, self.weighted.T @ self.residuals.ravel()
+        size = np.diag(np.maximum(np.diag(information), 1e-300))
+        found = []
+        for damping in DAMPINGS:
+            step = np.linalg.lstsq(information + damping * size, -slope, rcond=1e-12)[0]
+            moved = zip(values.items(), step.tolist(), strict=True)
+            found.append({name: clipped(value + s, bounds[name]) for (name, value), s in moved})
+        return found
+
+
+def clipped(value: float, bounds: tuple[float, float]) -> float:
+    """A number in its bounds."""
+    return float(min(max(value, bounds[0]), bounds[1]))

@@ -1,0 +1,321 @@
+"""Orders of a record's channels in short windows, and the floor between the orders.
+
+The same windows and weights serve a measured record and a computed one: the least squares of each
+window are solved once, as a matrix, and applied to as many channels as there are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..constants import TURN
+from ..errors import InputError
+from ..laboratory.analysis.channels import BOX, Channels
+from ..laboratory.analysis.orders import EDGE, NYQUIST, Window, measured_phase, window
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+ORDERS = (1.0, 2.0, 3.0, 0.5)
+OFF_ORDERS = (1.37, 2.37, 2.63)  # no multiples of 1/2, 1/3 or 1/4: what is there is no order
+FASTEST = 0.25  # s, shortest window
+SLOWEST = 1.0  # s, longest window, if it holds enough periods
+PERIODS = 8.0  # of the excitation in a window, at least: they separate the orders 0.5, 1 and 1.37
+GLIDE = 0.006  # relative change of the frequency in a window that may be longer than FASTEST
+OVERLAP = 0.5
+QUIET = 0.05  # of the usual amplitude of the base: windows below are not used
+NO_SINE = 0.5  # rms of what the base does beside its orders, over the rms of order 1
+FEWEST = 8  # windows
+KEPT = 14.0  # samples in a period of the highest frequency: order 3 has more than four then
+EXPECTED = "expected a swept or stepped sine"
+
+
+@dataclass(frozen=True)
+class OrderWindows:
+    """Windows of a record, and the least squares that give the orders in them.
+
+    Attributes
+    ----------
+    time, frequency, rate : ndarray, shape (windows,)
+        Middle of each in s, frequency of the excitation there in Hz, its derivative in Hz/s.
+    orders : tuple of float
+        ``ORDERS`` and after them ``OFF_ORDERS``.
+    parts : tuple of slice
+        Samples of each.
+    solutions : tuple of ndarray, shape (samples, orders)
+        Complex: a channel's samples times these give ``A exp(i theta)`` of
+        ``A sin(n phase + theta)`` for each order n, NaN above 0.45 of the sampling rate. The phase
+        is that of the base: its own order 1 has theta = 0.
+    sample_rate : float
+        Hz.
+    samples : int
+        Of the record.
+    """
+
+    time: Floats
+    frequency: Floats
+    rate: Floats
+    orders: tuple[float, ...]
+    parts: tuple[slice, ...]
+    solutions: tuple[Complexes, ...]
+    sample_rate: float
+    samples: int
+
+    def __len__(self) -> int:
+        return len(self.parts)
+
+    def chosen(self, windows: NDArray[np.intp], count: int) -> OrderWindows:
+        """Return some of the windows with the first ``count`` orders, for many channels to come."""
+        return OrderWindows(
+            self.time[windows],
+            self.frequency[windows],
+            self.rate[windows],
+            self.orders[:count],
+            tuple(self.parts[i] for i in windows),
+            tuple(np.ascontiguousarray(self.solutions[i][:, :count]) for i in windows),
+            self.sample_rate,
+            self.samples,
+        )
+
+    def amplitudes(self, values: Floats, later: float = 0.0) -> Complexes:
+        """Complex amplitudes of channels, shape (channels, orders, windows).
+
+        Parameters
+        ----------
+        values : ndarray, shape (channels, samples)
+        later : float
+            How much later than the record's samples these are, in samples: it is made up for.
+        """
+        found = np.empty((len(values), len(self.orders), len(self)), dtype=complex)
+        for number, (part, solution) in enumerate(zip(self.parts, self.solutions, strict=True)):
+            found[:, :, number] = values[:, part] @ solution
+        if later:
+            turn = TURN * np.outer(self.orders, self.frequency) * later / self.sample_rate
+            found *= np.exp(-1j * turn)
+        return found
+
+
+@dataclass(frozen=True)
+class RecordOrders:
+    """Orders of a record.
+
+    Attributes
+    ----------
+    windows : OrderWindows
+    channels : Channels
+    amplitude : ndarray, shape (channels, orders, windows)
+        Complex, m/s2, of ``ORDERS``.
+    floor : ndarray, shape (channels, windows)
+        Root mean square of the amplitudes at ``OFF_ORDERS``, m/s2, smoothed over the windows.
+    noise : ndarray, shape (channels,)
+        Floor in the quietest fifth of the windows, m/s2.
+    """
+
+    windows: OrderWindows
+    channels: Channels
+    amplitude: Complexes
+    floor: Floats
+    noise: Floats
+
+    def order(self, number: float, channel: str) -> Complexes:
+        """Complex amplitudes of an order in a channel, m/s2, shape (windows,)."""
+        row = self.channels.names.index(channel)
+        return np.asarray(self.amplitude[row, ORDERS.index(number)])
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """Names of the channels beside the base's."""
+        return tuple(name for name in self.channels.names if name != BOX)
+
+    @property
+    def level(self) -> Floats:
+        """Amplitude of the base's order 1, m/s2, shape (windows,)."""
+        return np.abs(self.order(1.0, BOX))
+
+
+def record_orders(record: xr.Dataset) -> RecordOrders:
+    """Orders of a record of a swept or stepped sine.
+
+    Parameters
+    ----------
+    record : xarray.Dataset
+        With ``box_acceleration`` and one or both of ``acceleration1`` and ``acceleration2``.
+
+    Raises
+    ------
+    InputError
+        Where a channel is missing, or the base's acceleration is no sine of moving frequency.
+
+    Notes
+    -----
+    The phase is that of the base's analytic signal, smoothed by a cubic in each window. In each
+    window a constant and all orders are fitted by least squares with Hann weights; the amplitudes
+    of whole orders may change at a constant rate. A window lasts 0.25 s, longer where the sweep is
+    slow or where it would have less than 8 periods.
+    """
+    return orders_of(checked_channels(record))
+
+
+def checked_channels(record: xr.Dataset) -> Channels:
+    """The channels of a record that has the base's and one of the structure's.
+
+    Raises
+    ------
+    InputError
+    """
+    channels = Channels.from_record(record, (BOX,))
+    if len(channels.names) < 2:
+        text = "expected acceleration1, acceleration2 or both beside box_acceleration"
+        raise InputError(f"record: no acceleration of the structure; {text}")
+    return channels
+
+
+def orders_of(channels: Channels) -> RecordOrders:
+    """Orders of channels; see :func:`record_orders`."""
+    windows, amplitude = windows_of(channels)
+    whole, off = amplitude[:, : len(ORDERS)], amplitude[:, len(ORDERS) :]
+    squares = np.nanmean(np.abs(off) ** 2, axis=1)
+    floor = np.sqrt(np.stack([smoothed(row) for row in squares]))
+    return RecordOrders(windows, channels, whole, floor, np.quantile(floor, 0.2, axis=1))
+
+
+def thinned(channels: Channels, highest: float) -> Channels:
+    """Every second, third, ... sample of channels, low-passed before, if enough of them are left.
+
+    Parameters
+    ----------
+    channels : Channels
+    highest : float
+        Frequency of the excitation, Hz, in whose period ``KEPT`` samples are to be left.
+    """
+    from scipy.signal import firwin, resample_poly
+
+    factor = int(channels.sample_rate // (KEPT * highest))
+    if factor < 2:
+        return channels
+    low_pass = firwin(40 * factor + 1, 0.8 / factor, window=("kaiser", 9.0))  # 90 dB
+    values = resample_poly(channels.values, 1, factor, axis=1, window=low_pass)
+    time, rate = channels.time[::factor], channels.sample_rate / factor
+    return replace(channels, time=time, sample_rate=rate, values=values)
+
+
+def smoothed(values: Floats, width: int = 5) -> Floats:
+    """Mean over neighbouring windows."""
+    kernel = np.ones(min(width, len(values)))
+    return np.convolve(values, kernel, "same") / np.convolve(np.ones(len(values)), kernel, "same")
+
+
+# -- windows --------------------------------------------------------------------------------------
+
+
+def windows_of(channels: Channels) -> tuple[OrderWindows, Complexes]:
+    """Windows in which the base moves as a sine, and the amplitudes of all channels there.
+
+    Raises
+    ------
+    InputError
+        Where there are few of them.
+    """
+    phase = measured_phase(channels)
+    usable = [one for one in divided(channels, phase) if one.frequency * channels.duration > 1.0]
+    usable = [one for one in usable if one.frequency < NYQUIST * channels.sample_rate]
+    if len(usable) < FEWEST:
+        text = f"{EXPECTED}, of {FEWEST * PERIODS / 2:g} periods or more"
+        raise InputError(f"{BOX}: no sine of moving frequency in {channels.duration:.4g} s; {text}")
+    row = channels.names.index(BOX)
+    solutions = [referenced(channels.box, one, solved(one, channels.sample_rate)) for one in usable]
+    windows = put_together(channels, usable, solutions)
+    amplitude = windows.amplitudes(channels.values)
+    level = np.abs(amplitude[row, 0])
+    rest = [
+        rms_beside(channels.box, one, a) for one, a in zip(usable, amplitude[row].T, strict=True)
+    ]
+    sine = np.asarray(rest) <= NO_SINE * level * 0.5**0.5
+    good = sine & (level >= QUIET * np.median(level))
+    if good.sum() < max(FEWEST, 0.5 * len(good)):
+        text = f"no sine in {np.sum(~sine)} of {len(good)} windows"
+        raise InputError(f"{BOX}: {text}; {EXPECTED}")
+    kept = np.flatnonzero(good)
+    windows = put_together(channels, [usable[i] for i in kept], [solutions[i] for i in kept])
+    return windows, amplitude[:, :, kept]
+
+
+def divided(channels: Channels, phase: Floats) -> list[Window]:
+    """Windows over a record that overlap by a half, each with the smoothed phase."""
+    turns = (phase[-1] - phase[0]) / TURN
+    usual = turns / channels.duration
+    glide = GLIDE * usual / max(sweep_rate(phase, channels), 1e-12)
+    shortest = min(max(FASTEST, glide), SLOWEST)
+    begin, end = np.searchsorted(phase, [phase[0] + EDGE * TURN, phase[-1] - EDGE * TURN])
+    found, now = [], int(begin)
+    while now < end:
+        periods = int(np.searchsorted(phase, phase[now] + PERIODS * TURN))
+        last = max(periods, now + round(shortest * channels.sample_rate))
+        if last > end:
+            break
+        found.append(window(channels, phase, slice(now, last), smooth=True))
+        now += max(1, round((1.0 - OVERLAP) * (last - now)))
+    return found
+
+
+def sweep_rate(phase: Floats, channels: Channels) -> float:
+    """Usual size of the frequency's derivative, Hz/s."""
+    marks = np.linspace(0, len(phase) - 1, 21).astype(int)
+    frequency = np.diff(phase[marks]) / np.diff(marks) * channels.sample_rate / TURN
+    return float(np.median(np.abs(np.diff(frequency)))) * 20.0 / channels.duration
+
+
+def put_together(
+    channels: Channels, windows: list[Window], solutions: list[Complexes]
+) -> OrderWindows:
+    """Windows and their least squares."""
+    return OrderWindows(
+        np.array([one.time for one in windows]),
+        np.array([one.frequency for one in windows]),
+        np.array([one.rate for one in windows]),
+        (*ORDERS, *OFF_ORDERS),
+        tuple(one.part for one in windows),
+        tuple(solutions),
+        channels.sample_rate,
+        len(channels.time),
+    )
+
+
+def solved(one: Window, sample_rate: float) -> Complexes:
+    """The least squares of a window as a matrix, shape (orders, samples); see :func:`.fit`."""
+    orders = (*ORDERS, *OFF_ORDERS)
+    resolved = [n for n in orders if n * one.frequency <= NYQUIST * sample_rate]
+    columns, first = [np.ones_like(one.offset)], {}
+    for n in resolved:
+        sine, cosine = np.sin(n * one.phase), np.cos(n * one.phase)
+        first[n] = len(columns)
+        columns += [sine, cosine]
+        if n.is_integer():
+            columns += [one.offset * sine, one.offset * cosine]
+    basis = np.stack(columns)
+    weighted = basis * one.weights
+    solution = np.linalg.pinv(weighted @ basis.T, hermitian=True) @ weighted
+    found = np.full((len(orders), len(one.offset)), np.nan, dtype=complex)
+    for n, row in first.items():
+        found[orders.index(n)] = solution[row] + 1j * solution[row + 1]
+    return found
+
+
+def referenced(box: Floats, one: Window, solution: Complexes) -> Complexes:
+    """The same with the phase of the base's own order 1 as phase."""
+    shift = np.angle(solution[0] @ box[one.part])
+    turn = np.exp(-1j * np.array([*ORDERS, *OFF_ORDERS]) * shift)
+    return np.ascontiguousarray((solution * turn[:, None]).T)
+
+
+def rms_beside(box: Floats, one: Window, amplitude: Complexes) -> float:
+    """Weighted root mean square of what the base does beside its order 1, m/s2."""
+    values = box[one.part] - np.average(box[one.part], weights=one.weights)
+    power = np.average(values**2, weights=one.weights)
+    return float(np.sqrt(max(power - 0.5 * abs(amplitude[0]) ** 2, 0.0)))

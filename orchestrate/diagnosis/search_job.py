@@ -1,0 +1,242 @@
+"""The fits of a record as a job: sound hypotheses and parts of the scan beside each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..access import OSCILLATOR, Player
+from ..laboratory.analysis.channels import Channels
+from ..laboratory.record import record as made_record
+from ..running.job import Inputs, Job, Table
+from ..structures import Structure
+from .errors import estimate
+from .evidence import Evidence
+from .fitting import Search, Solution, distinct, misfit
+from .hypotheses import SOUND, SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+FROM_SCAN = 1  # starts of each part of the scan from which to go downhill
+REFINED, CLOSE = 2, 1.3  # how many of the best are polished, and how close their misfits are
+GAPS = (-0.3, -0.1, -0.03, 0.03, 0.1, 0.3)  # clearances over the largest displacement
+SPARSE = 5  # each how many of the starts are tried with a gap too
+ROWS, NUMBERS, MINIMA = 4, 6, 8  # of tables: solutions, values in each, misfits of minima
+
+
+@dataclass(frozen=True)
+class RecordData:
+    """A record's channels as a job keeps them.
+
+    Attributes
+    ----------
+    names : tuple of str
+    sample_rate, begin : float
+        Hz, s.
+    channels : tuple of tuple of float
+        m/s2.
+    """
+
+    names: tuple[str, ...]
+    sample_rate: float
+    begin: float
+    channels: tuple[tuple[float, ...], ...]
+
+    @classmethod
+    def from_channels(cls, channels: Channels) -> RecordData:
+        """Of channels that were checked."""
+        values = tuple(tuple(row.tolist()) for row in channels.values)
+        return cls(channels.names, channels.sample_rate, float(channels.time[0]), values)
+
+    def dataset(self) -> xr.Dataset:
+        """The record."""
+        named = dict(zip(self.names, self.channels, strict=True))
+        time = self.begin + np.arange(len(self.channels[0])) / self.sample_rate
+        return made_record(time=time, sample_rate=self.sample_rate, **named)  # type: ignore[arg-type]
+
+
+@lru_cache(maxsize=2)
+def evidence_of(data: RecordData) -> Evidence:
+    """A record's evidence, made once a process."""
+    return Evidence.from_record(data.dataset())
+
+
+@dataclass(frozen=True, kw_only=True)
+class SearchJob(Job):
+    """Searches over hypotheses, the last item from the results of all others.
+
+    Attributes
+    ----------
+    data : RecordData
+    guess : Structure
+    free : tuple of str
+        What is fitted of a delaminated structure.
+    sound : tuple of int
+        Which of ``SOUND``.
+    delaminated : bool
+        Whether that is searched too.
+    """
+
+    data: RecordData
+    guess: Structure
+    free: tuple[str, ...]
+    sound: tuple[int, ...] = tuple(range(len(SOUND)))
+    delaminated: bool = True
+    gathers: ClassVar[bool] = True
+    item: ClassVar[str] = "search"
+
+    @property
+    def evidence(self) -> Evidence:
+        """Of the record."""
+        return evidence_of(self.data)
+
+    @property
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        """All of them, in the order of the results."""
+        found: list[Hypothesis] = [SOUND[number] for number in self.sound]
+        if self.delaminated:
+            free = tuple(name for name in self.free if name != "clearance")
+            found.append(Delaminated(self.guess, free))
+            if "clearance" in self.free:
+                found.append(DelaminatedWithClearance(self.guess, (*free, "clearance")))
+        return tuple(found)
+
+    def plan(self) -> list[tuple[str, float]]:
+        """What is searched beside each other: a sound hypothesis, or a part of the scan."""
+        sound = [("sound", float(place)) for place in range(len(self.sound))]
+        scan = [("scan", split) for split in SPLITS] if self.delaminated else []
+        return [*scan, *sound, ("end", 0.0)]
+
+    def count(self) -> int:
+        """Number of searches."""
+        return len(self.plan())
+
+    def items(self, inputs: Inputs) -> Sequence[tuple[str, float]]:
+        """The searches."""
+        return self.plan()
+
+    def work(
+        self,
+        fmus: Mapping[str, Path],
+        items: Sequence[tuple[str, float]],
+        previous: Table | None,
+    ) -> Table:
+        """One search; the last refines the best of all others."""
+        kind, number = items[0]
+        if kind == "sound":
+            return self.search_sound(int(number))
+        with Player(fmus[OSCILLATOR]) as player:
+            if kind == "scan":
+                return self.search_split(number, player)
+            assert previous is not None
+            return self.finish(previous, player)
+
+    def search_sound(self, place: int) -> Table:
+        """Minima of a sound hypothesis."""
+        search = Search(self.hypotheses[place], self.evidence)
+        starts = search.hypothesis.starts(self.evidence)
+        return table_of(place, search.best(starts, keep=2, coarse=10, fine=10), search.evaluations)
+
+    def search_split(self, split: float, player: Player) -> Table:
+        """Minima of the delaminated one from the starts of one split of the halves."""
+        place = len(self.sound)
+        search = Search(self.hypotheses[place], self.evidence, player)
+        starts = [s for s in search.hypothesis.starts(self.evidence) if s["split"] == split]
+        return table_of(place, search.best(starts, keep=FROM_SCAN, fine=0), search.evaluations)
+
+    def solutions(self, table: Table, place: int) -> list[Solution]:
+        """The solutions of a hypothesis in a table, the best first."""
+        hypothesis = self.hypotheses[place]
+        names = list(hypothesis.bounds(self.evidence))
+        rows = table["solutions"][table["place"] == place].reshape(-1, 1 + NUMBERS)
+        found = [
+            Solution(hypothesis.name, dict(zip(names, row[1:].tolist(), strict=False)), row[0])
+            for row in rows[np.isfinite(rows[:, 0])]
+        ]
+        return sorted(found, key=lambda solution: solution.misfit)
+
+    # -- the end of it ----------------------------------------------------------------------------
+
+    def finish(self, previous: Table, player: Player) -> Table:
+        """Refine the best delaminated ones, and say how far each hypothesis is from the record."""
+        made = [
+            self.finished(place, self.minima(place, previous, player), player)
+            for place in range(len(self.sound))
+        ]
+        if self.delaminated:
+            plain = self.finished(len(made), self.minima(len(made), previous, player), player)
+            made.append(plain)
+            if "clearance" in self.free:
+                made.append(self.with_clearance(plain, player))
+        spent = previous["evaluations"]
+        for place, result in enumerate(made):
+            result["end_evaluations"] += spent[previous["place"] == place].sum()
+        return {name: np.stack([part[name] for part in made])[np.newaxis] for name in made[0]}
+
+    def minima(self, place: int, previous: Table, player: Player) -> tuple[Search, list[Solution]]:
+        """Minima of a hypothesis; the two best delaminated ones are refined."""
+        search = Search(self.hypotheses[place], self.evidence, player)
+        found = self.solutions(previous, place)
+        if place >= len(self.sound):
+            close = [one for one in found[:REFINED] if one.misfit < CLOSE * found[0].misfit]
+            best = [search.polish(one) for one in close]
+            found = sorted([*best, *found[len(close) :]], key=lambda solution: solution.misfit)
+        return search, found
+
+    def with_clearance(self, plain: dict[str, Any], player: Player) -> dict[str, Any]:
+        """The same with gaps and preloads: from the best without, and from its own starts."""
+        search = Search(self.hypotheses[-1], self.evidence, player)
+        names = list(search.hypothesis.bounds(self.evidence))
+        best = dict(zip(names, plain["end_values"][: len(names) - 1].tolist(), strict=False))
+        starts = [{**best, "clearance": clearance} for clearance in (0.0, *GAPS)]
+        others = search.hypothesis.starts(self.evidence)[::SPARSE]
+        starts += [{**s, "clearance": gap} for s in others for gap in (0.3, 0.1)]
+        found = search.best(starts, keep=3, fine=0)
+        found[0] = search.polish(found[0])
+        return self.finished(len(self.hypotheses) - 1, (search, found), player)
+
+    def finished(
+        self, place: int, minima: tuple[Search, list[Solution]], player: Player
+    ) -> dict[str, Any]:
+        """The best solution of a hypothesis with its errors, and what it computes."""
+        search, found = minima
+        known = estimate(search, found[0].values)
+        values = known.values
+        motion = search.hypothesis.displacements(values, self.evidence, player)
+        computed = self.evidence.matched(self.evidence.computed(motion))
+        numbers = np.full(NUMBERS, np.nan)
+        numbers[: len(values)] = list(values.values())
+        covariance = np.full((NUMBERS, NUMBERS), np.nan)
+        covariance[: len(values), : len(values)] = known.covariance
+        levels = np.full(MINIMA, np.nan)
+        different = distinct(found)[:MINIMA]
+        levels[: len(different)] = [one.misfit for one in different]
+        return {
+            "end_values": numbers,
+            "end_covariance": covariance,
+            "end_minima": levels,
+            "end_misfit": misfit(search.evidence.missed(computed)),
+            "end_residuals": search.evidence.missed(computed),
+            "end_fitted": np.stack([computed.real, computed.imag]),
+            "end_evaluations": float(search.evaluations),
+        }
+
+
+def table_of(place: int, solutions: Sequence[Solution], evaluations: int) -> Table:
+    """Solutions as numbers, one row each: misfit, then values in the bounds' order."""
+    rows = np.full((1, ROWS, 1 + NUMBERS), np.nan)
+    for row, one in zip(rows[0], solutions, strict=False):
+        row[: 1 + len(one.values)] = [one.misfit, *one.values.values()]
+    return {
+        "place": np.array([place]),
+        "solutions": rows,
+        "evaluations": np.array([float(evaluations)]),
+    }

@@ -1,0 +1,149 @@
+"""A single mass on a spring that is not linear, on a shaken base: what a sound beam may be.
+
+With x relative to the base and a its acceleration,
+
+    x'' = -a - w^2 (x + q x^2 + c x^3 + stop) - 2 zeta w x' - friction x'/sqrt(x'^2 + slow^2),
+
+where ``stop = s b r max(0, b x - p)`` is a spring that the mass meets on one side (b = 1 or -1).
+Classical Runge-Kutta steps, ``single_mass.c`` where it can be compiled.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import logging
+import math
+from ctypes import c_double, c_int, c_ssize_t, c_void_p
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..access.c_library import library
+
+log = logging.getLogger(__name__)
+Floats = NDArray[np.float64]
+SOURCE = Path(__file__).with_suffix(".c")
+LONGEST = 0.12  # rad of the natural vibration in a step: its amplitude errs by 1e-7 in a period
+
+
+@dataclass(frozen=True)
+class SingleMass:
+    """The numbers of the equation above.
+
+    Attributes
+    ----------
+    f : float
+        Hz, w/(2 pi).
+    zeta : float
+    square, cube : float
+        q in 1/m, c in 1/m2.
+    friction, slow : float
+        m/s2 and m/s.
+    stop : float
+        Stiffness of the stop over that of the spring, r.
+    position : float
+        p, m.
+    side : float
+        b.
+    """
+
+    f: float
+    zeta: float
+    square: float = 0.0
+    cube: float = 0.0
+    friction: float = 0.0
+    slow: float = 1.0
+    stop: float = 0.0
+    position: float = 0.0
+    side: float = 1.0
+
+    def numbers(self) -> tuple[float, ...]:
+        """As the steps take them."""
+        w = 2.0 * math.pi * self.f
+        smooth = (w * w, 2.0 * self.zeta * w, self.square, self.cube, self.friction, self.slow)
+        return (*smooth, self.stop, self.position, self.side)
+
+    def displacements(self, cubics: Floats, step: float, bound: float = 1e3) -> Floats:
+        """Displacement in the base where each cubic begins, and at the end, m.
+
+        Parameters
+        ----------
+        cubics : ndarray, shape (n, 4)
+            The base's acceleration and its derivatives where each begins, m/s2 to m/s5.
+        step : float
+            Length of each, s.
+        bound : float
+            Displacement beyond which the mass counts as gone, m: NaN from there on.
+        """
+        stiffest = self.f * math.sqrt(1.0 + max(self.stop, 0.0))
+        parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / LONGEST))
+        found = np.full(len(cubics) + 1, np.nan)
+        run = run_function() or run_slowly
+        run(self.numbers(), np.ascontiguousarray(cubics), step, parts, bound, found)
+        return found
+
+
+@functools.cache
+def run_function() -> Any:
+    """Load the library's function, once per process; return None where there is no library."""
+    path = library(SOURCE)
+    if path is None:
+        return None
+    try:
+        run = ctypes.CDLL(str(path)).run
+    except OSError as reason:  # such as a folder from which nothing may be run
+        log.info("%s cannot be loaded, Python does the same: %s", path, reason)
+        return None
+    run.argtypes = [c_void_p, c_void_p, c_ssize_t, c_double, c_int, c_double, c_void_p]
+    run.restype = c_ssize_t
+
+    def call(numbers: tuple[float, ...], cubics: Floats, *rest: Any) -> int:
+        *settings, out = rest
+        array = np.array(numbers)
+        arguments = array.ctypes.data, cubics.ctypes.data, len(cubics), *settings
+        return int(run(*arguments, out.ctypes.data))
+
+    return call
+
+
+def run_slowly(
+    numbers: tuple[float, ...], cubics: Floats, step: float, parts: int, bound: float, out: Floats
+) -> int:
+    """The steps in Python, for machines without a compiler."""
+    stiffness, damping, square, cube, friction, slow, stop, position, side = numbers
+
+    def acceleration(base: float, x: float, v: float) -> float:
+        beyond = side * x - position
+        spring = x + square * x * x + cube * x * x * x
+        if beyond > 0.0:
+            spring = spring + side * stop * beyond
+        force = stiffness * spring + damping * v
+        if friction != 0.0:
+            force = force + friction * (v / math.sqrt(v * v + slow * slow))
+        return -base - force
+
+    x, v, h = 0.0, 0.0, step / parts
+    out[0] = x
+    for number, c in enumerate(cubics.tolist()):
+        right = c[0]
+        for part in range(parts):
+            t, u, left = part * h + 0.5 * h, part * h + h, right
+            middle = c[0] + t * (c[1] + t * (0.5 * c[2] + t * c[3] / 6.0))
+            right = c[0] + u * (c[1] + u * (0.5 * c[2] + u * c[3] / 6.0))
+            a1 = acceleration(left, x, v)
+            v2 = v + 0.5 * h * a1
+            a2 = acceleration(middle, x + 0.5 * h * v, v2)
+            v3 = v + 0.5 * h * a2
+            a3 = acceleration(middle, x + 0.5 * h * v2, v3)
+            v4 = v + h * a3
+            a4 = acceleration(right, x + h * v3, v4)
+            x = x + h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)
+            v = v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)
+        if not abs(x) < bound:
+            return number
+        out[number + 1] = x
+    return len(cubics)

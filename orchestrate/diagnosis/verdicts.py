@@ -1,0 +1,144 @@
+"""The rule by which fits and signs become a verdict, and the words for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .fitting import SOFT
+
+Floats = NDArray[np.float64]
+DELAMINATED = "delaminated"
+NOT_SEEN = "no opening seen"
+NOT_DESCRIBED = "not described"
+UNDECIDED = "undecided"
+RATIO = 1.5  # by which the delaminated misfit has to be smaller than the best sound one
+SOUND_DESCRIBES = 1.0  # largest misfit of a sound hypothesis that describes a record
+DELAMINATED_DESCRIBES = 2.5  # of the delaminated one: real contacts are not the model's
+CERTAIN = 0.9  # share of the resampled records in which the ratio has to hold
+RESAMPLED, BLOCKS, SEED = 1000, 20, 7
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What the rule goes by.
+
+    Attributes
+    ----------
+    excess : float
+        Order 2 over the size from which it counts as seen, where it is furthest above.
+    order2 : float
+        Its size there, over order 1.
+    apart : float
+        Difference of two sensors over the size from which it counts; 0 with one sensor.
+    sound, delaminated : str
+        Names of the best hypotheses of both kinds.
+    sound_misfit, delaminated_misfit : float
+    share : float
+        Of resampled records in which the delaminated one is better by ``RATIO``.
+    sensors : int
+    low, high : float
+        Level of the base, m/s2.
+    first, last : float
+        Frequencies, Hz.
+    smallest : float
+        Smallest opening that would have been seen, m.
+    """
+
+    excess: float
+    order2: float
+    apart: float
+    sound: str
+    sound_misfit: float
+    delaminated: str
+    delaminated_misfit: float
+    share: float
+    sensors: int
+    low: float
+    high: float
+    first: float
+    last: float
+    smallest: float
+
+    @property
+    def ratio(self) -> float:
+        """Misfit of the best sound hypothesis over that of the delaminated one."""
+        return self.sound_misfit / self.delaminated_misfit
+
+    @property
+    def seen(self) -> bool:
+        """Whether order 2, or two faces that move differently, are seen."""
+        return self.excess > 1.0 or self.apart > 1.0
+
+    @property
+    def odds(self) -> float:
+        """For delaminated against sound, by the share of resampled records."""
+        return (self.share * RESAMPLED + 0.5) / ((1.0 - self.share) * RESAMPLED + 0.5)
+
+    def verdict(self) -> str:
+        """One of the four words."""
+        sound = self.sound_misfit <= SOUND_DESCRIBES
+        delaminated = self.delaminated_misfit <= DELAMINATED_DESCRIBES
+        if not self.seen:
+            return NOT_SEEN if sound else NOT_DESCRIBED
+        if delaminated and self.ratio >= RATIO:
+            return DELAMINATED if self.share >= CERTAIN else UNDECIDED
+        if sound or delaminated:
+            return UNDECIDED
+        return NOT_DESCRIBED
+
+    def reason(self) -> str:
+        """What decided, in one sentence, by its numbers."""
+        size = f"order 2 is up to {100.0 * self.order2:.2g} % of order 1"
+        signs = f"{size}, {self.excess:.2g} times the size from which it counts as seen"
+        if self.sensors > 1:
+            signs += f"; the two faces differ by {self.apart:.2g} times what counts"
+        fits = (
+            f"the {self.delaminated} model misses the record by {self.delaminated_misfit:.2g}, "
+            f"the best sound one ({self.sound}) by {self.sound_misfit:.2g}"
+        )
+        return f"{signs}; {fits}: {self.ratio:.2g} times as much, where {RATIO:g} decides"
+
+    def settle(self) -> str:
+        """What measurement would settle it, or could change it, in one sentence."""
+        other = "an accelerometer on the other face" if self.sensors == 1 else "a slower sweep"
+        return {
+            DELAMINATED: "A sweep in the other direction and another level should give the same "
+            "frequencies of the halves; a free clamp or a loose part would not.",
+            NOT_SEEN: f"A higher level than {self.high:.3g} m/s2: faces that are pressed together "
+            "open above a threshold only, and below it no record tells them from bonded ones.",
+            NOT_DESCRIBED: "Sweeps up and down at two levels after the clamp is tightened and "
+            "loose parts are taken away: what is seen is neither a sound beam nor this one.",
+            UNDECIDED: f"Sweeps up and down at twice the level, with {other}.",
+        }[self.verdict()]
+
+    def seen_up_to(self) -> str:
+        """The range that was looked at, and how small an opening would have been seen."""
+        return (
+            f"up to {self.high:.3g} m/s2 from {self.first:.3g} to {self.last:.3g} Hz; an opening "
+            f"that moves by {1e6 * self.smallest:.2g} micrometres would have been seen"
+        )
+
+
+def share_of_better(sound: Floats, delaminated: Floats) -> float:
+    """Share of records put together of blocks of windows in which the ratio of misfits holds.
+
+    Parameters
+    ----------
+    sound, delaminated : ndarray, shape (sensors, 4, windows)
+        Residuals of the best of both.
+    """
+    one, other = (soft(values).mean(axis=(0, 1)) for values in (sound, delaminated))
+    blocks = np.array_split(np.arange(len(one)), min(BLOCKS, len(one)))
+    sums = np.array([[one[block].sum(), other[block].sum()] for block in blocks])
+    rng = np.random.default_rng(SEED)
+    chosen = rng.integers(0, len(sums), size=(RESAMPLED, len(sums)))
+    first, second = sums[chosen].sum(axis=1).T
+    return float(np.mean(np.sqrt(first / second) >= RATIO))
+
+
+def soft(residuals: Floats) -> Floats:
+    """Squares of residuals, large ones by their size."""
+    return np.asarray(2.0 * SOFT**2 * (np.sqrt(1.0 + (residuals / SOFT) ** 2) - 1.0))

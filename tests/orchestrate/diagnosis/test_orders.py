@@ -1,0 +1,86 @@
+"""Orders in short windows, against signals whose orders are known."""
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate.diagnosis.orders import ORDERS, record_orders
+
+RATE = 1000.0
+
+
+def made(sweep, noise=0.0, later=0.0, seed=3):
+    """A record whose mass has orders 1, 2, 3 and 1/2 of amplitudes 4, 1, 0.5 and 0.3."""
+    time = np.arange(0.0, sweep.duration, 1.0 / RATE)
+    phase = sweep.phase(time + later)
+    rng = np.random.default_rng(seed)
+    mass = 4.0 * np.sin(phase + 0.7) + np.sin(2 * phase) + 0.5 * np.sin(3 * phase)
+    mass += 0.3 * np.sin(0.5 * phase)
+    mass, box = (x + noise * rng.standard_normal(len(x)) for x in (mass, 2.0 * np.sin(phase)))
+    return orchestrate.record(time=time, box_acceleration=box, acceleration1=mass)
+
+
+SWEEPS = {
+    "up": {"first": 20.0, "last": 60.0, "duration": 12.0},
+    "down": {"first": 60.0, "last": 20.0, "duration": 12.0},
+    "logarithmic": {"first": 15.0, "last": 60.0, "duration": 15.0, "spacing": "log"},
+}
+
+
+@pytest.mark.parametrize("name", SWEEPS)
+def test_orders_are_those_of_the_signal(name):
+    sweep = orchestrate.SweptSine(acceleration=2.0, **SWEEPS[name])
+    found = record_orders(made(sweep, noise=0.02))
+    frequency = sweep.frequency(found.windows.time)
+    np.testing.assert_allclose(found.windows.frequency, frequency, rtol=2e-3)
+    expected = (4.0 * np.exp(0.7j), 1.0, 0.5, 0.3)
+    got = np.array([found.order(n, "acceleration1") for n in ORDERS])
+    assert abs(got[0] - expected[0]).max() < 0.05
+    np.testing.assert_allclose(abs(got[1:]), np.abs(expected[1:])[:, None] + 0 * got[1:], atol=0.03)
+
+
+def test_the_floor_is_that_of_the_noise_and_not_of_orders():
+    sweep = orchestrate.SweptSine(acceleration=2.0, **SWEEPS["up"])
+    quiet, loud = (record_orders(made(sweep, noise=n)) for n in (1e-6, 0.1))
+    expected = 0.1 * 2.0 * np.sqrt(1.5 / 350)  # Hann windows of about 350 samples
+    assert quiet.noise.max() < 1e-3
+    np.testing.assert_allclose(loud.noise, expected, rtol=0.3)
+
+
+def test_samples_that_are_taken_later_have_the_same_orders():
+    sweep = orchestrate.SweptSine(acceleration=2.0, **SWEEPS["up"])
+    found = record_orders(made(sweep))
+    shifted = made(sweep, later=0.5 / RATE).acceleration1.values
+    again = found.windows.amplitudes(shifted[np.newaxis], later=0.5)[0, :3]
+    expected = found.amplitude[1, :3]
+    assert abs(again - expected).max() < 2e-3
+
+
+def test_an_order_above_the_sampling_is_missing_and_not_wrong():
+    sweep = orchestrate.SweptSine(first=120.0, last=240.0, duration=12.0, acceleration=2.0)
+    found = record_orders(made(sweep))
+    above = 3.0 * found.windows.frequency > 0.45 * RATE
+    assert 0 < above.sum() < len(above)
+    assert (np.isnan(found.order(3.0, "acceleration1")) == above).all()
+    assert np.isfinite(found.floor).all()
+
+
+@pytest.mark.parametrize("kind", ["noise", "still", "short"])
+def test_what_is_no_swept_sine_is_refused_in_one_line(kind):
+    rng = np.random.default_rng(5)
+    count = 40 if kind == "short" else 20_000
+    box = {"noise": rng.standard_normal(count), "still": np.zeros(count)}.get(
+        kind, np.sin(np.arange(count))
+    )
+    record = orchestrate.record(
+        box_acceleration=box, acceleration1=rng.standard_normal(count), sample_rate=RATE
+    )
+    with pytest.raises(orchestrate.InputError, match="expected a swept") as caught:
+        record_orders(record)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_record_without_an_acceleration_of_the_structure_is_refused():
+    record = orchestrate.record(box_acceleration=np.sin(np.arange(9000) / 9), sample_rate=RATE)
+    with pytest.raises(orchestrate.InputError, match="acceleration1, acceleration2 or both"):
+        record_orders(record)
