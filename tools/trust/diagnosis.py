@@ -20,7 +20,7 @@ from .campaign import Campaign, Outcome
 
 DELAMINATED, NO_OPENING = "delaminated", "no opening seen"
 NOT_DESCRIBED, UNDECIDED = "not described", "undecided"
-REFUSED, NOT_ASKED = "refused", "not asked"
+REFUSED = "refused"
 KINDS = (  # one after the other: the two that the targets are about are drawn more often
     *("sound", "delaminated", "hardening", "delaminated", "friction", "gap"),
     *("sound", "preloaded", "clamp", "delaminated", "intact elements", "elements", "sagging"),
@@ -126,11 +126,8 @@ def judged(case: Case) -> dict[str, Any]:
 
 def asked(case: Case) -> tuple[str, Mapping[str, float]]:
     """The verdict on a case, and the numbers that come with it: its ratio, and f1 and f2."""
-    detect = getattr(orchestrate, "detect", None)
-    if detect is None:
-        return NOT_ASKED, {}
     try:
-        answer = detect(case.record, case.guess, jobs=1, progress=False)
+        answer = orchestrate.detect(case.record, case.guess, jobs=1, progress=False)
     except VibroimpactError:
         return REFUSED, {}
     names = [str(name) for name in answer.hypothesis.values if str(name).startswith(DELAMINATED)]
