@@ -14,7 +14,6 @@ from .diagnosis import (
     COLUMNS,
     DELAMINATED,
     NO_OPENING,
-    NOT_ASKED,
     NOT_DESCRIBED,
     REFUSED,
     UNDECIDED,
@@ -92,7 +91,8 @@ def target_lines(table: pd.DataFrame) -> list[str]:
         )
     seconds = table.seconds.astype(float)
     found.append(
-        f"- a verdict takes {seconds.median():.1f} s in the median, {seconds.max():.1f} s at most."
+        f"- a verdict takes {seconds.median():.1f} s of one processor in the median, "
+        f"{seconds.max():.1f} s at most."
     )
     return found
 
@@ -190,13 +190,12 @@ def draw_panel(panel: Any, name: str, table: pd.DataFrame) -> None:
         known = both[both[sign].notna()]
         found = roc.curve(known[sign].astype(float), known.opened.to_numpy() == 1)
         panel.plot(found.false, found.true, color=colour, label=LABELS[sign])
-    if (table.verdict != NOT_ASKED).any():
-        counts = [(int((own.verdict == DELAMINATED).sum()), len(own)) for own in (sound, opened)]
-        at = np.array([count / of for count, of in counts])
-        ends = np.array([roc.interval(*one) for one in counts])
-        bars = np.abs(ends - at[:, np.newaxis])[:, :, np.newaxis]
-        style = {"fmt": "o", "color": "black", "label": "detect, with 95 % intervals"}
-        panel.errorbar(*at, xerr=bars[0], yerr=bars[1], **style)
+    counts = [(int((own.verdict == DELAMINATED).sum()), len(own)) for own in (sound, opened)]
+    at = np.array([count / of for count, of in counts])
+    ends = np.array([roc.interval(*one) for one in counts])
+    bars = np.abs(ends - at[:, np.newaxis])[:, :, np.newaxis]
+    style = {"fmt": "o", "color": "black", "label": "detect, with 95 % intervals"}
+    panel.errorbar(*at, xerr=bars[0], yerr=bars[1], **style)
     panel.set_title(f"{name} ({len(opened)}, {len(sound)})", fontsize=8)
     panel.set(xlim=(-0.02, 1.02), ylim=(-0.02, 1.02))
     panel.grid(alpha=0.3)

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.stats import norm
 
 import orchestrate
@@ -171,3 +172,37 @@ def test_other_benches_are_another_campaign():
 
 def test_each_kind_of_beam_is_asked_about():
     assert set(diagnosis.KINDS) == set(recipe.KINDS)
+
+
+def made_answer(record, guess, **running):
+    """What the detector answers, of two delaminated hypotheses the second is the better one."""
+    names = ["bonded", "delaminated", "delaminated, with clearance"]
+    return xr.Dataset(
+        {
+            "verdict": ((), "delaminated"),
+            "ratio": ((), 3.0),
+            "misfit": ("hypothesis", [6.0, 3.0, 2.0]),
+            "value": (("hypothesis", "parameter"), [[np.nan, np.nan], [1.0, 2.0], [41.0, 52.0]]),
+        },
+        {"hypothesis": names, "parameter": ["f1", "f2"]},
+    )
+
+
+def test_the_numbers_are_those_of_the_best_delaminated_hypothesis(monkeypatch):
+    monkeypatch.setattr(orchestrate, "detect", made_answer)
+    case = recipe.Case(xr.Dataset(), orchestrate.Structure(), SPLIT)
+    verdict, numbers = diagnosis.asked(case)
+    assert (verdict, numbers) == ("delaminated", {"ratio": 3.0, "f1": 41.0, "f2": 52.0})
+    assert diagnosis.errors_of(numbers, SPLIT) == pytest.approx(
+        {"f1": 41.0 / 45.0 - 1.0, "f2": 52.0 / 45.0 - 1.0}, abs=1e-3
+    )
+    beam = dataclasses.replace(SPLIT, size=0.5)
+    assert diagnosis.errors_of(numbers, beam) == {}, "finite elements have no f1 and f2"
+
+
+def test_what_the_detector_cannot_take_is_refused():
+    """Noise has no orders; the campaign goes on."""
+    made = np.random.default_rng(3).normal(size=(2, 4000))
+    record = orchestrate.record(box_acceleration=made[0], acceleration1=made[1], sample_rate=1000.0)
+    case = recipe.Case(record, orchestrate.Structure.from_file("beam"), SPLIT)
+    assert diagnosis.asked(case) == (diagnosis.REFUSED, {})
