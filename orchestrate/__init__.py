@@ -15,10 +15,11 @@ What is asked
     :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`, :func:`poincare`,
     :func:`attractors`, :func:`basin`, :func:`basin_entropy`, :func:`impact_statistics`;
     :func:`shake` as in the laboratory, by a :class:`SweptSine` or :class:`SteppedSine`,
-    :class:`Random` vibration, a :class:`Shock` or :class:`Sampled` acceleration; :func:`measure` what a :class:`Sensor` reads
-    of it, :func:`record`, :func:`read_record` and :func:`write_record` what was measured;
-    :func:`frf`, :func:`psd`, :func:`track_orders`, :func:`harmonics`, :func:`spectrogram`,
-    :func:`shock_spectrum` and :func:`probability_density` of such a record, or of a measured one;
+    :class:`Random` vibration, a :class:`Shock` or :class:`Sampled` acceleration; :func:`measure`
+    what a :class:`Sensor` reads of it, :func:`record`, :func:`read_record` and
+    :func:`write_record` what was measured; :func:`frf`, :func:`psd`, :func:`track_orders`,
+    :func:`harmonics`, :func:`spectrogram`, :func:`shock_spectrum` and :func:`probability_density`
+    of such a record, or of a measured one, :func:`record_of_run` of a motor's;
     :func:`signs` of delamination in it, :func:`fit` a structure to it and :func:`detect` whether
     it is delaminated, :func:`detect_all` of many; :func:`plan_test` for a record that shows it;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic; :func:`couple`,
