@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from .response.simulate import simulate
     from .response.spectra import spectra
     from .response.sweep import sweep
+    from .response.threshold import contact_threshold
     from .structures import Drive, Excitation, Structure
     from .weak_drive.capture import capture
     from .weak_drive.controllers import SpeedControl, SpeedGradient
@@ -105,6 +106,7 @@ __all__ = [
     "border",
     "branch",
     "capture",
+    "contact_threshold",
     "couple",
     "couple_all",
     "drive_branch",
@@ -161,6 +163,7 @@ PLACES = {  # where each name lives: it is imported when it is used, so that `im
     "response.resonance": ("resonance",),
     "response.sweep": ("sweep",),
     "response.spectra": ("spectra",),
+    "response.threshold": ("contact_threshold",),
     "dynamics.parameter_map": ("map",),
     "dynamics.lyapunov": ("lyapunov",),
     "dynamics.attractors": ("attractors",),

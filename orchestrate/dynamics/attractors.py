@@ -15,15 +15,7 @@ from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, finder, s
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, si_state, variable
-from ..response.questions import (
-    Numbers,
-    Point,
-    SeriesQuestion,
-    numbers,
-    positive,
-    series_arguments,
-    without_clearance,
-)
+from ..response.questions import Numbers, Point, SeriesQuestion, numbers, positive, series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -174,7 +166,7 @@ class AttractorsJob(SeriesQuestion):
         seed = (self.seed, place)
         if self.scale is not None:
             assert scale is not None
-            states = random_starts(self.starts, scale, seed, point.structure.omega)
+            states = random_starts(self.starts, scale, seed, point.structure)
         else:
             size = size_from_rest(instance, point, self.settings)
             gap = scale or self.width * (size.gap or point.length)
@@ -314,19 +306,19 @@ def attractor_variables(
 
 
 def random_starts(
-    count: int, scale: float, seed: tuple[int, int], omega: float
+    count: int, scale: float, seed: tuple[int, int], structure: Structure
 ) -> NDArray[np.float64]:
-    """Draw starts in a box, uniformly.
+    """Draw starts in a box around rest, uniformly.
 
     Parameters
     ----------
     count : int
     scale : float
-        Displacement of mass 1 in +-scale, gap in [0, scale], m; velocity of mass 1 and of the gap
-        in +-omega scale, m/s.
+        Displacement of mass 1 in +-scale from rest, gap in [0, scale], m; velocity of mass 1 and of
+        the gap in +-omega scale, m/s.
     seed : (int, int)
         Of the random numbers: the question's, and the index of the value.
-    omega : float
+    structure : Structure
 
     Returns
     -------
@@ -334,8 +326,9 @@ def random_starts(
         x1, x2, v1, v2.
     """
     draws = np.random.default_rng(list(seed)).uniform(-scale, scale, (count, 4))
-    x1, gap, v1, rate = draws[:, 0], np.abs(draws[:, 1]), draws[:, 2] * omega, draws[:, 3] * omega
-    return np.column_stack([x1, x1 + gap, v1, v1 + rate])
+    omega, x1, gap = structure.omega, draws[:, 0] + structure.at_rest[0], np.abs(draws[:, 1])
+    v1, rate = draws[:, 2] * omega, draws[:, 3] * omega
+    return np.column_stack([x1, x1 + gap - structure.gap_offset, v1, v1 + rate])
 
 
 class SizeFromRest(NamedTuple):
@@ -388,13 +381,14 @@ def starts_in_both_boxes(
         mass 1 lie within 0.7 of the largest displacement from those of the response from rest, the
         gap in [0, 3 G] and its rate in +-3 G Omega with the largest gap G.
     """
-    states = random_starts(count, scale, seed, point.structure.omega)
+    states = random_starts(count, scale, seed, point.structure)
     draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (count, 4))
     frequency = point.excitation.frequency
     around, gap = AROUND * size.displacement, BEYOND * (size.gap or point.length)
     x1 = size.state[0] + around * draws[:, 0]
     v1 = size.state[2] + frequency * around * draws[:, 2]
-    x2, v2 = x1 + gap * np.abs(draws[:, 1]), v1 + frequency * gap * draws[:, 3]
+    x2 = x1 + gap * np.abs(draws[:, 1]) - point.structure.gap_offset
+    v2 = v1 + frequency * gap * draws[:, 3]
     states[1::2] = np.column_stack([x1, x2, v1, v2])[1::2]
     return states
 
@@ -515,7 +509,6 @@ def attractors(
     >>> found.multiplicity.values[0], found.share.values[0]
     (array([1., 2.]), array([0.825, 0.175]))
     """
-    without_clearance(structure, "attractors", over)
     job = AttractorsJob(
         **series_arguments(structure, eta, frequency, amplitude, over, values),
         name=f"attractors_{structure.label()}",

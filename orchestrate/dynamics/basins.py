@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, finder
+from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, finder, gap_between
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import si_state, variable
-from ..response.questions import Point, Question, one_point, state, without_clearance
+from ..response.questions import Point, Question, one_point, state
 from ..response.respond import sample
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -46,7 +46,7 @@ AXES = {  # coordinates of a plane of starts: units, long name
     "x2": ("m", "displacement of mass 2 at the start"),
     "v1": ("m/s", "velocity of mass 1 at the start"),
     "v2": ("m/s", "velocity of mass 2 at the start"),
-    "x_rel": ("m", "gap x2 - x1 at the start"),
+    "x_rel": ("m", "gap x2 - x1 + clearance at the start"),
     "v_rel": ("m/s", "velocity of the gap at the start"),
     "phase": ("rad", "phase of the box at the start"),
 }
@@ -101,12 +101,17 @@ class Plane(NamedTuple):
         """Return states of all starts, shape (y.number * x.number, 4), and phases, row by row."""
         y, x = np.meshgrid(self.y.values(), self.x.values(), indexing="ij")
         given = {self.x.name: x.ravel(), self.y.name: y.ravel()}
-        columns = dict(zip(STATE, np.array(self.at)[:, None] + np.zeros(x.size), strict=True))
+        structure, at = self.point.structure, self.at
+        if not any(at):
+            at = (*structure.at_rest, 0.0, 0.0)
+        columns = dict(zip(STATE, np.array(at)[:, None] + np.zeros(x.size), strict=True))
+        phase = given.get("phase", np.full(x.size, self.point.excitation.phase))
+        if "x_rel" in given:  # from here on, as the difference x2 - x1
+            given["x_rel"] = given["x_rel"] - structure.gap_offset
         columns |= {name: values for name, values in given.items() if name in STATE}
         for name, (one, two) in GAPS.items():
             if name in given:
                 columns[one], columns[two] = mass_values(given, name, columns[one], columns[two])
-        phase = given.get("phase", np.full(x.size, self.point.excitation.phase))
         return np.column_stack([columns[name] for name in STATE]), phase
 
 
@@ -184,7 +189,8 @@ class BasinJob(Question):
             for item in items:
                 assert isinstance(item, Start)
                 decider = decider or MotionDecider(*instances, item.point, self.settings)
-                if item.state[1] < item.state[0]:
+                offset = item.point.structure.gap_offset
+                if gap_between(np.array(item.state), offset) < 0.0:
                     rows.add_absent()
                 else:
                     rows.add(*decider.decide(run_to_phase_zero(decider.plain, item)))
@@ -333,7 +339,6 @@ def basin(
     >>> found.attractor_of.dims, found.multiplicity.values.tolist()
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
-    without_clearance(structure, "basin")
     point = one_point(structure, eta, frequency, amplitude)
     settings = attractor_settings(
         transient=transient,
@@ -434,5 +439,5 @@ def check_plane(job: BasinJob) -> None:
     if job.structure.bonded:
         raise InputError("structure: is bonded; expected one whose masses can part")
     states, _ = job.plane({}).starts()
-    if not (states[:, 1] >= states[:, 0]).any():
+    if not (gap_between(states, job.structure.gap_offset) >= 0.0).any():
         raise InputError("x and y: the masses overlap at every start; expected some with x2 >= x1")

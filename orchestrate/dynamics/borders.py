@@ -210,7 +210,11 @@ def border(
     nodes, kind = first_nodes(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
     given = complete_excitation(
-        start.isel(point=0), names[0], excitation_arguments(eta, frequency, amplitude), pairs[0]
+        start.isel(point=0),
+        names,
+        excitation_arguments(eta, frequency, amplitude),
+        pairs[0],
+        structure,
     )
     second = second_value(structure, names[1], given, box_acceleration)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):

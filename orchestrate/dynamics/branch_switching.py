@@ -83,7 +83,7 @@ def remove_grazing(point: OrbitPoint) -> OrbitPoint:
     nodes = np.delete(orbit.nodes, node, axis=0)
     begin = same_motion(point, orbit.sequence.without(node), nodes)
     ahead = ArclengthStepper(begin.family, begin.root, AWAY, AWAY).root_after(AWAY)
-    return begin if OrbitPoint(begin.family, ahead).clearance > 0.0 else begin.reversed()
+    return begin if OrbitPoint(begin.family, ahead).nearest_miss > 0.0 else begin.reversed()
 
 
 def same_motion(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:

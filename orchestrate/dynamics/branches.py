@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -283,7 +284,7 @@ def branch(
         check_start(start, several=switch is not None)
     low_high = check_limits(over, limits)
     given = complete_excitation(
-        start, over, excitation_arguments(eta, frequency, amplitude), low_high
+        start, (over,), excitation_arguments(eta, frequency, amplitude), low_high, structure
     )
     if start is None:
         start, value = first_orbit(
@@ -345,14 +346,32 @@ def check_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
 
 def complete_excitation(
     start: xr.Dataset | None,
-    over: str,
+    varied: tuple[str, ...],
     given: tuple[tuple[str, float], ...],
     limits: tuple[float, float],
+    structure: Structure,
 ) -> tuple[tuple[str, float], ...]:
-    """Return the excitation's numbers, with the one that varies where it starts."""
-    names = [name for name, _ in given]
+    """Return the excitation's numbers, with the one that varies where it starts.
+
+    Without a clearance the amplitude does not matter, and ``eta`` says all.
+
+    Raises
+    ------
+    InputError
+        Where ``eta`` varies, which takes the amplitude along, from another amplitude.
+    """
+    over, names = varied[0], [name for name, _ in given]
     if start is not None and not given:
         wanted = ("frequency", "amplitude") if over in ("frequency", "amplitude") else ("eta",)
+        levels = structure.clearance != 0.0 or "clearance" in varied or "amplitude" in varied
+        eta, amplitude = (float(start[name].values.flat[0]) for name in ("eta", "amplitude"))
+        if levels and not math.isclose(amplitude * eta**2, 1.0, rel_tol=1e-12):
+            if "eta" in varied:
+                raise InputError(
+                    f"over = 'eta': the start's amplitude is {amplitude!r} m, not 1/eta^2; "
+                    "expected over='frequency' with a clearance"
+                )
+            wanted = ("frequency", "amplitude")
         return tuple((name, float(start[name].values.flat[0])) for name in wanted)
     if over in ("eta", "frequency", "amplitude") and over not in names:
         return (*given, (over, limits[0]))

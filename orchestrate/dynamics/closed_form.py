@@ -1,7 +1,9 @@
 """The closed form between impacts: both masses free, or both as one, (6) with (10), (11) and (18).
 
 All in the paper's units: displacements over a eta^2, time as tau, the excitation by its phase.
-A state is (xi_1, xi_2, xi_1', xi_2'). Oscillators 1 and 2 are the masses, 3 is both as one.
+A state is (xi_1, xi_2, xi_1', xi_2'). Oscillators 1 and 2 are the masses, 3 is both as one. With a
+clearance, xi_2 counts from where mass 2 touches mass 1 at xi_1 = 0: the gap is xi_2 - xi_1 always,
+and the clearance is a constant load of the springs, see :meth:`.Point.faces`.
 """
 
 from __future__ import annotations
@@ -41,6 +43,10 @@ class ClosedForm:
         Displacement by a constant acceleration of the box.
     force_v, force_x : float
         Coefficients of the contact force f (18).
+    gap_offset : float
+        The gap where both springs are unloaded.
+    load : ndarray, shape (3,)
+        Acceleration of each oscillator at no displacement, by the clearance.
     """
 
     eta: float
@@ -54,6 +60,8 @@ class ClosedForm:
     offset: Floats
     force_v: float
     force_x: float
+    gap_offset: float
+    load: Floats
 
     @classmethod
     def from_structure(
@@ -90,6 +98,11 @@ class ClosedForm:
             push = -box_acceleration / (excitation.amplitude * excitation.frequency**2)
         with np.errstate(divide="ignore", invalid="ignore"):
             cosine, sine = -loss / reach, detuning / reach
+        offset, load, gap_offset = push / stiffness, np.zeros(3), 0.0
+        if structure.gap_offset != 0.0:
+            gap_offset = structure.gap_offset / excitation.length(structure)
+            load = gap_offset * stiffness[1] * np.array([0.0, 1.0, m2 / both])
+            offset = offset + load / stiffness
         return cls(
             eta=eta,
             mu=m2 / m1,
@@ -99,10 +112,17 @@ class ClosedForm:
             stiffness=stiffness,
             cosine=cosine,
             sine=sine,
-            offset=push / stiffness,
+            offset=offset,
             force_v=float(2.0 * (damping[0] - damping[1])),
             force_x=float(stiffness[0] - stiffness[1]),
+            gap_offset=gap_offset,
+            load=load,
         )
+
+    @property
+    def rests_in_contact(self) -> bool:
+        """Whether a preload presses the masses together where nothing moves."""
+        return self.gap_offset != 0.0 and bool(self.offset[1] < self.offset[0])
 
     @property
     def fastest(self) -> float:
@@ -230,8 +250,15 @@ class ClosedForm:
         rates[:, :2] = state[:, 2:]
         rates[:, 2:] = drive - 2.0 * self.damping[which] * state[:, 2:]
         rates[:, 2:] -= self.stiffness[which] * state[:, :2]
+        if self.gap_offset != 0.0:
+            rates[:, 2:] += self.load[which]
         return rates
 
     def force(self, position: Floats, velocity: Floats) -> Floats:
         """Return the contact force f (18): negative where the masses are pressed together."""
+        force = self.force_rate(position, velocity)
+        return force if self.gap_offset == 0.0 else force + float(self.load[1])
+
+    def force_rate(self, position: Floats, velocity: Floats) -> Floats:
+        """Return a derivative of the contact force from those of displacement and velocity."""
         return self.force_v * velocity + self.force_x * position

@@ -132,8 +132,7 @@ def features(response: Response, length: float) -> list[float]:
     length : float
         Unit of the gap, a eta^2 in m.
     """
-    n, samples = response.multiplicity, response.samples
-    gaps = (samples[:, 1] - samples[:, 0]) / length
+    n, gaps = response.multiplicity, response.gap / length
     impacts = response.impacts_per_period
     if n:  # over whole periods of the response
         gaps, impacts = gaps[-n:], round(n * impacts) / n

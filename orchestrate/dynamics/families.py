@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..response.questions import EXCITATION_PARAMETERS, Point, point, without_clearance
+from ..response.questions import EXCITATION_PARAMETERS, Point, point
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import expected_one_of
 from .closed_form import ClosedForm, Floats
@@ -114,7 +114,7 @@ def require_delaminated(structure: Structure) -> Structure:
     """
     if structure.bonded:
         raise InputError("bonded = True: expected a structure whose masses knock")
-    return without_clearance(structure, "an orbit")
+    return structure
 
 
 def check_parameters(over: tuple[str, ...]) -> None:
@@ -126,8 +126,6 @@ def check_parameters(over: tuple[str, ...]) -> None:
     """
     known = (*EXCITATION_PARAMETERS, *PARAMETERS, ACCELERATION)
     for name in over:
-        if name == "clearance":
-            raise InputError("clearance: branches do not vary it; expected another parameter")
         if name not in known:
             raise InputError(f"over = {name!r}: no parameter; {expected_one_of(name, known)}")
 

@@ -145,7 +145,7 @@ class AttractorsAtValue:
 
     def lead_from(self, motion: SettledMotion) -> tuple[int, int]:
         """Return where an attractor of a neighbour leads here: the attractor's number, and how."""
-        state = motion.states[0] / motion.point.scale * self.decider.point.scale
+        state = self.decider.point.from_faces(motion.point.faces(motion.states[0]))
         reached, _ = self.decider.decide(state)
         if motion.orbit is not None and may_differ(motion, reached):
             followed = self.decider.continue_orbit(motion)
@@ -161,7 +161,7 @@ def may_differ(one: SettledMotion, other: SettledMotion) -> bool:
         other.impacts_per_period,
     ):
         return True
-    state = one.states[0] / one.point.scale * other.point.scale
+    state = other.point.from_faces(one.point.faces(one.states[0]))
     return other.nearest(state)[1] > FAR
 
 

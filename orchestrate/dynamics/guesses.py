@@ -49,7 +49,7 @@ def start(instance: EventInstance, point: Point, form: ClosedForm, state: Floats
 
 def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
     """Return the nodes of impacts, with the releases between them."""
-    state, mu = impacts.state / point.scale, form.mu
+    state, mu = point.faces(impacts.state), form.mu
     phase = point.excitation.frequency * impacts.time
     velocity = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
     nodes = np.stack([phase, state[:, 0], velocity, impacts.closing / point.speed], axis=1)

@@ -109,13 +109,13 @@ class PeriodicOrbit:
     @cached_property
     def contact(self) -> NDArray[np.bool_]:
         """Whether they are permanent contact."""
-        return self.sequence.sticks if self.count else np.zeros(1, dtype=bool)
+        return self.sequence.sticks if self.count else np.array([self.form.rests_in_contact])
 
     @cached_property
     def starts(self) -> Floats:
         """States at their begins, shape (k, 4): after the impact (15)."""
         if not self.count:
-            return self.form.steady(np.zeros(1))
+            return self.form.steady(np.zeros(1), self.contact)
         _, position, velocity, closing = self.nodes.T
         parting = np.where(self.contact | self.sequence.releases, 0.0, self.form.e * closing)
         part = parting / (1.0 + self.form.mu)
@@ -242,7 +242,7 @@ class PeriodicOrbit:
         contact the deviation of the gap is gone, so with a contact two of them are zero.
         """
         if not self.count:
-            return self.flows[0]
+            return self.flows[0] @ self.form.centre() if self.contact[0] else self.flows[0]
         before, after = self.blocks()
         product = np.eye(4)
         for step in -np.linalg.solve(after, before):

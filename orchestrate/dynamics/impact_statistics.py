@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..access import Impacts, finder
 from ..checks import checked_integer
 from ..response.labels import variable
-from ..response.questions import series_arguments, without_clearance
+from ..response.questions import series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -117,7 +117,7 @@ def contact_time(impacts: Impacts, item: Followed, end: float) -> float:
     if first:
         impacts = Impacts(
             np.append(0.0, impacts.time),
-            np.vstack([np.asarray(item.start) / item.point.scale, impacts.state]),
+            np.vstack([item.point.faces(np.asarray(item.start)), impacts.state]),
             np.append(0.0, impacts.closing),
             np.append(True, impacts.sticks),
         )
@@ -198,7 +198,6 @@ def impact_statistics(
     >>> found.impacts.values.tolist(), found.contacts.values.tolist()
     ([30.0, 2.0], [1.0, 0.0])
     """
-    without_clearance(structure, "impact_statistics", over)
     question = series_arguments(structure, eta, frequency, amplitude, over, values)
     name = f"impacts_{structure.label()}"
     job = ImpactStatisticsJob(

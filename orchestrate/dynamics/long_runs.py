@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import STATE, EventInstance
+from ..access import STATE, EventInstance, gap_between
 from ..response.questions import Point
 from .following import State, follow_impacts
 from .lyapunov import WANDER, Exponent, largest_exponent
@@ -174,7 +174,10 @@ def another_start(point: Point, start: State, seed: NDArray[np.int64] | Sequence
         Both masses moved together, and the gap and the velocities changed, by 1 % at most; the
         masses do not overlap.
     """
-    x1, x2, v1, v2 = start
+    x1, _, v1, v2 = start
     gap, moved, fast, slow = 0.01 * np.random.default_rng(seed).uniform(-1.0, 1.0, 4)
-    x1, x2 = x1 * (1.0 + moved), x1 * (1.0 + moved) + (x2 - x1) * (1.0 + gap)
+    offset = point.structure.gap_offset
+    apart = float(gap_between(np.array(start), offset)) * (1.0 + gap)
+    x1 = x1 * (1.0 + moved)
+    x2 = x1 + apart - offset
     return float(x1), float(x2), float(v1 * (1.0 + fast)), float(v2 * (1.0 + slow))

@@ -20,7 +20,7 @@ from ..access import Impacts, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import Point, positive, series_arguments, without_clearance
+from ..response.questions import Point, positive, series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -138,7 +138,8 @@ def log_growth(blocks: Floats, logs: Floats) -> Floats | None:
 
 
 def without_impacts(structure: Structure) -> Exponent | None:
-    """Return the exponent of a structure that moves as a linear one: bonded, or of alike masses.
+    """Return the exponent of a structure that moves as a linear one, where its masses do not
+    impact: bonded, or of alike masses, or pressed together by a preload, or apart in a gap.
 
     Returns
     -------
@@ -146,8 +147,11 @@ def without_impacts(structure: Structure) -> Exponent | None:
         Exact; None for all other structures.
     """
     mu, kappa = structure.mu, structure.kappa
+    if structure.gap_offset > 0.0:
+        each = decay_rate(structure.D1, 1.0), decay_rate(structure.D2, kappa / mu)
+        return Exponent(-min(each), 0.0)
     alike = structure.D1 == structure.D2 and kappa / mu == 1.0
-    if not (structure.bonded or alike):
+    if not (structure.bonded or alike or structure.gap_offset < 0.0):
         return None
     return Exponent(-decay_rate(structure.D3, (1.0 + kappa) / (1.0 + mu)), 0.0)
 
@@ -323,7 +327,6 @@ def lyapunov(
     >>> found.verdict.values.tolist(), float(found.exponent[1].round(3))
     ([1, -1], -0.007)
     """
-    without_clearance(structure, "lyapunov", over)
     question = series_arguments(structure, eta, frequency, amplitude, over, values)
     name = f"exponent_{structure.label()}"
     job = LyapunovJob(

@@ -65,7 +65,7 @@ class OrbitPoint:
         return self.multipliers[self.multipliers.imag > 0.0]
 
     @cached_property
-    def clearance(self) -> float:
+    def nearest_miss(self) -> float:
         """Smallest gap at which the masses turn away from each other without an impact."""
         return nearest_miss(self.orbit, turning_points(self.orbit))[0]
 
@@ -122,7 +122,7 @@ class OrbitPoint:
             closing = self.orbit.nodes[~self.orbit.sequence.releases, CLOSING]
             return float(closing.min(initial=np.inf))
         if kind == TOUCHING:
-            return self.clearance
+            return self.nearest_miss
         if kind == EARLIER_RELEASE:
             return weakest_force(self.orbit)
         return self.contact_margin(kind)

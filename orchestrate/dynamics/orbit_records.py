@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..response.labels import Variable, flags, nondimensional_state, parameter, variable, yes_or_no
+from ..response.questions import Point
 from ..running.job import Table
 from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
@@ -43,7 +45,7 @@ class OrbitRecord:
     product : float
         Of the multipliers, as dampers and impacts dictate it.
     amplitudes : Amplitudes
-    clearance : float
+    nearest_miss : float
         Smallest gap at which the masses turn away from each other without an impact.
     residual : float
     fmu : FmuCheck
@@ -56,7 +58,7 @@ class OrbitRecord:
     multipliers: Floats
     product: float
     amplitudes: Amplitudes
-    clearance: float
+    nearest_miss: float
     residual: float
     fmu: FmuCheck
 
@@ -77,7 +79,7 @@ class OrbitRecord:
             multipliers=np.stack([multipliers.real, multipliers.imag], axis=1),
             product=orbit.multiplier_product(),
             amplitudes=Amplitudes.from_orbit(orbit, turns),
-            clearance=nearest_miss(orbit, turns)[0],
+            nearest_miss=nearest_miss(orbit, turns)[0],
             residual=residual,
             fmu=fmu,
         )
@@ -104,7 +106,7 @@ def table_of(records: Rows[OrbitRecord]) -> Table:
         "amplitudes": np.array(
             [(r.amplitudes.xi_1, r.amplitudes.xi_2, r.amplitudes.gap) for r in records]
         ),
-        "clearance": np.array([r.clearance for r in records]),
+        "nearest_miss": np.array([r.nearest_miss for r in records]),
         "residual": np.array([r.residual for r in records]),
         "same": np.array([r.fmu.same for r in records]),
         "away": np.array([r.fmu.away for r in records]),
@@ -146,9 +148,10 @@ def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
     scale = np.array([point.scale for point in points])
     frequency = np.array([point.excitation.frequency for point in points])
     omega = np.array([point.structure.omega for point in points])
+    closed = np.array([setting.form(values).rests_in_contact for values in table["values"]])
     return {
-        **states(table, scale, row),
-        **impacts(table, scale, frequency, row),
+        **states(table, points, row),
+        **impacts(table, scale, frequency, closed, row),
         **stability(table, frequency / omega, row),
         **amplitude_variables(table, row),
         **checks(table, row),
@@ -156,25 +159,33 @@ def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
     }
 
 
-def states(table: Table, scale: Floats, row: str) -> dict[str, Variable]:
+def states(table: Table, points: Rows[Point], row: str) -> dict[str, Variable]:
     """Return the states of the orbits at each phase 0."""
     zero, along = table["zero"], (row, "sample", "coordinate")
     text = "states at phase 0: x1, x2 in m, v1, v2 in m/s"
-    gap = zero[:, :, 1] - zero[:, :, 0]
+    gap, xi = zero[:, :, 1] - zero[:, :, 0], zero.copy()
+    xi[:, :, 1] -= np.array([[p.structure.gap_offset / p.length] for p in points])
+    state = [point.from_faces(faces) for point, faces in zip(points, zero, strict=True)]
     return {
-        "state": variable(along, zero * scale[:, None], "SI", text),
-        "xi": variable(along, zero, "1", "states at phase 0 (3)"),
+        "state": variable(along, np.array(state), "SI", text),
+        "xi": variable(along, xi, "1", "states at phase 0 (3)"),
         "xi_rel": variable((row, "sample"), gap, "1", "gap at phase 0 (21)"),
     }
 
 
-def impacts(table: Table, scale: Floats, frequency: Floats, row: str) -> dict[str, Variable]:
-    """Return the impacts of the orbits; NaN of nodes that are none."""
+def impacts(
+    table: Table, scale: Floats, frequency: Floats, closed: NDArray[np.bool_], row: str
+) -> dict[str, Variable]:
+    """Return the impacts of the orbits; NaN of nodes that are none.
+
+    Without any node the masses are in contact all the time where they rest so (``closed``).
+    """
     nodes, along, periods = table["nodes"], (row, "node"), table["zero"].shape[1]
     there = (table["kinds"] >= 0) & (table["kinds"] != RELEASE)
     times = np.where(there, nodes[:, :, PHASE] / frequency[:, None], np.nan)
     speeds = np.where(there, nodes[:, :, CLOSING] * scale[:, 2:3], np.nan)
     contact = (table["kinds"] == RELEASE).any(axis=1)
+    contact |= closed & (table["kinds"] < 0).all(axis=1)
     rate = there.sum(axis=1) / periods
     return {
         "impact_time": variable(along, times, "s", "impacts after the first phase 0"),
@@ -218,7 +229,7 @@ def amplitude_variables(table: Table, row: str) -> dict[str, Variable]:
         for i, (name, text) in enumerate(texts.items())
     }
     text = "smallest gap at which the masses turn away from each other without an impact"
-    data["clearance"] = variable(row, table["clearance"], "1", f"{text}; infinite: none")
+    data["nearest_miss"] = variable(row, table["nearest_miss"], "1", f"{text}; infinite: none")
     return data
 
 
@@ -248,7 +259,7 @@ def node_variables(table: Table, row: str) -> dict[str, Variable]:
             along, nodes[:, :, PHASE], "rad", "phase of the box, where it happens"
         ),
         "node_position": variable(
-            along, nodes[:, :, POSITION], "1", "displacement of both masses there over a eta^2"
+            along, nodes[:, :, POSITION], "1", "displacement of mass 1 there over a eta^2"
         ),
         "node_velocity": variable(
             along, nodes[:, :, VELOCITY], "1", "velocity of their centre over omega a eta^2"

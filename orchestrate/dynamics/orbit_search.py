@@ -109,10 +109,10 @@ def run_in_fmu(
     """Run the orbit through in the FMU."""
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
-    start(instance, point, orbit.form, state * point.scale)
+    start(instance, point, orbit.form, point.from_faces(state))
     end = orbit.sequence.periods * point.excitation.period
     observed = instance.impacts(0.0, end)
-    after = instance.read("x1", "x2", "v1", "v2") / point.scale
+    after = point.faces(instance.read("x1", "x2", "v1", "v2"))
     away = float(np.abs(after - state).max())
     wanted, first = from_phase_zero(orbit.nodes, orbit.sequence.periods)
     kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)

@@ -27,11 +27,11 @@ from ..response.questions import (
     Point,
     Question,
     check_form,
+    checked_structure,
     numbers,
     point,
     positive,
     state,
-    without_clearance,
 )
 from ..response.respond import Response, respond
 from ..response.sweep import HOW_DECIDED
@@ -325,7 +325,7 @@ def map(
     asked: dict[str, Any] = {"eta": eta, "frequency": frequency, "amplitude": amplitude, **others}
     arguments = {name: numbers(name, asked[name]) for name in asked if name not in running}
     job = MapJob(
-        structure=without_clearance(structure, "map", *arguments),
+        structure=checked_structure(structure),
         name=f"map_{structure.label()}",
         given=tuple((name, value) for name, value in arguments.items() if value is not None),
         transient=checked_integer("transient", transient, 0),

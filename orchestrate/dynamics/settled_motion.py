@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..access import gap_between
 from ..constants import TURN
 from ..response.multiplicity import MIN_RELATIVE_GAP
 from ..response.questions import Point
@@ -69,9 +70,9 @@ class SettledMotion:
     @classmethod
     def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
         """Return the motion of a stable orbit."""
-        periods, scale = orbit.sequence.periods, point.scale
-        states = stroboscopic_states(orbit) * scale
-        states[:, 1] = np.maximum(states[:, 0], states[:, 1])  # in contact, within rounding
+        periods, faces = orbit.sequence.periods, stroboscopic_states(orbit)
+        faces[:, 1] = np.maximum(faces[:, 0], faces[:, 1])  # in contact, within rounding
+        states = point.from_faces(faces)
         return cls(
             point=point,
             decided=ORBIT,
@@ -87,7 +88,7 @@ class SettledMotion:
     @cached_property
     def features(self) -> list[float]:
         """Numbers that do not depend on the phase of the samples, by ``clusters.FEATURES``."""
-        gaps = (self.states[:, 1] - self.states[:, 0]) / self.point.length
+        gaps = gap_between(self.states, self.point.structure.gap_offset) / self.point.length
         means = [float(gaps.mean()), float(gaps.std())]
         gap = self.gap / self.point.length
         return [self.multiplicity, self.impacts_per_period, gap, *means]
@@ -104,7 +105,7 @@ class SettledMotion:
     def free_states(self) -> KnownStates:
         """States of an orbit at its free phase in successive periods."""
         assert self.orbit is not None, "no orbit"
-        states = stroboscopic_states(self.orbit, self.free_phase) * self.point.scale
+        states = self.point.from_faces(stroboscopic_states(self.orbit, self.free_phase))
         return KnownStates.from_states(states, self.point.excitation.frequency, self.gap)
 
     def is_orbit_of(self, other: SettledMotion) -> bool:

@@ -37,13 +37,18 @@ class TurningPoints:
 
 
 def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
-    """Return segments and phases at which a motion is sampled, in order, inside segments."""
+    """Return segments and phases at which a motion is sampled, in order, inside segments.
+
+    Without nodes the only segment is sampled all around.
+    """
     counts = MIN_SAMPLES + np.ceil(
         SAMPLES_PER_PERIOD * np.abs(orbit.durations) * orbit.form.fastest / TURN
     ).astype(int)
     segment = np.repeat(np.arange(len(counts)), counts)
     place = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     part = (place + 0.5) / counts[segment]
+    if not orbit.count:  # a segment that closes: once around, and to the first sample again
+        segment, part = np.append(segment, 0), np.append(part, part[0] + 1.0)
     return segment, orbit.begins[segment] + part * (orbit.ends - orbit.begins)[segment]
 
 
@@ -96,8 +101,11 @@ class Amplitudes:
     @classmethod
     def from_orbit(cls, orbit: PeriodicOrbit, turns: TurningPoints) -> Amplitudes:
         """Return those of an orbit; a displacement may also be largest at an impact."""
-        ends = np.abs(orbit.arrivals[:, :2]).max(axis=0)
-        inside = [np.abs(turns.value[turns.quantity == which]) for which in range(3)]
+        places = np.array([0.0, orbit.form.gap_offset, 0.0])  # of unloaded springs, and no gap
+        ends = np.abs(orbit.arrivals[:, :2] - places[:2]).max(axis=0)
+        inside = [
+            np.abs(turns.value[turns.quantity == which] - places[which]) for which in range(3)
+        ]
         largest = [max(values, default=0.0) for values in inside]
         return cls(max(ends[0], largest[0]), max(ends[1], largest[1]), float(largest[GAP]))
 
@@ -154,8 +162,8 @@ def pressing_force(
     jerk -= form.stiffness[2] * velocity
     return (
         -form.force(position, velocity),
-        -form.force(velocity, acceleration),
-        -form.force(acceleration, jerk),
+        -form.force_rate(velocity, acceleration),
+        -form.force_rate(acceleration, jerk),
     )
 
 

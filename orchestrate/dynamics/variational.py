@@ -1,12 +1,12 @@
 """Variational equations: how a small deviation of a motion grows from impact to impact.
 
-All is non-dimensional; the state is (xi_1, xi_2, xi_1', xi_2'). In flight both masses are free
-oscillators (6), so the flow matrix is that of :class:`.ClosedForm` and independent of the
-excitation. At an impact the deviation is multiplied by the saltation matrix, which includes that
-the deviated motion impacts a little earlier or later (di Bernardo et al., Piecewise-smooth
-Dynamical Systems, 2008, section 2.5). Where chattering ends in permanent contact the deviation of
-the gap dies: what is left is that of the common centre of mass. At a release the forces are
-continuous (19): nothing jumps.
+All is non-dimensional; the state is (xi_1, xi_2, xi_1', xi_2') as in :mod:`.closed_form`. In flight
+both masses are free oscillators (6), so the flow matrix is that of :class:`.ClosedForm` and
+independent of the excitation. At an impact the deviation is multiplied by the saltation matrix,
+which includes that the deviated motion impacts a little earlier or later (di Bernardo et al.,
+Piecewise-smooth Dynamical Systems, 2008, section 2.5). Where chattering ends in permanent contact
+the deviation of the gap dies: what is left is that of the common centre of mass. At a release the
+forces are continuous (19): nothing jumps.
 """
 
 from __future__ import annotations
@@ -114,10 +114,12 @@ def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:
 
 
 def nondimensional(impacts: Impacts, point: Point) -> Impacts:
-    """Return impacts in units of 1/omega, a eta^2 and omega a eta^2, (3) and (4)."""
+    """Return impacts in units of 1/omega, a eta^2 and omega a eta^2, (3) and (4), with the faces'
+    places for displacements.
+    """
     return Impacts(
         point.structure.omega * impacts.time,
-        impacts.state / point.scale,
+        point.faces(impacts.state),
         impacts.closing / point.speed,
         impacts.sticks,
     )

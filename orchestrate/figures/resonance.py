@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from .labels import prefix, title_from_attributes
 from .marks import MAX_DISTINCT, Marks, mark
 from .scales import Along, along, parameter_of
-from .style import BLACK, BLUE, RED, legend_below, set_title, styled
+from .style import BLACK, BLUE, GREY, RED, legend_below, set_title, styled
 
 COLOURS = {"delaminated": RED, "bonded": BLUE}
 STYLES: dict[str, Any] = {  # down lies on up
@@ -28,6 +28,7 @@ NAMES = {
     "a2_max": r"max $|\ddot{{x}}_2 + \ddot{{y}}|$ in m/s$^2$",
     "x_rel_max": "largest gap in {}m",
 }
+THRESHOLD = "threshold_acceleration"
 
 
 @styled
@@ -45,11 +46,17 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     """
     figure = Figure(figsize=(9.6, 7.6), layout="constrained")
     rows = [row for row in LAYOUT if row[0] in data]
+    if THRESHOLD in data:
+        rows.append([THRESHOLD, THRESHOLD])
+        figure.set_figheight(9.4)
     axes = figure.subplot_mosaic(rows, sharex=True)
     set_title(figure, title or title_from_attributes(data))
     parameter = parameter_of(data[rows[0][0]])
     x = along(data, parameter)
     for name, plane in axes.items():
+        if name == THRESHOLD:
+            draw_threshold(plane, data, x)
+            continue
         draw_quantity(plane, data[name], x)
         draw_peaks(plane, data, name, parameter, x)
     if "x_rel_max" in axes:
@@ -83,6 +90,20 @@ def draw_quantity(axes: Axes, values: xr.DataArray, x: Along) -> None:
     axes.set(yscale="log", ylabel=NAMES[name].format(letter))
     axes.margins(x=0.0, y=0.12)
     list_largest(axes, largest)
+
+
+def draw_threshold(axes: Axes, data: xr.Dataset, x: Along) -> None:
+    """Draw the box's acceleration, and that at which the linear response opens or touches."""
+    level = (data.amplitude * data.frequency**2).broadcast_like(data[THRESHOLD]).values
+    threshold = np.where(np.isfinite(data[THRESHOLD].values), data[THRESHOLD].values, np.nan)
+    event = "opens" if "opens" in data[THRESHOLD].attrs["long_name"] else "touches"
+    axes.plot(x.values, threshold, color=BLACK, linewidth=1.2, label=f"level at which it {event}")
+    axes.plot(x.values, level, color=GREY, linewidth=1.2, linestyle="-.", label="level of the box")
+    axes.fill_between(
+        x.values, threshold, level, where=level >= threshold, color=GREY, alpha=0.25, linewidth=0.0
+    )
+    axes.set(yscale="log", ylabel=r"peak $|\ddot{y}|$ in m/s$^2$")
+    axes.margins(x=0.0, y=0.12)
 
 
 def unit_of(values: xr.DataArray) -> tuple[float, str]:

@@ -55,6 +55,31 @@ class Point(NamedTuple):
         speed = self.structure.omega * length
         return np.array([length, length, speed, speed])
 
+    def faces(self, states: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return states in units of xi, with the faces' places for displacements.
+
+        That of mass 2 is ``xi_2`` and the clearance over a eta^2: the gap is the difference of
+        both, 0 in contact.
+
+        Parameters
+        ----------
+        states : ndarray, shape (..., 4)
+            x1, x2 in m from the unloaded springs, v1, v2 in m/s.
+        """
+        offset = self.structure.gap_offset
+        if offset != 0.0:
+            states = np.array(states, dtype=float)
+            states[..., 1] = states[..., 0] + gap_between(states, offset)
+        faces: NDArray[np.float64] = states / self.scale
+        return faces
+
+    def from_faces(self, faces: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the states, SI, of :meth:`faces`."""
+        states: NDArray[np.float64] = faces * self.scale
+        if self.structure.gap_offset != 0.0:
+            states[..., 1] -= self.structure.gap_offset
+        return states
+
 
 @dataclass(frozen=True)
 class Series:
@@ -235,16 +260,8 @@ def checked_structure(structure: object) -> Structure:
     return structure
 
 
-def without_clearance(structure: object, question: str, *varied: object) -> Structure:
-    """Return the structure; raise if it has a clearance, which the question does not know yet.
-
-    Parameters
-    ----------
-    structure : object
-    question : str
-        Name of the function asked.
-    *varied : object
-        Names of parameters that take values.
+def without_clearance(structure: object, question: str) -> Structure:
+    """Return the structure; raise if it has a clearance, which the question does not know.
 
     Raises
     ------
@@ -254,8 +271,6 @@ def without_clearance(structure: object, question: str, *varied: object) -> Stru
     checked = checked_structure(structure)
     if checked.clearance != 0.0:
         raise InputError(f"clearance = {checked.clearance!r} m: {question} expects clearance = 0")
-    if "clearance" in varied:
-        raise InputError(f"clearance: {question} does not vary it; expected another parameter")
     return checked
 
 

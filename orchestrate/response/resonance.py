@@ -20,6 +20,7 @@ from .multiplicity import IRREGULAR
 from .peaks import PEAKS
 from .questions import Point, positive, series_arguments
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, multiplicities
+from .threshold import threshold_variables
 from .turns_and_jumps import inside_irregular, jumps, maxima
 
 if TYPE_CHECKING:
@@ -93,10 +94,21 @@ class ResonanceJob(SweepJob):
         }
         contact = "whether permanent contact occurs in the sampled periods"
         return {
+            **self.threshold(),
             **{name: variable(along, numbers[name], *REPORTED[name]) for name in REPORTED},
             "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
             **multiplicities(along, table),
         }
+
+    def threshold(self) -> dict[str, Variable]:
+        """Return the level at which the delaminated structure opens or touches; with a clearance
+        alone.
+        """
+        structure = self.structure.as_delaminated()
+        if structure.clearance == 0.0:
+            return {}
+        speeds = np.array([point.excitation.frequency for point in self.series.points])
+        return threshold_variables(structure, self.series.name, speeds)
 
     def coordinates(self) -> dict[str, Variable]:
         """Return structure, direction and the excitation, in Hz too."""
@@ -237,6 +249,9 @@ def resonance(
         ``permanent_contact``. Over ``peak`` and ``jump``: structure, direction and frequency of
         each, and how large it is. What peaks is the larger one of both displacements; what jumps is
         the largest gap, in which a change from one motion to another shows best.
+        With a clearance, ``threshold_amplitude`` and ``threshold_acceleration`` of the box, at
+        which the linear response of the delaminated structure first opens or touches, see
+        :func:`orchestrate.contact_threshold`.
         ``peak_irregular`` marks peaks inside a range of irregular responses: amplitudes of these
         are the largest of a few periods, and differ by chance from one frequency to the next.
 

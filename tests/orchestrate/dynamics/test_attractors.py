@@ -52,14 +52,14 @@ def test_the_same_seed_gives_the_same_starts(found):
 
 
 def test_starts_are_states_in_their_box():
-    states = random_starts(1000, 2.0, (1, 0), 10.0)
+    states = random_starts(1000, 2.0, (1, 0), Structure(k1=100.0))
     x1, x2, v1, v2 = states.T
     assert (x2 >= x1).all()
     assert np.abs(x1).max() < 2.0
     assert (x2 - x1).max() < 2.0
     assert 10.0 < np.abs(v1).max() < 20.0
     assert 10.0 < np.abs(v2 - v1).max() < 20.0
-    assert (random_starts(1000, 2.0, (1, 1), 10.0) != states).all()
+    assert (random_starts(1000, 2.0, (1, 1), Structure(k1=100.0)) != states).all()
 
 
 def test_scale_is_three_times_the_largest_gap_from_rest():

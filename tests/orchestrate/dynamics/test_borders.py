@@ -49,7 +49,7 @@ def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
         elif kind == "period_doubling":
             assert np.abs(truth.multipliers + 1.0).min() < 1e-9
         else:
-            assert abs(found.clearance.values[i]) < 1e-12
+            assert abs(found.nearest_miss.values[i]) < 1e-12
             times = np.linspace(0.01, 0.99, 20_001) * truth.time
             assert abs(truth.gap(times).min()) < 1e-7
 

@@ -1,0 +1,153 @@
+"""The level of shaking at which a pressed structure first opens, or an open one first touches.
+
+Below it the response is linear, (10) and (11) with i = 3 where a preload holds the masses together,
+with i = 1 and 2 where a gap keeps them apart. There the contact force (18), or the gap (13), is a
+constant and a harmonic in the amplitude of the shaking: the level at which both are equal is the
+threshold.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+from ..structures import Structure
+from .labels import Variable, parameter, variable
+from .questions import checked_structure, numbers
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+OPENS, TOUCHES = "opens", "touches"
+
+
+def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
+    """Return amplitudes of the box at the threshold, m.
+
+    Parameters
+    ----------
+    structure : Structure
+    frequency : ndarray
+        rad/s.
+
+    Returns
+    -------
+    ndarray
+        0 without a clearance; infinite where the linear response never opens or touches: of two
+        halves that move alike, and of a bonded structure.
+    """
+    omega, m1, m2 = structure.omega, structure.m1, structure.m2
+    eta = np.asarray(frequency, dtype=float) / omega
+    masses = np.array([m1, m2, m1 + m2])
+    stiffness = np.array([structure.k1, structure.k2, structure.k1 + structure.k2]) / masses
+    damping = np.array([structure.d1, structure.d2, structure.d1 + structure.d2]) / masses
+    square, twice = stiffness / omega**2, damping / omega
+    if structure.bonded:
+        return np.full_like(eta, np.inf)
+    # what the accelerations of both masses alone differ by, for a common motion e^{i eta tau}
+    differs = (square[0] - square[1]) + 1j * eta * (twice[0] - twice[1])
+    one, two, both = ((square[i] - eta**2) + 1j * eta * twice[i] for i in range(3))
+    if structure.clearance < 0.0:
+        held, response = -structure.clearance * square[1] / square[2], differs * eta**2 / both
+    else:
+        held, response = structure.clearance, differs * eta**2 / (one * two)
+    if held == 0.0:
+        return np.zeros_like(eta)
+    with np.errstate(divide="ignore"):
+        amplitudes: Floats = held / np.abs(response)
+    return amplitudes
+
+
+def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:
+    """Return the threshold over some frequencies, as amplitude and as acceleration of the box."""
+    amplitudes = threshold_amplitudes(structure, frequency)
+    event = f"at which the structure first {'opens' if structure.clearance < 0.0 else 'touches'}"
+    return {
+        "threshold_amplitude": variable(along, amplitudes, "m", f"amplitude of the box {event}"),
+        "threshold_acceleration": variable(
+            along,
+            amplitudes * np.asarray(frequency) ** 2,
+            "m/s2",
+            f"peak acceleration of the box {event}",
+        ),
+    }
+
+
+def contact_threshold(
+    structure: Structure, *, eta: ArrayLike | None = None, frequency: ArrayLike | None = None
+) -> xr.Dataset:
+    """Return the level at which a pressed structure first opens, or an open one first touches.
+
+    Parameters
+    ----------
+    structure : Structure
+        With a clearance: below zero it is pressed together, above zero open.
+    eta : array_like, optional
+        Frequency ratios Omega/omega.
+    frequency : array_like, optional
+        Frequencies of the box instead, rad/s.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the frequency, which is there in ``hertz`` too: ``threshold_amplitude`` of the box in m
+        and ``threshold_acceleration``, its peak acceleration in m/s2. The attribute ``event`` says
+        what happens there: "opens" or "touches". 0 where there is no clearance; infinite where the
+        halves move alike, so that no level parts or joins them.
+
+    Raises
+    ------
+    InputError
+        Where not just one of both frequencies is given, or the structure is bonded.
+
+    Notes
+    -----
+    Below the threshold the response is the linear one: of both halves as one with a preload, of
+    each half alone with a gap. With a preload F its contact force is F less the harmonic part of
+    -f (18); with a gap its smallest is the clearance less the amplitude of x2 - x1. Both parts are
+    known in closed form from (11), and the harmonic one grows with the amplitude.
+
+    It is the threshold of the linear response, which is stable up to there. Other motions, in which
+    the halves impact, may exist at lower levels already, and a strong enough push leads to them:
+    see :func:`orchestrate.attractors`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.response.threshold import contact_threshold
+    >>> beam = Structure.from_halves(m1=1.0, m2=0.8, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007)
+    >>> pressed = beam.replace(clearance=-20e-6)
+    >>> level = contact_threshold(pressed, frequency=2.0 * np.pi * np.array([30.0, 48.0]))
+    >>> level.event, (level.threshold_acceleration / 9.80665).values.round(3)
+    ('opens', array([0.261, 0.013]))
+    """
+    import xarray as xr
+
+    if checked_structure(structure).bonded:
+        raise InputError("bonded = True: expected a structure whose masses can part")
+    asked = {"eta": numbers("eta", eta), "frequency": numbers("frequency", frequency)}
+    given = {name: values for name, values in asked.items() if values is not None}
+    if len(given) != 1:
+        raise InputError(f"{' and '.join(given) or 'nothing'} given; expected eta= or frequency=")
+    ((name, values),) = given.items()
+    column = np.atleast_1d(np.asarray(values, dtype=float))
+    speeds = column * structure.omega if name == "eta" else column
+    other = {"eta": speeds / structure.omega, "frequency": speeds, name: column}
+    event = OPENS if structure.clearance < 0.0 else TOUCHES
+    return xr.Dataset(
+        threshold_variables(structure, name, speeds),
+        {
+            **{key: parameter(key, name, each) for key, each in other.items()},
+            "hertz": variable(name, speeds / (2.0 * np.pi), "Hz", "frequency of the box"),
+        },
+        {
+            "title": f"Level at which the structure {event}: {structure.label()}",
+            "event": event,
+            **{key: float(value) for key, value in structure.parameters().items()},
+        },
+    )

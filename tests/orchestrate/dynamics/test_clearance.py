@@ -1,0 +1,201 @@
+"""Orbits, branches, exponents, attractors and basins of structures with a gap or a preload."""
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate import Structure
+from orchestrate.access import OSCILLATOR, EventInstance, begin, find
+from orchestrate.dynamics.closed_form import ClosedForm
+from orchestrate.response.questions import Point
+from orchestrate.structures import Excitation
+
+DAMPED = Structure(d1=0.1, d2=0.12, e=0.5)
+BOX = {"frequency": 1.2, "amplitude": 1.0}
+CASES = [  # a gap, a preload with and without contact, plastic; apart for good, together for good
+    (0.3, 0.5, 1.2),
+    (-0.05, 0.5, 1.2),
+    (-0.2, 0.5, 0.9),
+    (-0.2, 0.0, 0.9),
+    (5.0, 0.5, 0.6),
+    (-5.0, 0.5, 0.6),
+]
+
+
+@pytest.mark.parametrize(("clearance", "e", "frequency"), CASES)
+def test_the_fmu_runs_through_orbits_and_returns(clearance, e, frequency):
+    structure = DAMPED.replace(clearance=clearance, e=e)
+    box = {"frequency": frequency, "amplitude": 1.0}
+    found = orchestrate.orbit(structure, **box)
+    assert bool(found.fmu_same_impacts) and float(found.fmu_return) < 1e-12
+    assert bool(found.permanent_contact) == (clearance in (-0.2, -5.0))
+    motion = orchestrate.simulate(
+        structure, **box, periods=1, points=500, start=found.state.values[0]
+    )
+    for name, values in (("xi1", motion.x1), ("xi2", motion.x2), ("xi_rel", motion.x_rel)):
+        seen = float(abs(values).max()) / frequency**2
+        assert 0.0 <= float(found[f"{name}_max"]) - seen < 1e-4
+    assert found.state.values[0][1] / frequency**2 == pytest.approx(float(found.xi[0, 1]))
+
+
+def flown(structure, excitation, state, periods):
+    """State of the FMU after some periods."""
+    with EventInstance(find(OSCILLATOR).path) as instance:
+        begin(instance, structure, excitation, state)
+        instance.advance(0.0, periods * excitation.period)
+        return np.array(instance.get("x1", "x2", "v1", "v2"))
+
+
+@pytest.mark.parametrize("clearance", [0.3, -0.05])
+def test_multipliers_are_those_of_the_fmu_s_own_map(clearance):
+    """Its derivative by central differences around the orbit."""
+    structure, excitation = DAMPED.replace(clearance=clearance), Excitation(**BOX)
+    found = orchestrate.orbit(structure, **BOX)
+    state, step = found.state.values[0], 1e-6
+    columns = [
+        flown(structure, excitation, state + step * unit, 1)
+        - flown(structure, excitation, state - step * unit, 1)
+        for unit in np.eye(4)
+    ]
+    values = np.linalg.eigvals(np.array(columns).T / (2.0 * step))
+    expected = found.multipliers.values @ np.array([1.0, 1.0j])
+    order = [np.lexsort((v.imag.round(6), -np.abs(v).round(6))) for v in (values, expected)]
+    assert values[order[0]] == pytest.approx(expected[order[1]], abs=1e-6)
+
+
+@pytest.mark.parametrize("clearance", [0.4, -0.4])
+def test_the_closed_form_solves_its_own_equation(clearance):
+    """Steady motions in flight and in contact have the derivative that the field says; the contact
+    force is the gap's acceleration of free masses.
+    """
+    structure, box = DAMPED.replace(clearance=clearance, m2=1.7), Excitation(**BOX)
+    form = ClosedForm.from_structure(structure, box)
+    phase, step = np.linspace(0.1, 6.0, 7), 1e-5
+    for contact in (False, True):
+        ends = [form.steady(phase + sign * step * form.eta, contact) for sign in (1, -1)]
+        rate = (ends[0] - ends[1]) / (2.0 * step)
+        assert rate == pytest.approx(form.field(form.steady(phase, contact), phase, contact))
+    together = form.steady(phase, True)
+    assert (together[:, 0] == together[:, 1]).all()
+    free = form.field(together, phase, False)
+    force = form.force(together[:, 0], together[:, 2])
+    assert force == pytest.approx(free[:, 3] - free[:, 2])
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.4, -0.4])
+def test_states_go_to_faces_and_back(clearance):
+    point = Point(DAMPED.replace(clearance=clearance), Excitation(frequency=1.2, amplitude=0.7))
+    x1 = np.array([0.3, -0.2, 0.1])
+    gap = np.array([0.0, 0.5, 1e-3])
+    states = np.column_stack([x1, x1 + gap - clearance, [0.1, 0.2, 0.3], [0.1, 0.5, 0.6]])
+    faces = point.faces(states)
+    assert faces[:, 1] - faces[:, 0] == pytest.approx(gap / point.length)
+    assert faces[0, 1] == faces[0, 0]
+    assert point.from_faces(faces) == pytest.approx(states)
+
+
+@pytest.mark.parametrize(
+    ("over", "limits", "clearance"),
+    [("clearance", (-0.2, 0.4), -0.05), ("amplitude", (0.05, 1.5), -0.05)],
+)
+def test_branches_over_clearance_and_amplitude(over, limits, clearance):
+    """Each orbit is run through by the FMU, and solves the equations to rounding; scaling the box
+    and the clearance alike gives the same bifurcations.
+    """
+    structure = DAMPED.replace(clearance=clearance)
+    found = orchestrate.branch(structure, **BOX, over=over, limits=limits)
+    assert found.sizes["point"] > 10 and found.fmu_same_impacts.all()
+    assert float(found.residual.max()) < 1e-9
+    assert float(found.fmu_return.max()) < 1e-6
+    assert found[over].values.min() >= limits[0] and found[over].values.max() <= limits[1]
+    if over == "clearance":
+        level = orchestrate.branch(
+            structure, **BOX, over="amplitude", limits=tuple(-0.05 / np.array([-0.2, -0.01]))
+        )
+        ratios = sorted(-0.05 / level.bifurcation_value.values)
+        values = [v for v in found.bifurcation_value.values if -0.2 < v < -0.01]
+        assert len(values) > 0
+        assert min(abs(np.subtract.outer(values, ratios)).min(axis=1)) < 1e-8
+
+
+def test_a_border_begins_where_an_open_structure_touches():
+    """Grazing of the linear orbit over the clearance is the threshold of contact, and its curve
+    over clearance and amplitude is the straight line that scaling says.
+    """
+    open_structure = DAMPED.replace(clearance=2.0)
+    level = orchestrate.contact_threshold(open_structure, frequency=1.2)
+    touching = 2.0 / float(level.threshold_amplitude[0])  # clearance at amplitude 1
+    wide = open_structure.replace(clearance=1.2 * touching)
+    form = ClosedForm.from_structure(wide, Excitation(**BOX))
+    steady = Point(wide, Excitation(**BOX)).from_faces(form.steady(np.zeros(1)))
+    apart = orchestrate.orbit(wide, **BOX, guess=steady[0])  # from rest it impacts: another branch
+    assert float(apart.impacts_per_period) == 0.0
+    limits = (0.9 * touching, 1.4 * touching)
+    found = orchestrate.branch(wide, start=apart, over="clearance", limits=limits)
+    assert found.bifurcation_value.values == pytest.approx([touching], rel=1e-9)
+    curve = orchestrate.border(
+        wide,
+        start=found,
+        bifurcation=0,
+        over=("clearance", "amplitude"),
+        limits=[(0.5 * touching, 1.4 * touching), (0.6, 1.3)],
+    )
+    assert curve.sizes["point"] > 3
+    assert curve.clearance.values / curve.amplitude.values == pytest.approx(touching, rel=1e-8)
+
+
+def test_exponents_of_linear_motions_and_of_orbits():
+    """Apart and together for good: the slowest free decay. With impacts: what the multipliers
+    say.
+    """
+    asked = {**BOX, "transient": 100, "periods": 200}
+    apart = orchestrate.lyapunov(DAMPED.replace(clearance=9.0), **asked)
+    together = orchestrate.lyapunov(DAMPED.replace(clearance=-9.0), **asked)
+    assert float(apart.exponent[0]) == pytest.approx(-0.05)
+    assert float(together.exponent[0]) == pytest.approx(-0.22 / 4.0)
+    for clearance in (0.3, -0.05, -0.2):
+        structure = DAMPED.replace(clearance=clearance)
+        orbit = orchestrate.orbit(structure, **BOX)
+        found = orchestrate.lyapunov(structure, **asked, start=orbit.state.values[0])
+        assert float(found.exponent[0]) == pytest.approx(float(orbit.exponent), abs=2e-3)
+
+
+def test_statistics_and_maps_over_the_clearance():
+    structure = DAMPED.replace(e=0.0)
+    counted = orchestrate.impact_statistics(
+        structure, over="clearance", values=[-0.3, 0.3], frequency=0.9, amplitude=1.0, periods=20
+    )
+    assert counted.impacts.values.tolist() == [1.0, 1.0]
+    motion = orchestrate.simulate(
+        structure.replace(clearance=-0.3), frequency=0.9, amplitude=1.0, transient=500, periods=1,
+        points=4000,
+    )  # fmt: skip
+    share = float(motion.in_contact.mean())
+    assert float(counted.contact_share[0]) == pytest.approx(share, abs=1e-3)
+    table = orchestrate.map(
+        structure, clearance=[-9.0, -0.3, 0.3, 9.0], amplitude=[0.5, 1.0], frequency=0.9,
+        exponent=True,
+    )  # fmt: skip
+    counts = table.impacts_per_period.transpose("clearance", "amplitude").values
+    assert counts.tolist() == [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 0.0]]
+    assert (table.exponent.values < 0.0).all()
+
+
+@pytest.mark.parametrize("clearance", [0.6, -0.15])
+def test_attractors_and_a_basin_of_them(clearance):
+    """States on them are states of the FMU that come back; overlapping starts are none."""
+    structure = DAMPED.replace(clearance=clearance, d1=0.05, d2=0.06)
+    box = {"frequency": 0.9, "amplitude": 1.0}
+    found = orchestrate.attractors(structure, **box, starts=8, seed=1).isel(frequency=0)
+    assert float(found.share.sum()) == pytest.approx(1.0)
+    excitation = Excitation(**box)
+    for k in range(found.sizes["attractor"]):
+        state, n = found.state.values[k], int(found.multiplicity[k])
+        if n:
+            assert flown(structure, excitation, state, n) == pytest.approx(state, abs=1e-5)
+    plane = {"x": ("x1", -1.0, 1.0, 3), "y": ("x2", -2.0, 2.0, 5)}
+    basin = orchestrate.basin(structure, **box, **plane)
+    overlap = basin.x2 - basin.x1 + clearance < -1e-12
+    assert np.array_equal((basin.attractor_of < 0).values, overlap.transpose("x2", "x1").values)
+    gaps = orchestrate.basin(structure, **box, x=("x_rel", 0.0, 1.0, 3), y=("v_rel", -0.5, 0.5, 2))
+    assert (gaps.attractor_of >= 0).all()

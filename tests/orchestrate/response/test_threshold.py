@@ -1,0 +1,142 @@
+"""The level at which a pressed structure opens and an open one touches: against the FMU, and in the
+resonance curves.
+"""
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate import InputError, Structure
+from orchestrate.access import OSCILLATOR, Instance, begin, find
+from orchestrate.figures import plot
+from orchestrate.structures import Excitation
+
+BISECTIONS = 60
+
+
+def structure_and_frequency(seed):
+    rng = np.random.default_rng((27, 5, seed))
+    masses = {name: rng.uniform(0.3, 3.0) for name in ("m1", "m2", "k1", "k2")}
+    dampers = {name: 10.0 ** rng.uniform(-3.0, 0.0) for name in ("d1", "d2")}
+    clearance = rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-6.0, 1.0)
+    return Structure(**masses, **dampers, clearance=clearance), float(rng.uniform(0.2, 3.0))
+
+
+def linear_state(structure, frequency):
+    """Steady linear response per metre of the box's amplitude at phase 0, from the equations of
+    motion: x1, x2, v1, v2; the masses as one where a preload presses them together.
+    """
+    w, s = frequency, structure
+
+    def response(m, k, d):
+        return w * w / (k / m - w * w + 1j * w * d / m)
+
+    if s.clearance < 0.0:
+        both = response(s.m1 + s.m2, s.k1 + s.k2, s.d1 + s.d2)
+        pair = np.array([both, both])
+    else:
+        pair = np.array([response(s.m1, s.k1, s.d1), response(s.m2, s.k2, s.d2)])
+    return np.concatenate([pair.imag, w * pair.real])  # of the imaginary part of e^{i w t}
+
+
+def bisected(instance, structure, frequency):
+    """Amplitude of the box between which and a part in 2^60 more the FMU's masses begin to part
+    or to impact, from the linear response on.
+    """
+    at_one = linear_state(structure, frequency)
+    at_rest = np.array([*structure.at_rest, 0.0, 0.0])
+    period = 2.0 * np.pi / frequency
+
+    def leaves(amplitude):
+        state = at_rest + amplitude * at_one
+        if state[1] - state[0] + structure.clearance < 0.0 < structure.clearance:
+            return True
+        excitation = Excitation(frequency=frequency, amplitude=amplitude)
+        begin(instance, structure, excitation, state)
+        if structure.clearance < 0.0 and not instance.get("in_contact")[0]:
+            return True
+        instance.step(0.0, 1.01 * period)
+        count, contact = instance.get("impact_count", "in_contact")
+        return bool(count) or (structure.clearance < 0.0 and not contact)
+
+    low, high = 0.0, abs(structure.clearance)
+    while not leaves(high):
+        low, high = high, 2.0 * high
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if leaves(middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
+def check(seeds):
+    with Instance(find(OSCILLATOR).path) as instance:
+        for seed in seeds:
+            structure, frequency = structure_and_frequency(seed)
+            level = orchestrate.contact_threshold(structure, frequency=frequency)
+            expected = float(level.threshold_amplitude[0])
+            assert bisected(instance, structure, frequency) == pytest.approx(expected, rel=1e-9)
+            assert level.event == ("opens" if structure.clearance < 0.0 else "touches")
+
+
+def test_the_fmu_opens_and_touches_at_the_threshold(exported):
+    check(range(6))
+
+
+@pytest.mark.slow
+def test_the_fmu_opens_and_touches_at_fifty_thresholds(exported):
+    check(range(50))
+
+
+def test_forms_units_and_limits():
+    pressed = Structure(clearance=-0.25)
+    by_eta = orchestrate.contact_threshold(pressed, eta=[0.5, 1.0])
+    by_frequency = orchestrate.contact_threshold(pressed, frequency=[0.5, 1.0])
+    assert by_eta.threshold_amplitude.dims == ("eta",)
+    assert np.array_equal(by_eta.threshold_amplitude, by_frequency.threshold_amplitude)
+    squares = by_eta.frequency.values**2
+    assert np.allclose(by_eta.threshold_acceleration, by_eta.threshold_amplitude * squares)
+    for data in (by_eta, by_frequency):
+        assert all({"units", "long_name"} <= set(v.attrs) for v in data.variables.values())
+    assert orchestrate.contact_threshold(Structure(), eta=1.0).threshold_amplitude[0] == 0.0
+    alike = Structure(k2=1.0, clearance=-0.25)
+    assert orchestrate.contact_threshold(alike, eta=1.0).threshold_amplitude[0] == np.inf
+    twice = orchestrate.contact_threshold(pressed.replace(clearance=-0.5), eta=[0.5, 1.0])
+    assert np.array_equal(twice.threshold_amplitude, 2.0 * by_eta.threshold_amplitude)
+
+
+@pytest.mark.parametrize(
+    ("structure", "asked", "text"),
+    [
+        (Structure(bonded=True, clearance=-1.0), {"eta": 1.0}, "bonded = True: expected"),
+        (Structure(clearance=-1.0), {}, "expected eta= or frequency="),
+        (Structure(clearance=-1.0), {"eta": 1.0, "frequency": 1.0}, "expected eta= or frequency="),
+        (Structure(clearance=-1.0), {"eta": [1.0, -1.0]}, r"-1\.0: expected"),
+        ("beam", {"eta": 1.0}, "expected a Structure"),
+    ],
+)
+def test_wrong_arguments_are_one_line(structure, asked, text):
+    with pytest.raises(InputError, match=text):
+        orchestrate.contact_threshold(structure, **asked)
+
+
+def test_resonance_has_the_threshold_as_a_curve_and_the_picture_shows_it():
+    """A preload that the box's level exceeds around the resonance alone: the gap opens there, and
+    nowhere that the threshold is higher than the level.
+    """
+    pressed = Structure(d1=0.1, d2=0.15, clearance=-0.15)
+    frequency = np.linspace(0.6, 1.6, 21)
+    asked = {"frequency": frequency, "amplitude": 0.4 / frequency**2, "direction": "up"}
+    data = orchestrate.resonance(pressed, **asked, transient=200, samples=10)
+    level = orchestrate.contact_threshold(pressed, frequency=frequency)
+    assert np.array_equal(data.threshold_amplitude, level.threshold_amplitude)
+    opened = data.x_rel_max.sel(structure="delaminated").squeeze().values > 0.0
+    above = data.amplitude.values > data.threshold_amplitude.values
+    assert 0 < above.sum() < len(above)
+    assert np.array_equal(opened, above)
+    figure = plot.plot(data)
+    assert len(figure.axes) == 6
+    words = {line.get_label() for axes in figure.axes for line in axes.get_lines()}
+    assert {"level at which it opens", "level of the box"} <= words
+    shut = pressed.replace(clearance=0.0)
+    without = orchestrate.resonance(shut, **asked, transient=20, samples=4)
+    assert "threshold_amplitude" not in without
