@@ -260,20 +260,6 @@ def checked_structure(structure: object) -> Structure:
     return structure
 
 
-def without_clearance(structure: object, question: str) -> Structure:
-    """Return the structure; raise if it has a clearance, which the question does not know.
-
-    Raises
-    ------
-    InputError
-        Also where it is no structure.
-    """
-    checked = checked_structure(structure)
-    if checked.clearance != 0.0:
-        raise InputError(f"clearance = {checked.clearance!r} m: {question} expects clearance = 0")
-    return checked
-
-
 def numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
     """Return a number or a list of numbers, each in the parameter's range.
 
