@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..access.begin import from_rest
 from ..access.instance import Instance
 from ..constants import TURN
 from ..dynamics.closed_form import Floats
@@ -94,11 +93,11 @@ class Shot(NamedTuple):
 class Shooter:
     """Both FMUs as equations whose roots are periodic motions.
 
-    Unknowns are the state where the angle has its value at the start, each quantity over its unit,
-    then the voltage over K omega and the mean speed over omega. The Jacobian is made by differences
-    at a root, each checked: both sides, or the one that is taken, must have the impacts that the
-    root has, and two sizes of the change must agree. On the way to a root it follows the residuals
-    by Broyden's secants.
+    Unknowns are the state where the angle has its value at the start, displacements from rest and
+    each quantity over its unit, then the voltage over K omega and the mean speed over omega. The
+    Jacobian is made by differences at a root, each checked: both sides, or the one that is taken,
+    must have the impacts that the root has, and two sizes of the change must agree. On the way to a
+    root it follows the residuals by Broyden's secants.
 
     A root may leave 1e-9 of the unit, about the amplitude, of the equations. Rounding leaves 1e-15
     to 1e-13, times the largest multiplier; the end of a period is continuous, also where an impact
@@ -192,13 +191,11 @@ class Shooter:
         self.used = True
         values = dict(zip(self.names, (state * self.units).tolist(), strict=True))
         if self.together:
-            values |= {"x2": values["x1"] - self.structure.gap_offset, "v2": values["v1"]}
-        masses = ("x1", "x2", "v1", "v2")
-        positions = from_rest(self.structure, [values.pop(name) for name in masses])
-        structure_starts = {
-            STARTS[name]: value for name, value in zip(masses, positions, strict=True)
-        }
+            values |= {"x2": values["x1"], "v2": values["v1"]}
         starts = {STARTS[name]: value for name, value in values.items()}
+        structure_starts = {
+            name: starts.pop(name) for name in ("x1_start", "v1_start", "x2_start", "v2_start")
+        }
         oscillator.initialize(**oscillator_start(self.structure), **structure_starts)
         more = {"angle_start": self.angle, "voltage": voltage}
         shaker.initialize(**self.drive.parameters(), **starts, **more)
@@ -211,8 +208,10 @@ class Shooter:
         return self.start_master(unknowns[:-2], voltage, period / self.count), voltage
 
     def state(self, master: Master) -> Floats:
-        """Return the state of both, each quantity over its unit."""
+        """Return the state of both, each quantity over its unit, displacements from rest."""
         values = {**master.motion._asdict(), **master.shaking._asdict()}
+        for name, at_rest in zip(("x1", "x2"), self.structure.at_rest, strict=True):
+            values[name] -= at_rest
         if "motor_current" in self.names:
             values["motor_current"] = self.fmus[1].get("motor_current")[0]
         return np.array([values[name] for name in self.names]) / self.units

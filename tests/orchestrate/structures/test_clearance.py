@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate import Drive, InputError, Structure
+from orchestrate import InputError, Structure
 
 
 def test_every_constructor_takes_a_clearance():
@@ -66,29 +66,6 @@ def test_files_have_it_with_all_keys_and_may_leave_it_out(tmp_path, keys):
     path.write_text(f"[structure]\n{keys}\nclearance = nan\n")
     with pytest.raises(InputError, match="structure.clearance = nan m: expected"):
         Structure.from_file(path)
-
-
-def weak_drive(question):
-    """A question to the shipped set with a gap."""
-    structure = Structure.from_file("quick").replace(clearance=1e-3)
-    return lambda: getattr(orchestrate, question)(
-        structure, Drive.from_file("quick"), voltage=(1.2, 1.8)
-    )
-
-
-WEAK_DRIVE = {
-    **{name: weak_drive(name) for name in ("couple", "jump_voltages", "capture", "passage")},
-    "drive_branch": lambda: orchestrate.drive_branch(
-        Structure(clearance=0.1), Drive.from_file("quick")
-    ),
-}
-
-
-@pytest.mark.parametrize("question", WEAK_DRIVE.values(), ids=WEAK_DRIVE)
-def test_the_weak_drive_refuses_it_in_one_line(question):
-    with pytest.raises(InputError, match="^clearance.*expect") as caught:
-        question()
-    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("clearance", [0.3, -0.3])

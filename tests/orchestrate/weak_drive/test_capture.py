@@ -17,6 +17,7 @@ SHORT = {"step": 0.2, "progress": False}
 CREEPING = drawn(
     2026, 61
 ).as_bonded()  # a slow motor: by its fold it creeps for thousands of 1/omega
+OPEN = QUICK.with_structure(clearance=3.0)
 SWINGING = drawn(
     11, 30
 )  # a quick motor: it is beyond the resonance for 80 revolutions, and returns
@@ -67,7 +68,9 @@ def test_a_motor_that_swings_back_is_captured():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("system", "ends"), [(QUICK, (1.53, 1.55)), (SWINGING, (1.275, 1.279))], ids=["quick", "drawn"]
+    ("system", "ends"),
+    [(QUICK, (1.53, 1.55)), (SWINGING, (1.275, 1.279)), (OPEN, (1.51, 1.55))],
+    ids=["quick", "drawn", "open"],
 )
 def test_the_border_with_impacts(system, ends):
     found = capture(*system, voltage=ends, count=3, progress=False)

@@ -68,11 +68,11 @@ def whole_state(system, motion, length):
     state = motion.root.unknowns[:-2]
     x1, v1, *box = state
     x2, v2 = (x1, v1) if motion.together else box[:2]
-    x2 -= system.structure.clearance / length if motion.together else 0.0
     y, v, w = state[-3:]
-    return np.array([x1, v1 / length * unit, x2, v2, y, v, motion.angle, w, 0.0]) * [
-        *(length, length, length, unit, length, unit, 1.0, system.structure.omega, 1.0)
-    ]
+    rest_1, rest_2 = system.structure.at_rest
+    masses = [x1 * length + rest_1, v1 * unit, x2 * length + rest_2, v2 * unit]
+    speed = w * system.structure.omega
+    return np.array([*masses, y * length, v * unit, motion.angle, speed, 0.0])
 
 
 def assert_repeats(system, motion, length):
