@@ -19,7 +19,7 @@ import { USUAL } from "./response.js";
 import { saveShown } from "./saving.js";
 import { shown } from "./scale.js";
 import { Shaking } from "./shaking.js";
-import { sameStructure } from "./structure.js";
+import { omegaOf, sameStructure } from "./structure.js";
 import { TourPart } from "./tour_part.js";
 
 /**
@@ -178,11 +178,13 @@ export class App {
     if (other) this.carryOn();
   }
 
-  /** Other parameters: the diagram follows, and the motion goes on from where it was. @param {Structure} structure @param {Level} [level] */
+  /** Other parameters: the diagram follows, the motion goes on from where it was; frequencies stay, in Hz those in Hz. @param {Structure} structure @param {Level} [level] */
   change(structure, level = this.level) {
     this.tour.show("");
+    const held = inHertz(level) && inHertz(this.level) ? omegaOf(this.structure) / omegaOf(structure) : 1; // in Hz
+    this.eta *= held;
     this.set(structure, level);
-    this.regions.follow(structure, level);
+    this.regions.follow(structure, level, held);
     this.carryOn();
   }
 

@@ -4,7 +4,7 @@ import { label, startAt } from "./basin.js";
 import { drawFrame, areaOf } from "./chart.js";
 import { inHertz, PAPER } from "./excitation.js";
 import { Picture } from "./picture.js";
-import { shown } from "./scale.js";
+import { countOf } from "./motion_view.js";
 import { omegaOf } from "./structure.js";
 import { channels } from "./theme.js";
 import { gapUnit, wordsOf } from "./units.js";
@@ -110,7 +110,7 @@ export class BasinView {
     return this.attractors.map(({ multiplicity, impacts }, number) => {
       const share = this.labels.reduce((sum, one) => sum + (one === number ? 1 : 0), 0) / total;
       const kind = multiplicity ? `repeats after ${multiplicity} period${multiplicity > 1 ? "s" : ""}` : "does not repeat";
-      const text = `${kind}, ${shown(impacts, 3)} impacts per period: ${(100 * share).toFixed(1)} % of starts`;
+      const text = `${kind}, ${countOf(impacts)}: ${(100 * share).toFixed(1)} % of starts`;
       return { colour: colourOf(number), text, start: startAt(point, plane, ...this.examples[number]) };
     });
   }

@@ -162,7 +162,7 @@ export function numbersOf({ peak, impacts, contact, multiplicity }, { eta, frequ
     ...first,
     "impacts a period": shown(impacts),
     "repeats after": multiplicity ? `${multiplicity} period${multiplicity > 1 ? "s" : ""}` : "does not repeat",
-    "stick together": contact ? "for a while" : "no",
+    "stick together": !contact ? "no" : peak > 0 ? "for a while" : "always",
   };
 }
 
@@ -172,10 +172,13 @@ export function exponentWords(exponent, repeats) {
   return `${shown(exponent, 3)}${exponent > CHAOTIC ? " (chaotic)" : exponent < REGULAR ? settles : ""}`;
 }
 
+/** @param {number} impacts */
+export const countOf = (impacts) => `${shown(impacts, 3)} impact${impacts === 1 ? "" : "s"} a period`;
+
 /** A response in a sentence. @param {Response} response @param {number | undefined} exponent if it is known */
 export function sentenceOf({ impacts, contact, multiplicity, peak }, exponent) {
   if (!impacts) return peak > 0 ? "The halves never touch." : "The halves stay closed: no impact.";
-  const count = `${shown(impacts, 3)} impact${impacts === 1 ? "" : "s"} a period`;
+  const count = countOf(impacts);
   const sticks = contact ? ", then the halves stick together for a while" : "";
   if (multiplicity) {
     const every = multiplicity === 1 ? "every shaking period" : `after ${multiplicity} shaking periods`;

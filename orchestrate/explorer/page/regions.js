@@ -136,9 +136,10 @@ export class Regions {
     this.told(true);
   }
 
-  /** Follow parameters that are being changed: quickly now, in full once they rest. @param {Structure} structure @param {import("./excitation.js").Level} level */
-  follow(structure, level) {
-    const { low, high, direction } = this.diagram;
+  /** Follow parameters that are being changed: quickly now, in full once they rest. @param {Structure} structure @param {import("./excitation.js").Level} level @param {number} held factor of frequency ratios */
+  follow(structure, level, held) {
+    const { direction } = this.diagram;
+    const [low, high] = [this.diagram.low * held, this.diagram.high * held];
     this.open(structure, { low, high, direction, level }, true);
     this.timer = window.setTimeout(() => this.open(structure, { low, high, direction, level }), 400);
   }

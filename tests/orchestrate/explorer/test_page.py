@@ -152,7 +152,7 @@ def test_the_basin_fills_and_a_click_or_a_key_on_it_starts_there(browser):
     browser.click("basin-go")
     browser.until("return document.getElementById('basins').dataset.complete === 'true'")
     rows = browser.text("basins")
-    assert "impacts per period" in rows
+    assert "impacts a period" in rows
     assert browser.run("return explorer.basin.view.labels.every((label) => label >= 0)")
     before = browser.run("return explorer.inspector.choice.start")
     browser.mouse("basin", (0.5, 0.3))

@@ -1,0 +1,68 @@
+"""Six tasks of a newcomer, by what the page shows alone: mouse, keys and what is written there."""
+
+import pytest
+
+from orchestrate.explorer.page import explore
+
+from .conftest import typed
+
+MOVED = "return explorer.inspector.found && explorer.inspector.exponent !== undefined"
+WORDS = """
+const [tag, text] = arguments;
+const seen = [...document.querySelectorAll(tag)].filter((one) => one.checkVisibility());
+seen.find((one) => one.textContent.trim() === text).click();
+"""
+CHOICE = """
+const option = [...document.querySelectorAll("option")].find((one) => one.text === arguments[0]);
+option.selected = true;
+option.parentElement.dispatchEvent(new Event("change"));
+"""
+
+
+@pytest.fixture
+def first(opened, tmp_path, exported):
+    """The page that a newcomer opens."""
+    opened.open(explore(output=tmp_path / "explorer.html"))
+    opened.until(MOVED)
+    return opened
+
+
+@pytest.mark.slow
+def test_six_tasks_are_done_by_the_page_alone(first):
+    # a frequency where it is chaotic: "A cloud: chaos."
+    first.mouse("diagram", (0.395, 0.5))
+    first.until(MOVED)
+    assert first.text("sentence").startswith("Chaos: never repeats")
+    # hear it
+    first.run(WORDS, "button", "Sound (S)")
+    first.until("return explorer.inspector.sound.playing")
+    # the same picture for a beam of 42 and 55 Hz
+    first.run(CHOICE, "your own beam: Hz, mm, g")
+    typed(first, "f1", "42")
+    typed(first, "f2", "55")
+    first.until("return explorer.regions.complete && !explorer.regions.quick")
+    label = first.get("diagram", "aria-label")
+    assert "frequency in Hz from 4" in label
+    # a second motion at 1.3
+    first.run(WORDS, "button", "As it was")
+    typed(first, "eta-number", "1.3")
+    first.until(MOVED)
+    first.run(WORDS, "button", "Other motions here?")
+    first.until("return document.getElementById('basins').dataset.complete === 'true'")
+    assert first.run("return document.querySelectorAll('#basins button').length") == 2
+    before = first.text("sentence")
+    for number in (0, 1):
+        first.run("document.querySelectorAll('#basins button')[arguments[0]].click()", number)
+        first.until(MOVED)
+        if first.text("sentence") != before:
+            break
+    assert first.text("sentence") != before
+    # save what is seen
+    first.run("document.querySelector('[aria-label=\"save diagram as PNG\"]').click()")
+    assert first.download("diagram_eta1.3.png").read_bytes().startswith(b"\x89PNG")
+    # what a pressed delamination does
+    first.run(WORDS, "a", "6 Pressed shut")
+    first.until(MOVED)
+    assert first.text("sentence") == "The halves stay closed: no impact."
+    first.run(WORDS, "a", "3 g: above")
+    first.until("return document.getElementById('sentence').textContent.includes('4 impacts')")
