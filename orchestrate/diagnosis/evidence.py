@@ -169,6 +169,12 @@ class Evidence:
         return float(self.frequency[np.argmax(response)])
 
     @cached_property
+    def peaks(self) -> tuple[float, ...]:
+        """The same of each sensor, Hz."""
+        response = np.abs(self.measured[:, 0]) / self.level
+        return tuple(self.frequency[np.argmax(response, axis=1)].tolist())
+
+    @cached_property
     def displacement(self) -> float:
         """Largest amplitude of order 1 relative to the base, m, at the resonance."""
         size = np.abs(self.measured[:, 0] - self.level)

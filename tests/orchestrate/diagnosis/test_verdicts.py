@@ -5,7 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from orchestrate.diagnosis.evidence import Evidence
+from orchestrate.diagnosis.fit import slopes_of
+from orchestrate.diagnosis.hypotheses import Delaminated
 from orchestrate.diagnosis.verdicts import Findings, share_of_better
+
+from .records import BEAM, record
 
 OPENED = Findings(
     excess=10.0,
@@ -50,6 +55,18 @@ def test_each_case_has_its_word(name):
 def test_the_reason_has_the_numbers_that_decided():
     text = OPENED.reason()
     assert "20 %" in text and "10 times" in text and "0.8" in text and "3.8 times" in text
+
+
+def test_numbers_at_their_bounds_are_reported_with_slopes():
+    evidence = Evidence.from_record(record())
+    hypothesis = Delaminated(BEAM)
+    values = {**hypothesis.values_of(BEAM, evidence), "e": 0.0}
+    del values["clearance"]
+    for e in (0.0, 1.0):
+        with_e = {**values, "e": e}
+        slopes = slopes_of(hypothesis, with_e, evidence)
+        assert slopes.shape == (5, 5) and np.isfinite(slopes).all()
+    assert slopes[0, 0] == pytest.approx(BEAM.f1 / values["common"], rel=1e-4)
 
 
 def test_a_ratio_that_one_part_of_the_record_makes_is_not_certain():
