@@ -90,7 +90,7 @@ def detect(
     --------
     >>> import orchestrate
     >>> beam = orchestrate.Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=52.0, zeta1=0.01)
-    >>> sweep = orchestrate.SweptSine(first=40.0, last=56.0, duration=6.0, acceleration=4.0)
+    >>> sweep = orchestrate.SweptSine(first=40.0, last=56.0, duration=4.0, acceleration=4.0)
     >>> history = orchestrate.shake(beam.as_bonded(), sweep, sample_rate=600.0)
     >>> answer = orchestrate.detect(history, beam.replace(f1=44.0))
     >>> str(answer.verdict.values)

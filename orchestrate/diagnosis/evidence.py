@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,9 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
+from ..laboratory.analysis.channels import Channels
 from ..laboratory.pieces import Pieces
 from ..laboratory.sampled import Sampled
-from .orders import ORDERS, Complexes, OrderWindows, RecordOrders, orders_of, record_orders, thinned
+from .orders import (
+    FEWEST,
+    ORDERS,
+    Complexes,
+    OrderWindows,
+    RecordOrders,
+    orders_of,
+    record_orders,
+    thinned,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,11 +33,31 @@ FITTED = (1.0, 2.0, 3.0)
 RELATIVE = (0.03, 0.03, 0.03)  # errors of a model's orders 1, 2, 3 over the size of order 1
 NEIGHBOURS = 2  # windows on each side over which that size is the largest
 IRREGULAR = 1.5  # errors of orders over the amplitude between the orders
+AROUND = (0.62, 1.55)  # of the resonance's frequency: what is fitted of a wide sweep
+MOST = 0.9  # of a record: more of it is not worth to be cut
 SKIPPED = 1.0  # s at the beginning where the start is not forgotten; at most a tenth of the record
 GAIN, DELAY = 0.03, 2e-4  # of a sensor against that of the base: standard deviations, 1 and s
 MOST_GAIN, MOST_DELAY = 0.12, 1e-3
+PRIOR = 0.1  # weight of these, over that of a record which misses as much as a good model may
 LOST = 30.0  # residual of a motion that has no bounds
 SENSORS = ("acceleration1", "acceleration2")
+
+
+def trimmed(orders: RecordOrders) -> Channels:
+    """The channels from before the sweep comes near the resonance until it is away from it.
+
+    The rest is long and holds little: a fit would spend half its time there.
+    """
+    windows, channels = orders.windows, orders.channels
+    rows = [channels.names.index(name) for name in orders.sensors]
+    response = (np.abs(orders.amplitude[rows, 0]) / orders.level).max(axis=0)
+    ratio = windows.frequency / windows.frequency[np.argmax(response)]
+    inside = np.flatnonzero((ratio > AROUND[0]) & (ratio < AROUND[1]))
+    begin = windows.parts[inside[0]].start - round((SKIPPED + 0.5) * channels.sample_rate)
+    part = slice(max(begin, 0), windows.parts[inside[-1]].stop)
+    if len(inside) < FEWEST or part.stop - part.start > MOST * len(channels.time):
+        return channels
+    return replace(channels, time=channels.time[part], values=channels.values[:, part])
 
 
 @dataclass(frozen=True)
@@ -51,7 +81,7 @@ class Evidence:
     def from_record(cls, record: xr.Dataset) -> Evidence:
         """Of a record; raises as :func:`.orders.record_orders`."""
         orders = record_orders(record)
-        thin = thinned(orders.channels, float(orders.windows.frequency.max()))
+        thin = thinned(trimmed(orders), float(orders.windows.frequency.max()))
         if thin is not orders.channels:
             orders = orders_of(thin)
         rate = orders.channels.sample_rate
@@ -183,7 +213,9 @@ class Evidence:
         slope = -1j * TURN * self.frequency * computed
         columns = np.stack([computed * weight, slope * weight * DELAY / GAIN], axis=1)
         target = (self.measured[row, 0] - computed) * weight
-        basis = np.concatenate([columns.real, columns.imag, np.eye(2) * math.sqrt(len(weight))])
+        basis = np.concatenate(
+            [columns.real, columns.imag, np.eye(2) * PRIOR * math.sqrt(len(weight))]
+        )
         basis[: 2 * len(weight)] *= GAIN
         wanted = np.concatenate([target.real, target.imag, np.zeros(2)])
         solution = np.linalg.lstsq(basis, wanted, rcond=None)[0]

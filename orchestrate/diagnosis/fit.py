@@ -91,8 +91,8 @@ def fit(
     samples. Compared are order 1 (as a complex number) and the sizes of orders 2 and 3 in windows
     of about 0.25 s, over errors that have a relative part: 3 % of order 1 and what is between the
     orders. A gain and a delay of each sensor against that of the base are found in closed form.
-    The standard errors are the larger of those by simulated noise and those by blocks of windows;
-    see :mod:`orchestrate.diagnosis.errors`.
+    The standard errors add what simulated noise does and what blocks of windows show; see
+    :mod:`orchestrate.diagnosis.errors`.
 
     Examples
     --------

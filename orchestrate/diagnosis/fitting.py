@@ -23,7 +23,7 @@ STEPS = {  # of the differences that make derivatives; f and common: parts of th
     **{"log_zeta": 0.02, "log_zeta1": 0.05, "log_zeta2": 0.05},
     **{"square": 0.01, "cube": 0.02, "friction": 0.01, "stop": 0.02, "position": 0.02},
 }
-ROUNDS = 8  # of polishing
+ROUNDS = 7  # of polishing
 GAINED, SMALLEST = 2e-3, 0.1  # least gain of a round; of the clouds' variance
 SAME = 0.03  # relative difference of misfits below which two minima count as one
 
@@ -146,7 +146,7 @@ class Search:
         self,
         starts: Sequence[Mapping[str, float]],
         keep: int = 3,
-        coarse: int = 12,
+        coarse: int = 9,
         fine: int = 25,
     ) -> list[Solution]:
         """The minima from the best starts, the best first, which is refined to the end.

@@ -239,6 +239,7 @@ class Delaminated(Hypothesis):
     def structure(self, values: Values, evidence: Evidence) -> Structure:
         """The structure of numbers; what is not free is the guess's."""
         m1, m2 = self.guess.m1, self.guess.m2
+        values = {**self.values_of(self.guess, evidence), **values}
         split = math.exp(values["split"])
         f1 = values["common"] * math.sqrt((m1 + m2) / (m1 + m2 * split**2))
         numbers = {
@@ -247,7 +248,7 @@ class Delaminated(Hypothesis):
             "zeta1": math.exp(values["log_zeta1"]),
             "zeta2": math.exp(values["log_zeta2"]),
             "e": values["e"],
-            "clearance": values.get("clearance", 0.0) * evidence.displacement,
+            "clearance": values["clearance"] * evidence.displacement,
         }
         return self.guess.replace(bonded=False, **{name: numbers[name] for name in self.free})
 

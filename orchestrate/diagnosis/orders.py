@@ -32,7 +32,7 @@ OVERLAP = 0.5
 QUIET = 0.05  # of the usual amplitude of the base: windows below are not used
 NO_SINE = 0.5  # rms of what the base does beside its orders, over the rms of order 1
 FEWEST = 8  # windows
-KEPT = 14.0  # samples in a period of the highest frequency: order 3 has more than four then
+KEPT = 11.0  # samples in a period of the highest frequency: order 3 has more than three then
 EXPECTED = "expected a swept or stepped sine"
 
 
@@ -173,6 +173,9 @@ def checked_channels(record: xr.Dataset) -> Channels:
     if len(channels.names) < 2:
         text = "expected acceleration1, acceleration2 or both beside box_acceleration"
         raise InputError(f"record: no acceleration of the structure; {text}")
+    for name, values in zip(channels.names, channels.values, strict=True):
+        if not np.ptp(values) > 0.0:
+            raise InputError(f"{name}: does not move; expected the reading of an accelerometer")
     return channels
 
 

@@ -143,7 +143,7 @@ class SearchJob(Job):
         """Minima of a sound hypothesis."""
         search = Search(self.hypotheses[place], self.evidence)
         starts = search.hypothesis.starts(self.evidence)
-        return table_of(place, search.best(starts, keep=2, coarse=10, fine=10), search.evaluations)
+        return table_of(place, search.best(starts, keep=2, coarse=8, fine=8), search.evaluations)
 
     def search_split(self, split: float, player: Player) -> Table:
         """Minima of the delaminated one from the starts of one split of the halves."""
@@ -199,7 +199,7 @@ class SearchJob(Job):
         starts = [{**best, "clearance": clearance} for clearance in (0.0, *GAPS)]
         others = search.hypothesis.starts(self.evidence)[::SPARSE]
         starts += [{**s, "clearance": gap} for s in others for gap in (0.3, 0.1)]
-        found = search.best(starts, keep=3, fine=0)
+        found = search.best(starts, keep=2, fine=0)
         found[0] = search.polish(found[0])
         return self.finished(len(self.hypotheses) - 1, (search, found), player)
 

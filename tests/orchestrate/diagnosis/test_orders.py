@@ -65,13 +65,18 @@ def test_an_order_above_the_sampling_is_missing_and_not_wrong():
     assert np.isfinite(found.floor).all()
 
 
-@pytest.mark.parametrize("kind", ["noise", "still", "short"])
+def test_a_channel_that_does_not_move_is_refused():
+    sweep = orchestrate.SweptSine(acceleration=2.0, **SWEEPS["up"])
+    dead = made(sweep).assign(acceleration1=lambda record: 0.0 * record.acceleration1)
+    with pytest.raises(orchestrate.InputError, match="acceleration1: does not move"):
+        record_orders(dead)
+
+
+@pytest.mark.parametrize("kind", ["noise", "short"])
 def test_what_is_no_swept_sine_is_refused_in_one_line(kind):
     rng = np.random.default_rng(5)
     count = 40 if kind == "short" else 20_000
-    box = {"noise": rng.standard_normal(count), "still": np.zeros(count)}.get(
-        kind, np.sin(np.arange(count))
-    )
+    box = rng.standard_normal(count) if kind == "noise" else np.sin(np.arange(count))
     record = orchestrate.record(
         box_acceleration=box, acceleration1=rng.standard_normal(count), sample_rate=RATE
     )

@@ -1,0 +1,37 @@
+"""Short records of known structures."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+import orchestrate
+
+HALVES = {"m1": 1.5, "m2": 1.2, "f1": 30.0, "f2": 38.0, "zeta1": 0.02, "zeta2": 0.02, "e": 0.5}
+BEAM = orchestrate.Structure.from_halves(**HALVES)
+SWEEP = orchestrate.SweptSine(first=26.0, last=42.0, duration=10.0, acceleration=5.0)
+RATE = 600.0
+
+
+@functools.cache
+def record(structure=BEAM, noise=0.0, both=True, gain=1.0, seed=1, sweep=SWEEP):
+    """What sensors of 250 Hz read, with noise as a part of each channel's rms."""
+    history = orchestrate.shake(structure, sweep, sample_rate=RATE, progress=False)
+    felt = orchestrate.measure(
+        history, orchestrate.Sensor(bandwidth=250.0, sample_rate=RATE), excitation=sweep
+    )
+    rng = np.random.default_rng(seed)
+    names = ["box_acceleration", "acceleration1", *(["acceleration2"] if both else [])]
+    channels = {name: felt[name].values for name in names}
+    channels["acceleration1"] = gain * channels["acceleration1"]
+    noisy = {
+        name: values + noise * values.std() * rng.standard_normal(len(values))
+        for name, values in channels.items()
+    }
+    return orchestrate.record(time=felt.time.values, **noisy)
+
+
+def guess(**changes):
+    """The beam, some percent off."""
+    return BEAM.replace(f1=31.5, f2=36.5, zeta1=0.03, zeta2=0.015, e=0.6).replace(**changes)

@@ -1,0 +1,78 @@
+"""Verdicts and fits on short records of structures that are known."""
+
+import numpy as np
+import pytest
+
+import orchestrate
+
+from .records import BEAM, guess, record
+
+LIMIT = {"jobs": 1, "progress": False}
+
+
+def test_a_delaminated_structure_is_found_with_its_numbers():
+    answer = orchestrate.detect(record(noise=0.01, both=False), guess(), **LIMIT)
+    assert str(answer.verdict.values) == "delaminated", answer.attrs["reason"]
+    assert answer.ratio > 3.0 and answer.odds > 100.0
+    best = answer.sel(hypothesis="delaminated")
+    for name in ("f1", "f2"):
+        one = best.sel(parameter=name)
+        assert float(one.value) == pytest.approx(getattr(BEAM, name), rel=0.02)
+        assert 1e-4 < float(one.standard_error) / float(one.value) < 0.05
+    assert float(best.value.sel(parameter="e")) == pytest.approx(0.5, abs=0.08)
+    assert {"measured", "fitted", "floor", "misfit_at", "evaluations"} <= set(answer.variables)
+
+
+def test_of_a_bonded_structure_no_opening_is_seen_and_its_halves_are_not_stated():
+    answer = orchestrate.detect(record(BEAM.as_bonded(), noise=0.02), guess(), **LIMIT)
+    assert str(answer.verdict.values) == "no opening seen", answer.attrs["reason"]
+    halves = answer.value.sel(parameter=["f1", "f2", "zeta1", "zeta2", "e"])
+    assert halves.isnull().all()
+    common = float(answer.value.sel(hypothesis="bonded", parameter="f"))
+    assert common == pytest.approx(33.79, rel=0.005)
+    assert float(answer.level_high) == pytest.approx(5.0, rel=0.1)
+    assert 0.0 < float(answer.smallest_opening) < 1e-3
+    assert "pressed together" in answer.attrs["settle"]
+
+
+def test_a_fit_is_within_its_errors_and_takes_what_is_not_free_from_the_guess():
+    start = guess(e=0.5)
+    answer = orchestrate.fit(
+        record(noise=0.01), start, free=("f1", "f2", "zeta1", "zeta2"), **LIMIT
+    )
+    assert list(answer.parameter.values) == ["f1", "f2", "zeta1", "zeta2"]
+    truth = np.array([30.0, 38.0, 0.02, 0.02])
+    away = (answer.value.values - truth) / answer.standard_error.values
+    assert abs(away).max() < 5.0
+    np.testing.assert_allclose(answer.value[:2], truth[:2], rtol=0.01)
+    assert answer.correlation.shape == (4, 4)
+    np.testing.assert_allclose(np.diag(answer.correlation), 1.0)
+    assert answer.attrs["hypothesis"] == "delaminated" and float(answer.evaluations) > 50
+
+
+def test_a_fit_of_one_mass_finds_its_frequency():
+    answer = orchestrate.fit(record(BEAM.as_bonded()), guess(), hypothesis="bonded", **LIMIT)
+    assert list(answer.parameter.values) == ["f", "zeta"]
+    assert float(answer.value.sel(parameter="f")) == pytest.approx(33.79, rel=0.002)
+    assert float(answer.value.sel(parameter="zeta")) == pytest.approx(0.0200, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        ({"free": ("f1", "f3")}, "free = 'f3': expected some of f1, f2"),
+        ({"free": ()}, "each once"),
+        ({"hypothesis": "cracked"}, "hypothesis = 'cracked': expected one of delaminated"),
+    ],
+)
+def test_wrong_arguments_are_named(arguments, text):
+    with pytest.raises(orchestrate.InputError, match=text):
+        orchestrate.fit(record(), guess(), **arguments)
+
+
+def test_random_vibration_is_refused_in_one_line():
+    rng = np.random.default_rng(2)
+    noise = rng.standard_normal((2, 20_000))
+    made = orchestrate.record(box_acceleration=noise[0], acceleration1=noise[1], sample_rate=600.0)
+    with pytest.raises(orchestrate.InputError, match="expected a swept or stepped sine"):
+        orchestrate.detect(made, guess())

@@ -1,0 +1,76 @@
+"""How far motions are from a record: the true one is at it, another is not."""
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate.access import OSCILLATOR, Player, find
+from orchestrate.diagnosis.evidence import Evidence
+from orchestrate.diagnosis.fitting import misfit
+from orchestrate.diagnosis.hypotheses import Bonded, Delaminated
+
+from .records import BEAM, record
+
+
+@pytest.fixture(scope="module")
+def player():
+    with Player(find(OSCILLATOR).path) as player:
+        yield player
+
+
+def missed(evidence, structure, player):
+    hypothesis = Delaminated(structure)
+    values = hypothesis.values_of(structure, evidence)
+    return misfit(evidence.residuals(hypothesis.displacements(values, evidence, player)))
+
+
+def test_the_true_motion_is_at_the_record_and_others_are_not(player):
+    evidence = Evidence.from_record(record())
+    assert missed(evidence, BEAM, player) < 0.08
+    for changed in ({"f1": 30.6}, {"e": 0.6}, {"zeta2": 0.03}):
+        assert missed(evidence, BEAM.replace(**changed), player) > 0.25
+
+
+def test_gain_and_delay_of_a_sensor_are_found_in_closed_form(player):
+    evidence = Evidence.from_record(record(gain=1.04))
+    hypothesis = Delaminated(BEAM)
+    values = hypothesis.values_of(BEAM, evidence)
+    computed = evidence.computed(hypothesis.displacements(values, evidence, player))
+    found = [evidence.sensor_error(row, computed[row, 0]) for row in (0, 1)]
+    np.testing.assert_allclose([gain for gain, _ in found], [1.04, 1.0], atol=2e-3)
+    assert max(abs(delay) for _, delay in found) < 2e-6
+    late = computed * np.exp(-2j * np.pi * evidence.frequency * 1e-4)
+    assert evidence.sensor_error(1, late[1, 0])[1] == pytest.approx(-1e-4, rel=0.05)
+
+
+def test_impulses_do_not_come_back_from_above_the_sampling_rate(player):
+    slow = Evidence.from_record(record())
+    hypothesis = Delaminated(BEAM)
+    values = hypothesis.values_of(BEAM, slow)
+    computed = slow.computed(hypothesis.displacements(values, slow, player))[:, 0]
+    error = abs(computed - slow.measured[:, 0]) / slow.size
+    assert np.median(error) < 2e-3
+
+
+def test_records_of_many_samples_are_thinned_and_say_the_same(player):
+    sweep = orchestrate.SweptSine(first=26.0, last=42.0, duration=10.0, acceleration=5.0)
+    history = orchestrate.shake(BEAM, sweep, sample_rate=4000.0, progress=False)
+    sensor = orchestrate.Sensor(bandwidth=250.0, sample_rate=4000.0)
+    evidence = Evidence.from_record(orchestrate.measure(history, sensor, excitation=sweep))
+    assert 400.0 < evidence.rate < 600.0
+    assert missed(evidence, BEAM, player) < 0.15
+
+
+def test_a_bonded_structure_is_one_mass(player):
+    evidence = Evidence.from_record(record(BEAM.as_bonded()))
+    common = Delaminated(BEAM).values_of(BEAM, evidence)["common"]
+    total = BEAM.d1 + BEAM.d2
+    zeta = total / (2.0 * (BEAM.m1 + BEAM.m2) * 2.0 * np.pi * common)
+    motion = Bonded().displacements({"f": common, "log_zeta": np.log(zeta)}, evidence, None)
+    assert misfit(evidence.residuals(motion)) < 0.02
+
+
+def test_motions_without_bounds_are_far_from_the_record():
+    evidence = Evidence.from_record(record())
+    gone = evidence.residuals(np.full((1, evidence.samples), np.nan))
+    assert np.isfinite(gone).all() and misfit(gone) > 5.0

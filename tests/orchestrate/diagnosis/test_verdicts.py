@@ -1,0 +1,62 @@
+"""The rule of the verdict, number by number."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from orchestrate.diagnosis.verdicts import Findings, share_of_better
+
+OPENED = Findings(
+    excess=10.0,
+    order2=0.2,
+    apart=0.0,
+    sound="bonded",
+    sound_misfit=3.0,
+    delaminated="delaminated",
+    delaminated_misfit=0.8,
+    share=1.0,
+    sensors=1,
+    low=1.0,
+    high=5.0,
+    first=20.0,
+    last=90.0,
+    smallest=1e-6,
+)
+CASES = {
+    "opens, and the halves explain it": ({}, "delaminated"),
+    "no order 2, one mass explains it": ({"excess": 0.3, "sound_misfit": 0.3}, "no opening seen"),
+    "no order 2, and nothing explains it": ({"excess": 0.3}, "not described"),
+    "order 2, both explain it": ({"sound_misfit": 0.9}, "undecided"),
+    "order 2, one mass explains it better": (
+        {"sound_misfit": 0.2, "delaminated_misfit": 1.2},
+        "undecided",
+    ),
+    "order 2, and nothing explains it": ({"delaminated_misfit": 3.0}, "not described"),
+    "better, but not in most parts of the record": ({"share": 0.6}, "undecided"),
+    "no order 2, but the faces move apart": ({"excess": 0.2, "apart": 4.0}, "delaminated"),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_each_case_has_its_word(name):
+    changes, expected = CASES[name]
+    findings = replace(OPENED, **changes)
+    assert findings.verdict() == expected
+    assert findings.settle()
+    assert "intact" not in f"{findings.settle()} {findings.reason()} {findings.seen_up_to()}"
+
+
+def test_the_reason_has_the_numbers_that_decided():
+    text = OPENED.reason()
+    assert "20 %" in text and "10 times" in text and "0.8" in text and "3.8 times" in text
+
+
+def test_a_ratio_that_one_part_of_the_record_makes_is_not_certain():
+    rng = np.random.default_rng(1)
+    one = rng.standard_normal((1, 4, 200))
+    assert share_of_better(3.0 * one, one) == 1.0
+    assert share_of_better(one, one) == 0.0
+    burst = one.copy()
+    burst[..., 50:60] *= 12.0
+    assert 0.02 < share_of_better(burst, one) < 0.98
