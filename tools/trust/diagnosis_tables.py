@@ -21,8 +21,12 @@ from .diagnosis import (
 )
 
 VERDICTS = (DELAMINATED, NO_OPENING, NOT_DESCRIBED, UNDECIDED, REFUSED)
-LABELS = {"order ratio": "order 2 over order 1", "kurtosis": "kurtosis above 300 Hz"}
-SIGNS = tuple(LABELS)
+SIGNS = {  # what has a curve: label and colour
+    "order ratio": ("order 2 over order 1", "#1f5f99"),
+    "kurtosis": ("kurtosis above 300 Hz", "#c06020"),
+    "ratio": ("detect: ratio of misfits", "#207040"),
+}
+NONLINEAR = ("hardening", "friction", "clamp")
 PICTURE = "diagnosis.png"
 NOISE, LEVEL, SIZE = (0.001, 0.01, 0.03, 0.1), (2.0, 4.5, 10.0), (0.1, 0.3, 0.5, 0.7, 0.9)
 FALSE = 0.05  # part of false ones at which signs are compared
@@ -69,19 +73,20 @@ def verdict_lines(table: pd.DataFrame) -> list[str]:
 
 def target_lines(table: pd.DataFrame) -> list[str]:
     """What the targets are about."""
-    usual = table[table.noise.between(*USUAL)]
+    usual = table[table.noise.between(*USUAL) & (table.verdict != REFUSED)]
     compliant = usual[usual.kind.isin(("sound", "delaminated"))]
-    nonlinear = usual[usual.kind.isin(("hardening", "friction", "clamp"))]
+    nonlinear = usual[usual.kind.isin(NONLINEAR)]
     calm = nonlinear[nonlinear.verdict == DELAMINATED]
     errors = np.abs(compliant[["f1 error", "f2 error"]].astype(float).to_numpy().ravel())
     errors = 100.0 * errors[np.isfinite(errors)]
     wrong, undecided = (compliant.wrong != "").sum(), (compliant.verdict == UNDECIDED).sum()
     found = [
-        "At 1 to 5 % noise:",
+        "At 1 to 5 % noise, where the record was not refused:",
         "",
         f"- two masses, sound or delaminated: wrong {part(int(wrong), len(compliant))}; "
         f"undecided {part(int(undecided), len(compliant))};",
-        f"- sound but not linear: called delaminated {part(len(calm), len(nonlinear))};",
+        f"- sound beams that harden, soften, rub or rattle in their clamp: called delaminated "
+        f"{part(len(calm), len(nonlinear))};",
     ]
     if len(errors):
         median, nine = np.quantile(errors, (0.5, 0.9))
@@ -100,21 +105,21 @@ def target_lines(table: pd.DataFrame) -> list[str]:
 def curve_lines(table: pd.DataFrame) -> list[str]:
     """Areas under the curves of the signs, and the detector's rates, by noise, level and size."""
     found = [
-        "Beams that opened against sound ones: of each sign the area under its curve with its "
-        f"standard error, and the part of opened beams above the threshold that {100 * FALSE:.0f} "
-        "% of the sound ones pass; of the detector the parts called delaminated.",
+        "Beams that opened against sound ones: of each sign, and of the ratio of misfits by which "
+        "the detector decides, the area under its curve with its standard error, and the part of "
+        f"opened beams above the threshold that {100 * FALSE:.0f} % of the sound ones pass; of the "
+        "verdicts the parts called delaminated.",
         "",
-        "| beams | opened, sound | order 2 over 1 | kurtosis | detector: opened | sound |",
-        "|---|---|---|---|---|---|",
+        "| beams | opened, sound | order 2 over 1 | kurtosis | ratio | "
+        "called delaminated: opened | sound |",
+        "|---|---|---|---|---|---|---|",
     ]
-    for name, own in groups(table):
-        opened = own[(own.opened == 1) & (own.gap.astype(float) > 0.0)]
-        sound = own[own.delaminated == 0]
-        if len(opened) < 2 or len(sound) < 2:
+    for name, own in (*groups(table), *further_groups(table)):
+        if not has_both(own):
             continue
-        both = pd.concat([opened, sound])
+        opened, sound = own[own.opened == 1], own[own.delaminated == 0]
         cells = [name, f"{len(opened)}, {len(sound)}"]
-        cells += [sign_cell(both, sign) for sign in SIGNS]
+        cells += [sign_cell(own, sign) for sign in SIGNS]
         cells += [part(int((g.verdict == DELAMINATED).sum()), len(g)) for g in (opened, sound)]
         found.append(f"| {' | '.join(cells)} |")
     return found
@@ -122,13 +127,22 @@ def curve_lines(table: pd.DataFrame) -> list[str]:
 
 def sign_cell(table: pd.DataFrame, sign: str) -> str:
     """A sign's area and its rate."""
-    known = table[table[sign].notna()]
-    positive = known.opened.to_numpy() == 1
-    if positive.all() or not positive.any():
+    found = curve_of(table, sign)
+    if found is None:
         return "none"
-    found = roc.curve(known[sign].astype(float), positive)
-    error = roc.area_error(found.area, int(positive.sum()), int((~positive).sum()))
+    known = table[table[sign].notna()]
+    counts = int((known.opened == 1).sum()), int((known.delaminated == 0).sum())
+    error = roc.area_error(found.area, *counts)
     return f"{found.area:.3f} ± {error:.3f}; {100.0 * found.true_at(FALSE):.0f} %"
+
+
+def curve_of(table: pd.DataFrame, sign: str) -> roc.Curve | None:
+    """Opened beams against sound ones by a sign, where it is known of both."""
+    known = table[table[sign].notna() & ((table.opened == 1) | (table.delaminated == 0))]
+    positive = known.opened.to_numpy() == 1
+    if not len(known) or positive.all() or not positive.any():
+        return None
+    return roc.curve(known[sign].astype(float), positive)
 
 
 def groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
@@ -146,6 +160,17 @@ def groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
         size = beams["size"].astype(float)
         own = beams[(beams.delaminated == 0) | ((size >= low) & (size < high))]
         found.append((f"finite elements, {low:g} to {high:g} of the length", own))
+    return found
+
+
+def further_groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """Two masses by excitation and sensors, and beside sound beams that are not linear."""
+    masses = table[table["size"].isna()]
+    found = [(f"excitation: {name}", own) for name, own in masses.groupby("excitation", sort=True)]
+    found += [(f"sensors: {count}", own) for count, own in masses.groupby("sensors", sort=True)]
+    for kind in (*NONLINEAR, "sagging"):
+        own = masses[(masses.kind == kind) | (masses.delaminated == 1)]
+        found.append((f"sound ones: {kind}", own))
     return found
 
 
@@ -185,11 +210,10 @@ def has_both(table: pd.DataFrame) -> bool:
 def draw_panel(panel: Any, name: str, table: pd.DataFrame) -> None:
     """One group: the curve of each sign, the detector as a point with its 95 % intervals."""
     opened, sound = table[table.opened == 1], table[table.delaminated == 0]
-    both = pd.concat([opened, sound])
-    for sign, colour in zip(SIGNS, ("#1f5f99", "#c06020"), strict=True):
-        known = both[both[sign].notna()]
-        found = roc.curve(known[sign].astype(float), known.opened.to_numpy() == 1)
-        panel.plot(found.false, found.true, color=colour, label=LABELS[sign])
+    for sign, (label, colour) in SIGNS.items():
+        found = curve_of(table, sign)
+        if found is not None:
+            panel.plot(found.false, found.true, color=colour, label=label)
     counts = [(int((own.verdict == DELAMINATED).sum()), len(own)) for own in (sound, opened)]
     at = np.array([count / of for count, of in counts])
     ends = np.array([roc.interval(*one) for one in counts])

@@ -136,7 +136,8 @@ def made_rows(count):
         row |= {"opened": split, "touched": split, "gap": 1e-3 * split, "size": None, "wrong": ""}
         row |= {"noise": 0.02, "level": 5.0, "excitation": "up", "seconds": 2.0}
         row |= {"order ratio": float(rng.normal(split)), "kurtosis": 3.0 + 10.0 * split}
-        row |= {"verdict": "delaminated" if split else "no opening seen"}
+        row |= {"verdict": "delaminated" if split else "no opening seen", "sensors": 1}
+        row |= {"ratio": 1.0 + 2.0 * split if number > 9 else None}
         row |= {"f1 error": 0.01 if split else None, "f2 error": -0.02 if split else None}
         rows.append([row[name] for name in diagnosis.COLUMNS])
     rows[0][diagnosis.COLUMNS.index("verdict")] = "delaminated"
@@ -149,7 +150,9 @@ def test_tables_and_picture(tmp_path):
     assert "| sound | 1 | 99 | 0 | 0 | 0 | 1 |" in text
     assert "two masses, sound or delaminated: wrong 0.5 % of 200 (0.1 to 2.8)" in text
     assert "median error 1.50 %, nine of ten within 2.00 %" in text
-    assert "1.000 ± 0.000; 100 % | 100.0 % of 100" in text
+    assert text.count("1.000 ± 0.000; 100 % | 100.0 % of 100") >= 3
+    assert "| sensors: 1 | 100, 100 |" in text and "excitation: up" in text
+    assert diagnosis_tables.curve_of(diagnosis_tables.table_of(made_rows(10)), "ratio") is None
     path = diagnosis_tables.draw(made_rows(200), tmp_path / "diagnosis.png")
     assert path.stat().st_size > 10_000
 
