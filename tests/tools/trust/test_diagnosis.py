@@ -16,8 +16,8 @@ from tools.benches import recipe, tutorial
 from tools.benches.recipe import Setup, Truth
 from tools.trust import __main__ as ledger
 from tools.trust import diagnosis, diagnosis_tables, page, records, roc, signs
-from tools.trust.job import HERE, sources
 from tools.trust.diagnosis import Diagnosis, judged, wrong_in
+from tools.trust.job import HERE, sources
 
 SOUND = Truth(
     kind="sound",
