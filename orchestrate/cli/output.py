@@ -173,7 +173,13 @@ def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> 
     named = ("frequency" if turns and name in ("values", "limits") else name for name in question)
     pairs = zip(named, question.values(), strict=True)
     parts = [command, structure.label(), *(brief(*item) for item in pairs)]
-    return "_".join(filter(None, [*parts, digest(structure.parameters(), question)]))
+    return "_".join(filter(None, [*parts, digest(parameters_of(structure), question)]))
+
+
+def parameters_of(structure: Structure) -> dict[str, float]:
+    """Return a structure's parameters; without a clearance files keep the names they always had."""
+    parameters = structure.parameters()
+    return {n: v for n, v in parameters.items() if n != "clearance" or v != 0.0}
 
 
 def digest(*arguments: Any) -> str:

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = """  {program} resonance --structure beam --hz 8:20:0.05 --g 0.02
   {program} resonance --structure beam --rpm 500:1200:5 --amplitude 3e-5 --format nc,csv
-  {program} resonance --set f1=42 --set f2=55 --set zeta1=0.007 --set zeta2=0.007 \\
-      --set clearance=-2e-5 --hz 30:60:0.2 --g 0.3:1.5:0.3      pressed by 20 um, five levels
+  {program} resonance --structure beam --set clearance=-2e-5 --hz 8:20:0.05 --g 0.02,0.1,0.5
   {program} resonance --eta 0.3:4:0.005 --set e=0.3             the paper's structure"""
 COLUMNS = {  # of a printed peak: title, format
     "x1_max": ("|x1| m", "11.4g"),

@@ -85,7 +85,7 @@ def test_bounds_hold_for_all_later_times(make, values, state, age):
 
 
 @examples(30)
-@given(structures(clearance=True), STATES, sizes(1e-16, 2e-5), sizes(1e-12, 0.1), AGES)
+@given(structures(), STATES, sizes(1e-16, 2e-5), sizes(1e-12, 0.1), AGES)
 def test_bounds_of_nearly_equal_oscillators_hold_as_long_as_they_are_used(
     values, state, near, gap, age
 ):

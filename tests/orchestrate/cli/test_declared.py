@@ -38,6 +38,8 @@ def parsers():
 def options():
     """Command, option and parameter of each option that is an argument of its function."""
     for command, parser in parsers().items():
+        if command == "report":  # of stored results; its folder is no argument of the function
+            continue
         function = getattr(orchestrate, command.replace("-", "_"), None)
         parameters = inspect.signature(function).parameters if inspect.isfunction(function) else {}
         for action in parser._actions:
