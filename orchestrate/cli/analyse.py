@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = """  {program} analyse results/shake.nc --show frf,psd --resolution 0.5
   {program} analyse swept.nc --label delaminated --beside bonded=whole.nc --show orders,harmonics
+  {program} analyse swept.nc --sensor 2000 --beside measured=bench.csv --show orders
   {program} analyse measured.csv --unit g --columns time=0,box_acceleration=3,acceleration1=4
   {program} analyse run.wav --scale 500 --show spectrogram,density --from 2 --to 30
   {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv"""
@@ -82,6 +83,9 @@ def add_parser(commands: Commands) -> None:
     option("--label", default="", metavar="WORDS", help="what the record is, for the picture")
     beside = "another record in the same picture; may be repeated"
     option("--beside", action="append", default=[], metavar="LABEL=FILE", help=beside)
+    sensor = "of results of shake what accelerometers of this bandwidth read, with the impulses of "
+    sensor += "impacts; RATE: samples a second (default: accelerations between impacts)"
+    option("--sensor", metavar="HZ[:RATE]", help=sensor)
     option("--from", dest="begin", type=plain_float, metavar="S", help="time it begins at, s")
     option("--to", dest="end", type=plain_float, metavar="S", help="time it ends at, s")
     add_reading(parser)
@@ -144,7 +148,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 def part_and_reading(arguments: argparse.Namespace) -> list[Any]:
     """All options that decide what a record is."""
-    return [getattr(arguments, name) for name in ("begin", "end", *READING)]
+    return [getattr(arguments, name) for name in ("begin", "end", "sensor", *READING)]
 
 
 def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
@@ -197,6 +201,8 @@ def record_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     if path.suffix.lower() == ".nc":
         stored = read_stored("FILE" if path == arguments.record else "--beside", path)
         units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
+        if arguments.sensor is not None and "impulse" in stored:
+            return as_read(stored, arguments.sensor)
         return stored if units <= {"m/s2"} else read_record(path)
     if not path.is_file():
         raise InputError(f"{path}: no such file; expected a record")
@@ -206,6 +212,25 @@ def record_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     if "columns" in reading:
         reading["columns"] = columns_of(reading["columns"])
     return read_record(path, **reading)
+
+
+def as_read(history: xr.Dataset, text: str) -> xr.Dataset:
+    """What the sensors of ``--sensor`` read of a history.
+
+    Raises
+    ------
+    InputError
+    """
+    from .. import Sensor, measure
+
+    try:
+        numbers = [plain_float(part) for part in text.split(":")]
+    except ValueError:
+        numbers = []
+    if not 1 <= len(numbers) <= 2:
+        raise InputError(f"--sensor {text}: expected HZ or HZ:RATE, such as 10000:25600")
+    rate = numbers[1] if len(numbers) > 1 else None
+    return measure(history, Sensor(bandwidth=numbers[0], sample_rate=rate))
 
 
 def columns_of(text: str) -> dict[str, str | int]:

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.image import imread
 from scipy.io import wavfile
 
-from orchestrate import write_record
+from orchestrate import Sensor, measure, psd, write_record
 
 RATE = 1000.0
 
@@ -210,6 +210,22 @@ def test_mistakes_in_reading_are_one_line(ask, tmp_path, options, words):
     in_g(sweep(second=False), tmp_path / "bench.csv")
     (tmp_path / "bench.doc").write_text("a")
     ask("analyse", tmp_path / options[0], *options[1:]).complaint(*words)
+
+
+def test_sensors_feel_the_impulses_of_impacts(ask, tmp_path):
+    """As orchestrate.measure has it: what is measured is compared with that, not with nothing."""
+    sweep = ("--swept-sine", "10:13", "--duration", "8", "--g", "0.02", "--sample-rate", "1000")
+    ask("shake", "--structure", "beam", *sweep, "--plot", "none").success()
+    (path,) = (tmp_path / "results").glob("shake*.nc")
+    show = ("--show", "psd", "--plot", "none")
+    between = said(ask("analyse", path, *show).success())
+    felt = said(ask("analyse", path, "--sensor", "400:1500", *show).success())
+    made = measure(xr.load_dataset(path), Sensor(bandwidth=400.0, sample_rate=1500.0))
+    rms = float(psd(made).rms.sel(channel="acceleration1"))
+    assert f"mass 1: {rms:.4g} m/s2 rms" in felt[1] and felt[1] != between[1]
+    assert len(list((tmp_path / "results").glob("analyse*.nc"))) == 2
+    ask("analyse", path, "--sensor", "fast").complaint("--sensor fast: expected HZ or HZ:RATE")
+    ask("analyse", path, "--sensor", "-1").complaint("bandwidth = -1.0")
 
 
 def test_numbers_in_another_unit_are_noticed_in_one_line(ask, tmp_path):
