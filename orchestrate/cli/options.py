@@ -372,7 +372,7 @@ def excitation_of(
     turns = each(TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values)
     if arguments.g is None:
         return {"frequency": turns, "amplitude": amplitude}
-    held = each(lambda value: amplitude * GRAVITY / value**2, turns)
+    held = each(lambda value: amplitude * GRAVITY / (value * value), turns)
     return {"frequency": turns, "amplitude": held}
 
 

@@ -189,7 +189,7 @@ def read_excitation(section: Section, structure: Structure | None) -> Excitation
         frequency = section.rad_s(key)
     amplitude = section.number(section.exactly_one(AMPLITUDES))
     if amplitude_key == "acceleration_g":
-        amplitude = amplitude * GRAVITY / frequency**2
+        amplitude = amplitude * GRAVITY / (frequency * frequency)
     return section.make(lambda: Excitation(frequency=frequency, amplitude=amplitude, **phase))
 
 

@@ -15,8 +15,9 @@ export function onNumber(input, take, event = "change") {
   });
 }
 
-/** Show a number in a field. @param {HTMLInputElement} input @param {number} value @param {number} [digits] */
+/** Show a number in a field, unless one is being typed there. @param {HTMLInputElement} input @param {number} value @param {number} [digits] */
 export function showNumber(input, value, digits = 12) {
+  if (document.activeElement === input && input.type === "number") return;
   input.value = String(Number(value.toPrecision(digits)));
   complain(input, "");
 }

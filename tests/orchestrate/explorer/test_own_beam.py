@@ -162,6 +162,17 @@ def test_what_is_wrong_with_a_number_stands_beside_its_field_and_nothing_changes
     assert opened.text("e-number-wrong") == ""
 
 
+def test_a_number_that_is_being_typed_is_left_alone(opened):
+    from selenium.webdriver.common.keys import Keys
+
+    opened.chosen()
+    opened.run("const at = document.getElementById('eta-number'); at.focus(); at.select()")
+    opened.keys("2.")
+    opened.run("explorer.refreshDiagram()")  # as when the diagram is complete
+    opened.keys("5", Keys.TAB)
+    assert opened.run("return explorer.eta") == 2.5
+
+
 def test_a_link_with_wrong_numbers_opens_the_usual_view(opened, page):
     opened.chosen()
     before = json.loads(opened.run(STATE))

@@ -149,7 +149,7 @@ def test_the_basin_fills_and_a_click_or_a_key_on_it_starts_there(browser):
 
     browser.run("explorer.choose(1.3)")
     browser.chosen()
-    browser.click("basin-go")
+    browser.click("others")
     browser.until("return document.getElementById('basins').dataset.complete === 'true'")
     rows = browser.text("basins")
     assert "impacts a period" in rows
