@@ -21,6 +21,7 @@ from .even_orders import even_orders
 from .evidence import Evidence
 from .fitting import Search, Solution, distinct, misfit
 from .hypotheses import SOUND, SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
+from .verdicts import SOUND_DESCRIBES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,17 +72,17 @@ def evidence_of(data: RecordData) -> Evidence:
 
 
 @lru_cache(maxsize=2)
-def opening_is_seen(data: RecordData) -> bool:
-    """Whether faces are seen to part, or not to move as one.
+def is_worth_a_search(data: RecordData) -> bool:
+    """Whether faces are seen to part, or not to move as one, or a linear beam does not describe it.
 
-    Where they are not, no verdict depends on the delaminated fit, and its search is short.
+    Else no verdict depends on the delaminated fit, and its search is short.
     """
     evidence = evidence_of(data)
     search = Search(SOUND[0], evidence)
     best = search.best(search.hypothesis.starts(evidence), keep=1, coarse=8, fine=0)[0]
     motion = search.hypothesis.displacements(best.values, evidence, None)
     even = even_orders(evidence, evidence.matched(evidence.computed(motion)))
-    return even.seen or even.moved_apart > 1.0
+    return even.seen or even.moved_apart > 1.0 or best.misfit > SOUND_DESCRIBES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,7 +166,7 @@ class SearchJob(Job):
         place = len(self.sound)
         search = Search(self.hypotheses[place], self.evidence, player)
         starts = [s for s in search.hypothesis.starts(self.evidence) if s["split"] == split]
-        coarse = COARSE if opening_is_seen(self.data) else SHORT
+        coarse = COARSE if is_worth_a_search(self.data) else SHORT
         found = search.best(starts, keep=FROM_SCAN, coarse=coarse, fine=0)
         return table_of(place, found, search.evaluations)
 
@@ -203,7 +204,7 @@ class SearchJob(Job):
         """Minima of a hypothesis; the two best delaminated ones are refined."""
         search = Search(self.hypotheses[place], self.evidence, player)
         found = self.solutions(previous, place)
-        if place >= len(self.sound) and opening_is_seen(self.data):
+        if place >= len(self.sound) and is_worth_a_search(self.data):
             close = [one for one in found[:REFINED] if one.misfit < CLOSE * found[0].misfit]
             best = [search.polish(one) for one in close]
             found = sorted([*best, *found[len(close) :]], key=lambda solution: solution.misfit)
@@ -216,7 +217,7 @@ class SearchJob(Job):
         best = dict(zip(names, plain["end_values"][: len(names) - 1].tolist(), strict=False))
         starts = [{**best, "clearance": clearance} for clearance in (0.0, *GAPS)]
         starts += search.hypothesis.starts(self.evidence)
-        if opening_is_seen(self.data):
+        if is_worth_a_search(self.data):
             found = search.best(starts, keep=2, coarse=COARSE, fine=0)
             found[0] = search.polish(found[0])
         else:
@@ -233,7 +234,7 @@ class SearchJob(Job):
         """The best solution of a hypothesis with its errors, and what it computes."""
         search, found = minima
         values, known = found[0].values, None
-        if with_errors and (place < len(self.sound) or opening_is_seen(self.data)):
+        if with_errors and (place < len(self.sound) or is_worth_a_search(self.data)):
             known = estimate(search, values)
             values = known.values
         motion = search.hypothesis.displacements(values, self.evidence, player)

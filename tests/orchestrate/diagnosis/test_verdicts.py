@@ -31,7 +31,11 @@ OPENED = Findings(
 CASES = {
     "opens, and the halves explain it": ({}, "delaminated"),
     "no order 2, one mass explains it": ({"excess": 0.3, "sound_misfit": 0.3}, "no opening seen"),
-    "no order 2, and nothing explains it": ({"excess": 0.3}, "not described"),
+    "no order 2, and nothing explains it": (
+        {"excess": 0.3, "delaminated_misfit": 2.6},
+        "not described",
+    ),
+    "no order 2, but the halves alone explain it": ({"excess": 0.3}, "undecided"),
     "order 2, both explain it": ({"sound_misfit": 0.9}, "undecided"),
     "order 2, one mass explains it better": (
         {"sound_misfit": 0.2, "delaminated_misfit": 1.2},
