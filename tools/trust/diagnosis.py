@@ -7,7 +7,7 @@ import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,7 +20,8 @@ from .campaign import Campaign, Outcome
 
 DELAMINATED, NO_OPENING = "delaminated", "no opening seen"
 NOT_DESCRIBED, UNDECIDED = "not described", "undecided"
-REFUSED = "refused"
+REFUSED, FAILED = "refused", "failed"
+FAILURES = (ArithmeticError, ValueError, LookupError, RuntimeError)  # numpy's LinAlgError is one
 KINDS = (  # one after the other: the two that the targets are about are drawn more often
     *("sound", "delaminated", "hardening", "delaminated", "friction", "gap"),
     *("sound", "preloaded", "clamp", "delaminated", "intact elements", "elements", "sagging"),
@@ -49,7 +50,8 @@ class Diagnosis(Campaign):
         "with gains off by 3 %, delays, noise of 0.1 to 10 %; masses and frequencies of the guess "
         "off by up to 10 %. A finding is a sound beam, or one that did not open, that is called "
         "delaminated; or no opening seen in a beam whose faces parted by more than 0.02 mm and "
-        "struck each other. Random excitation is refused: the detector goes by orders."
+        "struck each other; or no verdict at all. Random excitation is refused: the detector goes "
+        "by orders."
     )
     unit = "beams"
     target = 500
@@ -97,7 +99,7 @@ def judged(case: Case) -> dict[str, Any]:
     """A row of the results: what was so, what the signs and the detector say."""
     truth, setup = case.truth, case.truth.setup
     begin = time.process_time()
-    verdict, parameters = asked(case)
+    verdict, parameters, message = asked(case)
     seconds = time.process_time() - begin
     errors = errors_of(parameters, truth) if verdict == DELAMINATED else {}
     return {
@@ -120,21 +122,41 @@ def judged(case: Case) -> dict[str, Any]:
         "f1 error": errors.get("f1"),
         "f2 error": errors.get("f2"),
         "seconds": rounded(seconds),
-        "wrong": wrong_in(verdict, truth),
+        "wrong": wrong_in(verdict, truth, message),
     }
 
 
-def asked(case: Case) -> tuple[str, Mapping[str, float]]:
-    """The verdict on a case, and the numbers that come with it: its ratio, and f1 and f2."""
+class Answer(NamedTuple):
+    """What the detector says.
+
+    Attributes
+    ----------
+    verdict : str
+        Or that it refused, or failed.
+    numbers : mapping of str to float
+        The ratio of its misfits, f1 and f2.
+    message : str
+        Where it refused or failed.
+    """
+
+    verdict: str
+    numbers: Mapping[str, float]
+    message: str = ""
+
+
+def asked(case: Case) -> Answer:
+    """What the detector says of a case."""
     try:
         answer = orchestrate.detect(case.record, case.guess, jobs=1, progress=False)
-    except VibroimpactError:
-        return REFUSED, {}
+    except VibroimpactError as error:
+        return Answer(REFUSED, {}, str(error))
+    except FAILURES as error:
+        return Answer(FAILED, {}, f"{type(error).__name__}: {error}")
     names = [str(name) for name in answer.hypothesis.values if str(name).startswith(DELAMINATED)]
     best = min(names, key=lambda name: float(answer.misfit.sel(hypothesis=name)))
     values = answer.value.sel(hypothesis=best)
     numbers = {name: float(values.sel(parameter=name)) for name in ("f1", "f2")}
-    return str(answer.verdict.item()), {"ratio": float(answer.ratio), **numbers}
+    return Answer(str(answer.verdict.item()), {"ratio": float(answer.ratio), **numbers})
 
 
 def errors_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
@@ -148,8 +170,10 @@ def errors_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float 
     }
 
 
-def wrong_in(verdict: str, truth: Truth) -> str:
+def wrong_in(verdict: str, truth: Truth, message: str = "") -> str:
     """What is wrong with a verdict; empty where nothing is."""
+    if verdict == FAILED or (verdict == REFUSED and truth.setup.excitation != "random"):
+        return f"{verdict}: {message}"
     if verdict == DELAMINATED and not truth.is_delaminated:
         return "called delaminated, and is sound"
     if verdict == DELAMINATED and not truth.opened:

@@ -13,6 +13,7 @@ from . import roc
 from .diagnosis import (
     COLUMNS,
     DELAMINATED,
+    FAILED,
     NO_OPENING,
     NOT_DESCRIBED,
     REFUSED,
@@ -20,7 +21,7 @@ from .diagnosis import (
     USUAL,
 )
 
-VERDICTS = (DELAMINATED, NO_OPENING, NOT_DESCRIBED, UNDECIDED, REFUSED)
+VERDICTS = (DELAMINATED, NO_OPENING, NOT_DESCRIBED, UNDECIDED, REFUSED, FAILED)
 SIGNS = {  # what has a curve: label and colour
     "order ratio": ("order 2 over order 1", "#1f5f99"),
     "kurtosis": ("kurtosis above 300 Hz", "#c06020"),

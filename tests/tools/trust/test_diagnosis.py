@@ -110,7 +110,7 @@ def quick(monkeypatch):
         truth = case.truth
         wrong = truth.kind == "hardening"
         verdict = "delaminated" if truth.opened or wrong else "no opening seen"
-        return verdict, {"f1": 1.02 * truth.f1, "f2": 0.97 * truth.f2}
+        return diagnosis.Answer(verdict, {"f1": 1.02 * truth.f1, "f2": 0.97 * truth.f2})
 
     monkeypatch.setattr(diagnosis, "asked", asked)
 
@@ -147,7 +147,7 @@ def made_rows(count):
 
 def test_tables_and_picture(tmp_path):
     text = "\n".join(diagnosis_tables.lines(made_rows(200)))
-    assert "| sound | 1 | 99 | 0 | 0 | 0 | 1 |" in text
+    assert "| sound | 1 | 99 | 0 | 0 | 0 | 0 | 1 |" in text
     assert "two masses, sound or delaminated: wrong 0.5 % of 200 (0.1 to 2.8)" in text
     assert "median error 1.50 %, nine of ten within 2.00 %" in text
     assert text.count("1.000 ± 0.000; 100 % | 100.0 % of 100") >= 3
@@ -163,7 +163,7 @@ def test_rows_go_into_the_record_and_onto_the_page(quick, exported, tmp_path):
     place = tmp_path / "trust.jsonl"
     assert records.append(run, place) and records.read(place) == [run]
     text = page.text([run])
-    assert "| hardening | 1 | 0 | 0 | 0 | 0 | 1 |" in text
+    assert "| hardening | 1 | 0 | 0 | 0 | 0 | 0 | 1 |" in text
     without = dataclasses.replace(run, rows=[])
     records.append(without, tmp_path / "other.jsonl")
     assert "rows" not in json.loads((tmp_path / "other.jsonl").read_text())
@@ -194,7 +194,7 @@ def made_answer(record, guess, **running):
 def test_the_numbers_are_those_of_the_best_delaminated_hypothesis(monkeypatch):
     monkeypatch.setattr(orchestrate, "detect", made_answer)
     case = recipe.Case(xr.Dataset(), orchestrate.Structure(), SPLIT)
-    verdict, numbers = diagnosis.asked(case)
+    verdict, numbers, _ = diagnosis.asked(case)
     assert (verdict, numbers) == ("delaminated", {"ratio": 3.0, "f1": 41.0, "f2": 52.0})
     assert diagnosis.errors_of(numbers, SPLIT) == pytest.approx(
         {"f1": 41.0 / 45.0 - 1.0, "f2": 52.0 / 45.0 - 1.0}, abs=1e-3
@@ -208,4 +208,19 @@ def test_what_the_detector_cannot_take_is_refused():
     made = np.random.default_rng(3).normal(size=(2, 4000))
     record = orchestrate.record(box_acceleration=made[0], acceleration1=made[1], sample_rate=1000.0)
     case = recipe.Case(record, orchestrate.Structure.from_file("beam"), SPLIT)
-    assert diagnosis.asked(case) == (diagnosis.REFUSED, {})
+    answer = diagnosis.asked(case)
+    assert answer.verdict == diagnosis.REFUSED and answer.message
+    assert wrong_in(answer.verdict, SPLIT, answer.message) == f"refused: {answer.message}"
+    noise = dataclasses.replace(SPLIT, setup=Setup(4.0, 0.02, 1, "random"))
+    assert wrong_in(answer.verdict, noise, answer.message) == ""
+
+
+def test_a_detector_that_fails_is_a_finding(monkeypatch):
+    def failing(*arguments, **running):
+        raise np.linalg.LinAlgError("SVD did not converge")
+
+    monkeypatch.setattr(orchestrate, "detect", failing)
+    answer = diagnosis.asked(recipe.Case(xr.Dataset(), orchestrate.Structure(), SPLIT))
+    assert answer.verdict == diagnosis.FAILED
+    expected = "failed: LinAlgError: SVD did not converge"
+    assert wrong_in(answer.verdict, SOUND, answer.message) == expected
