@@ -10,6 +10,7 @@ module               idea
 :mod:`.unpacked`     unpacking of FMUs, once per process
 :mod:`.library`      binaries of FMUs, loaded once per process
 :mod:`.instance`     a co-simulation instance: set, step, read, save its state
+:mod:`.stepping`     steps that end at events, and fast calls for loops over them
 :mod:`.events`       a motion computed impact by impact
 :mod:`.event_loop`   its loop over pieces of the input, samples and impacts, compiled
 :mod:`.impacts`      the impacts of a motion

@@ -13,7 +13,7 @@ import logging
 from collections.abc import Sequence
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, cast
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +22,7 @@ from ..errors import FmuError
 from .c_library import library
 from .channel import Channel
 from .impacts import EVENT_OUTPUTS, Impacts
-
-if TYPE_CHECKING:
-    from .events import EventInstance
+from .stepping import SteppingInstance
 
 log = logging.getLogger(__name__)
 Floats = NDArray[np.float64]
@@ -105,7 +103,7 @@ def run_function() -> Any:
 
 
 def event_loop_of(
-    instance: EventInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
+    instance: SteppingInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
 ) -> EventLoop:
     """Return the fastest loop that there is for an instance; see :class:`EventLoop`."""
     native = not instance.description.needs_tool
@@ -118,7 +116,7 @@ class EventLoop:
 
     Parameters
     ----------
-    instance : EventInstance
+    instance : SteppingInstance
     inputs : sequence of str
         Real variables that are set where a piece of the input begins.
     outputs : sequence of str
@@ -126,7 +124,7 @@ class EventLoop:
     """
 
     def __init__(
-        self, instance: EventInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
+        self, instance: SteppingInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
     ) -> None:
         self.instance, self.inputs, self.outputs = instance, tuple(inputs), tuple(outputs)
         self.channel = Channel(instance, inputs, outputs)
@@ -195,7 +193,7 @@ class CompiledEventLoop(EventLoop):
     """The same, compiled."""
 
     def __init__(
-        self, instance: EventInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
+        self, instance: SteppingInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
     ) -> None:
         super().__init__(instance, inputs, outputs)
         self._run = run_function()
@@ -240,6 +238,6 @@ class CompiledEventLoop(EventLoop):
         return self.channel.failure(self._calls.failed.decode(), status)
 
 
-def references(instance: EventInstance, names: Sequence[str]) -> Any:
+def references(instance: SteppingInstance, names: Sequence[str]) -> Any:
     """Return the value references of variables, as an array of C."""
     return (c_uint * len(names))(*(instance.variable(name).valueReference for name in names))
