@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from ..constants import GRAVITY
 from .labels import prefix, title_from_attributes
@@ -64,7 +65,7 @@ def draw_accelerations(axes: Axes, data: xr.Dataset) -> None:
     style: Any = {"color": GREY, "linewidth": 1.0, "linestyle": "--"}
     axes.plot(data.hertz, glued, label="bonded, at each level", **style)
     axes.set(yscale="log", ylabel="largest acceleration between\nimpacts over level, in g/g")
-    axes.yaxis.set_major_formatter("{x:g}")
+    write_plain_numbers(axes)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
 
 
@@ -87,4 +88,12 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     for level, colour in zip(data.level.values, colours(data), strict=True):
         axes.axhline(level / GRAVITY, color=colour, linewidth=1.0)
     axes.set(yscale="log", ylabel="level of the box in g")
+    write_plain_numbers(axes)
     axes.legend(loc="lower right", fontsize=8)
+
+
+def write_plain_numbers(axes: Axes) -> None:
+    """Label a logarithmic axis by numbers: 0.02, not powers of ten."""
+    axes.yaxis.set_major_formatter("{x:g}")
+    low, high = axes.get_ylim()
+    axes.yaxis.set_minor_formatter("{x:g}" if high < 100.0 * low else NullFormatter())
