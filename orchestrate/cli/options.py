@@ -25,6 +25,8 @@ QUANTITIES = """quantities:
   e                     coefficient of restitution: speed after an impact over that before
   gamma                 end of chattering: the masses stick where the next flight would last
                         less than gamma/omega
+  clearance             gap between the faces of the unloaded halves, m; below 0 they are
+                        pressed together by so much
   omega = sqrt(k1/m1)   unit of frequency, rad/s
   mu = m2/m1, kappa = k2/k1
   D1 = d1/(2 omega m1), D2 = d2/(2 omega m2); D sets both
@@ -106,8 +108,8 @@ def add_structure(parser: argparse.ArgumentParser, default: str = "paper") -> No
     )
     add_set(
         group,
-        "one of its parameters, SI (m1 m2 k1 k2 d1 d2 e gamma), of each half (f1 f2 in Hz, "
-        "zeta1 zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
+        "one of its parameters, SI (m1 m2 k1 k2 d1 d2 e gamma clearance), of each half (f1 f2 in "
+        "Hz, zeta1 zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
     )
 
 

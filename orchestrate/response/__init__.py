@@ -12,6 +12,7 @@ module                      idea
 :mod:`.simulate`            a motion in time
 :mod:`.sweep`               responses along a parameter, each from the end of the last
 :mod:`.resonance`           resonance curves, bonded against delaminated, with peaks and jumps
+:mod:`.threshold`           level at which a structure opens or touches, in closed form
 :mod:`.relative_resonance`  continuation of a response until its largest gap has a maximum
 :mod:`.turns_and_jumps`     significant maxima and jumps of a curve
 :mod:`.curves`              phase curves with both sides of each impact

@@ -1,8 +1,8 @@
 """The motion with a clearance by an ODE solver with event location, written without the kernel.
 
 SI units, displacements from the unloaded springs. Phases of flight and of permanent contact are
-integrated one after the other (DOP853); short flights are begun without event location, which
-would find the start itself.
+integrated one after the other (DOP853). Flights from no gap are begun without event location, which
+would find the start itself, and in short steps, so that their ends are not stepped over.
 """
 
 import numpy as np
@@ -35,6 +35,7 @@ class Motion:
         self.size = np.abs(self.state).max() + p["box_amplitude"] + abs(p["clearance"])
         fastest = max(p["box_frequency"], self.omega, np.sqrt(p["k2"] / p["m2"]))
         self.time, self.impacts, self.longest = 0.0, [], 0.2 / fastest
+        self.step = self.longest
         closed = self.gap(0.0, self.state) <= 1e-14 * self.size
         pressed = closed and p["v1_start"] == p["v2_start"] and self.opening(x1, p["v1_start"]) < 0
         self.mode, self.hop = (CONTACT, 0.0) if pressed else (FLIGHT, 0.0)
@@ -81,20 +82,19 @@ class Motion:
         """On to a time."""
         while self.time < stop:
             if self.mode == CONTACT:
-                if self.integrate(self.contact, stop, events=self.release, max_step=self.longest):
-                    self.mode, self.hop = FLIGHT, 0.0
+                step = 0.1 * self.longest  # the force may be above zero for a short time
+                if self.integrate(self.contact, stop, events=self.release, max_step=step):
+                    self.mode, self.hop = FLIGHT, 0.02 * self.longest
                 continue
-            longest, first = self.longest, None
             if self.hop:
-                first = min(self.hop / 4.0, self.longest, stop - self.time)
-                self.integrate(self.flight, self.time + first)
-                longest, self.hop = min(longest, 2.0 * first), 0.0
-                first = min(first, stop - self.time)
-                if first <= 0.0:
-                    return self
-            options = {"events": self.touch, "max_step": longest, "first_step": first}
-            if self.integrate(self.flight, stop, **options):
+                self.step = min(0.25 * self.hop, self.longest)
+                self.integrate(self.flight, min(stop, self.time + self.step))
+                self.hop = 0.0
+                continue
+            leg = min(stop, self.time + 8.0 * self.step)
+            if self.integrate(self.flight, leg, events=self.touch, max_step=self.step):
                 self.strike()
+            self.step = min(2.0 * self.step, self.longest)
         return self
 
     def touch(self, t, y):

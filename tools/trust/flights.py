@@ -12,7 +12,17 @@ from .campaign import Campaign, Outcome
 
 NAMES = (
     *("m1", "m2", "k1", "k2", "d1", "d2", "e", "box_amplitude", "box_frequency", "phase_start"),
-    *("box_acceleration", "box_jerk", "box_snap", "box_crackle", "x1", "x2", "v1", "v2"),
+    *(
+        "box_acceleration",
+        "box_jerk",
+        "box_snap",
+        "box_crackle",
+        "x1",
+        "x2",
+        "v1",
+        "v2",
+        "clearance",
+    ),
 )
 WRONG = ("", "a root is missed", "no root at its end", "it does not end")
 CONTACT = 6  # the kind that is no flight
@@ -150,9 +160,9 @@ def deviation(flight: Flight) -> float:
     state = [values[name] for name in ("x1", "v1", "x2", "v2")]
     with mp.workdps(50):
         first, second = truth.apart(values, state, mp.mpf(values["phase_start"]))
-        gap = second - first
+        gap = truth.gap_of(values, first, second)
         speed = gap.derivative()
-        terms = size(first, end) + size(second, end)
+        terms = size(first, end) + size(second, end) + abs(values["clearance"])
         if not flight.impact:
             return 0.0 if gap(end) > -truth.ROUNDING * terms else float("inf")
         root = mp.mpf(end)

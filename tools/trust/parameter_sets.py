@@ -195,6 +195,17 @@ def of_all_scales(rng: np.random.Generator, values: Values) -> None:
         values[name] *= rate
 
 
+def set_clearance(rng: np.random.Generator, values: Values) -> None:
+    """A gap or a preload of the motion's size, or of any other; start positions to fit."""
+    size = max(abs(values[name]) for name in ("x1_start", "x2_start", "box_amplitude"))
+    spread = either(rng, decades(rng, -3.0, 1.0), decades(rng, -12.0, 12.0))
+    values["clearance"] = sign(rng) * min(size * spread, 1e100)
+    if values["clearance"] > 0.0 and not values.get("bonded"):
+        values["x2_start"] -= either(rng, 0.0, 1.0) * values["clearance"]
+    elif spread > 10.0:  # pressed so hard that a hop is short: of hops there would be no end
+        values["x2_start"], values["v2_start"] = values["x1_start"], values["v1_start"]
+
+
 KINDS: dict[str, Draw] = {
     "nearly equal": nearly_equal,
     "next to nothing": next_to_nothing,
@@ -215,7 +226,7 @@ def draw(seed: int, number: int) -> ParameterSet:
     """The parameter set of a number under a seed: the same on every machine.
 
     One in four belongs to a second class besides its own; one in four begins at a clock of up to
-    1e12 s, all in the class ``late``.
+    1e12 s, all in the class ``late``; four in ten have a clearance.
 
     Parameters
     ----------
@@ -237,6 +248,8 @@ def draw(seed: int, number: int) -> ParameterSet:
     values["x2_start"] = max(values["x1_start"], values["x2_start"])
     if values.get("bonded"):
         values["x2_start"], values["v2_start"] = values["x1_start"], values["v1_start"]
+    if rng.random() < 0.4:
+        set_clearance(rng, values)
     rate = max(*omegas(values), values["box_frequency"])
     duration = either(rng, decades(rng, -10.0, 0.0), *(decades(rng, 0.0, 5.0) for _ in "ab")) / rate
     clock = kind == "late" or rng.random() < 0.25

@@ -5,6 +5,7 @@ passes through.
 import math
 from unittest.mock import patch
 
+import mpmath as mp
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
@@ -116,10 +117,25 @@ def rounded(low, high):
     return st.floats(low, high).map(lambda x: round(x, 3))
 
 
+def rest_together(values):
+    """Where both springs balance while the masses are together, from unloaded springs."""
+    known = {**DEFAULTS, **values}
+    clearance, total = mp.mpf(known.get("clearance", 0.0)), mp.mpf(known["k1"]) + known["k2"]
+    return clearance * known["k2"] / total, -clearance * known["k1"] / total
+
+
+def unloaded(values, state):
+    """A start state (x1, v1, x2, v2), which counts from rest, from unloaded springs."""
+    if values.get("clearance", 0.0) >= 0.0:
+        return state
+    (x1, v1, x2, v2), (rest_1, rest_2) = state, rest_together(values)
+    return x1 + rest_1, v1, x2 + rest_2, v2
+
+
 @st.composite
-def structures(draw, damping=2.0):
+def structures(draw, damping=2.0, clearance=False):
     """Structures with omega = 1, their excitation and phase: light and heavy masses, undamped to
-    overdamped, with a cubic.
+    overdamped, with a cubic, and with a gap or a preload where it is asked for.
 
     Not near critical damping, where the sums of exponentials that the kernel is compared with
     cancel in double precision.
@@ -135,6 +151,8 @@ def structures(draw, damping=2.0):
     values["phase_start"] = draw(rounded(0.0, 6.28))
     for name in ("acceleration", "jerk", "snap", "crackle"):
         values[f"box_{name}"] = draw(st.just(0.0) | rounded(-0.1, 0.1))
+    if clearance:
+        values["clearance"] = draw(st.just(0.0) | rounded(-1.0, 1.0) | sizes(1e-9, 1e3))
     m = unstarted(**values)
     stepper.initialize(m, 0.0)
     if m[at.SECULAR] != 0.0:  # see `resonances`

@@ -23,6 +23,7 @@ from .kernel import (
     sizes,
     started,
     structures,
+    unloaded,
 )
 
 STATES = st.tuples(
@@ -43,17 +44,17 @@ def summit(gap, start, stop):
 
 
 @examples(80)
-@given(structures(), STATES, st.floats(0.0, 3.0), sizes(1e-3, 10.0))
+@given(structures(clearance=True), STATES, st.floats(0.0, 3.0), sizes(1e-3, 10.0))
 def test_over_a_piece_of_flight(values, state, start, length):
     names = ("x1_start", "v1_start", "x2_start", "v2_start")
     m = started(**values, **dict(zip(names, state, strict=True)))
     advanced(m, start, start + length)
-    first, second = truth.apart({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
-    gap = second - first
+    full, begun = {**DEFAULTS, **values}, unloaded(values, state)
+    gap = truth.gap_of(full, *truth.apart(full, begun, mp.mpf(values["phase_start"])))
     if truth.first_root(gap, start + length) is not None:
         return
     highest, sampled = summit(gap, start, start + length)
-    terms = sum(abs(complex(c)) for c, _ in gap.terms) + 1.0
+    terms = sum(abs(complex(c)) for c, _ in gap.terms) + 1.0 + abs(values["clearance"])
     assert m[at.X_REL_MAX] >= sampled - 1e-14 * terms
     assert m[at.X_REL_MAX] == pytest.approx(highest, rel=1e-12, abs=1e-14 * terms)
 

@@ -21,7 +21,18 @@ from fmu_src.kernels.oscillator.roots import (
 )
 
 from . import truth
-from .kernel import CHAOTIC, DEFAULTS, advanced, examples, pieces, sizes, started, structures
+from .kernel import (
+    CHAOTIC,
+    DEFAULTS,
+    advanced,
+    examples,
+    pieces,
+    rest_together,
+    sizes,
+    started,
+    structures,
+    unloaded,
+)
 
 SIGNED = st.just(0.0) | sizes(1e-12, 1e3) | sizes(1e-12, 1e3).map(lambda x: -x)
 HEIGHTS = st.just(0.0) | sizes(1e-15, 1e3)
@@ -173,7 +184,7 @@ def agree(found, expected, signal, horizon):
 
 
 @examples(80)
-@given(structures(), STATES)
+@given(structures(clearance=True), STATES)
 @example(
     {"m2": 1.274, "k2": 0.448, "d1": 0.0, "d2": 27.1, "box_frequency": 0.117, "phase_start": 0.633},
     (-0.867, 0.783, 0.461, -0.530),
@@ -182,14 +193,14 @@ def test_first_impact_of_a_flight(values, state):
     m = started(
         x1_start=state[0], v1_start=state[1], x2_start=state[2], v2_start=state[3], **values
     )
-    first, second = truth.apart({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
-    gap = second - first
+    full, start = {**DEFAULTS, **values}, unloaded(values, state)
+    gap = truth.gap_of(full, *truth.apart(full, start, mp.mpf(values["phase_start"])))
     expected = truth.first_root(gap, 12.0)
     assert agree(first_end(m, 12.0), expected, gap, 12.0)
 
 
 @examples(80)
-@given(structures(damping=0.5), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+@given(structures(damping=0.5, clearance=True), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 def test_release_from_contact(values, x, v):
     values = {
         **values,
@@ -198,9 +209,12 @@ def test_release_from_contact(values, x, v):
         "box_snap": 0.0,
         "box_crackle": 0.0,
     }
-    m = started(x1_start=x, x2_start=x, v1_start=v, v2_start=v, **values)
+    clearance = values["clearance"]
+    x2 = x - max(clearance, 0.0)
+    m = started(x1_start=x, x2_start=x2, v1_start=v, v2_start=v, **values)
     assume(m[at.MODE] == at.CONTACT)
-    _, push = truth.together({**DEFAULTS, **values}, x, v, mp.mpf(values["phase_start"]))
+    place = x + rest_together(values)[0] if clearance < 0.0 else x
+    _, push = truth.together({**DEFAULTS, **values}, place, v, mp.mpf(values["phase_start"]))
     assume(push(0) > 1e-3)
     expected = truth.first_root(push, 12.0)
     assert agree(first_end(m, 12.0), expected, push, 12.0)

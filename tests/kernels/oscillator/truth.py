@@ -121,15 +121,25 @@ def apart(values, state, phase):
     return first, oscillator(values["m2"], values["d2"], values["k2"], x2, v2, shaken)
 
 
+def gap_of(values, first, second):
+    """The gap between both masses' motions: the clearance, and what they have moved apart."""
+    constant = [mp.mpf(values.get("clearance", 0.0)), 0, 0, 0]
+    return second - first + Signal([], constant)
+
+
 def together(values, x, v, phase):
-    """Both masses as one, and the force with which mass 2 is pushed by mass 1 (Newton's law of mass
-    1).
+    """Motion of mass 1 where both move as one, and the force with which mass 2 is pushed by mass 1
+    (Newton's law of mass 1).
+
+    With a clearance mass 2 is by so much behind, and its spring loaded by so much: that moves the
+    position around which both swing.
     """
     m1, d1, k1 = (mp.mpf(values[name]) for name in ("m1", "d1", "k1"))
     shaken = box(values, phase)
+    load = mp.mpf(values["k2"]) * mp.mpf(values.get("clearance", 0.0)) / (k1 + values["k2"])
     common = oscillator(
-        m1 + values["m2"], d1 + values["d2"], k1 + values["k2"], mp.mpf(x), mp.mpf(v), shaken
-    )
+        m1 + values["m2"], d1 + values["d2"], k1 + values["k2"], mp.mpf(x) - load, mp.mpf(v), shaken
+    ) + Signal([], [load, 0, 0, 0])
     speed = common.derivative()
     return common, -1 * (m1 * (speed.derivative() + shaken) + d1 * speed + k1 * common)
 

@@ -109,7 +109,7 @@ def value(*motions):
 
 
 def motion(n, impacts):
-    point = SimpleNamespace(scale=np.ones(4))
+    point = Point(Structure(), Excitation(frequency=1.0, amplitude=1.0))
     states = np.ones((max(n, 1), 4))
     return SimpleNamespace(
         multiplicity=n,

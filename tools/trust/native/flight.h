@@ -14,10 +14,11 @@ static const double GAMMA = 1e-9; /* the smallest there is: the longest chatteri
 static const char *const KIND[KINDS] = {"near grazing", "nearly equal oscillators", "chattering", "high eta", "cubic inputs", "steep damping", "long contact"};
 static const double HORIZON[KINDS] = {12.0, 12.0, 12.0, 6.0, 12.0, 3.0, 60.0}; /* s */
 
-/* One flight or contact: parameters, inputs and the state that it begins with. */
+/* One flight or contact: parameters, inputs and the state that it begins with, from unloaded springs; ``closed`` where it has no gap. */
 typedef struct {
     int kind;
-    double m1, m2, k1, k2, d1, d2, e, amplitude, frequency, phase, box[BOX], x1, x2, v1, v2;
+    bool closed;
+    double m1, m2, k1, k2, d1, d2, e, amplitude, frequency, phase, box[BOX], x1, x2, v1, v2, clearance;
 } Flight;
 
 /* Re sum c_k e^{s_k t} + sum p_k t^k / k!; and the sizes of what c_0 and p are differences of, for these may cancel. */
@@ -60,18 +61,25 @@ static Signal gap_of(const Flight *f) {
     Signal gap = {0};
     add_mass(&gap, f->m1, f->d1, f->k1, f->x1, f->v1, f, -1.0, 1);
     add_mass(&gap, f->m2, f->d2, f->k2, f->x2, f->v2, f, 1.0, 3);
+    gap.p[0] += f->clearance, gap.pushed[0] += fabs(f->clearance);
     return gap;
 }
+
+/* Where the springs balance with both masses together, from unloaded ones: of mass 1 and of mass 2. */
+static double rest_1(const Flight *f) { return f->clearance * f->k2 / (f->k1 + f->k2); }
+static double rest_2(const Flight *f) { return -f->clearance * f->k1 / (f->k1 + f->k2); }
 
 /* The force that keeps both together, over m1 m2/(m1 + m2): positive in contact. Both masses move as one. */
 static Signal push_of(const Flight *f) {
     Signal push = {0};
-    add_mass(&push, f->m1 + f->m2, f->d1 + f->d2, f->k1 + f->k2, f->x1, f->v1, f, 1.0, 1);
+    add_mass(&push, f->m1 + f->m2, f->d1 + f->d2, f->k1 + f->k2, f->x1 - rest_1(f), f->v1, f, 1.0, 1);
     double by_speed = f->d2 / f->m2 - f->d1 / f->m1, by_place = f->k2 / f->m2 - f->k1 / f->m1;
     push.forced *= fabs(by_speed) * f->frequency + fabs(by_place);
     for (int i = 0; i < TERMS; i++) push.c[i] *= by_speed * push.s[i] + by_place;
     for (int i = 0; i < BOX; i++) push.pushed[i] = fabs(by_place) * push.pushed[i] + (i + 1 < BOX ? fabs(by_speed) * push.pushed[i + 1] : 0.0);
     for (int i = 0; i < BOX; i++) push.p[i] = by_place * push.p[i] + (i + 1 < BOX ? by_speed * push.p[i + 1] : 0.0);
+    double held = f->k2 * rest_2(f) / f->m2 - f->k1 * rest_1(f) / f->m1;
+    push.p[0] += held, push.pushed[0] += fabs(held);
     return push;
 }
 
@@ -128,7 +136,7 @@ static void graze(Flight *f, double depth) {
         if (fabs(lift) < 0.1) return;
         value_of(&gap, low, at);
         double moved = f->x2 + (depth - at[0]) / lift;
-        if (!(moved > f->x1 && moved < 10.0)) return;
+        if (!(moved + f->clearance > f->x1 && moved < 10.0)) return;
         f->x2 = moved;
     }
 }
@@ -138,7 +146,14 @@ static void apart_from_critical(double *d, double m, double k) {
     if (fabs(*d * *d / (4.0 * m * k) - 1.0) < 0.1) *d *= 0.8;
 }
 
-/* Any flight, then what makes it one of its kind. */
+/* From start positions, which count from rest, to positions from unloaded springs. */
+static void place(Flight *f) {
+    f->closed = f->x2 == f->x1;
+    if (f->clearance < 0.0) f->x1 += rest_1(f), f->x2 += rest_2(f);
+    else f->x2 -= f->clearance;
+}
+
+/* Any flight, then what makes it one of its kind. Half of them have a clearance, one way or the other. */
 static Flight draw(uint64_t *seed, int kind) {
     bool unit = chance(seed, 0.5);
     Flight f = {.kind = kind, .m1 = unit ? 1.0 : decades(seed, 0.1, 10.0), .k1 = unit ? 1.0 : decades(seed, 0.1, 10.0)};
@@ -151,7 +166,13 @@ static Flight draw(uint64_t *seed, int kind) {
     f.amplitude = 1.0, f.frequency = omega * decades(seed, 0.15, 4.0), f.phase = uniform(seed, 0.0, 6.283);
     f.x1 = uniform(seed, -1.0, 0.0), f.v1 = omega * uniform(seed, -1.0, 1.0);
     f.x2 = uniform(seed, 0.01, 1.0), f.v2 = omega * uniform(seed, -1.0, 1.0);
-    if (kind == GRAZING) graze(&f, either(seed) * decades(seed, 1e-11, 1e-3));
+    f.clearance = chance(seed, 0.5) ? 0.0 : either(seed) * decades(seed, 1e-6, 3.0);
+    if (kind == GRAZING) {
+        place(&f);
+        graze(&f, either(seed) * decades(seed, 1e-11, 1e-3));
+        apart_from_critical(&f.d1, f.m1, f.k1), apart_from_critical(&f.d2, f.m2, f.k2);
+        return f;
+    }
     if (kind == EQUAL) {
         f.k2 = f.k1 * f.m2 / f.m1 * (1.0 + either(seed) * decades(seed, 1e-9, 1e-2));
         f.d2 = f.d1 * f.m2 / f.m1;
@@ -174,6 +195,7 @@ static Flight draw(uint64_t *seed, int kind) {
         f.box[0] = uniform(seed, -2.0, 2.0) * omega * omega;
         f.box[1] = chance(seed, 0.3) ? uniform(seed, -0.02, 0.02) * omega * omega * omega : 0.0;
     }
+    place(&f);
     return f;
 }
 
@@ -186,7 +208,7 @@ _Thread_local char message[4096];
 /* Value references, in the order of their names below. */
 enum { PARAMETERS = 20, STATE = 6 };
 static const char *const SET[PARAMETERS] = {"m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma", "box_amplitude", "box_frequency", "phase_start",
-    "box_acceleration", "box_jerk", "box_snap", "box_crackle", "x1_start", "x2_start", "v1_start", "v2_start", "phase_start"};
+    "box_acceleration", "box_jerk", "box_snap", "box_crackle", "x1_start", "x2_start", "v1_start", "v2_start", "clearance"};
 static const char *const GET[STATE] = {"x1", "x2", "v1", "v2", "phase", "impact_energy"};
 static unsigned set_references[PARAMETERS], get_references[STATE], in_contact_reference, watched_reference;
 
@@ -207,8 +229,11 @@ static void end_event(void *it) {
 /* Begin a flight; false where the FMU refuses it. */
 static bool begin(void *it, const Flight *f, double gamma) {
     fmi.Reset(it);
+    bool pressed = f->clearance < 0.0;
+    double x1 = pressed ? f->x1 - rest_1(f) : f->x1, x2 = pressed ? f->x2 - rest_2(f) : f->x2;
+    if (pressed && f->closed) x2 = x1;
     double values[PARAMETERS] = {f->m1, f->m2, f->k1, f->k2, f->d1, f->d2, f->e, gamma, f->amplitude, f->frequency, f->phase,
-        f->box[0], f->box[1], f->box[2], f->box[3], f->x1, f->x2, f->v1, f->v2, f->phase};
+        f->box[0], f->box[1], f->box[2], f->box[3], x1, x2, f->v1, f->v2, f->clearance};
     fmi3Boolean off = false;
     bool taken = fmi.SetFloat64(it, set_references, PARAMETERS, values, PARAMETERS) == fmi3OK
         && fmi.SetBoolean(it, &watched_reference, 1, &off, 1) == fmi3OK
@@ -247,7 +272,7 @@ static void go_on(void *it, Flight *f, double elapsed, double *lost) {
     run_on(f->box, elapsed);
     double state[STATE];
     fmi.GetFloat64(it, get_references, STATE, state, STATE);
-    f->x1 = state[0], f->x2 = state[1], f->v1 = state[2], f->v2 = state[3], f->phase = state[4];
+    f->x1 = state[0], f->x2 = state[1], f->v1 = state[2], f->v2 = state[3], f->phase = state[4], f->closed = true;
     *lost = state[5];
 }
 

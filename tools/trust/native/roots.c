@@ -81,7 +81,7 @@ static int judge(const Signal *f, double stop, bool is_root) {
 
 static void show(const Flight *f, double end, bool root, int verdict) {
     printf("FLIGHT %d %d %d %a", f->kind, verdict, root, end);
-    const double row[] = {f->m1, f->m2, f->k1, f->k2, f->d1, f->d2, f->e, f->amplitude, f->frequency, f->phase, f->box[0], f->box[1], f->box[2], f->box[3], f->x1, f->x2, f->v1, f->v2};
+    const double row[] = {f->m1, f->m2, f->k1, f->k2, f->d1, f->d2, f->e, f->amplitude, f->frequency, f->phase, f->box[0], f->box[1], f->box[2], f->box[3], f->x1, f->x2, f->v1, f->v2, f->clearance};
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) printf(" %a", row[i]);
     printf("\n");
 }
