@@ -36,7 +36,18 @@ export function pointAt(structure, eta, level) {
 export function pointAtHertz(structure, hertz, { unit, value }) {
   const frequency = 2 * Math.PI * hertz;
   const amplitude = unit === "g" ? (value * GRAVITY) / (frequency * frequency) : value / 1000;
-  return { structure, eta: frequency / omegaOf(structure), frequency, amplitude };
+  return { structure, eta: ratioOf(frequency, omegaOf(structure)), frequency, amplitude };
+}
+
+/** As `orchestrate` has it: of the numbers near the quotient that give the frequency back, the shortest. @param {number} frequency @param {number} omega */
+function ratioOf(frequency, omega) {
+  const guess = frequency / omega;
+  const bits = new BigInt64Array(new Float64Array([guess]).buffer)[0];
+  const near = [-3n, -2n, -1n, 0n, 1n, 2n, 3n].map((step) => new Float64Array(new BigInt64Array([bits + step]).buffer)[0]);
+  const fitting = near.filter((number) => number * omega === frequency);
+  /** @param {number} one @param {number} other */
+  const order = (one, other) => String(one).length - String(other).length || Math.abs(one - guess) - Math.abs(other - guess);
+  return fitting.sort(order)[0] ?? guess;
 }
 
 /** The frequency in Hz as it was given, without the roundings of 2 pi. @param {Point} point */
