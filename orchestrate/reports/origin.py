@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 PACKAGES = ("numpy", "scipy", "xarray", "fmpy", "lmfit", "matplotlib")
+BY_RECORD = ("detect", "fit")  # their question is the record, which has a digest
 LONGEST = 160  # letters of an attribute
 
 
@@ -42,7 +43,7 @@ def described(answer: xr.Dataset) -> list[tuple[str, str]]:
     rows = [(label, shortened(attributes[name])) for name, label in shown if attributes.get(name)]
     if "history" in attributes:
         rows.append(("computed on", attributes["history"].partition(": ")[0]))
-    if "call" in attributes and "record_file" not in attributes:
+    if "call" in attributes and attributes.get("analysis") not in BY_RECORD:
         rows.append(("what was asked", shortened(attributes["call"])))
     for name in sorted(attributes):
         if name.startswith("fmu_guid"):

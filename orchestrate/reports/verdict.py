@@ -98,7 +98,7 @@ def decision(answer: xr.Dataset) -> Section:
     reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
     points = [f"What decided: {full(reason)}"] if reason else []
     odds = number(answer, "odds")
-    if math.isfinite(odds):
+    if math.isfinite(odds) and odds > 0.0:
         points.append(
             f"Odds of the delaminated against the best sound structure: {ratio_of(odds)}."
         )
@@ -112,10 +112,11 @@ def ratio_of(odds: float) -> str:
 
     Examples
     --------
-    >>> ratio_of(23.7), ratio_of(0.0005)
-    ('24 to 1', '1 to 2000')
+    >>> ratio_of(23.7), ratio_of(2001.0), ratio_of(0.0005)
+    ('24 to 1', '2000 to 1', '1 to 2000')
     """
-    return f"{odds:.2g} to 1" if odds >= 1.0 else f"1 to {float(f'{1.0 / odds:.2g}'):g}"
+    larger = f"{float(f'{max(odds, 1.0 / odds):.2g}'):g}"
+    return f"{larger} to 1" if odds >= 1.0 else f"1 to {larger}"
 
 
 def full(words: str) -> str:
