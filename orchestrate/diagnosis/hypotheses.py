@@ -306,8 +306,8 @@ class DelaminatedWithClearance(Delaminated):
         for split in splits:
             f1 = peaks[0] if evidence.masses[0] == 0 else peaks[0] * math.exp(-split)
             common = f1 * math.sqrt((m1 + m2 * math.exp(2.0 * split)) / (m1 + m2))
-            for share in (1.0, 0.97):
-                for gap in (0.05, 0.2, 0.6):
+            for share in (1.0, 0.96, 0.92):
+                for gap in (0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.4):
                     place = {"common": share * common, "split": split, "clearance": gap}
                     found.append({**guess, **place})
         return found

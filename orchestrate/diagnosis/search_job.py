@@ -218,7 +218,7 @@ class SearchJob(Job):
         starts = [{**best, "clearance": clearance} for clearance in (0.0, *GAPS)]
         starts += search.hypothesis.starts(self.evidence)
         if is_worth_a_search(self.data):
-            found = search.best(starts, keep=2, coarse=COARSE, fine=0)
+            found = search.best(starts, keep=3, coarse=COARSE, fine=0)
             found[0] = search.polish(found[0])
         else:
             found = search.scan(starts[:1])

@@ -16,7 +16,7 @@ NOT_DESCRIBED = "not described"
 UNDECIDED = "undecided"
 RATIO = 1.5  # by which the delaminated misfit has to be smaller than the best sound one
 SOUND_DESCRIBES = 1.0  # largest misfit of a sound hypothesis that describes a record
-DELAMINATED_DESCRIBES = 2.5  # of the delaminated one: real contacts are not the model's
+DELAMINATED_DESCRIBES = 3.0  # of the delaminated one: real contacts are not the model's
 CERTAIN = 0.9  # share of the resampled records in which the ratio has to hold
 RESAMPLED, BLOCKS, SEED = 1000, 20, 7
 

@@ -32,7 +32,7 @@ CASES = {
     "opens, and the halves explain it": ({}, "delaminated"),
     "no order 2, one mass explains it": ({"excess": 0.3, "sound_misfit": 0.3}, "no opening seen"),
     "no order 2, and nothing explains it": (
-        {"excess": 0.3, "delaminated_misfit": 2.6},
+        {"excess": 0.3, "delaminated_misfit": 3.5, "sound_misfit": 6.0},
         "not described",
     ),
     "no order 2, but the halves alone explain it": ({"excess": 0.3}, "undecided"),
@@ -41,7 +41,10 @@ CASES = {
         {"sound_misfit": 0.2, "delaminated_misfit": 1.2},
         "undecided",
     ),
-    "order 2, and nothing explains it": ({"delaminated_misfit": 3.0}, "not described"),
+    "order 2, and nothing explains it": (
+        {"delaminated_misfit": 3.5, "sound_misfit": 6.0},
+        "not described",
+    ),
     "better, but not in most parts of the record": ({"share": 0.6}, "undecided"),
     "no order 2, but the faces move apart": ({"excess": 0.2, "apart": 4.0}, "delaminated"),
 }
