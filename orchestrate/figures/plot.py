@@ -28,6 +28,7 @@ from . import (
     resonance_levels,
     shaken,
     spectra,
+    threshold,
     weak_drive,
 )
 
@@ -37,6 +38,7 @@ DRAW: dict[str, Callable[[xr.Dataset], Figure]] = {  # questions whose answer ne
     "border": borders.draw,
     "branch": branches.draw,
     "detect": diagnosis.draw_detect,
+    "contact_threshold": threshold.draw,
     "drive_branch": weak_drive.draw_stationary,
     "fit": diagnosis.draw_detect,
     "drive_spectra": drive_spectra.draw,

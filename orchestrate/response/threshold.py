@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from ..running.job import brief
 from ..structures import Structure
 from .labels import Variable, parameter, variable
 from .questions import checked_structure, numbers
@@ -148,6 +149,7 @@ def contact_threshold(
         {
             "title": f"Level at which the structure {event}: {structure.label()}",
             "event": event,
+            "call": f"contact_threshold({structure!r}, {name}={brief(values)})",
             **{key: float(value) for key, value in structure.parameters().items()},
         },
     )

@@ -140,3 +140,12 @@ def test_resonance_has_the_threshold_as_a_curve_and_the_picture_shows_it():
     shut = pressed.replace(clearance=0.0)
     without = orchestrate.resonance(shut, **asked, transient=20, samples=4)
     assert "threshold_amplitude" not in without
+
+
+def test_its_picture_has_hertz_and_g():
+    pressed = Structure.from_halves(m1=1.0, m2=1.2, f1=42.0, f2=55.0, clearance=-2e-5)
+    hertz = np.array([30.0, 40.0, 50.0])
+    found = orchestrate.contact_threshold(pressed, frequency=2.0 * np.pi * hertz)
+    (line,) = orchestrate.plot(found).axes[0].lines
+    np.testing.assert_allclose(line.get_xdata(), hertz)
+    np.testing.assert_allclose(line.get_ydata(), found.threshold_acceleration / 9.80665)
