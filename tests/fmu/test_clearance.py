@@ -126,10 +126,10 @@ def test_faces_that_touch_at_the_start_are_together(fmu, tmp_path):
     """Whatever the rounding of the start values: pulled together they stay, and nothing impacts."""
     names = ("x_rel", "in_contact", "impact_count")
     for clearance in (0.1, 0.3, 0.7, 1e-3):
-        x1 = 1.7 * clearance
+        x1 = 17.3 * clearance  # x2 - x1 + clearance is rounding, of either sign
         values = {"clearance": clearance, "x1_start": x1, "x2_start": x1 - clearance}
         values |= {"k1": 0.01, "k2": 1e-3, "box_amplitude": 0.0, "box_acceleration": -1.0}
-        values |= {"d1": 1e-3, "d2": 0.1, "v1_start": 1.0, "v2_start": 1.0}
+        values |= {"d1": 1e-3, "d2": 0.1, "v1_start": 10.0, "v2_start": 10.0}
         assert run("clearance.rows", fmu, values, [0.0], names, cwd=tmp_path) == [[0.0, 1, 0]]
 
 
