@@ -8,6 +8,7 @@ module                idea
 :mod:`.single_mass`   a sound structure's motion: one mass on a spring that is not linear
 :mod:`.hypotheses`    what the structure may be: sound in several ways, or delaminated
 :mod:`.fitting`       the search for a hypothesis's numbers, from many starts
+:mod:`.linear`        residuals around a minimum as a linear model, by regression over a cloud
 :mod:`.errors`        standard errors from simulated noise and from blocks of windows
 :mod:`.even_orders`   whether faces part: order 2 above its floor
 :mod:`.search_job`    all searches of a record as a job, beside each other

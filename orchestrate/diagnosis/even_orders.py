@@ -14,7 +14,7 @@ from .orders import Complexes, smoothed
 Floats = NDArray[np.float64]
 GROUP = 5  # neighbouring windows that are taken together
 QUIET = 0.1  # of the largest order 1: windows where less moves are not taken
-ABOVE = 5.0  # times the floor
+ABOVE, BESIDE = 5.0, 2.0  # times the noise; times what is between the orders, impacts' own too
 LEAST = 0.01  # of order 1: sensors and bases that are not linear make less
 
 
@@ -24,21 +24,16 @@ class EvenOrders:
 
     Attributes
     ----------
-    ratio, floor : ndarray, shape (windows,)
-        Over order 1, root mean squares of neighbouring windows, the largest of all sensors; NaN
-        where little moves.
+    ratio, threshold : ndarray, shape (windows,)
+        Over order 1, root mean squares of neighbouring windows, of the sensor that is furthest
+        above the threshold from which an order counts as seen; NaN where little moves.
     apart : ndarray, shape (windows,)
         Difference of two sensors' order 1 over its size; NaN with one sensor.
     """
 
     ratio: Floats
-    floor: Floats
+    threshold: Floats
     apart: Floats
-
-    @property
-    def threshold(self) -> Floats:
-        """Ratio from which an order counts as seen."""
-        return np.maximum(ABOVE * self.floor, LEAST)
 
     @property
     def excess(self) -> float:
@@ -58,7 +53,7 @@ class EvenOrders:
     @property
     def moved_apart(self) -> float:
         """Largest difference of two sensors over order 1 and three hundredths; 0 with one."""
-        size = self.apart / np.maximum(ABOVE * self.floor, 3.0 * LEAST)
+        size = self.apart / np.maximum(self.threshold, 3.0 * LEAST)
         return float(np.nanmax(size)) if np.isfinite(size).any() else 0.0
 
 
@@ -78,10 +73,12 @@ def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
     excess = np.sqrt(np.maximum(mean(np.nan_to_num(power)) - mean(floor**2), 0.0) / size)
     quiet = size < (QUIET * evidence.size.max(axis=1, keepdims=True)) ** 2
     excess[quiet] = np.nan
-    below = np.where(quiet, np.nan, np.sqrt(mean(floor**2) / size))
-    chosen = np.argmax(np.nan_to_num(excess / np.maximum(below, 1e-12)), axis=0)
+    noise = ABOVE * evidence.noise[:, np.newaxis] / np.sqrt(size)
+    threshold = np.maximum(np.maximum(noise, BESIDE * np.sqrt(mean(floor**2) / size)), LEAST)
+    threshold[quiet] = np.nan
+    chosen = np.argmax(np.nan_to_num(excess / threshold), axis=0)
     take = (chosen, np.arange(len(chosen)))
-    return EvenOrders(excess[take], below[take], difference(evidence, quiet.all(axis=0)))
+    return EvenOrders(excess[take], threshold[take], difference(evidence, quiet.all(axis=0)))
 
 
 def mean(values: Floats) -> Floats:

@@ -169,6 +169,12 @@ class Evidence:
         return float(self.frequency[np.argmax(response)])
 
     @cached_property
+    def peaks(self) -> tuple[float, ...]:
+        """The same of each sensor, Hz."""
+        response = np.abs(self.measured[:, 0]) / self.level
+        return tuple(self.frequency[np.argmax(response, axis=1)].tolist())
+
+    @cached_property
     def displacement(self) -> float:
         """Largest amplitude of order 1 relative to the base, m, at the resonance."""
         size = np.abs(self.measured[:, 0] - self.level)
@@ -209,6 +215,8 @@ class Evidence:
 
     def sensor_error(self, row: int, computed: Complexes) -> tuple[float, float]:
         """Gain and delay (s) of a sensor that bring a computed order 1 closest to the measured."""
+        if not np.isfinite(computed).all():  # a motion without bounds
+            return 1.0, 0.0
         weight = 1.0 / self.error[row, 0]
         slope = -1j * TURN * self.frequency * computed
         columns = np.stack([computed * weight, slope * weight * DELAY / GAIN], axis=1)
@@ -238,4 +246,6 @@ class Evidence:
         size, wanted = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])
         higher = (np.sqrt(size**2 + noise**2) - wanted) / self.error[:, 1:]
         found = np.concatenate([first.real[:, None], first.imag[:, None], higher], axis=1)
-        return np.clip(np.nan_to_num(found), -LOST, LOST)
+        resolved = np.isfinite(wanted[:, [0, 0, 0, 1]]) | (np.arange(4) < 2)[:, None]
+        found = np.where(np.isfinite(found), found, np.where(resolved, LOST, 0.0))
+        return np.clip(found, -LOST, LOST)

@@ -19,7 +19,7 @@ from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .even_orders import EvenOrders, even_orders
-from .evidence import FITTED
+from .evidence import FITTED, Evidence
 from .hypotheses import FREE, REPORTED, Hypothesis
 from .orders import checked_channels, orders_of
 from .search_job import RecordData, SearchJob
@@ -250,7 +250,7 @@ class Results:
         names = list(hypothesis.bounds(evidence))
         here = dict(zip(names, self.values[place].tolist(), strict=False))
         reported = hypothesis.reported(here, evidence)
-        slopes = self.slopes(hypothesis, here)
+        slopes = slopes_of(hypothesis, here, evidence)
         covariance = self.covariance[place][: len(names), : len(names)]
         errors = np.sqrt(np.maximum(np.diag(slopes @ covariance @ slopes.T), 0.0))
         known = dict(
@@ -259,18 +259,6 @@ class Results:
         if not self.opened():
             known.update(dict.fromkeys(known.keys() & set(FREE), (math.nan, math.nan)))
         return known
-
-    def slopes(self, hypothesis: Hypothesis, here: Mapping[str, float]) -> Floats:
-        """Derivatives of what is reported by what is fitted."""
-        evidence, columns = self.job.evidence, []
-        for name, value in here.items():
-            step = 1e-5 * max(abs(value), 0.1)
-            ends = [
-                list(hypothesis.reported({**here, name: value + sign * step}, evidence).values())
-                for sign in (1.0, -1.0)
-            ]
-            columns.append((np.array(ends[0]) - np.array(ends[1])) / (2.0 * step))
-        return np.stack(columns, axis=1)
 
     def parameters(self) -> dict[str, Variable]:
         """Values and standard errors; ``asked`` is 1 where a hypothesis has the parameter."""
@@ -294,7 +282,7 @@ class Results:
         hypothesis, evidence = self.job.hypotheses[place], self.job.evidence
         fitted = list(hypothesis.bounds(evidence))
         here = dict(zip(fitted, self.values[place].tolist(), strict=False))
-        slopes = self.slopes(hypothesis, here)
+        slopes = slopes_of(hypothesis, here, evidence)
         covariance = slopes @ self.covariance[place][: len(fitted), : len(fitted)] @ slopes.T
         size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
         order = [list(hypothesis.reported(here, evidence)).index(name) for name in names]
@@ -342,6 +330,19 @@ class Results:
             "level": variable("window", evidence.level, "m/s2", "amplitude of the base"),
         }
         return variables, coordinates
+
+
+def slopes_of(hypothesis: Hypothesis, here: Mapping[str, float], evidence: Evidence) -> Floats:
+    """Derivatives of what is reported by what is fitted."""
+    columns = []
+    for name, value in here.items():
+        step = 1e-5 * max(abs(value), 0.1)
+        ends = [
+            list(hypothesis.reported({**here, name: value + sign * step}, evidence).values())
+            for sign in (1.0, -1.0)
+        ]
+        columns.append((np.array(ends[0]) - np.array(ends[1])) / (2.0 * step))
+    return np.stack(columns, axis=1)
 
 
 ENDS = ("values", "covariance", "minima", "misfit", "residuals", "fitted", "evaluations")

@@ -247,7 +247,7 @@ class Delaminated(Hypothesis):
             "f2": f1 * split,
             "zeta1": math.exp(values["log_zeta1"]),
             "zeta2": math.exp(values["log_zeta2"]),
-            "e": values["e"],
+            "e": min(max(values["e"], 0.0), 1.0),  # differences reach beyond the bounds
             "clearance": values["clearance"] * evidence.displacement,
         }
         return self.guess.replace(bonded=False, **{name: numbers[name] for name in self.free})
@@ -296,6 +296,21 @@ class DelaminatedWithClearance(Delaminated):
     """The same with a gap between the faces at rest, or pressed together by a preload."""
 
     name: ClassVar[str] = "delaminated, with clearance"
+
+    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+        """Halves that move alone up to a gap: the resonance is that of the one with the sensor."""
+        guess, found = self.values_of(self.guess, evidence), []
+        m1, m2 = self.guess.m1, self.guess.m2
+        peaks = evidence.peaks
+        splits = [math.log(peaks[1] / peaks[0])] if len(peaks) == 2 else list(SPLITS)
+        for split in splits:
+            f1 = peaks[0] if evidence.masses[0] == 0 else peaks[0] * math.exp(-split)
+            common = f1 * math.sqrt((m1 + m2 * math.exp(2.0 * split)) / (m1 + m2))
+            for share in (1.0, 0.96, 0.92):
+                for gap in (0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.4):
+                    place = {"common": share * common, "split": split, "clearance": gap}
+                    found.append({**guess, **place})
+        return found
 
 
 SOUND = (Bonded(), Curved(), Rubbing(), Stopped(), StoppedBelow())

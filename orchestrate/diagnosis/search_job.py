@@ -17,18 +17,20 @@ from ..laboratory.record import record as made_record
 from ..running.job import Inputs, Job, Table
 from ..structures import Structure
 from .errors import estimate
+from .even_orders import even_orders
 from .evidence import Evidence
 from .fitting import Search, Solution, distinct, misfit
 from .hypotheses import SOUND, SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
+from .verdicts import SOUND_DESCRIBES
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
 FROM_SCAN = 1  # starts of each part of the scan from which to go downhill
+COARSE, SHORT = 9, 2  # steps downhill from there, where faces are seen to part and elsewhere
 REFINED, CLOSE = 2, 1.3  # how many of the best are polished, and how close their misfits are
 GAPS = (-0.3, -0.1, -0.03, 0.03, 0.1, 0.3)  # clearances over the largest displacement
-SPARSE = 5  # each how many of the starts are tried with a gap too
 ROWS, NUMBERS, MINIMA = 4, 6, 8  # of tables: solutions, values in each, misfits of minima
 
 
@@ -67,6 +69,20 @@ class RecordData:
 def evidence_of(data: RecordData) -> Evidence:
     """A record's evidence, made once a process."""
     return Evidence.from_record(data.dataset())
+
+
+@lru_cache(maxsize=2)
+def is_worth_a_search(data: RecordData) -> bool:
+    """Whether faces are seen to part, or not to move as one, or a linear beam does not describe it.
+
+    Else no verdict depends on the delaminated fit, and its search is short.
+    """
+    evidence = evidence_of(data)
+    search = Search(SOUND[0], evidence)
+    best = search.best(search.hypothesis.starts(evidence), keep=1, coarse=8, fine=0)[0]
+    motion = search.hypothesis.displacements(best.values, evidence, None)
+    even = even_orders(evidence, evidence.matched(evidence.computed(motion)))
+    return even.seen or even.moved_apart > 1.0 or best.misfit > SOUND_DESCRIBES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,7 +166,9 @@ class SearchJob(Job):
         place = len(self.sound)
         search = Search(self.hypotheses[place], self.evidence, player)
         starts = [s for s in search.hypothesis.starts(self.evidence) if s["split"] == split]
-        return table_of(place, search.best(starts, keep=FROM_SCAN, fine=0), search.evaluations)
+        coarse = COARSE if is_worth_a_search(self.data) else SHORT
+        found = search.best(starts, keep=FROM_SCAN, coarse=coarse, fine=0)
+        return table_of(place, found, search.evaluations)
 
     def solutions(self, table: Table, place: int) -> list[Solution]:
         """The solutions of a hypothesis in a table, the best first."""
@@ -167,9 +185,10 @@ class SearchJob(Job):
 
     def finish(self, previous: Table, player: Player) -> Table:
         """Refine the best delaminated ones, and say how far each hypothesis is from the record."""
+        sound = [self.minima(place, previous, player) for place in range(len(self.sound))]
+        best = int(np.argmin([found[0].misfit for _, found in sound]))
         made = [
-            self.finished(place, self.minima(place, previous, player), player)
-            for place in range(len(self.sound))
+            self.finished(place, one, player, place in (0, best)) for place, one in enumerate(sound)
         ]
         if self.delaminated:
             plain = self.finished(len(made), self.minima(len(made), previous, player), player)
@@ -185,7 +204,7 @@ class SearchJob(Job):
         """Minima of a hypothesis; the two best delaminated ones are refined."""
         search = Search(self.hypotheses[place], self.evidence, player)
         found = self.solutions(previous, place)
-        if place >= len(self.sound):
+        if place >= len(self.sound) and is_worth_a_search(self.data):
             close = [one for one in found[:REFINED] if one.misfit < CLOSE * found[0].misfit]
             best = [search.polish(one) for one in close]
             found = sorted([*best, *found[len(close) :]], key=lambda solution: solution.misfit)
@@ -197,25 +216,34 @@ class SearchJob(Job):
         names = list(search.hypothesis.bounds(self.evidence))
         best = dict(zip(names, plain["end_values"][: len(names) - 1].tolist(), strict=False))
         starts = [{**best, "clearance": clearance} for clearance in (0.0, *GAPS)]
-        others = search.hypothesis.starts(self.evidence)[::SPARSE]
-        starts += [{**s, "clearance": gap} for s in others for gap in (0.3, 0.1)]
-        found = search.best(starts, keep=2, fine=0)
-        found[0] = search.polish(found[0])
+        starts += search.hypothesis.starts(self.evidence)
+        if is_worth_a_search(self.data):
+            found = search.best(starts, keep=3, coarse=COARSE, fine=0)
+            found[0] = search.polish(found[0])
+        else:
+            found = search.scan(starts[:1])
         return self.finished(len(self.hypotheses) - 1, (search, found), player)
 
     def finished(
-        self, place: int, minima: tuple[Search, list[Solution]], player: Player
+        self,
+        place: int,
+        minima: tuple[Search, list[Solution]],
+        player: Player,
+        with_errors: bool = True,
     ) -> dict[str, Any]:
         """The best solution of a hypothesis with its errors, and what it computes."""
         search, found = minima
-        known = estimate(search, found[0].values)
-        values = known.values
+        values, known = found[0].values, None
+        if with_errors and (place < len(self.sound) or is_worth_a_search(self.data)):
+            known = estimate(search, values)
+            values = known.values
         motion = search.hypothesis.displacements(values, self.evidence, player)
         computed = self.evidence.matched(self.evidence.computed(motion))
         numbers = np.full(NUMBERS, np.nan)
         numbers[: len(values)] = list(values.values())
         covariance = np.full((NUMBERS, NUMBERS), np.nan)
-        covariance[: len(values), : len(values)] = known.covariance
+        if known is not None:
+            covariance[: len(values), : len(values)] = known.covariance
         levels = np.full(MINIMA, np.nan)
         different = distinct(found)[:MINIMA]
         levels[: len(different)] = [one.misfit for one in different]

@@ -16,7 +16,7 @@ NOT_DESCRIBED = "not described"
 UNDECIDED = "undecided"
 RATIO = 1.5  # by which the delaminated misfit has to be smaller than the best sound one
 SOUND_DESCRIBES = 1.0  # largest misfit of a sound hypothesis that describes a record
-DELAMINATED_DESCRIBES = 2.5  # of the delaminated one: real contacts are not the model's
+DELAMINATED_DESCRIBES = 3.0  # of the delaminated one: real contacts are not the model's
 CERTAIN = 0.9  # share of the resampled records in which the ratio has to hold
 RESAMPLED, BLOCKS, SEED = 1000, 20, 7
 
@@ -82,7 +82,8 @@ class Findings:
         sound = self.sound_misfit <= SOUND_DESCRIBES
         delaminated = self.delaminated_misfit <= DELAMINATED_DESCRIBES
         if not self.seen:
-            return NOT_SEEN if sound else NOT_DESCRIBED
+            other = delaminated and self.ratio >= RATIO
+            return NOT_SEEN if sound else UNDECIDED if other else NOT_DESCRIBED
         if delaminated and self.ratio >= RATIO:
             return DELAMINATED if self.share >= CERTAIN else UNDECIDED
         if sound or delaminated:
@@ -95,6 +96,8 @@ class Findings:
         signs = f"{size}, {self.excess:.2g} times the size from which it counts as seen"
         if self.sensors > 1:
             signs += f"; the two faces differ by {self.apart:.2g} times what counts"
+        if not self.seen:
+            return f"{signs}; the best sound model ({self.sound}) misses by {self.sound_misfit:.2g}"
         fits = (
             f"the {self.delaminated} model misses the record by {self.delaminated_misfit:.2g}, "
             f"the best sound one ({self.sound}) by {self.sound_misfit:.2g}"

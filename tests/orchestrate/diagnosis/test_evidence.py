@@ -5,9 +5,10 @@ import pytest
 
 import orchestrate
 from orchestrate.access import OSCILLATOR, Player, find
+from orchestrate.diagnosis.errors import estimate
 from orchestrate.diagnosis.evidence import Evidence
-from orchestrate.diagnosis.fitting import misfit
-from orchestrate.diagnosis.hypotheses import Bonded, Delaminated
+from orchestrate.diagnosis.fitting import Search, misfit
+from orchestrate.diagnosis.hypotheses import Bonded, Curved, Delaminated
 
 from .records import BEAM, record
 
@@ -74,3 +75,16 @@ def test_motions_without_bounds_are_far_from_the_record():
     evidence = Evidence.from_record(record())
     gone = evidence.residuals(np.full((1, evidence.samples), np.nan))
     assert np.isfinite(gone).all() and misfit(gone) > 5.0
+    computed = evidence.matched(evidence.computed(np.full((1, evidence.samples), np.nan)))
+    assert misfit(evidence.missed(computed)) > 5.0
+
+
+def test_a_hypothesis_whose_motion_has_no_bounds_has_errors_too():
+    evidence = Evidence.from_record(record(BEAM.as_bonded()))
+    search = Search(Curved(), evidence)
+    values = {"f": evidence.resonance, "log_zeta": -5.0, "square": 0.0, "cube": -0.9}
+    values["square"] = -1.0
+    gone = {**values, "f": 2.0 * evidence.resonance}
+    for one in (values, gone):
+        known = estimate(search, one)
+        assert np.isfinite(known.covariance).all()

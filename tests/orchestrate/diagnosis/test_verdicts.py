@@ -5,7 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from orchestrate.diagnosis.evidence import Evidence
+from orchestrate.diagnosis.fit import slopes_of
+from orchestrate.diagnosis.hypotheses import Delaminated
 from orchestrate.diagnosis.verdicts import Findings, share_of_better
+
+from .records import BEAM, record
 
 OPENED = Findings(
     excess=10.0,
@@ -26,13 +31,20 @@ OPENED = Findings(
 CASES = {
     "opens, and the halves explain it": ({}, "delaminated"),
     "no order 2, one mass explains it": ({"excess": 0.3, "sound_misfit": 0.3}, "no opening seen"),
-    "no order 2, and nothing explains it": ({"excess": 0.3}, "not described"),
+    "no order 2, and nothing explains it": (
+        {"excess": 0.3, "delaminated_misfit": 3.5, "sound_misfit": 6.0},
+        "not described",
+    ),
+    "no order 2, but the halves alone explain it": ({"excess": 0.3}, "undecided"),
     "order 2, both explain it": ({"sound_misfit": 0.9}, "undecided"),
     "order 2, one mass explains it better": (
         {"sound_misfit": 0.2, "delaminated_misfit": 1.2},
         "undecided",
     ),
-    "order 2, and nothing explains it": ({"delaminated_misfit": 3.0}, "not described"),
+    "order 2, and nothing explains it": (
+        {"delaminated_misfit": 3.5, "sound_misfit": 6.0},
+        "not described",
+    ),
     "better, but not in most parts of the record": ({"share": 0.6}, "undecided"),
     "no order 2, but the faces move apart": ({"excess": 0.2, "apart": 4.0}, "delaminated"),
 }
@@ -50,6 +62,18 @@ def test_each_case_has_its_word(name):
 def test_the_reason_has_the_numbers_that_decided():
     text = OPENED.reason()
     assert "20 %" in text and "10 times" in text and "0.8" in text and "3.8 times" in text
+
+
+def test_numbers_at_their_bounds_are_reported_with_slopes():
+    evidence = Evidence.from_record(record())
+    hypothesis = Delaminated(BEAM)
+    values = {**hypothesis.values_of(BEAM, evidence), "e": 0.0}
+    del values["clearance"]
+    for e in (0.0, 1.0):
+        with_e = {**values, "e": e}
+        slopes = slopes_of(hypothesis, with_e, evidence)
+        assert slopes.shape == (5, 5) and np.isfinite(slopes).all()
+    assert slopes[0, 0] == pytest.approx(BEAM.f1 / values["common"], rel=1e-4)
 
 
 def test_a_ratio_that_one_part_of_the_record_makes_is_not_certain():
