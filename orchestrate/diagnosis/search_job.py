@@ -159,7 +159,7 @@ class SearchJob(Job):
         """Minima of a sound hypothesis."""
         search = Search(self.hypotheses[place], self.evidence)
         starts = search.hypothesis.starts(self.evidence)
-        return table_of(place, search.best(starts, keep=2, coarse=8, fine=8), search.evaluations)
+        return table_of(place, search.best(starts, keep=3, coarse=10, fine=20), search.evaluations)
 
     def search_split(self, split: float, player: Player) -> Table:
         """Minima of the delaminated one from the starts of one split of the halves."""
