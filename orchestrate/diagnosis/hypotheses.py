@@ -103,8 +103,12 @@ class Sound(Hypothesis):
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """The resonance's frequency and width."""
-        rest = dict.fromkeys(self.extra, 0.0)
-        return [{"f": evidence.resonance, "log_zeta": math.log(zeta), **rest} for zeta in (0.01,)]
+        f, rest = evidence.resonance, dict.fromkeys(self.extra, 0.0)
+        return [
+            {"f": shift * f, "log_zeta": math.log(zeta), **rest}
+            for shift in (1.0, 0.97, 0.985, 1.015, 1.03)  # a sweep is late at the peak
+            for zeta in (0.01, 0.003, 0.03)
+        ]
 
     def mass(self, values: Values, evidence: Evidence) -> SingleMass:
         """The structure itself."""
@@ -160,8 +164,9 @@ class Rubbing(Sound):
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """Little and much."""
-        plain = super().starts(evidence)[0]
-        return [{**plain, "friction": size} for size in (0.02, 0.2)]
+        return [
+            {**one, "friction": size} for one in super().starts(evidence) for size in (0.02, 0.2)
+        ]
 
     def mass(self, values: Values, evidence: Evidence) -> SingleMass:
         """The structure itself; friction over the base's usual acceleration."""

@@ -79,7 +79,7 @@ def is_worth_a_search(data: RecordData) -> bool:
     """
     evidence = evidence_of(data)
     search = Search(SOUND[0], evidence)
-    best = search.best(search.hypothesis.starts(evidence), keep=1, coarse=8, fine=0)[0]
+    best = search.best(search.hypothesis.starts(evidence), keep=2, coarse=8, fine=0)[0]
     motion = search.hypothesis.displacements(best.values, evidence, None)
     even = even_orders(evidence, evidence.matched(evidence.computed(motion)))
     return even.seen or even.moved_apart > 1.0 or best.misfit > SOUND_DESCRIBES
@@ -159,7 +159,7 @@ class SearchJob(Job):
         """Minima of a sound hypothesis."""
         search = Search(self.hypotheses[place], self.evidence)
         starts = search.hypothesis.starts(self.evidence)
-        return table_of(place, search.best(starts, keep=2, coarse=8, fine=8), search.evaluations)
+        return table_of(place, search.best(starts, keep=3, coarse=10, fine=20), search.evaluations)
 
     def search_split(self, split: float, player: Player) -> Table:
         """Minima of the delaminated one from the starts of one split of the halves."""

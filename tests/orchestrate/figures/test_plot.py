@@ -101,8 +101,7 @@ def test_all_public_questions_are_drawn_or_known_to_have_no_picture():
     public = {name for name in orchestrate.__all__ if name.islower()}
     named = {"track_orders": "orders"}  # what an analysis calls itself
     drawn = {*DRAW, *OF_BOTH, *analysis.DRAW}
-    # an orbit is drawn as a motion begun on it, a passage with its waterfall, a threshold with the
-    # resonance curves; records are analysed
+    # an orbit is drawn as a motion begun on it, a passage with its waterfall; records are analysed
     assert {name for name in public if named.get(name, name) not in drawn} == {
         *("couple_all", "impact_statistics", "orbit", "passage", "plot", "waterfall", "write_ssp"),
         *("__version__", "measure", "record", "read_record", "write_record"),
