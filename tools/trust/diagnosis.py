@@ -17,23 +17,23 @@ from tools.benches.recipe import Case, Conditions, Truth, draw
 
 from . import signs
 from .campaign import Campaign, Outcome
+from .diagnosis_rows import (
+    COLUMNS,
+    DELAMINATED,
+    FAILED,
+    NO_OPENING,
+    REFUSED,
+    USUAL,
+    WIDE,
+)
 
-DELAMINATED, NO_OPENING = "delaminated", "no opening seen"
-NOT_DESCRIBED, UNDECIDED = "not described", "undecided"
-REFUSED, FAILED = "refused", "failed"
 FAILURES = (ArithmeticError, ValueError, LookupError, RuntimeError)  # numpy's LinAlgError is one
 KINDS = (  # one after the other: the two that the targets are about are drawn more often
     *("sound", "delaminated", "hardening", "delaminated", "friction", "gap"),
     *("sound", "preloaded", "clamp", "delaminated", "intact elements", "elements", "sagging"),
 )
-USUAL, WIDE = (0.01, 0.05), (0.001, 0.1)  # noise: of the targets, and of all curves
 PART_USUAL = 0.6
 VISIBLE = 2e-5  # m: a gap that opens less may be overlooked
-COLUMNS = (
-    *("kind", "delaminated", "opened", "touched", "gap", "noise", "level", "sensors"),
-    *("excitation", "size", "clearance", "change", "order ratio", "kurtosis"),
-    *("verdict", "ratio", "f1 error", "f2 error", "seconds", "wrong"),
-)
 
 
 class Diagnosis(Campaign):

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from . import roc
-from .diagnosis import (
+from .diagnosis_rows import (
     COLUMNS,
     DELAMINATED,
     FAILED,

@@ -1,0 +1,11 @@
+"""What a record of the campaign on verdicts keeps of each beam, and its words."""
+
+DELAMINATED, NO_OPENING = "delaminated", "no opening seen"
+NOT_DESCRIBED, UNDECIDED = "not described", "undecided"
+REFUSED, FAILED = "refused", "failed"
+USUAL, WIDE = (0.01, 0.05), (0.001, 0.1)  # noise: of the targets, and of all curves
+COLUMNS = (
+    *("kind", "delaminated", "opened", "touched", "gap", "noise", "level", "sensors"),
+    *("excitation", "size", "clearance", "change", "order ratio", "kurtosis"),
+    *("verdict", "ratio", "f1 error", "f2 error", "seconds", "wrong"),
+)
