@@ -14,6 +14,7 @@ module                  idea
 :mod:`.evidence`        what a record holds for a fit: orders with weights, the base as input
 :mod:`.single_mass`     a sound structure's motion: one mass on a spring that is not linear
 :mod:`.hypotheses`      what the structure may be: sound in several ways, or delaminated
+:mod:`.misfit`          how far a motion is from a record: one number of all residuals
 :mod:`.fitting`         the search for a hypothesis's numbers, from many starts
 :mod:`.linear`          residuals around a minimum as a linear model, by regression
 :mod:`.errors`          standard errors from simulated noise and from blocks of windows

@@ -25,8 +25,9 @@ from numpy.typing import NDArray
 from ..laboratory.analysis.channels import BOX
 from ..laboratory.sampled import Sampled
 from .evidence import Evidence
-from .fitting import Search, misfit, step_of
+from .fitting import Search, step_of
 from .linear import LinearModel
+from .misfit import misfit
 from .orders import ORDERS
 
 if TYPE_CHECKING:
@@ -66,11 +67,11 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
     values : mapping of str to float
         At the minimum that was found.
     """
-    here = dict(values)
+    here, bounds = dict(values), search.hypothesis.bounds(search.evidence)
     steps = np.diag([step_of(search, name) ** 2 for name in here])
-    shape = 0.3 * LinearModel.around(search, here, 0.1 * steps).valley()
-    model = LinearModel.around(search, here, shape, seed=1)
-    moved = model.minima(search, here)[0]
+    shape = 0.3 * LinearModel.around(search.residuals, bounds, here, 0.1 * steps).valley()
+    model = LinearModel.around(search.residuals, bounds, here, shape, seed=1)
+    moved = model.minima(bounds, here)[0]
     before, after = (misfit(search.residuals(one)) for one in (here, moved))
     return errors_of(search, moved if after <= RUGGED * before else here, model)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -12,12 +11,13 @@ from numpy.typing import NDArray
 
 from .evidence import LOST, Evidence
 from .hypotheses import Hypothesis
+from .linear import LinearModel
+from .misfit import SOFT, misfit
 
 if TYPE_CHECKING:
     from ..access import Player
 
 Floats = NDArray[np.float64]
-SOFT = 3.0  # residuals above count by their size, not its square: a jump may be a window off
 STEPS = {  # of the differences that make derivatives; f and common: parts of the resonance's
     **{"common": 3e-4, "f": 1e-4, "split": 3e-3, "e": 0.02, "clearance": 0.01},
     **{"log_zeta": 0.02, "log_zeta1": 0.05, "log_zeta2": 0.05},
@@ -117,12 +117,11 @@ class Search:
         step that failed ends on the first of its bumps. Here each round computes a cloud, as long
         as the valley is, and tries the minimum of its linear model with several dampings.
         """
-        from .linear import LinearModel
-
         here, shape, size = start, np.diag([step_of(self, name) ** 2 for name in start.values]), 1.0
+        bounds = self.hypothesis.bounds(self.evidence)
         for number in range(rounds):
-            model = LinearModel.around(self, here.values, size * shape, number)
-            best = self.scan([*model.minima(self, here.values), model.best])[0]
+            model = LinearModel.around(self.residuals, bounds, here.values, size * shape, number)
+            best = self.scan([*model.minima(bounds, here.values), model.best])[0]
             shape = model.valley()
             if best.misfit < (1.0 - GAINED) * here.misfit:
                 here, size = best, min(1.0, 1.5 * size)
@@ -170,12 +169,6 @@ class Search:
 def step_of(search: Search, name: str) -> float:
     """Step of a number for differences."""
     return STEPS[name] * (search.evidence.resonance if name in ("f", "common") else 1.0)
-
-
-def misfit(residuals: Floats) -> float:
-    """Root mean square of residuals, large ones by their size."""
-    squares = 2.0 * SOFT**2 * (np.sqrt(1.0 + (residuals / SOFT) ** 2) - 1.0)
-    return math.sqrt(float(np.mean(squares)))
 
 
 def distinct(solutions: Sequence[Solution]) -> list[Solution]:

@@ -6,15 +6,16 @@ single impacts. Over a cloud of points they average out.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .fitting import SOFT, Search, misfit
+from .misfit import SOFT, misfit
 
 Floats = NDArray[np.float64]
+Bounds = Mapping[str, tuple[float, float]]
 POINTS = 5  # of a cloud, for each number
 SEED = 20_241
 VALLEY = 0.3  # by which part the squares grow in the cloud
@@ -39,19 +40,27 @@ class LinearModel:
 
     @classmethod
     def around(
-        cls, search: Search, values: Mapping[str, float], covariance: Floats, seed: int = 0
+        cls,
+        residuals: Callable[[Mapping[str, float]], Floats],
+        bounds: Bounds,
+        values: Mapping[str, float],
+        covariance: Floats,
+        seed: int = 0,
     ) -> LinearModel:
         """Compute a cloud of points around numbers, and the regression over it.
 
         Parameters
         ----------
-        search : Search
+        residuals : callable
+            From numbers to what their motion misses.
+        bounds : mapping of str to (float, float)
+            Smallest and largest value of each number.
         values : mapping of str to float
         covariance : ndarray
             Of the cloud.
         seed : int
         """
-        bounds, count = search.hypothesis.bounds(search.evidence), len(values)
+        count = len(values)
         rng = np.random.default_rng([SEED, seed])
         sizes, axes = np.linalg.eigh(covariance)
         normal = rng.standard_normal((POINTS * count, count))
@@ -61,7 +70,7 @@ class LinearModel:
         low, high = np.array([bounds[name] for name in values]).T
         points = np.clip(here + offsets, low, high)
         named = [dict(zip(values, point, strict=True)) for point in points.tolist()]
-        rows = np.stack([search.residuals(one) for one in named])
+        rows = np.stack([residuals(one) for one in named])
         basis = np.column_stack([np.ones(len(points)), points - here])
         solution = np.linalg.lstsq(basis, rows.reshape(len(rows), -1), rcond=None)[0]
         shape = rows.shape[1:]
@@ -93,9 +102,8 @@ class LinearModel:
         squares = float(np.sum(self.residuals.ravel() ** 2))
         return np.asarray(-self.influence * VALLEY * squares / len(self.influence))
 
-    def minima(self, search: Search, values: Mapping[str, float]) -> list[dict[str, float]]:
+    def minima(self, bounds: Bounds, values: Mapping[str, float]) -> list[dict[str, float]]:
         """Numbers at the minimum of the model, with dampings from none to much."""
-        bounds = search.hypothesis.bounds(search.evidence)
         information, slope = self.information, self.weighted.T @ self.residuals.ravel()
         size = np.diag(np.maximum(np.diag(information), 1e-300))
         found = []

@@ -19,8 +19,9 @@ from ..structures import Structure
 from .errors import estimate
 from .even_orders import even_orders
 from .evidence import Evidence
-from .fitting import Search, Solution, distinct, misfit
+from .fitting import Search, Solution, distinct
 from .hypotheses import SOUND, SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
+from .misfit import misfit
 from .verdicts import SOUND_DESCRIBES
 
 if TYPE_CHECKING:

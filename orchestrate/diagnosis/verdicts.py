@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .fitting import SOFT
+from .misfit import SOFT
 
 Floats = NDArray[np.float64]
 DELAMINATED = "delaminated"
