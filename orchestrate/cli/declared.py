@@ -19,8 +19,8 @@ def described(function: Callable[..., Any], name: str) -> tuple[str, str]:
     Examples
     --------
     >>> import orchestrate
-    >>> described(orchestrate.basin, "settle")
-    ('float', 'Periods dropped at least, over eta: a slow decay takes time, not periods.')
+    >>> described(orchestrate.poincare, "transient")
+    ('int', 'Excitation periods dropped.')
     """
     import orchestrate
 

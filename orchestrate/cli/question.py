@@ -120,7 +120,8 @@ def print_table(data: xr.Dataset, name: str) -> None:
 
 def trivial_notes(structure: Structure, question: Question) -> list[str]:
     """Return remarks on what makes an answer trivial."""
-    if structure.clearance == 0.0 and "level" in (question.get("over"), *question):
+    varied = isinstance(question.get("level"), tuple) or question.get("over") == "level"
+    if varied and structure.clearance == 0.0:
         return [
             "clearance = 0: the model is homogeneous, at twice the level it moves twice as far; "
             "one level is enough"

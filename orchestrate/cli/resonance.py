@@ -66,7 +66,7 @@ def report_levels(data: xr.Dataset) -> None:
         numbers = "".join(f"{size:11.4g}" for size in sizes)
         print(f"{format_parameter('level', level):>10}{numbers}   {float(top.hertz):.6g} Hz")
     if "threshold_acceleration" in data:
-        lowest = data.isel(frequency=int(data.threshold_acceleration.argmin()))
+        lowest = data.isel(frequency=int(data.threshold_acceleration.values.argmin()))
         event = "opens" if float(data.attrs["clearance"]) < 0.0 else "touches"
         level = float(lowest.threshold_acceleration) / GRAVITY
         print(f"it first {event} at {level:.4g} g, at {float(lowest.hertz):.6g} Hz")

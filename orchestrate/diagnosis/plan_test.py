@@ -176,7 +176,7 @@ def plan_test(
     >>> plan = orchestrate.plan_test(
     ...     beam, sensor=sensor, levels=[0.02, 0.2], frequencies=[10.0, 11.0, 12.0, 13.0, 14.0]
     ... )
-    >>> float(plan.distance_harmonics.max("frequency").argmax()), bool(plan.counts)
+    >>> float(plan.distance_harmonics.max("frequency").values.argmax()), bool(plan.counts)
     (1.0, True)
     """
     if structure.bonded:

@@ -321,9 +321,9 @@ def lyapunov(
     >>> found = lyapunov(Structure.nondimensional(), eta=[0.8, 1.047], periods=400)
     >>> found.verdict.values.tolist(), float(found.exponent[1].round(3))
     ([1, -1], -0.007)
-    >>> found = lyapunov(Structure.nondimensional(e=0.7), eta=2.9, periods=400, spectrum=True)
+    >>> found = lyapunov(Structure.nondimensional(), eta=0.8, periods=800, spectrum=True)
     >>> float(found.kaplan_yorke_dimension[0].round(1))
-    0.0
+    3.1
     """
     question = series_arguments(structure, eta, frequency, amplitude, over, values)
     name = f"exponent_{structure.label()}"

@@ -125,7 +125,7 @@ def contact_threshold(
     >>> pressed = beam.replace(clearance=-20e-6)
     >>> level = contact_threshold(pressed, frequency=2.0 * np.pi * np.array([30.0, 48.0]))
     >>> level.event, (level.threshold_acceleration / 9.80665).values.round(3)
-    ('opens', array([0.261, 0.013]))
+    ('opens', array([0.209, 0.006]))
     """
     import xarray as xr
 

@@ -28,7 +28,7 @@ SWEEP = [
     (["--over", "e", "--eta", "1"], ["--over and --values", "both"]),
     (["--over", "e", "--values", "0.1,0.2"], ["frequency: nothing given", "--eta"]),
     (["--over", "eta", "--values", "1,2"], ["--over eta", "--eta VALUES"]),
-    (["--over", "amplitude", "--values", "1,2", "--hz", "1"], ["--over amplitude", "the same"]),
+    (["--over", "amplitude", "--values", "1,2", "--hz", "1"], ["--over amplitude", "--g VALUES"]),
     (["--over", "k1", "--values", "1,2", "--eta", "1", "--g", "1"], ["--over k1", "--hz"]),
     (["--over", "e", "--values", "0.1,0.2", "--eta", "1,2"], ["--eta 1,2", "2 values"]),
     (["--over", "f", "--values", "0.1", "--eta", "1"], ["'f'", "no parameter"]),
@@ -122,7 +122,8 @@ MAP = [
     (["--eta", "1,2", *OVER_E, "--over", "D", "--values", "0.1,0.2"], ["--eta 1,2", "2 values"]),
     (["--eta", "1", *OVER_E, *OVER_E], ["--over e", "twice"]),
     (["--eta", "1,2", "--over", "e"], ["--over and --values", "as many"]),
-    (["--hz", "1,2", "--g", "1", *OVER_E], ["--g", "--amplitude"]),
+    (["--hz", "1,2", "--g", "0,1"], ["--g 0,1"]),
+    (["--hz", "1,2", "--g", "1", "--amplitude", "1", *OVER_E], ["--g", "--amplitude"]),
     (["--eta", "1,2", "--over", "x", "--values", "1,2"], ["x: no parameter"]),
     (["--eta", "1,2", "--over", "e", "--values", "0.1,7"], ["e = 7.0"]),
     (["--eta", "1,2", "--over", "amplitude", "--values", "1,2"], ["--over amplitude"]),
@@ -451,8 +452,10 @@ def test_an_fmu_of_gigabytes_is_not_read(ask, tmp_path):
 
 
 RECOMMENDED = [
-    (("map", "--hz", "8:20:4", "--over", "e", "--values", "0.3,0.5"), "--amplitude in m with it"),
-    (("map", "--hz", "8:20:4", "--over", "g", "--values", "0.3,0.5"), "--over g: a response"),
+    (
+        ("map", "--hz", "8:20:4", "--over", "g", "--values", "0.3,0.5"),
+        "--over g: expected --g VALUES",
+    ),
     (("map", "--hz", "8", "--over", "hz", "--values", "1,2"), "--over hz: expected --hz VALUES"),
     (("branch", "--over", "hz", "--limits", "20:30", "--hz", "20"), "--amplitude in m with it"),
     (("branch", "--over", "hz", "--limits", "20:30"), "--over hz: expected --amplitude in m"),

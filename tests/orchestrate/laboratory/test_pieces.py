@@ -41,7 +41,7 @@ def sweeps(draw):
 def test_swept_sine_within_its_bound(sweep, accuracy):
     pieces = sweep.pieces(accuracy)
     times = times_within(sweep.duration)
-    peak = float(sweep.level(np.linspace(0.0, sweep.duration, 1001)).max())
+    peak = float(sweep.level(np.linspace(0.0, sweep.duration, 200_001)).max())
     distance = np.abs(pieces(times) - sweep(times)).max()
     phase_rounding = 1e-15 * float(sweep.phase(sweep.duration))
     assert distance <= pieces.error + (1e-13 + phase_rounding) * peak

@@ -44,8 +44,8 @@ def clean(found, count):
 
 
 def test_a_point_that_no_step_size_hits_is_left_out():
-    """Set 247: from its middle the nearest step size ends one number beside the target."""
-    drawn = parameter_sets.draw(45094094863979, 247)
+    """From its middle the nearest step size ends one number beside the target."""
+    drawn = parameter_sets.draw(19, 69)
     _, (middle, end), *_ = drawn.grids()
     assert middle + (end - middle) != end
     grids = [bits.reachable(drawn.start_time, grid) for grid in drawn.grids()]
