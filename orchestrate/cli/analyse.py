@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -134,6 +135,7 @@ def run(arguments: argparse.Namespace) -> None:
     check_output(arguments.output)
     paths = paths_of(arguments)
     records = {label: part_of(arguments, path) for label, path in paths.items()}
+    warn_without_sensor(arguments, records)
     for name in names:
         results = {
             label: analyse(ANALYSES[name], record, paths[label], settings[name])
@@ -144,6 +146,17 @@ def run(arguments: argparse.Namespace) -> None:
         told = digest(read, settings[name], *part_and_reading(arguments))
         stem = f"analyse_{name}_{arguments.record.stem}_{told}"
         write(arguments.output / f"{stem}.nc", results, formats, plots)
+
+
+def warn_without_sensor(arguments: argparse.Namespace, records: Mapping[str, xr.Dataset]) -> None:
+    """Warn where accelerations between impacts stand beside what sensors have read."""
+    simulated = [label for label, record in records.items() if "impulse" in record]
+    if arguments.sensor is None and 0 < len(simulated) < len(records):
+        warnings.warn(
+            f"{', '.join(simulated)}: accelerations between impacts, beside a record whose sensors "
+            "feel the impulses too; --sensor HZ:RATE compares like with like",
+            stacklevel=2,
+        )
 
 
 def part_and_reading(arguments: argparse.Namespace) -> list[Any]:

@@ -28,7 +28,10 @@ COLUMNS = {  # of a printed peak: title, format
 
 def add_parser(commands: Commands) -> None:
     """Add the command's parser."""
-    text = "resonance curves: amplitude and peak acceleration, bonded against delaminated"
+    text = (
+        "resonance curves: amplitude and peak acceleration, bonded against delaminated; at several "
+        "levels (--g FIRST:LAST:STEP), with the level at which a preloaded structure first opens"
+    )
     question = commands.ask("resonance", run, text, EXAMPLES)
     question.declare("direction", "transient", "samples", "prominence", "jump")
 
@@ -69,7 +72,8 @@ def report_levels(data: xr.Dataset) -> None:
         lowest = data.isel(frequency=int(data.threshold_acceleration.values.argmin()))
         event = "opens" if float(data.attrs["clearance"]) < 0.0 else "touches"
         level = float(lowest.threshold_acceleration) / GRAVITY
-        print(f"it first {event} at {level:.4g} g, at {float(lowest.hertz):.6g} Hz")
+        where = f"{float(lowest.hertz):.6g} Hz"
+        print(f"of these frequencies it first {event} at {where}: {level:.4g} g")
 
 
 def print_peaks(data: xr.Dataset, name: str) -> None:

@@ -224,6 +224,11 @@ def test_sensors_feel_the_impulses_of_impacts(ask, tmp_path):
     rms = float(psd(made).rms.sel(channel="acceleration1"))
     assert f"mass 1: {rms:.4g} m/s2 rms" in felt[1] and felt[1] != between[1]
     assert len(list((tmp_path / "results").glob("analyse*.nc"))) == 2
+    made.to_netcdf(tmp_path / "measured.nc")
+    beside = ("--beside", f"measured={tmp_path / 'measured.nc'}", *show)
+    warned = ask("analyse", path, *beside)
+    assert warned.code == 0 and "compares like with like" in warned.err
+    ask("analyse", path, "--sensor", "400:1500", *beside).success()
     ask("analyse", path, "--sensor", "fast").complaint("--sensor fast: expected HZ or HZ:RATE")
     ask("analyse", path, "--sensor", "-1").complaint("bandwidth = -1.0")
 

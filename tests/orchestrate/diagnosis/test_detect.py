@@ -33,6 +33,9 @@ def test_of_a_bonded_structure_no_opening_is_seen_and_its_halves_are_not_stated(
     assert float(answer.level_high) == pytest.approx(5.0, rel=0.1)
     assert 0.0 < float(answer.smallest_opening) < 1e-3
     assert "pressed together" in answer.attrs["settle"]
+    sound = [name for name in answer.hypothesis.values if str(name).startswith("bonded")]
+    misfits = answer.misfit.sel(hypothesis=sound)  # each contains the linear spring
+    assert len(sound) > 3 and (misfits <= 1.001 * float(misfits.sel(hypothesis="bonded"))).all()
 
 
 def test_a_fit_is_within_its_errors_and_takes_what_is_not_free_from_the_guess():
