@@ -41,6 +41,10 @@ COMMANDS: dict[str, tuple[str, ...]] = {
         *("spectra", "--eta", "1.1,1.2,1.3", "--transient", "300", "--periods", "8"),
         *("--points", "128", *PLAIN),
     ),
+    "shake": (
+        *("shake", "--structure", "beam", "--random", "5:0.1,100:0.1", "--duration", "150"),
+        *("--seed", "1", *PLAIN),
+    ),
     "branch": ("branch", "--eta", "2.5", "--limits", "2.45:2.55", *PLAIN),
     "couple": (
         *("couple", "--only", "delaminated", "--eta0", "1.4:1.404", "--rate", "2e-5"),
