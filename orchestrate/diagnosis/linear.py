@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .misfit import SOFT, misfit
+from .misfit import misfit, soft_weights
 
 Floats = NDArray[np.float64]
 Bounds = Mapping[str, tuple[float, float]]
@@ -81,7 +81,7 @@ class LinearModel:
     @property
     def weighted(self) -> Floats:
         """Slopes times the weights of the soft loss, one row a residual."""
-        weights = 1.0 / np.sqrt(1.0 + (self.residuals / SOFT) ** 2)
+        weights = soft_weights(self.residuals)
         return (self.slopes * weights[..., np.newaxis]).reshape(-1, self.slopes.shape[-1])
 
     @property

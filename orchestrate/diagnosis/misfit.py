@@ -7,10 +7,20 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+Floats = NDArray[np.float64]
 SOFT = 3.0  # residuals above count by their size, not its square: a jump may be a window off
 
 
-def misfit(residuals: NDArray[np.float64]) -> float:
+def soft_squares(residuals: Floats) -> Floats:
+    """Return squares of residuals, of large ones their size (the soft l1 loss)."""
+    return np.asarray(2.0 * SOFT**2 * (np.sqrt(1.0 + (residuals / SOFT) ** 2) - 1.0))
+
+
+def soft_weights(residuals: Floats) -> Floats:
+    """Return the derivative of that loss over that of the plain squares."""
+    return np.asarray(1.0 / np.sqrt(1.0 + (residuals / SOFT) ** 2))
+
+
+def misfit(residuals: Floats) -> float:
     """Return the root mean square of residuals, large ones by their size."""
-    squares = 2.0 * SOFT**2 * (np.sqrt(1.0 + (residuals / SOFT) ** 2) - 1.0)
-    return math.sqrt(float(np.mean(squares)))
+    return math.sqrt(float(np.mean(soft_squares(residuals))))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .misfit import SOFT
+from .misfit import soft_squares
 
 Floats = NDArray[np.float64]
 DELAMINATED = "delaminated"
@@ -133,15 +133,10 @@ def share_of_better(sound: Floats, delaminated: Floats) -> float:
     sound, delaminated : ndarray, shape (sensors, 4, windows)
         Residuals of the best of both.
     """
-    one, other = (soft(values).mean(axis=(0, 1)) for values in (sound, delaminated))
+    one, other = (soft_squares(values).mean(axis=(0, 1)) for values in (sound, delaminated))
     blocks = np.array_split(np.arange(len(one)), min(BLOCKS, len(one)))
     sums = np.array([[one[block].sum(), other[block].sum()] for block in blocks])
     rng = np.random.default_rng(SEED)
     chosen = rng.integers(0, len(sums), size=(RESAMPLED, len(sums)))
     first, second = sums[chosen].sum(axis=1).T
     return float(np.mean(np.sqrt(first / second) >= RATIO))
-
-
-def soft(residuals: Floats) -> Floats:
-    """Squares of residuals, large ones by their size."""
-    return np.asarray(2.0 * SOFT**2 * (np.sqrt(1.0 + (residuals / SOFT) ** 2) - 1.0))
