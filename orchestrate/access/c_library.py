@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ctypes
 import logging
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 from fmu_src.export import c_library as sources
 from fmu_src.export.errors import CannotExport
@@ -54,6 +56,18 @@ def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | N
             )
     except (CannotExport, StoreError) as reason:
         log.info("%s is not compiled, Python does the same: %s", source.name, reason)
+        return None
+
+
+def loaded_function(source: Path) -> Any:
+    """Load the function ``run`` of a C source of the package; None where there is no library."""
+    path = library(source)
+    if path is None:
+        return None
+    try:
+        return ctypes.CDLL(str(path)).run
+    except OSError as reason:  # such as a folder from which nothing may be run
+        log.info("%s cannot be loaded, Python does the same: %s", path, reason)
         return None
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import FmuError
-from .c_library import library
+from .c_library import loaded_function
 from .channel import Channel
 from .impacts import EVENT_OUTPUTS, Impacts
 from .stepping import SteppingInstance
@@ -90,13 +90,8 @@ class Progress(ctypes.Structure):
 @functools.cache
 def run_function() -> Any:
     """Load the library's function, once per process; return None where there is no library."""
-    path = library(SOURCE)
-    if path is None:
-        return None
-    try:
-        run = ctypes.CDLL(str(path)).run
-    except OSError as reason:  # such as a folder from which nothing may be run
-        log.info("%s cannot be loaded, Python does the same: %s", path, reason)
+    run = loaded_function(SOURCE)
+    if run is None:
         return None
     run.argtypes = [c_void_p] * 3
     return run

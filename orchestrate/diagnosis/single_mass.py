@@ -10,7 +10,6 @@ Classical Runge-Kutta steps, ``single_mass.c`` where it can be compiled.
 
 from __future__ import annotations
 
-import ctypes
 import functools
 import logging
 import math
@@ -22,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..access.c_library import library
+from ..access.c_library import loaded_function
 
 log = logging.getLogger(__name__)
 Floats = NDArray[np.float64]
@@ -90,13 +89,8 @@ class SingleMass:
 @functools.cache
 def run_function() -> Any:
     """Load the library's function, once per process; return None where there is no library."""
-    path = library(SOURCE)
-    if path is None:
-        return None
-    try:
-        run = ctypes.CDLL(str(path)).run
-    except OSError as reason:  # such as a folder from which nothing may be run
-        log.info("%s cannot be loaded, Python does the same: %s", path, reason)
+    run = loaded_function(SOURCE)
+    if run is None:
         return None
     run.argtypes = [c_void_p, c_void_p, c_ssize_t, c_double, c_int, c_double, c_void_p]
     run.restype = c_ssize_t

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from ..access.c_library import library
+from ..access.c_library import loaded_function
 from ..access.channel import Channel
 from ..access.instance import Instance
 from ..errors import FmuError
@@ -62,13 +62,8 @@ class Pair(ctypes.Structure):
 @functools.cache
 def step_function() -> Any:
     """Load the library's function, once per process; return None where there is no library."""
-    path = library(SOURCE)
-    if path is None:
-        return None
-    try:
-        run = ctypes.CDLL(str(path)).run
-    except OSError as reason:  # such as a folder from which nothing may be run
-        log.info("%s cannot be loaded, Python does the same: %s", path, reason)
+    run = loaded_function(SOURCE)
+    if run is None:
         return None
     run.argtypes = [*[c_void_p] * 4, c_int, c_int, c_double, c_void_p]
     return run

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from orchestrate.access.c_library import library
+from orchestrate.access.c_library import loaded_function
 
 from .system import LAWS, Floats, Frictions, ModalSystem, Motion, no_contacts, no_springs
 
@@ -52,10 +52,9 @@ def run_function() -> Any:
     RuntimeError
         Where it cannot be compiled here.
     """
-    path = library(SOURCE)
-    if path is None:
+    run = loaded_function(SOURCE)
+    if run is None:
         raise RuntimeError(f"{SOURCE.name} cannot be compiled: expected ziglang or a C compiler")
-    run = ctypes.CDLL(str(path)).run
     run.argtypes = [POINTER(CSystem), c_long, c_double, *[NUMBERS] * 6]
     run.restype = c_long
     return run

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from orchestrate.access import NO_INPUT, PLAYED, REST, EventInstance, Player, begin
+from orchestrate.access import c_library as libraries
 from orchestrate.access import event_loop as loops
 from orchestrate.access.c_library import library
 from orchestrate.access.event_loop import (
@@ -173,7 +174,7 @@ def test_with_a_library_c_does_it(event_fmu):
 
 def test_a_library_that_cannot_be_loaded_is_no_failure(tmp_path, monkeypatch):
     (tmp_path / "event_loop.so").write_bytes(b"nothing")
-    monkeypatch.setattr(loops, "library", lambda source: tmp_path / "event_loop.so")
+    monkeypatch.setattr(libraries, "library", lambda source: tmp_path / "event_loop.so")
     assert loops.run_function.__wrapped__() is None
 
 

@@ -87,7 +87,7 @@ def test_fmus_of_other_forms_step_in_python():
 
 def test_a_library_that_cannot_be_loaded_is_no_failure(tmp_path, monkeypatch):
     (tmp_path / "compiled.so").write_bytes(b"nothing")
-    monkeypatch.setattr(compiled, "library", lambda source: tmp_path / "compiled.so")
+    monkeypatch.setattr(libraries, "library", lambda source: tmp_path / "compiled.so")
     assert compiled.step_function.__wrapped__() is None
 
 
