@@ -70,7 +70,7 @@ def report_levels(data: xr.Dataset) -> None:
         print(f"{format_parameter('level', level):>10}{numbers}   {float(top.hertz):.6g} Hz")
     if "threshold_acceleration" in data:
         lowest = data.isel(frequency=int(data.threshold_acceleration.values.argmin()))
-        event = "opens" if float(data.attrs["clearance"]) < 0.0 else "touches"
+        event = data.threshold_acceleration.attrs["event"]
         level = float(lowest.threshold_acceleration) / GRAVITY
         where = f"{float(lowest.hertz):.6g} Hz"
         print(f"of these frequencies it first {event} at {where}: {level:.4g} g")

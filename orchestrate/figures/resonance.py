@@ -14,6 +14,7 @@ from .labels import prefix, title_from_attributes
 from .marks import MAX_DISTINCT, Marks, mark
 from .scales import Along, along, parameter_of
 from .style import BLACK, BLUE, GREY, RED, legend_below, set_title, styled
+from .threshold import THRESHOLD, finite
 
 COLOURS = {"delaminated": RED, "bonded": BLUE}
 STYLES: dict[str, Any] = {  # down lies on up
@@ -28,7 +29,6 @@ NAMES = {
     "a2_max": r"max $|\ddot{{x}}_2 + \ddot{{y}}|$ in m/s$^2$",
     "x_rel_max": "largest gap in {}m",
 }
-THRESHOLD = "threshold_acceleration"
 
 
 @styled
@@ -95,8 +95,7 @@ def draw_quantity(axes: Axes, values: xr.DataArray, x: Along) -> None:
 def draw_threshold(axes: Axes, data: xr.Dataset, x: Along) -> None:
     """Draw the box's acceleration, and that at which the linear response opens or touches."""
     level = (data.amplitude * data.frequency**2).broadcast_like(data[THRESHOLD]).values
-    threshold = np.where(np.isfinite(data[THRESHOLD].values), data[THRESHOLD].values, np.nan)
-    event = "opens" if "opens" in data[THRESHOLD].attrs["long_name"] else "touches"
+    threshold, event = finite(data[THRESHOLD]), data[THRESHOLD].attrs["event"]
     axes.plot(x.values, threshold, color=BLACK, linewidth=1.2, label=f"level at which it {event}")
     axes.plot(x.values, level, color=GREY, linewidth=1.2, linestyle="-.", label="level of the box")
     axes.fill_between(

@@ -16,9 +16,9 @@ from ..constants import GRAVITY
 from .labels import prefix, title_from_attributes
 from .scales import HERTZ
 from .style import BLACK, GREY, panels, set_title, styled
+from .threshold import THRESHOLD, finite
 
 FEW = 8  # levels that have a legend entry each; more have a colour bar
-THRESHOLD = "threshold_acceleration"
 
 
 @styled
@@ -81,9 +81,7 @@ def draw_gaps(axes: Axes, data: xr.Dataset) -> None:
 
 def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     """Draw the level at which the structure first opens or touches, and the levels asked for."""
-    event = "opens" if float(data.attrs["clearance"]) < 0.0 else "touches"
-    threshold = data[THRESHOLD].values / GRAVITY
-    threshold = np.where(np.isfinite(threshold), threshold, np.nan)
+    threshold, event = finite(data[THRESHOLD]) / GRAVITY, data[THRESHOLD].attrs["event"]
     axes.plot(data.hertz, threshold, color=BLACK, label=f"level at which it first {event}")
     for level, colour in zip(data.level.values, colours(data), strict=True):
         axes.axhline(level / GRAVITY, color=colour, linewidth=1.0)

@@ -11,6 +11,13 @@ from .labels import title_from_attributes
 from .scales import HERTZ
 from .style import BLACK, panels, set_title, styled
 
+THRESHOLD = "threshold_acceleration"
+
+
+def finite(threshold: xr.DataArray) -> np.ndarray:
+    """Return a threshold as it is drawn: no line where no level opens or joins the halves."""
+    return np.where(np.isfinite(threshold.values), threshold.values, np.nan)
+
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
@@ -25,8 +32,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     """
     figure, (plane,) = panels(1, 1, (6.4, 4.2))
     set_title(figure, title or title_from_attributes(data, ("eta", "frequency")))
-    level = data.threshold_acceleration.values / GRAVITY
-    level = np.where(np.isfinite(level), level, np.nan)
+    level = finite(data[THRESHOLD]) / GRAVITY
     mark = "o-" if level.size < 2 else "-"
     plane.plot(data.hertz, level, mark, color=BLACK, label=f"it first {data.attrs['event']}")
     if np.nanmax(level, initial=0.0) > 0.0:

@@ -115,7 +115,7 @@ class ResonanceLevelsJob(Question):
             xr.concat([self.at_level(i, curve, name) for i, curve in enumerate(curves)], dim=name)
             for name in RAGGED
         ]
-        found = xr.merge([joined, *ragged], combine_attrs="drop")
+        found = xr.merge([joined, *ragged], combine_attrs="drop_conflicts")
         found.attrs["title"] = f"Resonance curves over the level: {self.structure.label()}"
         return found
 

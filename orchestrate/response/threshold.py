@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-OPENS, TOUCHES = "opens", "touches"
 
 
 def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
@@ -66,16 +65,26 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:
     """Return the threshold over some frequencies, as amplitude and as acceleration of the box."""
     amplitudes = threshold_amplitudes(structure, frequency)
-    event = f"at which the structure first {'opens' if structure.clearance < 0.0 else 'touches'}"
-    return {
-        "threshold_amplitude": variable(along, amplitudes, "m", f"amplitude of the box {event}"),
-        "threshold_acceleration": variable(
-            along,
+    event = event_of(structure)
+    where = f"at which the structure first {event}"
+    levels = {
+        "threshold_amplitude": (amplitudes, "m", f"amplitude of the box {where}"),
+        "threshold_acceleration": (
             amplitudes * np.asarray(frequency) ** 2,
             "m/s2",
-            f"peak acceleration of the box {event}",
+            f"peak acceleration of the box {where}",
         ),
     }
+    made = {name: variable(along, *about) for name, about in levels.items()}
+    return {
+        name: (dims, values, {**about, "event": event})
+        for name, (dims, values, about) in made.items()
+    }
+
+
+def event_of(structure: Structure) -> str:
+    """Return what happens to a structure at its threshold: it "opens", or it "touches"."""
+    return "opens" if structure.clearance < 0.0 else "touches"
 
 
 def contact_threshold(
@@ -139,7 +148,7 @@ def contact_threshold(
     column = np.atleast_1d(np.asarray(values, dtype=float))
     speeds = column * structure.omega if name == "eta" else column
     other = {"eta": speeds / structure.omega, "frequency": speeds, name: column}
-    event = OPENS if structure.clearance < 0.0 else TOUCHES
+    event = event_of(structure)
     return xr.Dataset(
         threshold_variables(structure, name, speeds),
         {

@@ -44,6 +44,9 @@ def questions() -> dict[str, xr.Dataset]:
     return {
         "simulate": orchestrate.simulate(OWN, **box, periods=3, points=20),
         "resonance": orchestrate.resonance(OWN, frequency=many, amplitude=1e-3, **short),
+        "resonance levels": orchestrate.resonance_levels(
+            OWN.replace(clearance=-1e-6), frequency=many, level=[0.1, 5.0], **short
+        ),
         "sweep": orchestrate.sweep(OWN, frequency=many, amplitude=1e-3, **short),
         "sweep both": orchestrate.sweep(
             OWN, frequency=many, amplitude=1e-3, direction="both", **short
