@@ -136,9 +136,15 @@ def dynamic(call: ast.Call) -> Iterator[str]:
     yield argument.value if isinstance(argument, ast.Constant) else "?"
 
 
+@functools.cache
+def imports_of(file: str) -> frozenset[str]:
+    """Absolute names of all that a source file imports."""
+    return frozenset(imports(tree_of(file), file))
+
+
 def uses(file: str, package: str) -> bool:
     """Whether a file imports a package."""
-    names = imports(tree_of(file), file)
+    names = imports_of(file)
     return any(name == package or name.startswith(f"{package}.") for name in names)
 
 
@@ -173,14 +179,14 @@ def test_the_reader_of_imports_sees_all_kinds():
 @pytest.mark.parametrize("file", [file for file in FILES if file.startswith("orchestrate/")])
 def test_a_floor_knows_only_those_below(file):
     mine = part_of(module_name(file))
-    known = {part_of(n) for n in imports(tree_of(file), file) if n.split(".")[0] == "orchestrate"}
+    known = {part_of(n) for n in imports_of(file) if n.split(".")[0] == "orchestrate"}
     assert known <= FLOORS[mine] | {mine}
 
 
 @pytest.mark.parametrize("file", [file for file in FILES if file.startswith("fmu_src/")])
 def test_a_part_of_the_fmus_knows_only_what_it_is_made_of(file):
     mine = part_of(module_name(file))
-    known = {part_of(n) for n in imports(tree_of(file), file) if n.split(".")[0] == "fmu_src"}
+    known = {part_of(n) for n in imports_of(file) if n.split(".")[0] == "fmu_src"}
     assert known <= PARTS.get(mine, set()) | {mine, ""}
 
 
@@ -197,7 +203,7 @@ def test_the_sources_of_the_fmus_are_known_in_five_places():
 @pytest.mark.parametrize("file", FILES)
 def test_imports_can_be_read(file):
     if file not in DYNAMIC:
-        assert "?" not in imports(tree_of(file), file)
+        assert "?" not in imports_of(file)
 
 
 @pytest.mark.parametrize("package", ONLY_IN)
@@ -211,10 +217,7 @@ MODULES = {module_name(file): file for file in FILES}
 
 def imported_files(file: str) -> set[str]:
     """Files of ours that a file imports anywhere, for the type checker alone too."""
-    names = (
-        name if name in MODULES else name.rpartition(".")[0]
-        for name in imports(tree_of(file), file)
-    )
+    names = (name if name in MODULES else name.rpartition(".")[0] for name in imports_of(file))
     return {MODULES[name] for name in names if name in MODULES} - {file}
 
 
@@ -257,14 +260,14 @@ def test_commands_do_not_know_each_other():
     assert {"build", "sweep", "paper"} <= commands
     for command in commands:
         file = f"orchestrate/cli/{command}.py"
-        names = {n.split(".")[2] for n in imports(tree_of(file), file) if ".cli." in n}
+        names = {n.split(".")[2] for n in imports_of(file) if ".cli." in n}
         assert not names & commands, file
 
 
 def test_a_kernel_imports_math_and_its_own_modules_alone():
     for file in FILES:
         if file.startswith("fmu_src/kernels/"):
-            names = imports(tree_of(file), file)
+            names = imports_of(file)
             assert all(n == "math" or n.startswith("fmu_src.kernels.") for n in names), file
 
 

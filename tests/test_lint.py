@@ -6,6 +6,7 @@ import sys
 import pytest
 
 from .fresh import ROOT
+from .sparing import ordinary
 
 COMMANDS = {
     "ruff check": ("ruff", "check", "--output-format", "concise", "--no-cache", "."),
@@ -14,7 +15,7 @@ COMMANDS = {
 }
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", ordinary(COMMANDS, 2))
 def test_finds_nothing(name, tmp_path):
     """Nothing is written into the tree, so that runs side by side do not meet."""
     if name == "mypy" and sys.version_info < (3, 11):

@@ -74,6 +74,7 @@ def ask(python: Path, folder: Path, **more: str) -> None:
     assert not [path for name in came_along for path in (folder / "home").rglob(name)]
 
 
+@pytest.mark.slow
 def test_a_wheel_without_compiler_and_ziglang(wheel, tmp_path):
     site = tmp_path / "site"
     command = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--target", str(site)]

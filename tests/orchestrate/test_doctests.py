@@ -8,15 +8,18 @@ from pathlib import Path
 
 import pytest
 
+from ..sparing import ordinary
+
 ROOT = Path(__file__).resolve().parents[2]
 MODULES = [
     ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
     for path in sorted((ROOT / "orchestrate").rglob("*.py"))
     if ">>> " in path.read_text(encoding="utf-8")
 ]
+LONG = {f"orchestrate.weak_drive.{name}" for name in ("drive_branch", "jump_voltages")}
 
 
-@pytest.mark.parametrize("module", MODULES)
+@pytest.mark.parametrize("module", ordinary(MODULES, set(MODULES) - LONG))
 def test_examples(module, exported, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE | doctest.IGNORE_EXCEPTION_DETAIL

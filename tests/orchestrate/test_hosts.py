@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from ..sparing import ordinary
+
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / "tests" / "orchestrate" / "own_question.py"
 CELLS = (
@@ -75,7 +77,7 @@ EDITS = {
 }
 
 
-@pytest.mark.parametrize("edit", EDITS)
+@pytest.mark.parametrize("edit", ordinary(EDITS, ["a function"]))
 def test_an_edit_of_the_code_makes_results_stale(answered, tmp_path, edit):
     file, old, new = EDITS[edit]
     package, answer = answered

@@ -76,6 +76,7 @@ def test_a_function_is_imported_for_its_own_command_alone():
         assert done.stdout.split() == expected.split(), words
 
 
+@pytest.mark.slow
 def test_without_docstrings_options_are_the_same(tmp_path):
     """As ``python -OO`` leaves them; only the help is poorer."""
     command = [sys.executable, "-OO", "-m", "orchestrate", "resonance", "--eta", "1.1,1.2"]

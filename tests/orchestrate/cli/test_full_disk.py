@@ -54,6 +54,7 @@ def test_full_while_chunks_arrive(commands, resize, ask, tmp_path):
     goes_on(commands, ask, tmp_path)
 
 
+@pytest.mark.slow
 def test_a_limit_of_file_sizes(commands, ask, tmp_path):
     # as a quota: EFBIG instead of ENOSPC, beyond what the FMU itself needs when it is unpacked
     limit = (900_000, 900_000)

@@ -12,6 +12,7 @@ import pytest
 
 from orchestrate.cli import main
 
+from ...sparing import ordinary
 from .commands import all_end, below, end, kill, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups and /proc")
@@ -125,7 +126,7 @@ def test_an_interrupted_command_without_a_store_says_so(tmp_path, capsys, monkey
     assert capsys.readouterr().err.splitlines() == [BEGINS_ANEW]
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("number", ordinary([signal.SIGKILL, signal.SIGTERM]))
 def test_no_worker_outlives_the_main_process(commands, number):
     process = commands.start(*RUNS["sweep"], "--jobs", "2", "--transient", "20000")
     wait_for(lambda: len(list(below(process.pid))) >= 3, process, "workers were there")

@@ -94,7 +94,7 @@ def under_way(commands, fmu):
         pytest.param(
             *("hangs", "fmi3InstantiateCoSimulation", signal.SIGTERM, "terminated"), marks=SLOW
         ),
-        ("spins", "fmi3DoStep", signal.SIGTERM, "terminated"),
+        pytest.param("spins", "fmi3DoStep", signal.SIGTERM, "terminated", marks=SLOW),
     ],
 )
 def test_a_second_signal_ends_a_command_whose_fmu_hangs(

@@ -110,6 +110,7 @@ def test_a_delaminated_beam_stands_out(exported):
     assert not (whole == 1).any()
 
 
+@pytest.mark.slow
 def test_the_gain_of_a_sensor_moves_no_difference():
     phase = angle()
     alike = record({1: 6.0}, acceleration2=3.1 * np.sin(phase + 0.3))

@@ -12,10 +12,15 @@ from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.structures import Structure
 
+from ...sparing import ordinary
 from .single_impact import SingleImpact
 
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
 LIMITS = {"e": (0.5, 0.9), "D": (0.002, 0.02), "kappa": (1.1, 1.4)}
+KINDS = ("Neimark-Sacker", "period_doubling", "grazing_of_a_flight")
+CURVES = [  # every kind and every parameter stands among the first three
+    (kind, list(LIMITS)[(i + shift) % 3]) for shift in range(3) for i, kind in enumerate(KINDS)
+]
 
 
 @functools.cache
@@ -31,8 +36,7 @@ def number(kind):
     return there[-1]
 
 
-@pytest.mark.parametrize("over", LIMITS)
-@pytest.mark.parametrize("kind", ["Neimark-Sacker", "period_doubling", "grazing_of_a_flight"])
+@pytest.mark.parametrize(("kind", "over"), ordinary(CURVES, 3, several_names=True))
 def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
     limits = [(2.5, 5.0), LIMITS[over]]
     found = border(
@@ -54,7 +58,7 @@ def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
             assert abs(truth.gap(times).min()) < 1e-7
 
 
-@pytest.mark.parametrize("over", ["e", "D"])
+@pytest.mark.parametrize("over", ordinary(["D", "e"]))
 def test_limits_are_reached_exactly(over):
     limits = [(3.0, 4.0), LIMITS[over]]
     at = number("Neimark-Sacker")

@@ -72,6 +72,7 @@ def test_the_papers_motions_are_those_of_a_beam_in_hertz(opened):
     assert opened.run("return explorer.structure") == opened.run("return explorer.table.usual")
 
 
+@pytest.mark.slow
 def test_a_beam_of_42_and_55_hertz_is_what_the_commands_compute(opened, tmp_path):
     opened.open(Path(opened.run("return location.pathname")), "#from=1&to=1.3&eta=1.2")
     own(opened)

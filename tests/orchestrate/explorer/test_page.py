@@ -16,6 +16,7 @@ from orchestrate.response.questions import Point
 from orchestrate.response.respond import follow
 from orchestrate.structures import Excitation, Structure
 
+from ...sparing import ordinary
 from .conftest import typed
 from .test_own_beam import pasted
 
@@ -311,7 +312,7 @@ EXCITATIONS = {  # an excitation, and what the command has of it; no option says
 }
 
 
-@pytest.mark.parametrize("kind", EXCITATIONS)
+@pytest.mark.parametrize("kind", ordinary(EXCITATIONS, ["metres"]))
 def test_the_commands_of_an_own_beam_compute_what_is_shown(window, tmp_path, kind, capsys):
     frequency, amplitude, words = EXCITATIONS[kind]
     beam = orchestrate.Structure.from_file("beam")

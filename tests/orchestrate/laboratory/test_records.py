@@ -14,6 +14,8 @@ from scipy.io import wavfile
 from orchestrate import InputError, Sampled, read_record, record, write_record
 from orchestrate.laboratory import record_files, record_mat
 
+from ...sparing import ordinary
+
 G = 9.80665
 RATE = 5120.0
 CHANNELS = ("box_acceleration", "acceleration1", "acceleration2")
@@ -114,7 +116,7 @@ def test_plausible_units_do_not_warn(recwarn):
 
 
 @pytest.mark.parametrize("ending", [".csv", ".txt", ".uff", ".unv", ".mat", ".nc"])
-@pytest.mark.parametrize("start", [0.0, 1.25])
+@pytest.mark.parametrize("start", ordinary([1.25, 0.0]))
 def test_there_and_back_to_the_last_digit(tmp_path, ending, start):
     data = drawn(start=start)
     path = write_record(data, tmp_path / f"test{ending}")

@@ -14,6 +14,8 @@ from orchestrate.paper.pictures import DRAW
 from orchestrate.paper.resolution import FULL, QUICK
 from orchestrate.running.identity import identity_of
 
+from ...sparing import ordinary
+
 PARTS = {"claims", *map(str, range(5, 13)), "lyapunov", "attractors", "basin", "maps", "spectra"}
 PRINTED = (
     "0.43 1.37 0.89 21.56 1.045 1.07 2.61 3.77 0.48 0.85 1.08 2.63 1.056 1.1 1.11 1.33 0.97 1.02 "
@@ -21,7 +23,9 @@ PRINTED = (
 )
 
 
-@pytest.mark.parametrize("resolution", [FULL, QUICK], ids=lambda resolution: resolution.name)
+@pytest.mark.parametrize(
+    "resolution", ordinary([QUICK, FULL]), ids=lambda resolution: resolution.name
+)
 def test_jobs_come_after_what_they_need(resolution):
     seen: set[str] = set()
     for name, job in plan.make(resolution).jobs.items():

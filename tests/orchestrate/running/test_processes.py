@@ -47,7 +47,8 @@ def test_a_plain_script_needs_no_guard(tmp_path):
     assert out.splitlines() == ["begun", f"{(SIZE - 1) ** 2}.0"]  # once: no worker ran the script
 
 
-@pytest.mark.parametrize("jobs", [pytest.param(1, marks=pytest.mark.slow), 2])
+@pytest.mark.slow
+@pytest.mark.parametrize("jobs", [1, 2])
 def test_killed_at_random_moments_it_goes_on_with_equal_bytes(tmp_path, jobs):
     whole = tmp_path / "whole.nc"
     assert start(whole, 1).wait(timeout=60) == 0

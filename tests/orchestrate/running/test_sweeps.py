@@ -23,6 +23,7 @@ from orchestrate.running.progress import Progress
 from orchestrate.running.store import Memory, open_store
 from orchestrate.structures import Structure
 
+from ...sparing import ordinary
 from .workers import play
 
 pytestmark = pytest.mark.usefixtures("exported")
@@ -56,7 +57,7 @@ def answer(sweep: SweepJob, workers: int, seed: int = 1):
 
 
 @shorter_chunks
-@pytest.mark.parametrize("figure", FIGURES)
+@pytest.mark.parametrize("figure", ordinary(FIGURES))
 @pytest.mark.parametrize("direction", ["up", "down"])
 def test_any_number_of_workers_gives_the_same_sweep(figure, direction):
     sweep = job(figure, direction)

@@ -128,6 +128,7 @@ def test_mistakes(arguments, text):
         drive_branch(*QUICK, progress=False, **arguments)
 
 
+@pytest.mark.slow
 def test_the_doubling_of_one_revolution_motions():
     """Located with multiplier -1, and the branch of twice the period goes off it."""
     omega, volts = BEAM.structure.omega, BEAM.drive.volts(BEAM.structure)
@@ -146,6 +147,7 @@ def test_the_doubling_of_one_revolution_motions():
     assert at == pytest.approx([1.3664], abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_branch_ends_where_the_masses_touch():
     """In the monolithic solution too: they turn away from each other with next to no gap."""
     legs, length = branch_of(QUICK, most=60, range_=(0.975, 1.05))

@@ -15,6 +15,7 @@ from orchestrate.errors import InputError, StoreError
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.ssp import NAMESPACES, write_ssp
 
+from ...sparing import ordinary
 from .coupled import QUICK, master, rest
 
 VOLTAGE, SPEED, TIME = 1.5, 1.25, 20.0
@@ -51,7 +52,7 @@ SYSTEMS = {
 }
 
 
-@pytest.fixture(scope="module", params=SYSTEMS)
+@pytest.fixture(scope="module", params=ordinary(SYSTEMS, ["delaminated"]))
 def case(request, tmp_path_factory):
     """A package, and what is true of it."""
     system = SYSTEMS[request.param]
