@@ -289,8 +289,9 @@ class CoupleJob(CoupledRun):
         volts, beyond = float(table["voltage"][rows[-1]]), high if up else low
         return (
             f"undecided: the voltage goes to {volts:.5g} V only, which does not take the speed "
-            "past the delaminated structure's own resonance; expected a voltage that takes it "
-            f"{'above' if up else 'below'} {beyond * self.structure.omega:.5g} rad/s"
+            "past both resonances, the bonded structure's and the delaminated one's own; expected "
+            f"one that takes it {'above' if up else 'below'} "
+            f"{beyond * self.structure.omega:.5g} rad/s"
         )
 
     def attributes(self, table: Table) -> dict[str, str | float]:

@@ -84,10 +84,19 @@ def test_a_jump_beyond_the_bonded_resonance():
     decided(run(APART, (1.37, 1.5), 2e-4, back=False, settle=100.0, step=None), "up")
 
 
-def test_a_ramp_that_ends_within_its_resonance():
-    """It was said that there is no jump; the answer names the speed that is needed."""
+def test_a_ramp_that_ends_before_its_resonance():
+    """It was said that there is no jump."""
     found = run(APART, (1.37, 1.43), 2e-4, back=False, settle=100.0, step=None)
     assert "ends below the resonance" in str(found.no_jump.sel(jump="up").item())
+
+
+def test_a_ramp_that_ends_between_the_two_resonances():
+    """It has passed the one, and the jump is still ahead: the answer names the speed needed."""
+    found = run(APART, (1.48, 1.45), 2e-4, back=False, settle=100.0, step=None, hold=2000.0)
+    down = found.sel(jump="down")
+    assert down.decided == "undecided"
+    needed = averaged.dividing_speed(*APART) * APART.structure.omega
+    assert f"takes it below {needed:.5g} rad/s" in str(down.no_jump.item())
 
 
 @pytest.mark.slow
