@@ -92,7 +92,7 @@ def test_a_ramp_that_ends_before_its_resonance():
 
 def test_a_ramp_that_ends_between_the_two_resonances():
     """It has passed the one, and the jump is still ahead: the answer names the speed needed."""
-    found = run(APART, (1.48, 1.45), 2e-4, back=False, settle=100.0, step=None, hold=2000.0)
+    found = run(APART, (1.48, 1.44), 2e-4, back=False, settle=100.0, step=None, hold=2000.0)
     down = found.sel(jump="down")
     assert down.decided == "undecided"
     needed = averaged.dividing_speed(*APART) * APART.structure.omega
