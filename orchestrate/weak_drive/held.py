@@ -118,6 +118,8 @@ class HoldSettings:
     largest_scatter : float
         Change of the speed between neighbours, over omega, that is never put down to the scatter of
         irregular motions: speeds that are known no better rule out no jump.
+    again : int
+        How often the voltage of an irregular motion is held again before its end counts as a loss.
     stair : float
         Longest first step of the voltage, over K omega, and
     max_stairs : int
@@ -136,6 +138,7 @@ class HoldSettings:
     two_motions: float = 5e-3
     smallest_jump: float = 4e-3
     largest_scatter: float = 8e-3
+    again: int = 3
     stair: float = 4e-3
     max_stairs: int = 25
     past: float = 0.02
@@ -368,12 +371,25 @@ class HeldVoltageTest:
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
     def there_and_back(self, low: Settled, high: Settled) -> int:
-        """Go back to the lower voltage: a motion was lost where the speed does not come back."""
+        """Go back to the lower voltage: a motion was lost where the speed does not come back, and
+        the motion there lasts.
+        """
         back = self.step_from(high, low.voltage)
         if abs(back.speed - low.speed) > self.settings.two_motions + noise(back, low):
-            return LOST
+            return LOST if self.lasts(low) else UNDECIDED
         comes_back = math.isfinite(back.speed) and not self.differ(back, low)
         return FOLLOWS if comes_back else UNDECIDED
+
+    def lasts(self, point: Settled) -> bool:
+        """Return whether an irregular motion lasts when its voltage is held again: where it ends by
+        chance, it may have been lost before. Others have settled.
+        """
+        later, left = point, self.settings.again if point.error > self.settings.tolerance else 0
+        for _ in range(left):
+            later = self.step_from(later, point.voltage)
+            if self.differ(later, point):
+                return False
+        return True
 
     def is_within(self, low: Settled, high: Settled, width: float) -> bool:
         """Return whether two voltages are as close as is asked for, over K omega."""

@@ -162,6 +162,24 @@ def test_a_way_back_that_has_not_settled_is_undecided():
         assert scripted.there_and_back(low, high) == what
 
 
+@pytest.mark.parametrize(("life", "what"), [(2, UNDECIDED), (4, LOST)])
+def test_an_irregular_motion_that_ends_by_itself_is_undecided(life, what):
+    """It has settled as far as a hold tells, and is gone in the next one or the one after."""
+
+    class Transient(Scripted):
+        def step_from(self, point, voltage):
+            self.life -= voltage == point.voltage
+            back = self.back if voltage < point.voltage or self.life <= 0 else 0.0
+            return self.at(voltage, back)
+
+    transient = Transient(back=0.02)
+    transient.life = life
+    low, high = transient.at(1.5)._replace(error=1e-3), transient.at(1.5001, higher=0.02)
+    assert transient.there_and_back(low, high) == what
+    transient.life = 1
+    assert transient.there_and_back(low._replace(error=0.0), high) == LOST
+
+
 @pytest.mark.parametrize(("higher", "what"), [(0.0, FOLLOWS), (0.012, UNDECIDED)])
 def test_scatter_hides_no_jump(higher, what):
     """Speeds of irregular motions, known to 0.006: a change by 0.012 was put down to that."""
