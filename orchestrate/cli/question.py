@@ -6,6 +6,7 @@ import argparse
 import json
 import logging
 import math
+import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -25,6 +26,13 @@ HOW_DECIDED = {  # of attractors; nothing is said where Newton's method confirms
     4: ", undecided: near an unstable orbit",
 }
 FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
+FAR_LEVEL = 300.0  # times the level from which a clearance is hardly meant
+NEAR = 0.1  # of a frequency: so far beside its own ones a structure is still asked about
+OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
+    "frequency": (1.0 / TURN, "rad/s", "--hz"),
+    "hz": (TURN, "Hz", "--frequency"),
+}
+COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 log = logging.getLogger(__name__)
 Question = Mapping[str, Any]
 Draw = Callable[["xr.Dataset"], Any]
@@ -130,7 +138,7 @@ def trivial_notes(structure: Structure, question: Question) -> list[str]:
         return ["bonded: both masses move as one, there are no impacts"]
     if structure.alike:
         return ["both oscillators are alike: masses that start together never part"]
-    return []
+    return clearance_notes(structure, question)
 
 
 def print_frequency_notes(
@@ -149,6 +157,7 @@ def print_frequency_notes(
     if getattr(arguments, "structure", "") == "paper" and not arguments.set:
         omega = f"omega = {structure.omega:.6g} rad/s, {own_frequency}"
         print(f"structure: the paper's, {omega} (--structure names another)")
+    warn_of_other_unit(arguments, structure, values)
     low, high = (end(values) / structure.omega for end in (min, max))
     if high > FAR_RATIO or low < 1.0 / FAR_RATIO:
         ends = " to ".join(f"{ratio:.3g}" for ratio in dict.fromkeys((low, high)))
@@ -157,6 +166,70 @@ def print_frequency_notes(
             "is meant (--structure)?",
             *(ends, own_frequency),
         )
+
+
+def warn_of_other_unit(
+    arguments: argparse.Namespace, structure: Structure, values: tuple[float, ...]
+) -> None:
+    """Warn where frequencies miss the structure, and would fit it in the other unit: Hz for rad/s,
+    or the reverse.
+    """
+    low, high = (1.0 - NEAR) * min(values), (1.0 + NEAR) * max(values)
+    own = [TURN * f for f in (structure.f1, structure.f2)]
+    if math.isclose(structure.omega, 1.0) or any(low <= omega <= high for omega in own):
+        return
+    for name, (factor, unit, other) in OTHER_UNIT.items():
+        text = getattr(arguments, name, None)
+        if text and any(low <= factor * omega <= high for omega in own):
+            numbers = f"{structure.f1:.4g} and {structure.f2:.4g} Hz"
+            warnings.warn(
+                f"--{name} {text}: these are {unit}, and the structure's own frequencies are "
+                f"{numbers}; is {other} meant?",
+                stacklevel=2,
+            )
+
+
+def clearance_notes(structure: Structure, question: Question) -> list[str]:
+    """Return a remark where the box's motion stays below the threshold of a clearance: the
+    response from rest is the linear one.
+    """
+    import numpy as np
+
+    names = {"eta", "frequency", "amplitude", "level"} & question.keys()
+    if question.get("over") == "level":
+        question, names = {**question, "level": question["values"]}, names | {"level"}
+    elif question.get("over") is not None or "clearance" in question:
+        return []
+    if structure.bonded or not structure.clearance or names not in COMPLETE:
+        return []
+    ratio = smallest_ratio(structure, {name: np.ravel(question[name]) for name in names})
+    if ratio <= 1.0:
+        return []
+    opens = structure.clearance < 0.0
+    if ratio > FAR_LEVEL:
+        warnings.warn(
+            f"clearance = {structure.clearance:g} m: {ratio:.3g} times what this level moves; is "
+            "it in m (20 um is 2e-5)?",
+            stacklevel=2,
+        )
+    kind = "pressed together" if opens else "open"
+    return [
+        f"{kind} by {abs(structure.clearance):g} m, it first {'opens' if opens else 'touches'} at "
+        f"{ratio:.4g} times this level: from rest the response is linear"
+    ]
+
+
+def smallest_ratio(structure: Structure, box: Mapping[str, Any]) -> float:
+    """Return the threshold over the box's level, the smallest of all that is asked for."""
+    from ..response.threshold import threshold_amplitudes
+
+    frequency = box["eta"] * structure.omega if "eta" in box else box["frequency"]
+    threshold = threshold_amplitudes(structure, frequency)
+    if "eta" in box:
+        return float((threshold * box["eta"] ** 2).min())
+    if "level" in box:
+        return float((threshold * frequency**2).min() / box["level"].max())
+    return float((threshold / box["amplitude"]).min())
 
 
 def parameter_of(data: xr.Dataset) -> str:

@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .labels import symbol, title_from_attributes
-from .style import BLACK, BLUE, GREEN, ORANGE, RED, panels, styled
+from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, panels, styled
 
 COLOURS = {
     "fold": ORANGE,
@@ -14,6 +14,7 @@ COLOURS = {
     "Neimark-Sacker": BLUE,
     "grazing of an impact": GREEN,
     "grazing of a flight": BLACK,
+    "earlier release": PURPLE,
 }
 
 
