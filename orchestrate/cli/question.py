@@ -26,7 +26,7 @@ HOW_DECIDED = {  # of attractors; nothing is said where Newton's method confirms
     4: ", undecided: near an unstable orbit",
 }
 FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
-FAR_LEVEL = 300.0  # times the level from which a clearance is hardly meant
+FAR_LEVEL = 200.0  # times the level from which a clearance is hardly meant
 NEAR = 0.1  # of a frequency: so far beside its own ones a structure is still asked about
 OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
     "frequency": (1.0 / TURN, "rad/s", "--hz"),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from ..constants import GRAVITY
 from .grammar import is_one
 from .options import Commands, excitation_by_level, excitation_of, structure_of
 from .question import carry_out, format_parameter, is_curve, parameter_of, picture_of, print_table
@@ -56,6 +55,7 @@ def report(data: xr.Dataset) -> None:
         return
     print_peaks(data, name)
     print_jumps(data, name)
+    print_threshold(data)
 
 
 def report_levels(data: xr.Dataset) -> None:
@@ -68,12 +68,16 @@ def report_levels(data: xr.Dataset) -> None:
         top = at.isel(at.x_rel_max.argmax(...))
         numbers = "".join(f"{size:11.4g}" for size in sizes)
         print(f"{format_parameter('level', level):>10}{numbers}   {float(top.hertz):.6g} Hz")
-    if "threshold_acceleration" in data:
-        lowest = data.isel(frequency=int(data.threshold_acceleration.values.argmin()))
-        event = data.threshold_acceleration.attrs["event"]
-        level = float(lowest.threshold_acceleration) / GRAVITY
-        where = f"{float(lowest.hertz):.6g} Hz"
-        print(f"of these frequencies it first {event} at {where}: {level:.4g} g")
+    print_threshold(data)
+
+
+def print_threshold(data: xr.Dataset) -> None:
+    """Print the lowest level at which the structure first opens or touches."""
+    if "lowest_threshold" in data:
+        event = data.lowest_threshold.attrs["event"]
+        level = format_parameter("level", float(data.lowest_threshold))
+        where = format_parameter("frequency", float(data.lowest_threshold_frequency))
+        print(f"in this range it first {event} at {where}: {level}")
 
 
 def print_peaks(data: xr.Dataset, name: str) -> None:
