@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from .declared import option_of
 from .grammar import changes_of, is_one, number_of, one_or_more, plain_float, values_of
-from .output import add_results
+from .output import add_results, add_units
 
 if TYPE_CHECKING:
     from ..structures import Drive, Structure
@@ -137,6 +137,7 @@ class Commands:
     def finish(self) -> None:
         """Add the options of a result to the commands of :meth:`ask`."""
         for parser in self.asked:
+            add_units(parser)
             add_results(parser)
 
     def question(self, parser: argparse.ArgumentParser, title: str = "question") -> FunctionOptions:

@@ -12,9 +12,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..constants import GRAVITY, TURN
+from ..constants import TURN
 from ..errors import InputError, StoreError
-from .output import Files, name_of, preparing_a_picture, running_of
+from ..units import Units, as_shown, omega_of, text_of, units_of, with_units
+from .output import Files, name_of, preparing_a_picture, running_of, units_option
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,6 +33,7 @@ OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
     "frequency": (1.0 / TURN, "rad/s", "--hz"),
     "hz": (TURN, "Hz", "--frequency"),
 }
+UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}
 COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 log = logging.getLogger(__name__)
 Question = Mapping[str, Any]
@@ -70,17 +72,28 @@ def carry_out(
     import orchestrate
 
     command = arguments.command
-    name = "_".join(filter(None, [name_of(command, structure, question), ending]))
-    files = Files.from_options(arguments, name)
+    asked, units = asked_units(arguments, question)
+    named = name_of(command, structure, question, asked.frequency)
+    files = Files.from_options(arguments, "_".join(filter(None, [named, ending])))
     ask = getattr(orchestrate, command)
     print_frequency_notes(arguments, structure, question)
     with preparing_a_picture(draw is not None and files.lacks_pictures()):
         data: xr.Dataset = ask(structure, **question, **running_of(arguments, files.result))
     for line in trivial_notes(structure, question):
         print(line)
-    report(data)
-    files.write(data, partial(draw, data) if draw else None)
+    shown = with_units(data, units)
+    report(shown)
+    files.write(shown, partial(draw, shown) if draw else None)
     return data
+
+
+def asked_units(arguments: argparse.Namespace, question: Question) -> tuple[Units, Units]:
+    """Return the units that a question was asked in, and those that its answer is shown in."""
+    over = UNIT_OF_OPTION.get(str(getattr(arguments, "over", "")), "")
+    given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
+    frequency = over or next(iter(given), "eta" if "eta" in question else "Hz")
+    asked = Units(frequency, acceleration="g" if getattr(arguments, "g", None) else "")
+    return asked, units_option(arguments).completed(asked)
 
 
 def carry_out_beside(
@@ -117,8 +130,9 @@ def is_curve(question: Question) -> bool:
 
 def print_table(data: xr.Dataset, name: str) -> None:
     """Print a result at one value as a table: there is no curve to draw."""
-    print(f"one value, {format_parameter(name, float(data[name][0]))}: a table and no picture")
-    numbers = data.isel({name: 0})
+    where = format_parameter(data, name, float(data[name][0]))
+    print(f"one value, {where}: a table and no picture")
+    numbers = as_shown(data.isel({name: 0}))
     for key, array in numbers.data_vars.items():
         if not set(array.dims) - {"direction", "structure"}:
             values = ", ".join(f"{float(value):.6g}" for value in array.values.ravel())
@@ -239,13 +253,30 @@ def parameter_of(data: xr.Dataset) -> str:
     return name
 
 
-def format_parameter(name: str, value: float) -> str:
-    """Format a value of a parameter: frequencies in Hz."""
+def format_parameter(data: xr.Dataset, name: str, value: float) -> str:
+    """Format a value of a parameter in the units that an answer is shown in; by default
+    frequencies in Hz and levels in g.
+    """
+    units = units_of(data)
     if name == "frequency":
-        return f"{value / TURN:.6g} Hz"
+        return text_of(data if units.frequency else with_units(data, "Hz"), value, "rad/s")
     if name == "level":
-        return f"{value / GRAVITY:.6g} g"
-    return f"{name} = {value:.6g}"
+        return text_of(data if units.acceleration else with_units(data, "g"), value, "m/s2")
+    if name == "eta" and units.frequency not in ("", "eta") and math.isfinite(omega_of(data)):
+        return text_of(data, value * omega_of(data), "rad/s")
+    unit = unit_of(data, name)
+    return f"{name} = {text_of(data, value, unit) if unit else format(value, '.6g')}"
+
+
+def unit_of(data: xr.Dataset, name: str) -> str:
+    """Return the SI unit of a parameter; empty where it has none."""
+    unit = str(data[name].attrs.get("units", "")) if name in data.variables else ""
+    return unit.removeprefix("1")
+
+
+def with_unit(data: xr.Dataset, value: Any, unit: str, form: str = ".4g") -> str:
+    """Format a length, a velocity, an acceleration or a time as an answer is shown."""
+    return text_of(data, float(value), unit, form)
 
 
 def is_flag(values: xr.DataArray, word: str) -> xr.DataArray:
@@ -254,11 +285,13 @@ def is_flag(values: xr.DataArray, word: str) -> xr.DataArray:
     return values == values.attrs["flag_values"][number]
 
 
-def format_ranges(name: str, values: Any, flags: Any, max_ranges: int = 8) -> str:
+def format_ranges(data: xr.Dataset, name: str, values: Any, flags: Any, max_ranges: int = 8) -> str:
     """Format the runs of values for which something holds.
 
     Parameters
     ----------
+    data : xarray.Dataset
+        Whose units they are shown in.
     name : str
         Of the parameter.
     values : array_like
@@ -274,11 +307,17 @@ def format_ranges(name: str, values: Any, flags: Any, max_ranges: int = 8) -> st
         elif holds:
             runs.append((index, index))
     longest = sorted(sorted(runs, key=lambda run: run[0] - run[1])[:max_ranges])
-    scale, unit = (1.0 / TURN, " Hz") if name == "frequency" else (1.0, "")
-    ends = [[f"{scale * float(values[i]):.6g}" for i in dict.fromkeys(run)] for run in longest]
+    shown = [
+        [format_parameter(data, name, float(values[i])) for i in dict.fromkeys(run)]
+        for run in longest
+    ]
+    before, _, first = shown[0][0].rpartition(" = ") if shown else ("", "", "")
+    unit = first.partition(" ")[2]
+    ends = [[text.rpartition(" = ")[2].removesuffix(f" {unit}") for text in run] for run in shown]
     text = ", ".join(" to ".join(pair) for pair in ends)
     left = len(runs) - len(longest)
-    return f"{text}{unit}" + (f" and {left} shorter ranges" if left else "")
+    words = f"{text} {unit}".rstrip() if unit else f"{before} = {text}" if before == "eta" else text
+    return words + (f" and {left} shorter ranges" if left else "")
 
 
 def print_attractors(data: xr.Dataset, whole: str) -> None:

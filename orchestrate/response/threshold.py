@@ -174,8 +174,8 @@ def contact_threshold(
         and ``threshold_acceleration``, its peak acceleration in m/s2. The attribute ``event`` says
         what happens there: "opens" or "touches". ``lowest_threshold`` and
         ``lowest_threshold_frequency`` are the true minimum of the acceleration between the lowest
-        and the highest frequency, whatever lies between. 0 where there is no clearance; infinite where the
-        halves move alike, so that no level parts or joins them.
+        and the highest frequency, whatever lies between. The threshold is 0 where there is no
+        clearance, and infinite where the halves move alike, so that no level parts or joins them.
 
     Raises
     ------
