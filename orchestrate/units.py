@@ -158,8 +158,7 @@ def text_of(data: xr.Dataset, value: float, unit: str, form: str = ".6g") -> str
 def as_shown(data: xr.Dataset) -> xr.Dataset:
     """Return an answer for a table, its numbers and ``units`` attributes as it is shown.
 
-    A frequency in Hz makes the coordinate ``hertz`` a second one; a frequency ratio stands beside
-    the frequency already.
+    A frequency ratio stands beside the frequency already, which stays in rad/s then.
     """
     if SHOWN_IN not in data.attrs:
         return data
@@ -172,5 +171,4 @@ def as_shown(data: xr.Dataset) -> xr.Dataset:
             about = {**array.attrs, "units": OVER_OMEGA if word == "eta" else word}
             changed[str(name)] = (array.dims, array.values / factor, about)
     shown = data.assign_coords({n: v for n, v in changed.items() if n in data.coords})
-    shown = shown.assign({n: v for n, v in changed.items() if n not in data.coords})
-    return shown.drop_vars("hertz") if "hertz" in shown and "frequency" in changed else shown
+    return shown.assign({n: v for n, v in changed.items() if n not in data.coords})

@@ -7,7 +7,7 @@ import json
 import logging
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,6 +34,12 @@ OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
     "hz": (TURN, "Hz", "--frequency"),
 }
 UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}
+UNIT_OF_KEY = {
+    "frequency_hz": "Hz",
+    "frequency_rpm": "rpm",
+    "frequency_rad_s": "rad/s",
+    "eta": "eta",
+}
 COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 log = logging.getLogger(__name__)
 Question = Mapping[str, Any]
@@ -91,9 +97,20 @@ def asked_units(arguments: argparse.Namespace, question: Question) -> tuple[Unit
     """Return the units that a question was asked in, and those that its answer is shown in."""
     over = UNIT_OF_OPTION.get(str(getattr(arguments, "over", "")), "")
     given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
+    keys = excitation_keys(arguments) if "frequency" in question and not given else ()
+    given += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
     frequency = over or next(iter(given), "eta" if "eta" in question else "Hz")
-    asked = Units(frequency, acceleration="g" if getattr(arguments, "g", None) else "")
+    in_g = getattr(arguments, "g", None) is not None or "acceleration_g" in keys
+    asked = Units(frequency, acceleration="g" if in_g else "")
     return asked, units_option(arguments).completed(asked)
+
+
+def excitation_keys(arguments: argparse.Namespace) -> Collection[str]:
+    """Return the keys of the [excitation] in the file of ``--structure``."""
+    from ..structures.files import parse, resolve
+
+    excitation = parse(resolve(arguments.structure)).get("excitation", {})
+    return tuple(excitation)
 
 
 def carry_out_beside(
@@ -235,10 +252,11 @@ def clearance_notes(structure: Structure, question: Question) -> list[str]:
 
 def smallest_ratio(structure: Structure, box: Mapping[str, Any]) -> float:
     """Return the threshold over the box's level, the smallest of all that is asked for."""
-    from ..response.threshold import threshold_amplitudes
+    import orchestrate
 
     frequency = box["eta"] * structure.omega if "eta" in box else box["frequency"]
-    threshold = threshold_amplitudes(structure, frequency)
+    level = orchestrate.contact_threshold(structure, frequency=frequency)
+    threshold = level.threshold_amplitude.values
     if "eta" in box:
         return float((threshold * box["eta"] ** 2).min())
     if "level" in box:
@@ -316,8 +334,8 @@ def format_ranges(data: xr.Dataset, name: str, values: Any, flags: Any, max_rang
     ends = [[text.rpartition(" = ")[2].removesuffix(f" {unit}") for text in run] for run in shown]
     text = ", ".join(" to ".join(pair) for pair in ends)
     left = len(runs) - len(longest)
-    words = f"{text} {unit}".rstrip() if unit else f"{before} = {text}" if before == "eta" else text
-    return words + (f" and {left} shorter ranges" if left else "")
+    words = f"{before} = {text}" if before else text
+    return f"{words} {unit}".rstrip() + (f" and {left} shorter ranges" if left else "")
 
 
 def print_attractors(data: xr.Dataset, whole: str) -> None:

@@ -8,6 +8,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..units import scale_of
 from .grammar import (
     RANGE,
     breakpoints_of,
@@ -200,9 +201,10 @@ def level_of(arguments: argparse.Namespace) -> Any:
 def report(data: xr.Dataset) -> None:
     """What was found, in a few lines."""
     names = ("box_acceleration", "a1_abs", "a2_abs")
-    felt = [with_unit(data, abs(data[name]).max(), "m/s2") for name in names]
-    text = "largest accelerations: box {}, masses 1 and 2 between impacts {} and {}"
-    print(text.format(*felt))
+    factor, unit = scale_of(data, "m/s2")
+    felt = [float(abs(data[name]).max()) / factor for name in names]
+    text = "largest accelerations: box {:.4g}, masses 1 and 2 between impacts {:.4g} and {:.4g} {}"
+    print(text.format(*felt, unit))
     print(f"largest gap {with_unit(data, data.x_rel.max(), 'm')}")
     over = float(data.transient_time)
     print(f"the start is forgotten after {over:.3g} s where the motion is linear")

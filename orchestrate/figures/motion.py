@@ -48,7 +48,7 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     draw_planes(axes["phases"], axes["relative"], data, factor, letter)
     top = draw_spectrum(axes["spectrum"], data, MASSES)
     if bonded is not None:
-        axes["masses"].plot(time_axis(data)[0], bonded.x1 / factor, **GLUED)
+        axes["masses"].plot(time_axis(data, bonded)[0], bonded.x1 / factor, **GLUED)
         axes["phases"].plot(
             bonded.x1 / factor, bonded.v1 / length_scale(data, speed_of(data))[0], **GLUED
         )
@@ -62,7 +62,7 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
 
 def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, letter: str) -> None:
     """Draw both masses, the gap with its impacts, and the contact force."""
-    turns, label = time_axis(data)
+    turns, label = time_axis(data, data)
     time, gap, _ = relative(data)
     for number, style in MASSES:
         axes["masses"].plot(turns, data[f"x{number}"] / factor, **style)
@@ -84,11 +84,13 @@ def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, le
     axes["force"].set_xlim(turns[0], turns[-1])
 
 
-def time_axis(data: xr.Dataset) -> tuple[np.ndarray, str]:
-    """Return the instants of a motion as they are shown, and the axis' label: periods, or s."""
+def time_axis(data: xr.Dataset, motion: xr.Dataset) -> tuple[np.ndarray, str]:
+    """Return the instants of a motion beside an answer as this is shown, and the axis' label:
+    periods, or s.
+    """
     if units_of(data).time == "s":
-        return data.time.values, "time in s"
-    return data.periods_done.values, "time in periods, $t/T$"
+        return motion.time.values, "time in s"
+    return motion.periods_done.values, "time in periods, $t/T$"
 
 
 def draw_planes(masses: Axes, plane: Axes, data: xr.Dataset, factor: float, letter: str) -> None:
