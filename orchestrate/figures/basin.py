@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from ..units import scale_of
+from ..units import scale_of, units_of
 from .labels import gap_name, orbit_label, symbol, title_from_attributes
 from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, panels, set_title, styled
 
@@ -43,7 +43,8 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     mark_attractors(plane, data)
     plane.set(xlabel=names[0] or x_label, ylabel=names[1] or y_label)
     plane.grid(False)
-    eta = [rf"$\eta$ = {float(data.eta):.4g}"] if "eta" in data.coords else []
+    by_ratio = "eta" in data.coords and units_of(data).frequency in ("", "eta")
+    eta = [rf"$\eta$ = {float(data.eta):.4g}"] if by_ratio else []
     set_title(figure, title or ", ".join([title_from_attributes(data, ("eta", x, y)), *eta]))
     figure.legend(loc="outside lower left")
     return figure

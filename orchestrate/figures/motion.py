@@ -62,7 +62,7 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
 
 def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, letter: str) -> None:
     """Draw both masses, the gap with its impacts, and the contact force."""
-    turns, label = time_axis(data, data)
+    turns, instants = time_axis(data, data)
     time, gap, _ = relative(data)
     for number, style in MASSES:
         axes["masses"].plot(turns, data[f"x{number}"] / factor, **style)
@@ -73,7 +73,7 @@ def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, le
     count = data.sizes["impact"]
     label = f"{count} impact{'s' * (count != 1)}" if count else "no impacts"
     axes["gap"].plot(at, np.zeros_like(at), "|", color=RED, markersize=8, label=label)
-    axes["force"].set(ylabel="contact force in N", xlabel=label)
+    axes["force"].set(ylabel="contact force in N", xlabel=instants)
     if float(data.contact_force.max()):
         axes["force"].plot(turns, data.contact_force, color=BLACK, linewidth=1.0)
     else:
