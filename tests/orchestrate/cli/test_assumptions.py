@@ -1,6 +1,13 @@
 """What a command takes for granted, and what somebody hardly means: said in one line."""
 
+from pathlib import Path
+
 import pytest
+
+import orchestrate
+from orchestrate import Structure
+
+SETS = Path(orchestrate.__file__).parent / "structures" / "sets"
 
 HALVES = ("--set", "f1=42", "--set", "f2=55")
 MASSES = ("--set", "m1=1.5", "--set", "m2=1.2")
@@ -44,6 +51,15 @@ def test_a_file_of_frequencies_needs_the_masses(ask, tmp_path):
     path = tmp_path / "beam.toml"
     path.write_text("[structure]\nf1_hz = 42\nf2_hz = 55\nzeta1 = 0.007\nzeta2 = 0.007\n")
     ask("simulate", "--structure", path, *SHAKEN).complaint("structure.m1", "missing", "m1, m2")
+
+
+def test_a_file_of_ratios_with_a_motor_needs_a_mass(ask, tmp_path):
+    path = tmp_path / "beam.toml"
+    text = (SETS / "beam.toml").read_text(encoding="utf-8")
+    _, _, drive = text.partition("[motor]")
+    path.write_text(f"[structure]\nomega_hz = 11.9\nmu = 1\n\n[motor]{drive}")
+    ask("jump-voltages", "--drive", path).complaint("structure.m1: missing beside omega_hz")
+    assert Structure.from_file(SETS / "beam.toml").m1 == 1.5
 
 
 @pytest.mark.parametrize("more", [(), ("--set", "m1=1.5"), ("--set", "mu=1")])
