@@ -36,6 +36,24 @@ def test_what_is_not_set_of_a_beam_is_said(ask):
     assert "m1 =" not in said(ask, *HALVES, "--set", "mu=0.8")[0]
 
 
+def test_numbers_may_have_their_units(ask, tmp_path):
+    """To the bit as without."""
+    plain = ("clearance=-2e-5", "zeta1=0.007", "f1=42", "m1=1.5")
+    written = ("clearance=-20um", "zeta1=0.7%", "f1=42 Hz", "m1=1.5kg")
+    names = set()
+    for settings in (plain, written, ("clearance=-0.02 mm", *written[1:])):
+        options = [word for setting in settings for word in ("--set", setting)]
+        done = ask("simulate", *HALVES[2:], *options, *SHAKEN, *SHORT).success()
+        names.add(done.out.splitlines()[-1].partition(": ")[0])
+    assert len(names) == 1 and "clearance-2e-05" in names.pop()
+
+
+@pytest.mark.parametrize("setting", ["clearance=2in", "zeta1=0.7mm", "e=70%", "clearance=mm"])
+def test_other_units_are_refused(ask, setting):
+    done = ask("simulate", "--set", setting, *SHAKEN)
+    done.complaint(f"--set {setting}", "is no number; expected one")
+
+
 def test_nothing_is_said_of_a_set_or_a_file_as_it_is(ask, tmp_path):
     path = tmp_path / "beam.toml"
     path.write_text("[structure]\nm1 = 1.0\nm2 = 1.0\nf1_hz = 4\nf2_hz = 5\nzeta1 = 0\nzeta2 = 0\n")
