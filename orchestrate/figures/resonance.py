@@ -13,7 +13,16 @@ from matplotlib.figure import Figure
 from .labels import title_from_attributes
 from .marks import MAX_DISTINCT, Marks, mark
 from .scales import Along, acceleration_scale, along, length_scale, parameter_of
-from .style import BLACK, BLUE, GREY, RED, legend_below, set_title, styled
+from .style import (
+    BLACK,
+    BLUE,
+    GREY,
+    RED,
+    legend_below,
+    set_title,
+    styled,
+    write_plain_numbers,
+)
 from .threshold import THRESHOLD, finite
 
 COLOURS = {"delaminated": RED, "bonded": BLUE}
@@ -89,7 +98,8 @@ def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: Along) 
         largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[at], x.values[at]))
     axes.set(yscale="log", ylabel=NAMES[name].format(unit))
     axes.margins(x=0.0, y=0.12)
-    list_largest(axes, largest)
+    write_plain_numbers(axes)
+    list_largest(axes, largest, unit, x)
 
 
 def draw_threshold(axes: Axes, data: xr.Dataset, x: Along) -> None:
@@ -105,6 +115,7 @@ def draw_threshold(axes: Axes, data: xr.Dataset, x: Along) -> None:
     )
     axes.set(yscale="log", ylabel=rf"peak $|\ddot{{y}}|$ in {unit}")
     axes.margins(x=0.0, y=0.12)
+    write_plain_numbers(axes)
 
 
 def unit_of(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
@@ -156,7 +167,7 @@ def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: Along) -> None:
         axes.axvline(at, color=BLACK, linestyle=":", linewidth=0.8)
         text_style: Any = {"fontsize": 7, "rotation": 90, "va": "bottom"}
         side = "left" if direction == "up" else "right"
-        words = f" {at:.5g}, jump {direction}"
+        words = f" {x.text(at)}, jump {direction}"
         axes.text(at, 0.02, words, ha=side, transform=axes.get_xaxis_transform(), **text_style)
 
 
@@ -166,13 +177,15 @@ def axis_position(value: float, parameter: xr.DataArray, x: Along) -> float:
     return float(np.interp(value, parameter.values[order], x.values[order]))
 
 
-def list_largest(axes: Axes, largest: Mapping[str, tuple[float, float]]) -> None:
+def list_largest(
+    axes: Axes, largest: Mapping[str, tuple[float, float]], unit: str, x: Along
+) -> None:
     """Write the largest value of each structure with its place, in the corner away from them."""
     middle = float(np.mean(axes.get_xlim()))
     right = all(at < middle for _, at in largest.values())
     for row, (structure, (value, at)) in enumerate(largest.items()):
         style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}
         corner = (0.99 if right else 0.01, 0.97 - 0.075 * row)
-        text = f"{structure}: {value:.4g} at {at:.5g}".lstrip(": ")
+        text = f"{structure}: {value:.4g} {unit} at {x.text(at)}".lstrip(": ")
         colour = COLOURS.get(structure, BLACK)
         axes.text(*corner, text, color=colour, transform=axes.transAxes, **style)

@@ -10,11 +10,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from .labels import title_from_attributes
 from .scales import acceleration_scale, along, length_scale
-from .style import BLACK, GREY, panels, set_title, styled
+from .style import BLACK, GREY, panels, set_title, styled, write_plain_numbers
 from .threshold import THRESHOLD, finite, mark_lowest
 
 FEW = 8  # levels that have a legend entry each; more have a colour bar
@@ -97,11 +96,3 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     axes.set(yscale="log", ylabel=f"level of the box in {unit}")
     write_plain_numbers(axes)
     axes.legend(loc="lower right", fontsize=8)
-
-
-def write_plain_numbers(axes: Axes) -> None:
-    """Label a logarithmic axis by numbers, 0.02, not powers of ten; few enough to be read."""
-    low, high = axes.get_ylim()
-    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,)))
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_minor_formatter(NullFormatter())

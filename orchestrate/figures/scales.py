@@ -17,7 +17,7 @@ from .style import XI_REL
 ETA = symbol("eta")
 FREQUENCIES = {
     "Hz": r"frequency $\Omega/2\pi$ in Hz",
-    "rpm": "speed of the box in rpm",
+    "rpm": "frequency of the box in rpm",
     "rad/s": r"$\Omega$ in rad/s",
     "eta": ETA,
 }
@@ -34,6 +34,11 @@ class Along(NamedTuple):
 
     values: np.ndarray
     label: str
+
+    def text(self, value: float) -> str:
+        """Format a value with the unit of its axis."""
+        unit = self.label.rpartition(" in ")[2] if " in " in self.label else ""
+        return f"{value:.5g} {unit}".rstrip()
 
 
 def parameter_of(data: xr.DataArray) -> str:
