@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..errors import InputError
+from ..units import Units, with_units
 from . import (
     analysis,
     attractors,
@@ -70,7 +71,7 @@ EXPECTED = (
 )
 
 
-def plot(*answers: xr.Dataset, title: str = "") -> Figure:
+def plot(*answers: xr.Dataset, title: str = "", units: str | Units = "") -> Figure:
     """Draw answers.
 
     Parameters
@@ -82,6 +83,10 @@ def plot(*answers: xr.Dataset, title: str = "") -> Figure:
         branches of :func:`orchestrate.drive_branch`.
     title : str
         Above the picture; by default structure and excitation.
+    units : str
+        Of its axes and its title, such as ``"Hz, mm, g"``: a frequency in Hz, rpm, rad/s or as eta,
+        a length in m, mm or um, an acceleration in m/s2 or g, a time in s or periods. By default
+        Hz and the prefix that suits of a structure in SI, the paper's ratios else.
 
     Returns
     -------
@@ -102,6 +107,7 @@ def plot(*answers: xr.Dataset, title: str = "") -> Figure:
     'displacement in m'
     """
     kinds = [question_of(answer) for answer in answers]
+    answers = tuple(with_units(answer, units) for answer in answers)
     several = set(kinds)
     if len(answers) == 1 and kinds[0] in analysis.DRAW:
         return analysis.draw(answers[0], title=title)

@@ -12,6 +12,7 @@ import matplotlib.style
 from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 # colours that people tell apart however they see them: Okabe and Ito, Color Universal Design (2008)
 BLACK, GREY = "#000000", "#8c8c8c"
@@ -112,3 +113,11 @@ def write_in_panel(axes: Axes, words: str) -> None:
     """Write a text in the middle of a panel that has nothing to show."""
     middle: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
     axes.text(0.5, 0.5, words, color=GREY, fontsize=11, **middle)
+
+
+def write_plain_numbers(axes: Axes) -> None:
+    """Label a logarithmic axis by numbers, 0.02, not powers of ten; few enough to be read."""
+    low, high = axes.get_ylim()
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,)))
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())

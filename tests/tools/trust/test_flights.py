@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from orchestrate.access import OSCILLATOR, find
@@ -47,6 +48,19 @@ def test_what_is_wrong_is_found(fmu):
     flight = next(flight for flight in flights.flights(fmu, 1, 50) if flight.impact)
     later = dataclasses.replace(flight, end=flight.end * (1.0 + 1e-9))
     assert flights.deviation(flight) <= 1.0 < flights.deviation(later)
+
+
+def test_half_of_the_flights_have_a_gap_or_a_preload(fmu):
+    """Of each kind, to either side, over six decades or more."""
+    lines = programs.run(fmu, "roots", 3, 3000, "show").splitlines()
+    flown = [flights.Flight.read(line) for line in lines if line.startswith("FLIGHT")]
+    clearances = np.array([flight.values["clearance"] for flight in flown])
+    assert 0.4 < np.mean(clearances != 0.0) < 0.6
+    for kind in range(flights.CONTACT + 1):
+        own = clearances[[flight.kind == kind for flight in flown]]
+        assert (own > 0.0).any() and (own < 0.0).any()
+    sizes = np.abs(clearances[clearances != 0.0])
+    assert sizes.max() / sizes.min() > 1e6
 
 
 @pytest.mark.slow
