@@ -388,14 +388,16 @@ def test_every_function_is_annotated(file):
 
 
 PACKAGES = sorted(
-    file for file in FILES if file.startswith("orchestrate/") and file.endswith("__init__.py")
+    file
+    for file in FILES
+    if file.startswith(("orchestrate/", "fmu_src/")) and file.endswith("__init__.py")
 )
 
 
 def listed_modules(file: str) -> list[str] | None:
     """Modules in the table of a package's docstring; None where there is no table."""
     text = ast.get_docstring(tree_of(file)) or ""
-    if not re.search(r"^=+  =+\nmodule +idea$", text, re.MULTILINE):
+    if not re.search(r"^=+  =+\nmodule +\S", text, re.MULTILINE):
         return None
     return re.findall(r"^:mod:`\.(\w+)` ", text, re.MULTILINE)
 
