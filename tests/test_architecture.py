@@ -42,7 +42,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "laboratory": BELOW_ANSWERS | {"response"},
     "diagnosis": BELOW_ANSWERS | {"response", "laboratory"},
     "weak_drive": BELOW_ANSWERS | {"response", "dynamics"},
-    "figures": GROUND,
+    "figures": GROUND | {"structures"},
     "reports": GROUND | {"structures", "running", "figures"},
     "paper": BELOW_ANSWERS | {"response", "dynamics", "weak_drive", "figures"},
     "__init__": BELOW_ANSWERS

@@ -9,9 +9,6 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from ..errors import InputError
 from .described import Described
 from .ranges import (
@@ -26,9 +23,11 @@ from .ranges import (
 )
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
     from typing_extensions import Unpack
 
-Values = TypeVar("Values", float, NDArray[np.float64])
+Values = TypeVar("Values", float, "NDArray[np.float64]")
 SI = tuple(STRUCTURE)
 RATIOS = ("mu", "kappa", "D", "D1", "D2", "omega")
 HALVES = ("f1", "f2", "zeta1", "zeta2")
