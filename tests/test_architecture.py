@@ -43,7 +43,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "laboratory": BELOW_ANSWERS | {"response"},
     "diagnosis": BELOW_ANSWERS | {"response", "laboratory"},
     "weak_drive": BELOW_ANSWERS | {"response", "dynamics"},
-    "figures": GROUND,
+    "figures": GROUND | {"structures"},
     "reports": GROUND | {"structures", "running", "figures"},
     "paper": BELOW_ANSWERS | {"response", "dynamics", "weak_drive", "figures"},
     "__init__": BELOW_ANSWERS
@@ -392,14 +392,16 @@ def test_every_function_is_annotated(file):
 
 
 PACKAGES = sorted(
-    file for file in FILES if file.startswith("orchestrate/") and file.endswith("__init__.py")
+    file
+    for file in FILES
+    if file.startswith(("orchestrate/", "fmu_src/")) and file.endswith("__init__.py")
 )
 
 
 def listed_modules(file: str) -> list[str] | None:
     """Modules in the table of a package's docstring; None where there is no table."""
     text = ast.get_docstring(tree_of(file)) or ""
-    if not re.search(r"^=+  =+\nmodule +idea$", text, re.MULTILINE):
+    if not re.search(r"^=+  =+\nmodule +\S", text, re.MULTILINE):
         return None
     return re.findall(r"^:mod:`\.(\w+)` ", text, re.MULTILINE)
 

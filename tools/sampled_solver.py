@@ -55,7 +55,7 @@ def after(y: np.ndarray, touching: bool, structure: Structure, scale: float) -> 
     """The state after an event: thrown apart (15), or together."""
     mu, creep = structure.mu, CREEP * scale * structure.omega
     mean = (y[1] + mu * y[3]) / (1.0 + mu)
-    parting = 0.0 if touching else max(structure.e * (y[1] - y[3]), creep)
+    parting = 0.0 if touching else max(structure.restitution(y[1] - y[3]) * (y[1] - y[3]), creep)
     apart = 0.0 if touching else APART * scale
     one = mean - mu * parting / (1.0 + mu)
     return np.array([y[0], one, y[0] + apart, one + parting])
@@ -100,7 +100,7 @@ def run(
             break
         t, y = found.t_events[0][0], found.y_events[0][0].copy()
         impacts += not touching
-        slow = structure.e * (y[1] - y[3]) < SLOW * scale * structure.omega
+        slow = structure.restitution(y[1] - y[3]) * (y[1] - y[3]) < SLOW * scale * structure.omega
         touching = not touching and slow and pressed(t, y) < 0.0
         y = after(y, touching, structure, scale)
     return time.process_time() - begin, impacts

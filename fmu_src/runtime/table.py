@@ -246,8 +246,8 @@ class Model:
     restore : callable
         Another one, with the start time: checks a memory that came from outside and computes anew
         all that follows from other numbers.
-    rates : int
-        Slot of the first output's rate; those of the others follow as the outputs do.
+    rates : mapping of int to int
+        Slots of rates by the slots of outputs: those of the outputs behind each follow as these do.
     refresh : callable or None
         A third one, of a model with outputs that follow an input at once: the outputs for the
         inputs as set now.
@@ -281,7 +281,7 @@ class Model:
     advance: Entry
     differentiate: Entry
     restore: Entry
-    rates: int
+    rates: Mapping[int, int]
     messages: Mapping[int, str]
     stop_time: float
     step_size: float
@@ -296,8 +296,8 @@ class Model:
         """Slot of a variable's rate of change; -1 where it has none: no continuous output."""
         if variable.causality != "output" or variable.variability != "continuous":
             return -1
-        first = next(other.slot for other in self.variables if other.causality == "output")
-        return self.rates + variable.slot - first
+        first = max(slot for slot in self.rates if slot <= variable.slot)
+        return self.rates[first] + variable.slot - first
 
     @property
     def polynomial(self) -> range:

@@ -48,13 +48,19 @@ class Impacts:
         state[:, 2], state[:, 3] = common + mu * part, common - part
         return state
 
-    def impulse(self, structure: Structure) -> NDArray[np.float64]:
+    def impulse(self, structure: Structure, speed: float = 1.0) -> NDArray[np.float64]:
         """Return the impulse of each impact on each mass, N s, shape (n,) (15); plastic where
         contact begins.
 
         Of non-dimensional impacts it is over omega a eta^2, so that its unit is that of a mass.
+
+        Parameters
+        ----------
+        structure : Structure
+        speed : float
+            What the impacts' speeds are over, m/s.
         """
         m1, m2 = structure.m1, structure.m2
-        restitution = np.where(self.sticks, 0.0, structure.e)
+        restitution = np.where(self.sticks, 0.0, structure.restitution(speed * self.closing))
         impulse: NDArray[np.float64] = (1.0 + restitution) * m1 * m2 / (m1 + m2) * self.closing
         return impulse

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import math
+import textwrap
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..structures.ranges import ADDED, STRUCTURE
 from .declared import option_of
 from .grammar import changes_of, is_one, number_of, one_or_more, plain_float, values_of
 from .output import add_results, add_units
@@ -31,13 +33,23 @@ ASSUMED = {  # what a beam needs beside what is set, with the names that set it 
     "e": (),
 }
 ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
-QUANTITIES = """quantities:
+
+
+def described(name: str, width: int = 94, indent: int = 24) -> str:
+    """Return lines of help on a parameter of a structure, from the variable table."""
+    quantity = STRUCTURE[name]
+    unit = "" if quantity.unit == "1" else f", {quantity.unit}"
+    text = f"{quantity.description[0].lower()}{quantity.description[1:]}{unit}"
+    space = " " * indent
+    return textwrap.fill(text, width, initial_indent=f"  {name:22}", subsequent_indent=space)
+
+
+QUANTITIES = f"""quantities:
   m1 m2, k1 k2, d1 d2   masses kg, stiffnesses N/m, dampers N s/m
   e                     coefficient of restitution: speed after an impact over that before
   gamma                 end of chattering: the masses stick where the next flight would last
                         less than gamma/omega
-  clearance             gap between the faces of the unloaded halves, m; below 0 they are
-                        pressed together by so much
+{"".join(described(name) + chr(10) for name in ADDED)}\
   omega = sqrt(k1/m1)   unit of frequency, rad/s
   mu = m2/m1, kappa = k2/k1
   D1 = d1/(2 omega m1), D2 = d2/(2 omega m2); D sets both
@@ -221,7 +233,7 @@ def add_structure(parser: argparse.ArgumentParser, default: str = "paper") -> No
     )
     add_set(
         group,
-        "one of its parameters, SI (m1 m2 k1 k2 d1 d2 e gamma clearance), of each half (f1 f2 in "
+        f"one of its parameters, SI ({' '.join(STRUCTURE)}), of each half (f1 f2 in "
         "Hz, zeta1 zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
     )
 

@@ -198,9 +198,13 @@ def name_of(
 
 
 def parameters_of(structure: Structure) -> dict[str, float]:
-    """Return a structure's parameters; without a clearance files keep the names they always had."""
+    """Return a structure's parameters; without those that were added later files keep the names
+    they always had.
+    """
+    from ..structures.ranges import ADDED
+
     parameters = structure.parameters()
-    return {n: v for n, v in parameters.items() if n != "clearance" or v != 0.0}
+    return {n: v for n, v in parameters.items() if n not in ADDED or v != 0.0}
 
 
 def digest(*arguments: Any) -> str:

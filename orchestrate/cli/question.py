@@ -160,9 +160,12 @@ def print_table(data: xr.Dataset, name: str) -> None:
 def trivial_notes(structure: Structure, question: Question) -> list[str]:
     """Return remarks on what makes an answer trivial."""
     varied = isinstance(question.get("level"), tuple) or question.get("over") == "level"
-    if varied and structure.clearance == 0.0:
+    if varied and not structure.has_scale:
+        from ..structures.ranges import OF_LENGTH
+
+        nothing = ", ".join(f"{name} = 0" for name in OF_LENGTH)
         return [
-            "clearance = 0: the model is homogeneous, at twice the level it moves twice as far; "
+            f"{nothing}: the model is homogeneous, at twice the level it moves twice as far; "
             "one level is enough"
         ]
     if structure.bonded:

@@ -230,7 +230,7 @@ class Test:
 
     def at_levels(self, levels: Floats) -> list[Sweep]:
         """A sweep at each level."""
-        if self.structure.clearance:
+        if self.structure.has_scale:
             return [self.computed(self.structure, level) for level in levels]
         computed = self.computed(self.structure, float(levels[-1]))
         return [computed.at(level) for level in levels]

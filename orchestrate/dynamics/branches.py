@@ -19,6 +19,7 @@ from ..response.questions import checked_structure, numbers
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
+from ..structures.ranges import OF_LENGTH
 from .bifurcations import KINDS
 from .branch_switching import leaving_branch
 from .continuation import NoConvergenceError
@@ -349,7 +350,7 @@ def complete_excitation(
 ) -> tuple[tuple[str, float], ...]:
     """Return the excitation's numbers, with the one that varies where it starts.
 
-    Without a clearance the amplitude does not matter, and ``eta`` says all.
+    Where nothing of the structure has a length the amplitude does not matter, and ``eta`` says all.
 
     Raises
     ------
@@ -359,13 +360,13 @@ def complete_excitation(
     over, names = varied[0], [name for name, _ in given]
     if start is not None and not given:
         wanted = ("frequency", "amplitude") if over in ("frequency", "amplitude") else ("eta",)
-        levels = structure.clearance != 0.0 or "clearance" in varied or "amplitude" in varied
+        levels = structure.has_scale or not {*OF_LENGTH, "amplitude"}.isdisjoint(varied)
         eta, amplitude = (float(start[name].values.flat[0]) for name in ("eta", "amplitude"))
         if levels and not math.isclose(amplitude * eta**2, 1.0, rel_tol=1e-12):
             if "eta" in varied:
                 raise InputError(
                     f"over = 'eta': the start's amplitude is {amplitude!r} m, not 1/eta^2; "
-                    "expected over='frequency' with a clearance"
+                    "expected over='frequency' where the amplitude matters"
                 )
             wanted = ("frequency", "amplitude")
         return tuple((name, float(start[name].values.flat[0])) for name in wanted)

@@ -78,7 +78,7 @@ def without_impacts_after(
 def next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
     """Return the impact that follows one after a short flight, a parabola as (17) takes it."""
     phase, position, velocity, closing = orbit.nodes[node]
-    parting = orbit.form.e * closing
+    parting = orbit.form.parting(closing)
     time = 2.0 * parting / -float(orbit.form.force(position, velocity))
     if not 0.0 < time < orbit.durations[node]:
         raise NoConvergenceError("no time is left for another impact")

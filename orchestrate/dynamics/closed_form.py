@@ -35,6 +35,8 @@ class ClosedForm:
     ----------
     eta, mu, e, gamma : float
         Frequency ratio, mass ratio (2), restitution (15), end of chattering (17).
+    e_slope : float
+        Decrease of the restitution with the closing speed.
     damping, stiffness : ndarray, shape (3,)
         D_i (8) and omega_i^2 (7).
     cosine, sine : ndarray, shape (3,)
@@ -53,6 +55,7 @@ class ClosedForm:
     mu: float
     e: float
     gamma: float
+    e_slope: float
     damping: Floats
     stiffness: Floats
     cosine: Floats
@@ -108,6 +111,7 @@ class ClosedForm:
             mu=m2 / m1,
             e=structure.e,
             gamma=structure.gamma,
+            e_slope=structure.e_slope * omega * excitation.length(structure),
             damping=damping,
             stiffness=stiffness,
             cosine=cosine,
@@ -129,6 +133,15 @@ class ClosedForm:
         """The fastest oscillation in a motion, over omega."""
         swinging = np.sqrt(np.maximum(self.stiffness - self.damping**2, 0.0))
         return float(max(self.eta, swinging.max()))
+
+    def parting(self, closing: Floats) -> Floats:
+        """Return the separation speeds e(v) v after impacts (15) by their closing speeds."""
+        return self.e * closing / (1.0 + self.e_slope * closing)
+
+    def parting_rate(self, closing: Floats) -> Floats:
+        """Return the derivative of :meth:`parting` by the closing speed, e/(1 + e_slope v)^2."""
+        factor = 1.0 / (1.0 + self.e_slope * closing)
+        return self.e * factor * factor
 
     def basis(self, i: int, time: Floats) -> tuple[Floats, Floats]:
         """Return ``e^{-D t} cos(nu t)`` and ``e^{-D t} sin(nu t)/nu`` of (10), overdamped too.

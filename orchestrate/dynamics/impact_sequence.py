@@ -117,7 +117,7 @@ class PeriodicOrbit:
         if not self.count:
             return self.form.steady(np.zeros(1), self.contact)
         _, position, velocity, closing = self.nodes.T
-        parting = np.where(self.contact | self.sequence.releases, 0.0, self.form.e * closing)
+        parting = np.where(self.contact | self.sequence.releases, 0.0, self.form.parting(closing))
         part = parting / (1.0 + self.form.mu)
         return np.stack(
             [position, position, velocity - self.form.mu * part, velocity + part], axis=1
@@ -206,7 +206,8 @@ class PeriodicOrbit:
         shift[:, :2, POSITION] = 1.0
         shift[:, 2:, VELOCITY] = 1.0
         parting = ~(self.contact | sequence.releases)
-        shift[parting, 2:, CLOSING] = form.e * np.array([-share, 1.0 - share])
+        rates = form.parting_rate(self.nodes[parting, CLOSING])
+        shift[parting, 2:, CLOSING] = rates[:, None] * np.array([-share, 1.0 - share])
         before = self.reduction @ self.flows @ shift
         after = np.zeros((self.count, 4, 4))
         rates = form.field(self.arrivals, self.ends, self.contact)
@@ -268,9 +269,12 @@ class PeriodicOrbit:
         return bool(np.abs(self.multipliers()).max() < 1.0 - ON_CIRCLE)
 
     def multiplier_product(self) -> float:
-        """Return the multipliers' product, by Liouville's formula and e^2 for each impact."""
+        """Return the multipliers' product, by Liouville's formula and, for each impact, the
+        product e(v) d(e(v) v)/dv: e^2 where e is constant.
+        """
         lost = float(self.form.damping[0] + self.form.damping[1])
         time = TURN * self.sequence.periods / self.form.eta
         if self.contact.any():
             return 0.0
-        return float(self.form.e ** (2 * self.count) * np.exp(-2.0 * lost * time))
+        slower = np.prod((1.0 + self.form.e_slope * self.nodes[:, CLOSING]) ** -3)
+        return float(self.form.e ** (2 * self.count) * slower * np.exp(-2.0 * lost * time))

@@ -40,6 +40,7 @@ from ..running.options import Running, RunOptions
 from ..running.runner import answer
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import check_flag, expected_one_of
+from ..structures.structure import Varied
 from .clusters import transient_periods
 from .following import follow_impacts
 from .lyapunov import largest_exponent, without_impacts
@@ -62,24 +63,8 @@ EXPONENT = {
 }
 
 
-class Parameters(Running, total=False):
+class Parameters(Running, Varied, total=False):
     """Keywords of :func:`map`: parameters of a structure, and how the question is computed."""
-
-    m1: ArrayLike
-    m2: ArrayLike
-    k1: ArrayLike
-    k2: ArrayLike
-    d1: ArrayLike
-    d2: ArrayLike
-    e: ArrayLike
-    gamma: ArrayLike
-    mu: ArrayLike
-    kappa: ArrayLike
-    D: ArrayLike
-    D1: ArrayLike
-    D2: ArrayLike
-    clearance: ArrayLike
-    omega: ArrayLike
 
 
 class Axis(NamedTuple):
@@ -150,7 +135,7 @@ class MapJob(Question):
         """Return the numbers of one point, in the order of ``FIELDS`` and ``EXPONENT``."""
         response, (n, decided) = self.response(plain, item)
         impacts = follow_impacts(eventful, item, response.end, self.samples // 2)
-        impulse = impacts.impulse(item.structure).max(initial=0.0) / item.structure.m1
+        impulse = impacts.impulse(item.structure, item.speed).max(initial=0.0) / item.structure.m1
         rate = response.impacts_per_period
         if decided == REPEATED:
             turn = period(item.excitation.eta(item.structure))

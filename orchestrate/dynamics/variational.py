@@ -29,19 +29,25 @@ def period(eta: float) -> float:
 
 
 def saltation_matrices(impacts: Impacts, point: Point) -> Floats:
-    """Return ``R + (F+ - R F-) n^T / (n F-)`` with the restitution R of (15), shape (n, 4, 4)."""
+    """Return ``R + (F+ - R F-) n^T / (n F-)``, shape (n, 4, 4), with the derivative R of the
+    restitution (15) by the velocities before it.
+    """
     form = ClosedForm.from_structure(*point)
     part = (1.0 + form.e) / (1.0 + form.mu)
     restitution = np.eye(4)
     restitution[2, 2:] += np.array([-part, part]) * form.mu
     restitution[3, 2:] += np.array([part, -part])
+    exchange = np.zeros((4, 4))  # R is linear in the coefficient: its derivative by that
+    exchange[2:, 2:] = np.array([[-form.mu, form.mu], [1.0, -1.0]]) / (1.0 + form.mu)
+    slower = (form.parting_rate(impacts.closing) - form.e)[:, None]
     phase = form.eta * impacts.time
     after = form.field(impacts.state, phase)
     before = form.field(impacts.before(point.structure), phase)
-    jump = after - before @ restitution.T
+    jump = after - before @ restitution.T - slower * (before @ exchange.T)
     normal = np.array([-1.0, 1.0, 0.0, 0.0])
     speed = np.maximum(impacts.closing, LEAST_SPEED)[:, None, None]
-    matrices: Floats = restitution - jump[:, :, None] * normal / speed
+    derivative = restitution + slower[:, :, None] * exchange
+    matrices: Floats = derivative - jump[:, :, None] * normal / speed
     matrices[impacts.sticks] = form.centre()
     return matrices
 

@@ -172,6 +172,11 @@ def table(chosen: Shipped) -> dict[str, Any]:
         "structure": numbers(chosen.structure),
         "usual": numbers(Structure()),
         "ranges": {name: [q.minimum, q.maximum] for name, q in STRUCTURE.items()} | FLAG,
+        "units": {
+            name: {"label": quantity.unit.replace(".", " "), **quantity.dimension}
+            for name, quantity in STRUCTURE.items()
+            if quantity.unit != "1"
+        },
         "settings": chosen.settings,
         "directions": chosen.directions,
         "count": chosen.count,

@@ -92,7 +92,7 @@ def shipped(data: xr.Dataset) -> Shipped:
 
 def read(data: xr.Dataset, direction: str) -> Shipped:
     """What the page needs of a sweep that seems to be one."""
-    structure = structure_of(data)
+    structure = Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
     directions = ("up", "down") if direction == "both" else (direction,)
     (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
     data = data.sortby(parameter)
@@ -162,17 +162,6 @@ def check(data: xr.Dataset) -> str:
     if direction == "given" or data.sizes[str(data.impacts_per_period.dims[-1])] < 2:
         raise InputError("sweep of single frequencies: expected a range, up, down or both")
     return direction
-
-
-def structure_of(data: xr.Dataset) -> Structure:
-    """The structure that a dataset is about."""
-    names = ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma")
-    given: dict[str, Any] = {name: float(data.attrs[name]) for name in names}
-    given["clearance"] = float(data.attrs.get("clearance", 0.0))  # files of 0.2 have none
-    bonded = float(data.attrs["bonded"])
-    if bonded not in (0.0, 1.0):
-        raise ValueError(f"bonded = {bonded}")
-    return Structure(**given, bonded=bool(bonded))
 
 
 def numbers_of(text: Any) -> NDArray[np.float64]:

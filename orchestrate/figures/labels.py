@@ -9,6 +9,7 @@ from typing import Any
 import xarray as xr
 
 from ..constants import GRAVITY, TURN
+from ..structures.ranges import ADDED, STRUCTURE
 from ..units import omega_of, scale_of, units_of
 
 SYMBOLS = {
@@ -24,7 +25,6 @@ SYMBOLS = {
     "frequency": r"$\Omega$ in rad/s",
     "amplitude": "$a$ in m",
     "level": r"$a\,\Omega^2$ in m/s$^2$",
-    "clearance": "clearance in m",
     "m1": "$m_1$ in kg",
     "m2": "$m_2$ in kg",
     "k1": "$k_1$ in N/m",
@@ -51,8 +51,10 @@ PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def symbol(name: str) -> str:
-    """Return a parameter's symbol for an axis; what has none keeps its name."""
-    return SYMBOLS.get(name, name.replace("_", " "))
+    """Return a parameter's symbol for an axis; what has none keeps its name, with its unit."""
+    unit = STRUCTURE[name].unit if name in STRUCTURE else "1"
+    ending = f" in {unit}" if unit != "1" else ""
+    return SYMBOLS.get(name, name.replace("_", " ") + ending)
 
 
 def format_parameters(values: Mapping[str, float]) -> str:
@@ -97,8 +99,9 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
     )
     if by_halves:
         text = ", ".join(filter(None, [format_halves(known), text]))
-    if known.get("clearance") and "clearance" not in shown and not known.get("bonded"):
-        text = ", ".join(filter(None, [text, clearance_text(known["clearance"], data)]))
+    if not known.get("bonded"):
+        added = {name: known[name] for name in ADDED if known.get(name) and name not in shown}
+        text = ", ".join(filter(None, [text, *(added_text(*item, data) for item in added.items())]))
     shaken = [words for name, words in excitation_texts(data, known).items() if name not in shown]
     return ", ".join(filter(None, [text, "bonded" if known.get("bonded") else "", *shaken]))
 
@@ -106,6 +109,11 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
 def gap_name(data: xr.Dataset) -> str:
     """Return what the gap is called on an axis: with a clearance it is not ``x2 - x1`` alone."""
     return "gap" if data.attrs.get("clearance") else "gap $x_2 - x_1$"
+
+
+def added_text(name: str, value: float, data: xr.Dataset) -> str:
+    """Format a parameter that the paper's structures have not."""
+    return clearance_text(value, data) if name == "clearance" else format_parameters({name: value})
 
 
 def clearance_text(clearance: float, data: xr.Dataset) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 from ..checks import checked_word
 from ..errors import InputError
 from ..structures import Structure
-from ..structures.ranges import Quantity, plain
+from ..structures.ranges import ADDED, STRUCTURE, Quantity, plain
 from .analog_filter import AnalogFilter, Floats, anti_aliasing, in_series, low_pass
 from .pieces import Pieces
 from .reconstruction import Motion, SmoothParts, smooth_parts
@@ -274,11 +274,8 @@ def structure_of(history: xr.Dataset, needed: tuple[str, ...] = NEEDED) -> Struc
     InputError
         Where it is no history.
     """
-    names = ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma")
     attributes, variables = getattr(history, "attrs", {}), getattr(history, "variables", {})
-    known = all(name in attributes for name in names) and all(name in variables for name in needed)
+    known = {*STRUCTURE} - {*ADDED} <= {*attributes} and {*needed} <= {*variables}
     if not known or history.sizes.get("time", 0) < 4:
         raise InputError("history: expected an answer of shake or simulate, of 4 samples or more")
-    numbers = {name: float(attributes[name]) for name in names}
-    numbers["clearance"] = float(attributes.get("clearance", 0.0))  # of today's histories
-    return Structure(**numbers, bonded=bool(attributes.get("bonded", False)))
+    return Structure.from_attributes(attributes)

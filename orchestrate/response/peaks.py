@@ -302,8 +302,10 @@ def after_impacts(before: Floats, points: Sequence[Point]) -> Floats:
     """Return states after impacts, by (15) with ``(1+e)/(1+mu)`` in its second line; shape (4,
     n).
     """
-    e, m1, m2 = np.array([(p.structure.e, p.structure.m1, p.structure.m2) for p in points]).T
-    impulse = (1.0 + e) * m1 * m2 / (m1 + m2) * (before[2] - before[3])
+    m1, m2 = np.array([(p.structure.m1, p.structure.m2) for p in points]).T
+    closing = before[2] - before[3]
+    e = np.array([p.structure.restitution(v) for p, v in zip(points, closing, strict=True)])
+    impulse = (1.0 + e) * m1 * m2 / (m1 + m2) * closing
     after = before.copy()
     after[2] -= impulse / m1
     after[3] += impulse / m2

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
+from fmu_src.export.description import UNITS
 from fmu_src.models.motor_shaker import variables as motor_shaker
 from fmu_src.models.oscillator import variables as oscillator
 
@@ -37,6 +38,12 @@ class Quantity:
     minimum: float
     maximum: float
     default: float = 0.0
+
+    @property
+    def dimension(self) -> dict[str, int]:
+        """Exponents of kg, m and s in the unit."""
+        exponents = UNITS[self.unit]
+        return {base: exponents.get(base, 0) for base in ("kg", "m", "s")}
 
     @property
     def expected(self) -> str:
@@ -95,9 +102,11 @@ def quantities_of(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Q
     }
 
 
-STRUCTURE = quantities_of(
-    oscillator.VARIABLES, ("m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma", "clearance")
-)
+STRUCTURE = quantities_of(oscillator.VARIABLES, oscillator.STRUCTURE)
+MECHANICS = oscillator.MECHANICS
+ADDED = tuple(variable.name for variable in oscillator.ADDED)  # files made before have none of them
+# with one of these a motion is not in proportion to the shaking
+OF_LENGTH = tuple(name for name, quantity in STRUCTURE.items() if quantity.dimension["m"])
 DRIVE = quantities_of(
     motor_shaker.VARIABLES,
     (

@@ -16,6 +16,7 @@ from .ranges import (
     DRIVE,
     EXCITATION,
     LARGEST,
+    MECHANICS,
     RATIO_QUANTITIES,
     SMALLEST,
     STRUCTURE,
@@ -30,9 +31,8 @@ TO_RAD_S: dict[str, Callable[[float], float]] = {
     "rad_s": lambda value: value,
     "rpm": lambda value: TURN * value / 60.0,
 }
-COMMON_NUMBERS = ("e", "gamma", "clearance")
+COMMON_NUMBERS = tuple(name for name in STRUCTURE if name not in MECHANICS)
 COMMON_KEYS = (*COMMON_NUMBERS, "bonded")
-SI_STRUCTURE = ("m1", "m2", "k1", "k2", "d1", "d2")
 OMEGAS = tuple(f"omega_{unit}" for unit in TO_RAD_S)
 HALVES = ("f1_hz", "f2_hz", "zeta1", "zeta2")
 RATIOS = ("mu", "kappa", "D", "D1", "D2", *OMEGAS)
@@ -147,7 +147,7 @@ class Section:
 
 def read_structure(section: Section) -> Structure:
     """Read the structure of ``[structure]``."""
-    section.allow(*COMMON_KEYS, *SI_STRUCTURE, *HALVES, *RATIOS)
+    section.allow(*COMMON_KEYS, *MECHANICS, *HALVES, *RATIOS)
     values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
     if "bonded" in section.values:
         try:
@@ -155,13 +155,13 @@ def read_structure(section: Section) -> Structure:
         except InputError as error:
             raise InputError(f"{section.path}: {section.name}.{error}") from None
     if section.present(HALVES):
-        section.uses_second_form(HALVES, (*SI_STRUCTURE[2:], *RATIOS))
+        section.uses_second_form(HALVES, (*MECHANICS[2:], *RATIOS))
         section.need(("m1", "m2", *HALVES))
         values |= section.numbers(("m1", "m2", *HALVES))
         frequencies = {name: values.pop(f"{name}_hz") for name in ("f1", "f2")}
         return section.make(lambda: Structure.from_halves(**frequencies, **values))
-    if not section.uses_second_form(SI_STRUCTURE[1:], RATIOS):
-        values |= section.numbers(SI_STRUCTURE)
+    if not section.uses_second_form(MECHANICS[1:], RATIOS):
+        values |= section.numbers(MECHANICS)
         return section.make(lambda: Structure(**values))
     if section.uses_second_form(("D",), ("D1", "D2")):
         section.need(("D1", "D2"))

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
 from ..errors import InputError
 from .described import Described
 from .plausible import warn_of_per_cent
 from .ranges import (
+    ADDED,
+    OF_LENGTH,
     RATIO_QUANTITIES,
     STRUCTURE,
     check_flag,
@@ -20,6 +23,12 @@ from .ranges import (
     expected_one_of,
 )
 
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+    from typing_extensions import Unpack
+
+Values = TypeVar("Values", float, "NDArray[np.float64]")
 SI = tuple(STRUCTURE)
 RATIOS = ("mu", "kappa", "D", "D1", "D2", "omega")
 HALVES = ("f1", "f2", "zeta1", "zeta2")
@@ -86,6 +95,40 @@ def short(value: float) -> str:
     return repr(value).removesuffix(".0")
 
 
+class Added(TypedDict, total=False):
+    """Keywords of all constructors beside ``e``, ``gamma`` and ``bonded``, see
+    :class:`Structure`.
+    """
+
+    clearance: float
+    e_slope: float
+
+
+class Varied(TypedDict, total=False):
+    """All of ``PARAMETERS`` as keywords that take a list."""
+
+    m1: ArrayLike
+    m2: ArrayLike
+    k1: ArrayLike
+    k2: ArrayLike
+    d1: ArrayLike
+    d2: ArrayLike
+    e: ArrayLike
+    gamma: ArrayLike
+    clearance: ArrayLike
+    e_slope: ArrayLike
+    mu: ArrayLike
+    kappa: ArrayLike
+    D: ArrayLike
+    D1: ArrayLike
+    D2: ArrayLike
+    omega: ArrayLike
+    f1: ArrayLike
+    f2: ArrayLike
+    zeta1: ArrayLike
+    zeta2: ArrayLike
+
+
 @dataclass(frozen=True, kw_only=True)
 class Structure(Described):
     """Two masses on springs and dampers that touch without being glued (Figure 1 of the paper).
@@ -106,6 +149,9 @@ class Structure(Described):
         Gap between the faces where both springs are unloaded, m. Below zero the masses are pressed
         together: at rest with the force ``preload``, at the displacements ``at_rest``. A bonded
         structure ignores it.
+    e_slope : float
+        Decrease of the coefficient of restitution with the closing speed v, s/m: it is
+        e/(1 + e_slope v), see :meth:`restitution`; 0 for e at all speeds.
     bonded : bool
         The undamaged structure: both masses glued for good.
 
@@ -141,6 +187,7 @@ class Structure(Described):
     e: float = STRUCTURE["e"].default
     gamma: float = STRUCTURE["gamma"].default
     clearance: float = STRUCTURE["clearance"].default
+    e_slope: float = STRUCTURE["e_slope"].default
     bonded: bool = False
 
     def __post_init__(self) -> None:
@@ -162,7 +209,7 @@ class Structure(Described):
         *,
         m1: float = 1.0,
         omega: float = 1.0,
-        clearance: float = STRUCTURE["clearance"].default,
+        **added: Unpack[Added],
     ) -> Structure:
         """Make a structure from the paper's numbers, (2) and (8).
 
@@ -178,9 +225,9 @@ class Structure(Described):
             As in :class:`Structure`.
         m1, omega : float
             The scale: kg, and sqrt(k1/m1) in rad/s. With 1 and 1, every SI number is the paper's.
-        clearance : float
-            As in :class:`Structure`, m: the paper's numbers have none, and no unit of length. Under
-            ``eta=`` it counts in units of xi.
+        **added
+            As in :class:`Structure`, in SI: the paper's numbers have none of them, and no unit of
+            length. Under ``eta=`` a ``clearance`` counts in units of xi.
 
         Examples
         --------
@@ -202,8 +249,8 @@ class Structure(Described):
                 d2=damping(v.get("D2", v["D"]), v["omega"], m1) * v["mu"],
                 e=e,
                 gamma=gamma,
-                clearance=clearance,
                 bonded=bonded,
+                **added,
             ),
         )
 
@@ -219,8 +266,8 @@ class Structure(Described):
         zeta2: float = 0.0,
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
-        clearance: float = STRUCTURE["clearance"].default,
         bonded: bool = False,
+        **added: Unpack[Added],
     ) -> Structure:
         """Make a structure from natural frequency and damping ratio of each half alone.
 
@@ -234,7 +281,7 @@ class Structure(Described):
             Damping ratios d_i/(2 sqrt(k_i m_i)) of each half at its own frequency; 0.007 is 0.7 %.
             The paper's ``D_i`` (8) refer to the frequency of mass 1 instead: ``D1`` is ``zeta1``,
             ``D2`` is ``zeta2 f2/f1``.
-        e, gamma, clearance, bonded
+        e, gamma, bonded, **added
             As in :class:`Structure`.
 
         Raises
@@ -263,8 +310,8 @@ class Structure(Described):
                 d2=damping(v["zeta2"], 2.0 * math.pi * v["f2"], m2),
                 e=e,
                 gamma=gamma,
-                clearance=clearance,
                 bonded=bonded,
+                **added,
             ),
         )
 
@@ -278,8 +325,8 @@ class Structure(Described):
         thicknesses: tuple[float, float],
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
-        clearance: float = STRUCTURE["clearance"].default,
         bonded: bool = False,
+        **added: Unpack[Added],
     ) -> Structure:
         """Split the measured mode of the undamaged beam between two layers.
 
@@ -305,7 +352,7 @@ class Structure(Described):
             Its damping ratio.
         thicknesses : tuple of float
             Of the layers 1 and 2, in any unit: their ratio counts.
-        e, gamma, clearance, bonded
+        e, gamma, bonded, **added
             As in :class:`Structure`.
 
         Raises
@@ -337,8 +384,8 @@ class Structure(Described):
                 d2=soft * d,
                 e=e,
                 gamma=gamma,
-                clearance=clearance,
                 bonded=bonded,
+                **added,
             ),
         )
 
@@ -352,6 +399,23 @@ class Structure(Described):
         True
         """
         return cls._read(path)
+
+    @classmethod
+    def from_attributes(cls, attributes: Mapping[str, Any]) -> Structure:
+        """Return the structure that the attributes of an answer describe; what was added later, and
+        an older file has not, is at its default.
+
+        Raises
+        ------
+        KeyError, ValueError, TypeError
+            Where there is none, or it is no number.
+        """
+        older = {name: STRUCTURE[name].default for name in ADDED}
+        numbers = {name: float({**older, **attributes}[name]) for name in STRUCTURE}
+        bonded = float(attributes.get("bonded", 0.0))
+        if bonded not in (0.0, 1.0):
+            raise ValueError(f"bonded = {bonded}")
+        return cls(**numbers, bonded=bool(bonded))
 
     @property
     def omega(self) -> float:
@@ -447,6 +511,32 @@ class Structure(Described):
     def at_rest(self) -> tuple[float, float]:
         """Displacements x1, x2 at rest, m: -F/k1 and F/k2 with the preload F."""
         return 0.0 - self.preload / self.k1, self.preload / self.k2
+
+    @property
+    def has_scale(self) -> bool:
+        """Whether a motion at twice the amplitude is another one: a clearance, or a restitution
+        that depends on the speed.
+        """
+        return any(getattr(self, name) != 0.0 for name in OF_LENGTH)
+
+    def restitution(self, closing: Values) -> Values:
+        """Return the coefficient of restitution at a closing speed, m/s: e/(1 + e_slope v).
+
+        It is the limit for slow impacts, ``e``, times the Pade approximant [0/1] of the law of Hunt
+        and Crossley (Journal of Applied Mechanics 42, 1975, 440-445), whose contact force
+        k d^n (1 + 3/2 e_slope d') has the restitution 1 - e_slope v + (e_slope v)^2 - ... at a
+        speed v. The separation e(v) v grows with v.
+
+        Parameters
+        ----------
+        closing : float or ndarray
+
+        Examples
+        --------
+        >>> Structure(e=0.8, e_slope=0.5).restitution(2.0)
+        0.4
+        """
+        return self.e / (1.0 + self.e_slope * closing)
 
     def as_bonded(self) -> Structure:
         """Return the undamaged structure, both masses glued; it keeps its clearance unused."""
@@ -575,13 +665,13 @@ class Structure(Described):
         if (self.m1, self.k1) == (1.0, 1.0):
             damping_ratios = dict.fromkeys((short(self.D1), short(self.D2)))
             parts = [f"e{short(self.e)}", f"D{'-'.join(damping_ratios)}"]
-            names: tuple[str, ...] = ("mu", "kappa", "gamma", "clearance")
+            names: tuple[str, ...] = ("mu", "kappa", "gamma", *ADDED)
         else:
             masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
             halves = [self._pair(letter) for letter in ("f", "zeta")]
             shorter = self._is_by_halves() and len("".join(halves)) < len("".join(si))
             parts = [f"e{short(self.e)}", masses, *(halves if shorter else si)]
-            names = ("gamma", "clearance")
+            names = ("gamma", *ADDED)
         for name in names:
             if self.get(name) != default.get(name):
                 parts.append(f"{name}{short(self.get(name))}")

@@ -112,7 +112,8 @@ class Motion:
         p, (x1, v1, x2, v2) = self.p, self.state
         face = (p["m1"] * x1 + p["m2"] * (x2 + p["clearance"])) / self.total
         common = (p["m1"] * v1 + p["m2"] * v2) / self.total
-        parting, pull = p["e"] * (v1 - v2), self.opening(face, common)
+        closing, pull = v1 - v2, self.opening(face, common)
+        parting = p["e"] * closing / (1.0 + p.get("e_slope", 0.0) * closing)
         self.impacts.append(self.time)
         if pull < 0.0 and 2.0 * parting * self.omega < p["gamma"] * -pull:
             self.mode, parting = CONTACT, 0.0

@@ -11,7 +11,8 @@ from .driver import run
 # What is promised: name, unit, start; typed in here, so that a slip in the project's table shows.
 PARAMETERS = """
 m1 kg 1 | m2 kg 1 | k1 N/m 1 | k2 N/m 1.2 | d1 N.s/m 0.01 | d2 N.s/m 0.01 | e 1 0.7 | gamma 1 * |
-x1_start m 0 | x2_start m 0 | v1_start m/s 0 | v2_start m/s 0 | phase_start rad 0
+x1_start m 0 | x2_start m 0 | v1_start m/s 0 | v2_start m/s 0 | phase_start rad 0 |
+clearance m 0 | e_slope s/m 0
 """
 INPUTS = """
 box_amplitude m 1 | box_frequency rad/s 0.4 | box_acceleration m/s2 0 | box_jerk m/s3 0 |
@@ -36,6 +37,7 @@ BASE = {
     "rad": {"rad": 1},
     "rad/s": {"rad": 1, "s": -1},
     "s": {"s": 1},
+    "s/m": {"s": 1, "m": -1},
     "N": {"kg": 1, "m": 1, "s": -2},
     "N.s": {"kg": 1, "m": 1, "s": -1},
     "N.s2": {"kg": 1, "m": 1},

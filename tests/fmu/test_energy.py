@@ -25,8 +25,9 @@ def energy(m1, m2, k1, k2, x1, x2, v1, v2):
         {"m1": 0.3, "m2": 2.5, "k1": 1.7, "k2": 4.0, "e": 0.95, "clearance": 0.3},
         {"m1": 4.0, "m2": 1.5, "k1": 1.0, "k2": 2.0, "e": 0.0, "clearance": -0.3},
         {"m1": 1.0, "m2": 3.0, "k1": 2.0, "k2": 1.0, "e": 1.0, "clearance": -0.3},
+        {"m1": 0.3, "m2": 2.5, "k1": 1.7, "k2": 4.0, "e": 0.98, "e_slope": 0.5},
     ],
-    ids=lambda values: f"e={values['e']},clearance={values.get('clearance', 0.0)}",
+    ids=lambda values: ",".join(f"{n}={v}" for n, v in values.items() if n[0] in "ec"),
 )
 def test_energy_of_free_motion_is_lost_in_impacts_alone(fmu, tmp_path, values):
     found = np.array(
@@ -40,8 +41,11 @@ def test_energy_of_free_motion_is_lost_in_impacts_alone(fmu, tmp_path, values):
     assert total == pytest.approx(total[0], rel=1e-12)
 
 
-@pytest.mark.parametrize(("clearance", "gamma"), [(0.0, 1e-4), (0.2, 1e-4), (-0.2, 0.3)])
-def test_energy_balance_of_driven_motion_closes(fmu, tmp_path, clearance, gamma):
+@pytest.mark.parametrize(
+    ("clearance", "gamma", "e_slope"),
+    [(0.0, 1e-4, 0.0), (0.2, 1e-4, 0.0), (-0.2, 0.3, 0.0), (0.0, 1e-4, 0.2)],
+)
+def test_energy_balance_of_driven_motion_closes(fmu, tmp_path, clearance, gamma, e_slope):
     """Work and damping losses by Gauss quadrature between impacts, through chaotic motion; its
     error is below 1e-12.
     """
@@ -57,6 +61,7 @@ def test_energy_balance_of_driven_motion_closes(fmu, tmp_path, clearance, gamma)
         "box_frequency": 1.13,
         "clearance": clearance,
         "gamma": gamma,
+        "e_slope": e_slope,
     }
     points, weights = np.polynomial.legendre.leggauss(8)
     nodes = list(zip((0.5 + 0.5 * points).tolist(), (0.5 * weights).tolist(), strict=True))

@@ -8,13 +8,20 @@ from .driver import run
 
 
 @pytest.mark.parametrize(
-    ("eta", "clearance"), [(0.4, 0.0), (1.13, 0.0), (2.9, 0.0), (1.13, 0.25), (1.13, -0.25)]
+    ("eta", "more"),
+    [
+        (0.4, {}),
+        (1.13, {}),
+        (2.9, {}),
+        (1.13, {"clearance": 0.25}),
+        (1.13, {"clearance": -0.25, "e_slope": 0.3}),
+    ],
 )
-def test_communication_grid_does_not_matter(fmu, tmp_path, eta, clearance):
+def test_communication_grid_does_not_matter(fmu, tmp_path, eta, more):
     """At eta = 1.13 the motion is chaotic: a difference in the last bit would have grown to one in
     the first digits.
     """
-    found = run("guarantees.grids", fmu, eta, 512, clearance, cwd=tmp_path)
+    found = run("guarantees.grids", fmu, eta, 512, more, cwd=tmp_path)
     reference = found.pop("one step")
     assert reference["impact_count"] > 100
     for name, outputs in found.items():
@@ -73,12 +80,15 @@ def test_steps_of_a_period_end_where_one_step_ends(fmu, tmp_path, values, period
     assert parts == pytest.approx(whole, abs=1e-9)
 
 
-@pytest.mark.parametrize("clearance", [0.0, 0.3, -0.3])
-def test_amplitudes_scale_to_the_last_bit(fmu, tmp_path, clearance):
-    """Displacements, velocities and forces times 2^n, energies times 4^n; times, counts and the
-    paper's xi as they were.
+@pytest.mark.parametrize(
+    ("clearance", "e_slope"), [(0.0, 0.0), (0.3, 0.0), (-0.3, 0.7), (0.0, 0.7)]
+)
+def test_amplitudes_scale_to_the_last_bit(fmu, tmp_path, clearance, e_slope):
+    """Displacements, velocities and forces times 2^n, energies times 4^n, times over length times
+    2^-n; times, counts and the paper's xi as they were.
     """
-    found = run("guarantees.amplitudes_scale_to_the_last_bit", fmu, clearance, cwd=tmp_path)
+    program = "guarantees.amplitudes_scale_to_the_last_bit"
+    found = run(program, fmu, clearance, e_slope, cwd=tmp_path)
     reference = found.pop("0")
     assert reference["impact_count"] > 40
     unchanged = {
@@ -124,11 +134,13 @@ def test_masses_never_pass_through_each_other(fmu, tmp_path, clearance):
         ({"m2": 3.0, "e": 0.0, "k2": 0.7, "d2": 0.05, "box_frequency": 0.8}, True),
         ({"m2": 3.0, "box_frequency": 1.13, "clearance": 0.4}, False),
         ({"m2": 3.0, "e": 0.0, "box_frequency": 0.8, "clearance": -0.2}, True),
+        ({"m2": 3.0, "e": 0.9, "box_frequency": 1.13, "e_slope": 0.8}, False),
     ],
 )
 def test_momentum_is_kept_at_impacts_and_starts_of_contact(fmu, tmp_path, values, contacts):
     found = run("guarantees.impacts", fmu, values, cwd=tmp_path)
     m1, m2, e = values.get("m1", 1.0), values["m2"], values.get("e", 0.7)
+    slope = values.get("e_slope", 0.0)
     assert len(found) > 8
     assert any(begun for *_, begun in found) == contacts
     for u1, u2, v1, v2, closing, _ in found:
@@ -136,4 +148,4 @@ def test_momentum_is_kept_at_impacts_and_starts_of_contact(fmu, tmp_path, values
         assert size > 1e-3  # something is exchanged
         assert m1 * v1 + m2 * v2 == pytest.approx(m1 * u1 + m2 * u2, abs=5e-7)
         assert closing == pytest.approx(u1 - u2, abs=5e-7)
-        assert v2 - v1 == pytest.approx(e * closing, abs=5e-7)
+        assert v2 - v1 == pytest.approx(e * closing / (1.0 + slope * closing), abs=5e-7)

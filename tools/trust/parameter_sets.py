@@ -9,10 +9,12 @@ over several communication grids, to the last bit.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+
+from orchestrate.structures.ranges import ADDED, STRUCTURE
 
 Values = dict[str, float]
 Draw = Callable[[np.random.Generator, Values], None]
@@ -206,6 +208,25 @@ def set_clearance(rng: np.random.Generator, values: Values) -> None:
         values["x2_start"], values["v2_start"] = values["x1_start"], values["v1_start"]
 
 
+def set_added(rng: np.random.Generator, values: Values) -> None:
+    """Other parameters that came later than the paper's: of the size that matters to the motion, or
+    of any other.
+    """
+    for name in ADDED:
+        if name != "clearance" and rng.random() < 0.4:
+            quantity = STRUCTURE[name]
+            spread = either(rng, decades(rng, -3.0, 2.0), decades(rng, -30.0, 30.0))
+            size = sign(rng) * unit_of_motion(values, quantity.dimension) * spread
+            values[name] = min(max(size, quantity.minimum), quantity.maximum)
+
+
+def unit_of_motion(values: Values, dimension: Mapping[str, int]) -> float:
+    """What mass 1, its frequency and the largest length make of a dimension."""
+    lengths = [abs(values[name]) for name in ("x1_start", "x2_start", "box_amplitude")]
+    units = {"kg": values["m1"], "m": max(*lengths, 1e-60), "s": 1.0 / omegas(values)[0]}
+    return math.prod(units[base] ** exponent for base, exponent in dimension.items())
+
+
 KINDS: dict[str, Draw] = {
     "nearly equal": nearly_equal,
     "next to nothing": next_to_nothing,
@@ -226,7 +247,8 @@ def draw(seed: int, number: int) -> ParameterSet:
     """The parameter set of a number under a seed: the same on every machine.
 
     One in four belongs to a second class besides its own; one in four begins at a clock of up to
-    1e12 s, all in the class ``late``; four in ten have a clearance.
+    1e12 s, all in the class ``late``; four in ten have a clearance, as many each of what was
+    added later.
 
     Parameters
     ----------
@@ -250,6 +272,7 @@ def draw(seed: int, number: int) -> ParameterSet:
         values["x2_start"], values["v2_start"] = values["x1_start"], values["v1_start"]
     if rng.random() < 0.4:
         set_clearance(rng, values)
+    set_added(np.random.default_rng((seed, number, 1)), values)
     rate = max(*omegas(values), values["box_frequency"])
     duration = either(rng, decades(rng, -10.0, 0.0), *(decades(rng, 0.0, 5.0) for _ in "ab")) / rate
     clock = kind == "late" or rng.random() < 0.25

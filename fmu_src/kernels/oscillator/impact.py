@@ -1,4 +1,10 @@
-"""Impact: Newton's restitution (15) in the corrected form, and the end of chattering (17)."""
+"""Impact: Newton's restitution (15) in the corrected form, and the end of chattering (17).
+
+The coefficient may decrease with the closing speed v: ``e(v) = e/(1 + e_slope v)``, the law of the
+Hunt-Crossley contact force to first order in v. The separation e(v) v grows with v, so that an
+impact that closes faster never parts more slowly; and e(v) <= e: impacts follow one another at
+least as fast as with e, and where v tends to 0 chattering is that of e.
+"""
 
 from . import memory as at
 
@@ -8,13 +14,20 @@ def common_velocity(m, v1, v2):
     return (v1 + m[at.MU] * v2) * m[at.SHARE]
 
 
-def restitution(m, v1, v2):
+def coefficient(m, closing):
+    """Coefficient of restitution at a closing velocity (m per unit of tau): e itself, to the last
+    bit, where it is constant.
+    """
+    return m[at.E] / (1.0 + m[at.E_SLOPE] * (closing * m[at.OMEGA]))
+
+
+def restitution(m, v1, v2, e):
     """Velocities after an impact, (15): momentum kept, gap velocity times -e.
 
     With ``(1+e)/(1+mu)`` in its second line.
     """
     common = common_velocity(m, v1, v2)
-    part = m[at.E] * (v1 - v2) * m[at.SHARE]
+    part = e * (v1 - v2) * m[at.SHARE]
     return common - m[at.MU] * part, common + part
 
 

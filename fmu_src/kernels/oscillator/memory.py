@@ -62,6 +62,7 @@ V2_SAMPLE = slot(SAMPLES)
 EVALUATIONS = slot()
 EVALUATION_LIMIT = slot()
 CLEARANCE = slot()
+E_SLOPE = slot()
 TIME = slot()  # communication point reached, s (the independent variable)
 
 # -- constants derived from the parameters ---------------------------------------------------------
@@ -172,7 +173,9 @@ SERIES_X = slot()  # derivatives of xi_1 at its start, in every second slot,
 SERIES_GAP = slot(2 * SERIES_LONGEST + 9)  # and of the gap between them; zeros after its last
 SERIES_BOUND = slot()  # of the gap's fifth derivative
 STEP = slot()  # length of the last step, s
-RATES = slot(CONTACT_COUNT - X1)  # of the outputs, in their order, where they were asked for
+# of the outputs, in their order, where they were asked for; of those that were added later behind
+RATES = slot(X1_SAMPLE - X1)
+ADDED_RATES = slot(TIME - EVALUATIONS)
 # set from outside: an input of the cubic was set, to whatever value; the cubic begins there
 CUBIC_SET = slot()
 SIZE = slot.used

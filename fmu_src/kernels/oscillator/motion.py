@@ -24,7 +24,7 @@ from .event_function import (
     set_values,
 )
 from .excitation import cubic_at, set_cubic_response
-from .impact import common_velocity, count_impact, restitution, sticks
+from .impact import coefficient, common_velocity, count_impact, restitution, sticks
 from .nodes import BLOCK, phasors_at
 from .response import displacement, set_free
 from .roots import INFINITE, accuracy, clear_from_node, step_from
@@ -229,11 +229,12 @@ def collide(m, x, v1, v2):
     closing = v1 - v2
     common = common_velocity(m, v1, v2)
     time = m[at.START_TIME] + (m[at.ORIGIN] + m[at.ORIGIN_LOW]) / m[at.OMEGA]
-    if sticks(m, m[at.E] * closing, contact_force(m, x, common)):
+    e = coefficient(m, closing)
+    if sticks(m, e * closing, contact_force(m, x, common)):
         count_impact(m, time, closing, 1.0)
         return common, common
-    count_impact(m, time, closing, (1.0 - m[at.E]) * (1.0 + m[at.E]))
-    return restitution(m, v1, v2)
+    count_impact(m, time, closing, (1.0 - e) * (1.0 + e))
+    return restitution(m, v1, v2, e)
 
 
 def begin_touching_flight(m, x, v1, v2):

@@ -29,8 +29,8 @@ def differentiate(m, time):
     largest = 0.0
     if m[at.X_REL_MAX_ON] != 0.0 and m[at.X_REL] == m[at.X_REL_MAX] and v_rel > 0.0:
         largest = v_rel
-    for i in range(at.CONTACT_COUNT - at.X1):
-        m[at.RATES + i] = 0.0
+    for i in range(at.RATES, at.CUBIC_SET):
+        m[i] = 0.0
     to = at.RATES - at.X1
     m[to + at.X1], m[to + at.X2], m[to + at.X_REL] = v1, v2, v_rel
     m[to + at.V1], m[to + at.V2], m[to + at.V_REL] = a1, a2, a2 - a1

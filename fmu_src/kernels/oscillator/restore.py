@@ -79,8 +79,8 @@ def clear_scratch(m):
     m[at.STOPPED] = 0.0
     for i in range(6):
         m[at.POINT + i] = 0.0
-    for i in range(at.CONTACT_COUNT - at.X1):
-        m[at.RATES + i] = 0.0
+    for i in range(at.RATES, at.CUBIC_SET):
+        m[i] = 0.0
 
 
 def may_be_infinite(m, slot):

@@ -26,11 +26,35 @@ MECHANICS = ("m1", "m2", "k1", "k2", "d1", "d2")
 STARTS = ("x1_start", "x2_start", "v1_start", "v2_start")
 DRIVE = ("phase_start", "box_amplitude", "box_frequency")
 EXTRA = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
+# parameters of the structure that were added later: behind all others, because value references
+# are given out for good
+ADDED = (
+    parameter(
+        "clearance",
+        "m",
+        0.0,
+        "Gap between the faces where both springs are unloaded; below 0 the masses are "
+        "pressed together, at rest with the preload F = -clearance k1 k2/(k1 + k2); "
+        "ignored where bonded",
+        minimum=-HUGE,
+        maximum=HUGE,
+    ),
+    parameter(
+        "e_slope",
+        "s/m",
+        0.0,
+        "Decrease of the coefficient of restitution with the closing speed v: it is "
+        "e/(1 + e_slope v); 0: e at all speeds",
+        minimum=0.0,
+        maximum=HUGE,
+    ),
+)
+STRUCTURE = (*MECHANICS, "e", "gamma", *(added.name for added in ADDED))  # its numbers
 # with a preload, displacements at the start count from the loaded springs
 GAP = ("x1_start", "x2_start", "clearance", "bonded")
 PLACE = (*GAP, "k1", "k2")
 # after an impact at the start
-ALL = (*MECHANICS, "e", "gamma", "clearance", "bonded", *STARTS, *DRIVE, *EXTRA)
+ALL = (*STRUCTURE, "bonded", *STARTS, *DRIVE, *EXTRA)
 
 
 def start(name: str, unit: str, description: str) -> Variable:
@@ -271,17 +295,7 @@ VARIABLES = numbered(
             **COUNT,
         ),
         evaluation_limit("event function"),
-        # the last one: value references are given out for good
-        parameter(
-            "clearance",
-            "m",
-            0.0,
-            "Gap between the faces where both springs are unloaded; below 0 the masses are "
-            "pressed together, at rest with the preload F = -clearance k1 k2/(k1 + k2); "
-            "ignored where bonded",
-            minimum=-HUGE,
-            maximum=HUGE,
-        ),
+        *ADDED,
     ),
     memory,
 )

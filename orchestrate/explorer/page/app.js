@@ -62,8 +62,8 @@ export class App {
       seen: () => this.computeBasin(),
     });
     this.drive = new DrivePart(at, this.crew, table.drive);
-    this.controls = new Controls(at, this.structure, table.ranges, (structure) => this.change(structure));
-    this.shaking = new Shaking(at, this.structure, this.level, {
+    this.controls = new Controls(at, this.structure, table, (structure) => this.change(structure));
+    this.shaking = new Shaking(at, table.units, this.structure, this.level, {
       choose: (eta, exactly) => this.choose(eta, exactly),
       change: (structure, level) => this.change(structure, level),
     });

@@ -29,15 +29,6 @@ const OWN = [
   ["zeta", "damping ratio, %", 0, 20, 0.01],
   ["gap", "gap at rest, mm", -0.5, 0.5, 0.005],
 ];
-const SI = /** @type {const} */ ([
-  ["m1", "kg"],
-  ["m2", "kg"],
-  ["k1", "N/m"],
-  ["k2", "N/m"],
-  ["d1", "N s/m"],
-  ["d2", "N s/m"],
-  ["clearance", "m"],
-]);
 
 const DIGITS = 7;
 
@@ -45,10 +36,11 @@ export class Controls {
   /**
    * @param {(id: string) => HTMLElement} at
    * @param {Structure} structure
-   * @param {Record<string, [number, number]>} ranges of the SI numbers
+   * @param {{ranges: Record<string, [number, number]>, units: import("./structure.js").Units}} table
+   *   of the SI numbers
    * @param {(structure: Structure) => void} changed
    */
-  constructor(at, structure, ranges, changed) {
+  constructor(at, structure, { ranges, units }, changed) {
     this.at = at;
     this.changed = changed;
     this.ranges = ranges;
@@ -59,7 +51,7 @@ export class Controls {
     for (const [id, entries] of /** @type {const} */ ([["paper-sliders", PAPER], ["own-sliders", OWN]])) {
       at(id).append(...entries.map((entry) => this.row(entry)));
     }
-    for (const [name, unit] of SI) at("si").append(this.row([name, `${name}, ${unit}`, ...ranges[name]]));
+    for (const [name, { label }] of Object.entries(units)) at("si").append(this.row([name, `${name}, ${label}`, ...ranges[name]]));
     at("si").append(this.row(["D1", "D₁", 0, 1e3]), this.row(["D2", "D₂", 0, 1e3]));
   }
 

@@ -4,7 +4,7 @@
  * @typedef {import("./structure.js").Structure} Structure
  * @typedef {{slots: import("./kernel.js").Slots, starts: Record<string, number>}} Kernel
  * @typedef {{oscillator: Kernel, shaker: Kernel, drive: import("./coupled.js").Start,
- *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>,
+ *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>, units: import("./structure.js").Units,
  *   settings: import("./response.js").Settings, directions: ("up" | "down")[], count: number,
  *   low: number, high: number, level: ["paper" | "g" | "mm", number], tour: Record<string, string>,
  *   branches: {x: number[], y: number[], stable: boolean}[],

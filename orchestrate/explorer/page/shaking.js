@@ -18,12 +18,19 @@ const FIRST = { unit: "g", value: 1 };
 const OMEGA = 2 * Math.PI * 40; // of a first beam of one's own, rad/s
 
 export class Shaking {
-  /** @param {(id: string) => HTMLElement} at @param {Structure} structure @param {Level} level @param {Acts} acts */
-  constructor(at, structure, level, acts) {
+  /**
+   * @param {(id: string) => HTMLElement} at
+   * @param {import("./structure.js").Units} units
+   * @param {Structure} structure
+   * @param {Level} level
+   * @param {Acts} acts
+   */
+  constructor(at, units, structure, level, acts) {
     /** @param {string} id */
     const input = (id) => /** @type {HTMLInputElement} */ (at(id));
     this.at = at;
     this.inputs = { eta: input("eta"), number: input("eta-number"), hertz: input("hertz"), level: input("level") };
+    this.units = units;
     this.structure = structure;
     this.level = level;
     this.connect(acts);
@@ -49,9 +56,9 @@ export class Shaking {
   converted(own) {
     const [omega, level] = own ? [OMEGA, FIRST] : [1, PAPER];
     const digits = own ? 17 : 12;
-    const other = rescaled(this.structure, omega, 1, 1, digits);
+    const other = rescaled(this.structure, this.units, omega, 1, 1, digits);
     const [from, to] = [pointAt(this.structure, 1, this.level), pointAt(other, 1, level)].map(lengthOf);
-    return [rescaled(this.structure, omega, 1, to / from, digits), level];
+    return [rescaled(this.structure, this.units, omega, 1, to / from, digits), level];
   }
 
   /** @param {Structure} structure @param {Level} level */

@@ -3,6 +3,7 @@
 /**
  * @typedef {{m1: number, m2: number, k1: number, k2: number, d1: number, d2: number,
  *   e: number, gamma: number, bonded: number, clearance: number}} Structure
+ * @typedef {Record<string, {label: string, kg: number, m: number, s: number}>} Units names and exponents
  * @typedef {{omega: number, mu: number, kappa: number, D1: number, D2: number}} Ratios
  * @typedef {{structure: Structure, eta: number, frequency: number, amplitude: number}} Point
  */
@@ -81,20 +82,24 @@ export function numbersIn(s) {
 /**
  * The same motions in other units: all ratios stay.
  * @param {Structure} s
+ * @param {Units} units of its parameters
  * @param {number} omega rad/s
  * @param {number} mass of mass 1, kg
- * @param {number} length factor of what the clearance is
+ * @param {number} length factor of what is a length
  * @param {number} digits that are kept: fewer than all, so that there and back is the same
  * @returns {Structure}
  */
-export function rescaled(s, omega, mass, length, digits) {
-  const [masses, times] = [mass / s.m1, omega / omegaOf(s)];
-  const [stiff, damp] = [masses * times * times, masses * times];
-  const factors = { m1: masses, m2: masses, k1: stiff, k2: stiff, d1: damp, d2: damp, clearance: length };
+export function rescaled(s, units, omega, mass, length, digits) {
+  const [masses, rates] = [mass / s.m1, omega / omegaOf(s)];
   /** @type {Record<string, number>} */
   const changed = { ...s };
-  for (const [name, factor] of Object.entries(factors)) {
-    if (name in changed) changed[name] = Number((changed[name] * factor).toPrecision(digits));
+  for (const [name, { kg, m, s: seconds }] of Object.entries(units)) {
+    let factor = 1;
+    for (const [base, exponent] of [[masses, kg], [rates, -seconds], [length, m]]) {
+      for (let i = exponent; i > 0; i--) factor *= base;
+      for (let i = exponent; i < 0; i++) factor /= base;
+    }
+    changed[name] = Number((changed[name] * factor).toPrecision(digits));
   }
   return /** @type {Structure} */ (changed);
 }

@@ -9,7 +9,7 @@ from driver import harmonic, open_fmu
 OF_THE_STEP = ("box_impulse", "box_impulse_moment", "x_rel_max", "evaluations")
 
 
-def grids(path, eta, end, clearance):
+def grids(path, eta, end, more):
     """Outputs at the end of different communication grids.
 
     All are dyadic: every time and every difference of two times is exact, so that all grids reach
@@ -30,7 +30,7 @@ def grids(path, eta, end, clearance):
     }
     found = {}
     for name, times in grids.items():
-        f = open_fmu(path).start(**harmonic(eta), clearance=clearance)
+        f = open_fmu(path).start(**harmonic(eta), **more)
         for time in [*times, end]:
             f.step(time)
         found[name] = f.outputs()
@@ -99,14 +99,14 @@ def steps_of_a_period_end_where_one_step_ends(path, values, periods, pieces):
     return [f.get("x1", "x2", "impact_count") for f in (whole, parts)]
 
 
-def amplitudes_scale_to_the_last_bit(path, clearance):
+def amplitudes_scale_to_the_last_bit(path, clearance, e_slope):
     lengths = {"x1_start": -0.375, "x2_start": 0.8125, "clearance": clearance}
     lengths |= {"v1_start": 0.1, "v2_start": -0.3, "box_amplitude": 0.7}
     found = {}
     for n in (0, -40, 7, 60):
         scale = 2.0**n
         scaled = {name: value * scale for name, value in lengths.items()}
-        f = open_fmu(path).start(box_frequency=1.13, m2=1.5, **scaled)
+        f = open_fmu(path).start(box_frequency=1.13, m2=1.5, e_slope=e_slope / scale, **scaled)
         f.step(250.0)
         f.step(256.0)
         found[n] = f.outputs()

@@ -9,13 +9,16 @@ from fmu_src.kernels.numerics import slots
 from fmu_src.kernels.oscillator import memory as oscillator
 from fmu_src.kernels.shaker import memory as shaker
 from fmu_src.models.motor_shaker import variables as motor_shaker_table
+from fmu_src.models.motor_shaker.model import MODEL as SHAKER
 from fmu_src.models.oscillator import variables as oscillator_table
+from fmu_src.models.oscillator.model import MODEL as OSCILLATOR
 from fmu_src.runtime.table import numbered, with_slots
 
 MODELS = [(oscillator, oscillator_table.VARIABLES), (shaker, motor_shaker_table.VARIABLES)]
 PROMISED = {  # given out before: saved states and other people's scripts rely on them
     **{"m1": 0, "e": 6, "box_amplitude": 15, "x1": 21, "x_rel_max": 40, "sample_count": 42},
     **{"x1_sample[1]": 43, "x2_sample[1]": 243, "v1_sample[1]": 443, "v2_sample[200]": 842},
+    **{"evaluations": 843, "evaluation_limit": 844, "clearance": 845, "e_slope": 846},
 }
 
 
@@ -31,6 +34,23 @@ def test_value_references_are_places_in_the_table_and_slots(memory, variables):
     for variable in variables:
         if "[" not in variable.name:
             assert getattr(memory, variable.name.upper()) == variable.slot
+
+
+@pytest.mark.parametrize("model", [OSCILLATOR, SHAKER], ids=lambda model: model.name)
+def test_a_continuous_output_anywhere_in_the_table_has_a_rate_of_its_own(model):
+    """Whichever variable became one, also behind all that there are: its rate lies among the rates,
+    and in nobody else's slot.
+    """
+    memory = oscillator if model is OSCILLATOR else shaker
+    first = next(v.slot for v in model.variables if v.causality == "output")
+    could_be = [v for v in model.variables[first:] if not v.series]
+    could_be = [replace(v, causality="output", variability="continuous") for v in could_be]
+    slots = [model.rate_slot(v) for v in could_be]
+    assert len(set(slots)) == len(slots)
+    if model is OSCILLATOR:
+        assert memory.RATES <= min(slots) <= max(slots) < memory.CUBIC_SET
+    else:
+        assert memory.OUTPUT_RATES <= min(slots) <= max(slots) < memory.SIZE
 
 
 def test_promised_value_references():
@@ -54,7 +74,9 @@ def test_messages_name_slots():
 def test_no_slot_lies_in_another():
     """Each name has its own place; offsets inside a branch count from 0 on their own."""
     assert oscillator.BRANCH_2 - oscillator.BRANCH_1 == oscillator.STEP_GROWTH + 4
-    outputs = oscillator.CONTACT_COUNT - oscillator.X1
-    assert oscillator.RATES + outputs == oscillator.CUBIC_SET == oscillator.SIZE - 1
+    outputs = oscillator.X1_SAMPLE - oscillator.X1
+    assert oscillator.RATES + outputs == oscillator.ADDED_RATES
+    added = oscillator.TIME - oscillator.EVALUATIONS
+    assert oscillator.ADDED_RATES + added == oscillator.CUBIC_SET == oscillator.SIZE - 1
     outputs = shaker.TIME - shaker.BOX_POSITION
     assert shaker.OUTPUT_RATES + outputs == shaker.SIZE

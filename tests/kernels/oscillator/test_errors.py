@@ -75,6 +75,7 @@ def test_extreme_parameters_end_with_a_code(data):
         "e": draw(st.floats(0.0, 1.0)),
         "gamma": draw(sizes(1e-9, 1.0)),
         "v1_start": draw(st.floats(-1e6, 1e6)),
+        "e_slope": draw(st.just(0.0) | sizes(1e-100, 1e100)),
     }
     m = unstarted(**values)
     assume(stepper.initialize(m, 0.0) == at.OK)

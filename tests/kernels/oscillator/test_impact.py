@@ -9,7 +9,13 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.impact import common_velocity, count_impact, restitution, sticks
+from fmu_src.kernels.oscillator.impact import (
+    coefficient,
+    common_velocity,
+    count_impact,
+    restitution,
+    sticks,
+)
 from fmu_src.kernels.oscillator.motion import end_state, state_at
 
 from .kernel import advanced, examples, pieces, rounded, sizes, started, unstarted
@@ -17,9 +23,9 @@ from .kernel import advanced, examples, pieces, rounded, sizes, started, unstart
 SPEEDS = rounded(-10.0, 10.0)
 
 
-def structure(mu, e, m1=1.3):
+def structure(mu, e, m1=1.3, e_slope=0.0):
     """A memory that knows masses and restitution."""
-    m = unstarted(m1=m1, m2=mu * m1, e=e)
+    m = unstarted(m1=m1, m2=mu * m1, e=e, e_slope=e_slope)
     m[at.MU], m[at.OMEGA] = m[at.M2] / m[at.M1], 1.7
     m[at.SHARE] = 1.0 / (1.0 + m[at.MU])
     return m
@@ -34,13 +40,54 @@ def kinetic(m, v1, v2):
 def test_momentum_restitution_and_energy(mu, e, v1, v2):
     assume(v1 > v2)
     m = structure(mu, e)
-    w1, w2 = restitution(m, v1, v2)
+    w1, w2 = restitution(m, v1, v2, e)
     speed = abs(v1) + abs(v2)
     assert w1 + mu * w2 == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
     assert w2 - w1 == pytest.approx(e * (v1 - v2), abs=4e-15 * speed)
     count_impact(m, 0.0, v1 - v2, (1.0 - e) * (1.0 + e))
     lost = kinetic(m, v1, v2) - kinetic(m, w1, w2)
     assert m[at.IMPACT_ENERGY] == pytest.approx(lost, abs=1e-13 * kinetic(m, speed, speed))
+
+
+@examples(200)
+@given(sizes(1e-3, 1e3), st.floats(0.0, 1.0), sizes(1e-6, 1e6), SPEEDS, SPEEDS)
+def test_restitution_that_decreases_with_the_speed_never_adds_energy(mu, e, slope, v1, v2):
+    """v' = -e(v) v with e(v) = e/(1 + slope v), v in m/s; momentum is kept, energy is lost."""
+    assume(v1 > v2)
+    m = structure(mu, e, e_slope=slope)
+    closing, speed = v1 - v2, abs(v1) + abs(v2)
+    now = coefficient(m, closing)
+    assert now == pytest.approx(e / (1.0 + slope * m[at.OMEGA] * closing), rel=1e-15)
+    w1, w2 = restitution(m, v1, v2, now)
+    assert w1 + mu * w2 == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
+    assert w2 - w1 == pytest.approx(now * closing, abs=4e-15 * speed)
+    assert kinetic(m, w1, w2) <= kinetic(m, v1, v2) + 1e-13 * kinetic(m, speed, speed)
+
+
+@examples(200)
+@given(st.floats(0.0, 1.0), sizes(1e-6, 1e6), sizes(1e-12, 1e12), sizes(1e-12, 1e12))
+def test_a_faster_impact_parts_faster_by_a_smaller_coefficient(e, slope, one, two):
+    """And towards no speed the coefficient is e: chattering ends as with e."""
+    m = structure(1.0, e, e_slope=slope)
+    slow, fast = sorted((one, two))
+    parting = [coefficient(m, v) * v for v in (slow, fast)]
+    assert parting[0] <= parting[1] * (1.0 + 1e-15)
+    assert e >= coefficient(m, slow) >= coefficient(m, fast) >= 0.0
+    assert coefficient(m, 1e-17 / slope) == e
+
+
+@examples(200)
+@given(st.floats(0.0, 1.0), st.floats(0.0, 1e300))
+def test_without_a_slope_the_coefficient_is_e_to_the_last_bit(e, closing):
+    assert coefficient(structure(1.0, e), closing) == e
+
+
+@examples(200)
+@given(st.floats(0.0, 1.0), sizes(1e-3, 1e3), sizes(1e-6, 1e6), st.integers(-300, 300))
+def test_the_coefficient_scales_with_the_amplitude(e, slope, closing, n):
+    plain = coefficient(structure(1.0, e, e_slope=slope), closing)
+    scaled = structure(1.0, e, e_slope=math.ldexp(slope, -n))
+    assert coefficient(scaled, math.ldexp(closing, n)) == plain
 
 
 @examples(200)
@@ -77,7 +124,14 @@ def test_masses_that_are_pulled_apart_do_not_stick():
 
 
 @pytest.mark.parametrize(
-    "values", [{}, {"m2": 3.0, "k2": 1.0}, {"m1": 0.2, "k1": 0.7, "e": 0.0}, {"m2": 0.3, "e": 1.0}]
+    "values",
+    [
+        {},
+        {"m2": 3.0, "k2": 1.0},
+        {"m1": 0.2, "k1": 0.7, "e": 0.0},
+        {"m2": 0.3, "e": 1.0},
+        {"e": 0.9, "e_slope": 0.5},
+    ],
 )
 def test_impacts_of_a_run(values):
     m = started(x1_start=-0.5, x2_start=0.2, v1_start=1.0, v2_start=-0.7, **values)
@@ -89,7 +143,8 @@ def test_impacts_of_a_run(values):
         now = momentum_and_gap_velocity(after, 0.0)
         assert now[0] == pytest.approx(before[0], abs=1e-14 * before[2])
         if after[at.IMPACT_COUNT] > state[at.IMPACT_COUNT]:
-            e = 0.0 if after[at.MODE] == at.CONTACT else m[at.E]
+            e = m[at.E] / (1.0 - m[at.E_SLOPE] * before[1])
+            e = 0.0 if after[at.MODE] == at.CONTACT else e
             assert now[1] == pytest.approx(-e * before[1], abs=1e-14 * before[2])
             assert after[at.IMPACT_VELOCITY] == pytest.approx(-before[1], abs=1e-14 * before[2])
             assert after[at.IMPACT_TIME] == pytest.approx(

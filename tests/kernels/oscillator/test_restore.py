@@ -33,6 +33,7 @@ def drawn(draw):
         "phase_start": draw.uniform(-5.0, 5.0),
         "bonded": draw.random() < 0.2,
         "x_rel_max_on": draw.random() < 0.5,
+        "e_slope": draw.choice([0.0, 0.0, 0.5]),
     }
     if not values["bonded"] and draw.random() < 0.4:
         values |= {"x2_start": draw.uniform(0.0, 2.0), "v2_start": draw.uniform(-2.0, 2.0)}

@@ -36,6 +36,7 @@ UNLIKE = (
     make(D1=0.05, D2=2.0, kappa=1.5),  # mass 2 overdamped
     make(D1=1.0, D2=0.1),  # mass 1 critically damped
     make(D1=3.0, D2=2.5, mu=2.0, e=0.9),  # all three overdamped
+    make(D1=0.02, D2=0.03, mu=1.4, e=0.95, e_slope=0.6),
     Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=12.0, e=0.6),
 )
 

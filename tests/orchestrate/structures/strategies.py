@@ -5,23 +5,27 @@ from __future__ import annotations
 from hypothesis import strategies as st
 
 from orchestrate.structures import Drive, Excitation, Structure
+from orchestrate.structures.ranges import STRUCTURE, Quantity
 
 SCALE = st.floats(1e-6, 1e6)
 LOSS = st.one_of(st.just(0.0), SCALE)
 SMALL = st.floats(1e-3, 1e3)
 RATIO = st.one_of(st.just(0.0), st.floats(1e-9, 10.0))
 
+
+def values_of(quantity: Quantity) -> st.SearchStrategy[float]:
+    """Strategy of a parameter by its range: of one without a low or high end not the extremes."""
+    inside = quantity.maximum <= 1.0
+    if inside:
+        return st.floats(quantity.minimum, quantity.maximum)
+    if quantity.minimum > 0.0:
+        return SCALE
+    return LOSS if quantity.minimum == 0.0 else st.one_of(st.just(0.0), st.floats(-1e3, 1e3))
+
+
 STRUCTURES = st.builds(
     Structure,
-    m1=SCALE,
-    m2=SCALE,
-    k1=SCALE,
-    k2=SCALE,
-    d1=LOSS,
-    d2=LOSS,
-    e=st.floats(0.0, 1.0),
-    gamma=st.floats(1e-9, 1.0),
-    clearance=st.one_of(st.just(0.0), st.floats(-1e3, 1e3)),
+    **{name: values_of(quantity) for name, quantity in STRUCTURE.items()},
     bonded=st.booleans(),
 )
 NUMBERS = st.fixed_dictionaries(

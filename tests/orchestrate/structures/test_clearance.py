@@ -1,34 +1,10 @@
-"""A structure's clearance: constructors, files, the state at rest, and who does not know it yet."""
+"""A structure's clearance: the state at rest, and answers through the FMU."""
 
 import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate import InputError, Structure
-
-
-def test_every_constructor_takes_a_clearance():
-    halves = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0}
-    bonded = {"mass": 2.0, "f": 50.0, "thicknesses": (3.0, 2.0)}
-    made = [
-        Structure(clearance=-2e-5),
-        Structure.nondimensional(clearance=-2e-5),
-        Structure.from_halves(**halves, clearance=-2e-5),
-        Structure.from_bonded(**bonded, clearance=-2e-5),
-        Structure().replace(clearance=-2e-5),
-    ]
-    for structure in made:
-        assert structure.clearance == structure.parameters()["clearance"] == -2e-5
-        assert structure.get("clearance") == -2e-5
-        assert "clearance-2e-05" in structure.label()
-    assert "clearance" not in Structure().label()
-    assert Structure().clearance == 0.0
-
-
-@pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e101, "wide", True])
-def test_a_clearance_out_of_range_is_refused_with_its_range(value):
-    with pytest.raises(InputError, match="clearance = .*: expected"):
-        Structure(clearance=value)
+from orchestrate import Structure
 
 
 def test_preload_and_place_at_rest():
@@ -47,25 +23,6 @@ def test_a_bonded_structure_keeps_and_ignores_it():
     bonded = Structure(clearance=-0.4).as_bonded()
     assert (bonded.clearance, bonded.gap_offset, bonded.preload) == (-0.4, 0.0, 0.0)
     assert bonded.as_delaminated() == Structure(clearance=-0.4)
-
-
-@pytest.mark.parametrize(
-    "keys",
-    [
-        "m1 = 1.0\nm2 = 1.0\nk1 = 1.0\nk2 = 1.2\nd1 = 0.01\nd2 = 0.01",
-        "mu = 1.0\nkappa = 1.2\nD = 0.005",
-        "m1 = 1.0\nm2 = 1.0\nf1_hz = 1.0\nf2_hz = 1.1\nzeta1 = 0.01\nzeta2 = 0.01",
-    ],
-)
-def test_files_have_it_with_all_keys_and_may_leave_it_out(tmp_path, keys):
-    path = tmp_path / "beam.toml"
-    path.write_text(f"[structure]\n{keys}\nclearance = -2e-5\n")
-    assert Structure.from_file(path).clearance == -2e-5
-    path.write_text(f"[structure]\n{keys}\n")
-    assert Structure.from_file(path).clearance == 0.0
-    path.write_text(f"[structure]\n{keys}\nclearance = nan\n")
-    with pytest.raises(InputError, match="structure.clearance = nan m: expected"):
-        Structure.from_file(path)
 
 
 @pytest.mark.parametrize("clearance", [0.3, -0.3])

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from orchestrate.errors import InputError, StoreError
 from orchestrate.structures import SETS, Drive, Excitation, Structure, read, resolve, write
+from orchestrate.structures.ranges import ADDED
 
 from .strategies import DRIVES, EXCITATIONS, STRUCTURES
 
@@ -18,7 +19,7 @@ QUICK = {
         **{"m1": 0.2727272727272727, "m2": 0.2727272727272727},
         **{"k1": 0.2727272727272727, "k2": 0.3272727272727272},
         **{"d1": 0.010909090909090908, "d2": 0.010909090909090908},
-        **{"e": 0.7, "gamma": 0.0001, "clearance": 0.0, "bonded": False},
+        **{"e": 0.7, "gamma": 0.0001, "bonded": False, **dict.fromkeys(ADDED, 0.0)},
     },
     "drive": {
         **{"box_mass": 1.0, "box_stiffness": 0.010000000000000002, "box_damping": 0.01},
@@ -30,7 +31,7 @@ QUICK = {
 BEAM = {
     "structure": {
         **{"m1": 1.5, "m2": 1.5, "k1": 8437.5, "k2": 10125.0, "d1": 1.125, "d2": 1.125},
-        **{"e": 0.7, "gamma": 0.0001, "clearance": 0.0, "bonded": False},
+        **{"e": 0.7, "gamma": 0.0001, "bonded": False, **dict.fromkeys(ADDED, 0.0)},
     },
     "drive": {
         **{"box_mass": 5.5, "box_stiffness": 309.375, "box_damping": 4.125},

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
 from orchestrate.structures import PARAMETERS, Structure
+from orchestrate.structures.ranges import ADDED, STRUCTURE
 from orchestrate.structures.ranges import RATIO_QUANTITIES as RANGES
-from orchestrate.structures.ranges import STRUCTURE
 
 from .strategies import NUMBERS, RATIO, SCALE, SMALL, STRUCTURES
 
@@ -26,7 +26,7 @@ def near(value, expected):
 
 @given(STRUCTURES)
 def test_si_to_numbers_and_back(structure):
-    names = ("mu", "kappa", "D1", "D2", "e", "gamma", "clearance")
+    names = ("mu", "kappa", "D1", "D2", "e", "gamma", *ADDED)
     numbers = {name: structure.get(name) for name in names}
     scale = {"m1": structure.m1, "omega": structure.omega, "bonded": structure.bonded}
     back = Structure.nondimensional(**numbers, **scale)
@@ -54,8 +54,8 @@ def test_the_operations_of_the_paper_s_sweeps():
     """To the last bit what sweeps by the paper's numbers have always given to the FMU."""
     structure = Structure.nondimensional(e=0.3, D=0.013, mu=0.7, kappa=1.3)
     expected = {"m1": 1.0, "m2": 0.7, "k1": 1.0, "k2": 1.3, "d1": 2.0 * 0.013}
-    rest = {"d2": 2.0 * 0.013 * 0.7, "e": 0.3, "gamma": 1e-4, "clearance": 0.0, "bonded": False}
-    assert structure.parameters() == {**expected, **rest}
+    rest = {"d2": 2.0 * 0.013 * 0.7, "e": 0.3, "gamma": 1e-4, "bonded": False}
+    assert structure.parameters() == {**expected, **rest, **dict.fromkeys(ADDED, 0.0)}
 
 
 def test_the_formulas_of_the_paper():
