@@ -42,7 +42,7 @@ def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
     try:
         with os.fdopen(handle, "wb") as stream, zipfile.ZipFile(stream, "w") as archive:
             for entry in sorted(files, key=lambda n: (n != "modelDescription.xml", n)):
-                archive.writestr(information(entry), files[entry])
+                archive.writestr(archive_entry(entry), files[entry])
         temporary.chmod(0o644)
         temporary.replace(path)
     except BaseException:
@@ -50,7 +50,7 @@ def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
         raise
 
 
-def information(name: str) -> zipfile.ZipInfo:
+def archive_entry(name: str) -> zipfile.ZipInfo:
     """An entry of the archive that tells nothing of when and where it was made."""
     entry = zipfile.ZipInfo(name, EPOCH)
     entry.compress_type = zipfile.ZIP_DEFLATED

@@ -12,7 +12,7 @@ from .archive import guid_of
 from .compiler import link
 from .errors import CannotExport
 from .platforms import PLATFORMS
-from .sources import closure
+from .sources import import_closure
 
 
 def guid(source: Path) -> str:
@@ -23,7 +23,7 @@ def guid(source: Path) -> str:
     source : Path
         The C file.
     """
-    return guid_of({**closure("export/c_library.py"), source.name: source.read_bytes()})
+    return guid_of({**import_closure("export/c_library.py"), source.name: source.read_bytes()})
 
 
 def export(source: Path, platform: str) -> bytes:

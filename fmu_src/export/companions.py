@@ -9,7 +9,7 @@ from __future__ import annotations
 from xml.etree import ElementTree as ET
 
 from ..runtime.table import Model
-from .description import text
+from .description_common import xml_bytes
 from .sources import ROOT, Files
 
 MANIFEST = "http://fmi-standard.org/fmi-ls-manifest"
@@ -37,18 +37,18 @@ def companions(model: Model) -> Files:
     """
     licence = (ROOT / "models" / "license.txt").read_bytes()
     return {
-        "terminalsAndIcons/terminalsAndIcons.xml": terminals(model),
+        "terminalsAndIcons/terminalsAndIcons.xml": terminals_xml(model),
         "documentation/licenses/license.txt": licence,
-        REFERENCES: references(model),
+        REFERENCES: references_manifest(model),
     }
 
 
-def icon_place(version: str) -> str:
+def icon_path(version: str) -> str:
     """Where tools look for the icon."""
     return "terminalsAndIcons/icon.png" if version == "fmi3" else "model.png"
 
 
-def terminals(model: Model) -> bytes:
+def terminals_xml(model: Model) -> bytes:
     """Variables to be connected together: by their names within the terminal."""
     root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     if model.terminals:
@@ -60,10 +60,10 @@ def terminals(model: Model) -> bytes:
         for member, variable in terminal.members.items():
             named = {"variableName": variable, "memberName": member, "variableKind": "signal"}
             ET.SubElement(element, "TerminalMemberVariable", named)
-    return text(root)
+    return xml_bytes(root)
 
 
-def references(model: Model) -> bytes:
+def references_manifest(model: Model) -> bytes:
     """The manifest of FMI-LS-REF."""
     ET.register_namespace("fmi-ls", MANIFEST)
     root = ET.Element("fmiReferences", {f"{{{MANIFEST}}}{k}": v for k, v in LS_REF.items()})
@@ -71,4 +71,4 @@ def references(model: Model) -> bytes:
         source = f"../../documentation/{place.format(name=model.name)}"
         attributes = {"type": kind, "source": source, "role": role, "description": description}
         ET.SubElement(root, "Related", attributes)
-    return text(root)
+    return xml_bytes(root)

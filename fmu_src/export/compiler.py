@@ -48,7 +48,7 @@ WINDOWS_FLAGS = ("-U__CRT__NO_INLINE",)  # its headers' isnan and isfinite, inli
 
 
 @functools.cache
-def say_once(line: str) -> None:
+def warn_once(line: str) -> None:
     """Warn, however many FMUs the line is about."""
     log.warning("%s", line)
 
@@ -151,11 +151,11 @@ def kernel_object(name: str, source: bytes) -> bytes:
     CannotExport
         Where there is no compiler, or it fails.
     """
-    return object_of((*compile_command(name), "kernel.c", "-o", "kernel.o"), source, name)
+    return compile_object((*compile_command(name), "kernel.c", "-o", "kernel.o"), source, name)
 
 
 @functools.cache
-def object_of(command: tuple[str, ...], source: bytes, what: str) -> bytes:
+def compile_object(command: tuple[str, ...], source: bytes, what: str) -> bytes:
     """What a command makes of ``kernel.c``."""
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as folder:
         (Path(folder) / "kernel.c").write_bytes(source)
@@ -242,5 +242,5 @@ def link_all(
     if not made:
         raise reasons[0]
     for left_out in reasons:
-        say_once(f"the FMUs will have binaries for {', '.join(made)} alone: {left_out}")
+        warn_once(f"the FMUs will have binaries for {', '.join(made)} alone: {left_out}")
     return made

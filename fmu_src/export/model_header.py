@@ -6,7 +6,7 @@ import math
 
 from ..runtime.table import Model, Variable
 from . import self_test
-from .description import LOG_CATEGORIES
+from .description_common import LOG_CATEGORIES
 from .description_fmi3 import ARRAY_BASE, CLOCK_REFERENCE
 
 TYPES = """\
@@ -55,7 +55,7 @@ def c_variable(variable: Variable, model: Model) -> str:
     return "    {" + ", ".join(cells) + "},"
 
 
-def definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
+def shim_definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
     """What the shim knows of the model by name."""
     inputs = [
         f"orders 1 to {v.input_derivatives} of {v.name}"
@@ -100,8 +100,8 @@ def model_header(model: Model, token: str, digest: str) -> bytes:
     known = {
         "MODEL_TOKEN": c_string(token),
         "STATE_MAGIC": c_string(f"vibroimpact state {digest}"),
-        **definitions(model, slots),
-        **self_test.definitions(model),
+        **shim_definitions(model, slots),
+        **self_test.self_test_definitions(model),
     }
     arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]
     lines = [

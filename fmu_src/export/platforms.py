@@ -105,7 +105,7 @@ def chosen(wanted: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in ALL if name in names)
 
 
-def universal(slices: Iterable[bytes]) -> bytes:
+def universal_binary(slices: Iterable[bytes]) -> bytes:
     """A macOS library for several processors, of one for each."""
     libraries = list(slices)
     offset, header, body = 1 << FAT_ALIGNMENT, b"", b""
@@ -118,7 +118,7 @@ def universal(slices: Iterable[bytes]) -> bytes:
     return head.ljust(1 << FAT_ALIGNMENT, b"\0") + body
 
 
-def binaries(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, bytes]:
+def binary_files(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, bytes]:
     """Files of ``binaries/``.
 
     FMI 2.0 names ``darwin64``, from before there were other processors: tools on both load what
@@ -139,5 +139,5 @@ def binaries(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, by
         files[f"binaries/{of.folders[version]}/{name}{of.suffix}"] = library
     apple = [library for platform, library in made.items() if platform.endswith("-darwin")]
     if version == "fmi2" and apple:
-        files[f"binaries/darwin64/{name}.dylib"] = universal(apple)
+        files[f"binaries/darwin64/{name}.dylib"] = universal_binary(apple)
     return files

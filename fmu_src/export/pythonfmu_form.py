@@ -19,14 +19,23 @@ from pathlib import Path
 from ..runtime.compiled import LIBRARIES
 from ..runtime.table import Model
 from .archive import fingerprint, guid_of, write_archive
-from .compiler import link_all, own_compiler, say_once
+from .compiler import link_all, own_compiler, warn_once
 from .description_fmi2 import PYTHON, fmi2_xml
 from .documentation import documentation_files
 from .errors import EXTRA, CannotExport, require
 from .platforms import PLATFORMS, this_machine
 from .self_test import has_right_bits
 from .source_code import kernel_source
-from .sources import ROOT, Files, check_unedited, closure, exporters, load, read, texts
+from .sources import (
+    ROOT,
+    Files,
+    check_unedited,
+    exporter_files,
+    import_closure,
+    load_model,
+    read_sources,
+    text_files,
+)
 
 PYTHONFMU = "0.7.0"  # the slave works around what this version does, see there
 SCRIPT = "runtime/script.py.in"
@@ -34,19 +43,19 @@ SCRIPT = "runtime/script.py.in"
 
 def embedded_sources(folder: str) -> Files:
     """Files of the embedded package, by their path in it."""
-    return closure(f"models/{folder}/model.py", "runtime/slave.py")
+    return import_closure(f"models/{folder}/model.py", "runtime/slave.py")
 
 
 def source_digest(folder: str) -> str:
     """Fingerprint of all that runs in the FMU; the GUID is made of it."""
-    more = {**read(SCRIPT), "pythonfmu": PYTHONFMU.encode()}
+    more = {**read_sources(SCRIPT), "pythonfmu": PYTHONFMU.encode()}
     return fingerprint({**embedded_sources(folder), **more})
 
 
 def guid(folder: str) -> str:
     """The GUID an FMU of the present sources bears; it is told without pythonfmu."""
     sources = {"sources": source_digest(folder).encode()}
-    return guid_of({**exporters("export/pythonfmu_form.py"), **texts(folder), **sources})
+    return guid_of({**exporter_files("export/pythonfmu_form.py"), **text_files(folder), **sources})
 
 
 def check_pythonfmu() -> None:
@@ -77,7 +86,7 @@ def export(folder: str, target: Path) -> Path:
         Where pythonfmu is missing, or is another version, or a source was edited meanwhile.
     """
     check_pythonfmu()
-    model, digest = load(folder), source_digest(folder)
+    model, digest = load_model(folder), source_digest(folder)
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
         script, package = write_sources(Path(scratch), folder, digest)
         for name, library in libraries(folder, model).items():
@@ -93,7 +102,7 @@ def export(folder: str, target: Path) -> Path:
 
 def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
     """Write what pythonfmu puts together; returns script and package."""
-    model = load(folder)
+    model = load_model(folder)
     package = scratch / "source" / f"fmu_{digest[:12]}"
     for name, content in embedded_sources(folder).items():
         (package / name).parent.mkdir(parents=True, exist_ok=True)
@@ -116,7 +125,7 @@ def libraries(folder: str, model: Model) -> Files:
         made = link_all(platforms, "kernel", kernel_source(folder), {"library.c": entry})
         check_bits(model, made)
     except CannotExport as reason:
-        say_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")
+        warn_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")
         return {}
     return {library: made[name] for name, library in LIBRARIES.values() if name in made}
 

@@ -79,7 +79,7 @@ def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> 
     return total
 
 
-def definitions(model: Model) -> dict[str, str]:
+def self_test_definitions(model: Model) -> dict[str, str]:
     """What the C of the self-test knows by name."""
     return {
         "SELF_TEST_STEPS": str(STEPS),

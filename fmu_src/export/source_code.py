@@ -5,8 +5,8 @@ from __future__ import annotations
 import functools
 from xml.etree import ElementTree as ET
 
-from . import description
-from .sources import Files, load
+from . import description_common
+from .sources import Files, load_model
 from .translation.kernel import translate
 
 OPTIONS = (
@@ -45,10 +45,10 @@ def kernel_source(folder: str) -> bytes:
     CannotExport
         Where a line of it cannot be translated.
     """
-    return translate(load(folder).entries).encode()
+    return translate(load_model(folder).entries).encode()
 
 
-def units(files: Files) -> list[str]:
+def compiled_files(files: Files) -> list[str]:
     """The files that are compiled, in a fixed order."""
     return sorted(name for name in files if name.endswith(".c"))
 
@@ -65,10 +65,10 @@ def source_files(name: str, version: str, files: Files) -> Files:
     files : dict of str to bytes
         C files and headers.
     """
-    cmake = CMAKE.format(name=name, units=" ".join(units(files)), options=OPTIONS)
+    cmake = CMAKE.format(name=name, units=" ".join(compiled_files(files)), options=OPTIONS)
     inside = {**files, "CMakeLists.txt": cmake.encode()}
     if version == "fmi3":
-        inside["buildDescription.xml"] = build_description(name, units(files))
+        inside["buildDescription.xml"] = build_description(name, compiled_files(files))
     return {f"sources/{file}": content for file, content in inside.items()}
 
 
@@ -80,4 +80,4 @@ def build_description(name: str, sources: list[str]) -> bytes:
     several = ET.SubElement(configuration, "SourceFileSet", attributes)
     for source in sources:
         ET.SubElement(several, "SourceFile", name=source)
-    return description.text(root)
+    return description_common.xml_bytes(root)

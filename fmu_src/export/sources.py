@@ -19,19 +19,19 @@ AT_IMPORT = read_folder(ROOT)  # what this process runs, since it imports the re
 parsing = threading.Lock()  # Python 3.11 mixes up syntax trees of two threads
 
 
-def load(folder: str) -> Model:
+def load_model(folder: str) -> Model:
     """The model in a folder below ``fmu_src/models``."""
     model = import_module(f"{ROOT.name}.models.{folder}.model").MODEL
     assert isinstance(model, Model)
     return model
 
 
-def read(*names: str) -> Files:
+def read_sources(*names: str) -> Files:
     """Files below ``fmu_src``, by name."""
     return {name: (ROOT / name).read_bytes() for name in names}
 
 
-def closure(*names: str) -> Files:
+def import_closure(*names: str) -> Files:
     """Modules and all that they import from ``fmu_src``, the packages they lie in included.
 
     Parameters
@@ -49,13 +49,13 @@ def closure(*names: str) -> Files:
     while waiting:
         name = waiting.pop()
         if name not in found:
-            found.update(read(name))
-            waiting += imported(name, found[name])
+            found.update(read_sources(name))
+            waiting += imported_files(name, found[name])
     return found
 
 
 @functools.cache
-def imported(name: str, source: bytes) -> tuple[str, ...]:
+def imported_files(name: str, source: bytes) -> tuple[str, ...]:
     """Files below ``fmu_src`` that run when a module is imported or its functions are."""
     package = name.split("/")[:-1]
     found = ["/".join([*package[:depth], "__init__.py"]) for depth in range(len(package) + 1)]
@@ -92,7 +92,7 @@ def module_file(*parts: str) -> str:
 
 def model_sources(folder: str) -> Files:
     """Variable table, texts and kernel of a model: all that decides its numbers."""
-    return closure(f"models/{folder}/model.py")
+    return import_closure(f"models/{folder}/model.py")
 
 
 def model_digest(folder: str) -> str:
@@ -100,13 +100,13 @@ def model_digest(folder: str) -> str:
     return fingerprint(model_sources(folder))
 
 
-def texts(folder: str) -> Files:
+def text_files(folder: str) -> Files:
     """What people read in a model's FMU: page, pictures, reference results, licence."""
     shared = ROOT / "models"
     names = [path.name for path in sorted(shared.iterdir()) if path.suffix in (".in", ".txt")]
     found = read_folder(shared / folder, f"models/{folder}/")
     own = {name: content for name, content in found.items() if not name.endswith(".py")}
-    return {**own, **read(*(f"models/{name}" for name in names))}
+    return {**own, **read_sources(*(f"models/{name}" for name in names))}
 
 
 def check_unedited() -> None:
@@ -127,6 +127,6 @@ def check_unedited() -> None:
         raise CannotExport(f"{place} was edited since this process began: expected a new process")
 
 
-def exporters(name: str) -> Files:
+def exporter_files(name: str) -> Files:
     """Files of an exporter: a change of theirs makes another FMU too."""
-    return {**closure(name), **read_folder(ROOT / "runtime" / "native", "runtime/native/")}
+    return {**import_closure(name), **read_folder(ROOT / "runtime" / "native", "runtime/native/")}

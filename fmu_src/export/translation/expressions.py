@@ -13,7 +13,7 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from ..errors import CannotExport
-from .subset import named, origin, writes_memory
+from .subset import origin, resolve_name, writes_memory
 from .values import (
     AND,
     ATOM,
@@ -113,12 +113,12 @@ class Expressions(ABC):
             ast.Constant: self.literal,
             ast.Name: self.read,
             ast.Attribute: self.read,
-            ast.Subscript: self.part,
+            ast.Subscript: self.subscript,
             ast.BinOp: self.operation,
             ast.UnaryOp: self.unary,
-            ast.BoolOp: self.junction,
+            ast.BoolOp: self.boolean_operation,
             ast.Compare: self.comparison,
-            ast.IfExp: self.choice,
+            ast.IfExp: self.conditional_expression,
             ast.Call: self.call,
             ast.Tuple: lambda node: self.grouped(self.operands(node.elts)),
         }
@@ -148,16 +148,16 @@ class Expressions(ABC):
     def resolved(self, node: ast.expr) -> tuple[object, ModuleType, str]:
         """What a name stands for, and the module and name that it was defined under."""
         name = ast.unparse(node)
-        thing = named(self.module, name)
+        thing = resolve_name(self.module, name)
         if thing is None:
             raise self.refuse(node, f"{name} is not known here", "a variable or a constant")
         if isinstance(node, ast.Attribute):
-            module = named(self.module, ast.unparse(node.value))
+            module = resolve_name(self.module, ast.unparse(node.value))
             assert isinstance(module, ModuleType)
             return thing, *origin(module, node.attr)
         return thing, *origin(self.module, name)
 
-    def part(self, node: ast.Subscript) -> Value:
+    def subscript(self, node: ast.Subscript) -> Value:
         """A slot of the memory; a part of a tuple, or several."""
         whole = self.expression(node.value)
         if whole.type == MEMORY:
@@ -210,7 +210,7 @@ class Expressions(ABC):
             raise self.refuse(node, ast.unparse(node), "a comparison")
         return value
 
-    def junction(self, node: ast.BoolOp) -> Value:
+    def boolean_operation(self, node: ast.BoolOp) -> Value:
         """``a and b``, ``a or b``."""
         sign, rank = ("&&", AND) if isinstance(node.op, ast.And) else ("||", OR)
         first, *others = node.values
@@ -233,7 +233,7 @@ class Expressions(ABC):
             return pairs[0]
         return Value(" && ".join(pair.text for pair in pairs), TRUTH, AND)
 
-    def choice(self, node: ast.IfExp) -> Value:
+    def conditional_expression(self, node: ast.IfExp) -> Value:
         """``a if b else c``."""
         test = self.truth(node.test)
         one, other = self.conditional([node.body, node.orelse], self.expression)
@@ -313,7 +313,7 @@ class Expressions(ABC):
     def may_write(self, node: ast.expr) -> bool:
         """Whether evaluating an expression may change the memory."""
         calls = [part.func for part in ast.walk(node) if isinstance(part, ast.Call)]
-        things = [named(self.module, ast.unparse(function)) for function in calls]
+        things = [resolve_name(self.module, ast.unparse(function)) for function in calls]
         return any(isinstance(thing, FunctionType) and writes_memory(thing) for thing in things)
 
 

@@ -15,7 +15,16 @@ from typing import Any, Protocol
 
 from ..errors import CannotExport
 from .expressions import OPERATORS, Expressions, in_c, is_simple
-from .subset import Block, assigned_in, comments_of, depends, may_declare, names_in, owners, parsed
+from .subset import (
+    Block,
+    assigned_in,
+    comments_of,
+    may_declare,
+    names_in,
+    needs_temporaries,
+    owner_blocks,
+    parse_function,
+)
 from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Value, common_type
 
 WIDTH = 100
@@ -83,7 +92,7 @@ class Body(Expressions):
     def __init__(self, kernel: Kernel, unit: Unit) -> None:
         self.kernel, self.unit = kernel, unit
         self.module = sys.modules[unit.function.__module__]
-        self.tree, self.first, source = parsed(unit.function)
+        self.tree, self.first, source = parse_function(unit.function)
         self.comments = comments_of(source)
         self.parameters = [argument.arg for argument in self.tree.args.args]
         if len(self.parameters) != len(unit.kinds):
@@ -95,9 +104,9 @@ class Body(Expressions):
         self.hints = {line: text for line, text in self.comments.items() if text in known}
         for line in self.hints:
             del self.comments[line]
-        self.begin()
+        self.reset()
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """Nothing has been written."""
         self.lines: list[str] = []
         self.declared, self.count_of_kept, self.depth = set(self.parameters), 0, 1
@@ -108,16 +117,16 @@ class Body(Expressions):
         known: dict[str, Type] = {}
         while known != self.types:  # a variable may turn out to be real after its first use
             known, self.results = dict(self.types), []
-            self.begin()
+            self.reset()
             self.block(body)
         self.unit.result = common_type(self.results) if self.results else NOTHING
         self.is_final = True
-        self.begin()
+        self.reset()
         self.declare_first(body)
         self.block(body)
-        self.unit.text = "\n".join([*self.head(), "{", *self.lines, "}"])
+        self.unit.text = "\n".join([*self.definition_head(), "{", *self.lines, "}"])
 
-    def head(self) -> list[str]:
+    def definition_head(self) -> list[str]:
         """What the function is for, in the words of its docstring, and its declaration."""
         summary = " ".join((ast.get_docstring(self.tree) or "").partition("\n\n")[0].split())
         comment = f"/* {summary.replace('``', '').replace(':func:', '').replace('`', '')} */"
@@ -179,7 +188,7 @@ class Body(Expressions):
                     self.line(f"/* {self.comments.pop(line)} */")
             self.statement(statement)
 
-    def inner(self, statements: Block) -> None:
+    def inner_block(self, statements: Block) -> None:
         """A block inside another."""
         self.depth += 1
         self.block(statements)
@@ -191,7 +200,7 @@ class Body(Expressions):
         for name in [name for name in self.parameters if name not in used]:
             self.line(f"(void){in_c(name)};")
         several: dict[Type, list[str]] = {}
-        for name, owner in owners(body).items():
+        for name, owner in owner_blocks(body).items():
             first = next(statement for statement in owner if name in names_in(statement))
             if name not in self.declared and not may_declare(first, name):
                 self.declared.add(name)
@@ -206,12 +215,12 @@ class Body(Expressions):
         """One statement."""
         known: Mapping[type, Callable[[Any], None]] = {
             ast.Assign: self.assign,
-            ast.AugAssign: self.change,
+            ast.AugAssign: self.augmented_assignment,
             ast.Expr: self.call_alone,
-            ast.Return: self.give,
-            ast.If: self.decide,
-            ast.For: self.count,
-            ast.While: self.repeat,
+            ast.Return: self.return_statement,
+            ast.If: self.if_statement,
+            ast.For: self.for_loop,
+            ast.While: self.while_loop,
             ast.Break: lambda node: self.line("break;"),
         }
         if type(node) not in known:
@@ -237,7 +246,7 @@ class Body(Expressions):
         """A tuple's parts to several names or slots."""
         if isinstance(source, ast.Tuple):
             parts = self.operands(source.elts)
-            if depends(targets, source.elts):
+            if needs_temporaries(targets, source.elts):
                 parts = [self.keep(part) for part in parts]
         else:
             whole = self.expression(source)
@@ -253,7 +262,7 @@ class Body(Expressions):
     def set(self, target: ast.expr, value: Value) -> None:
         """A value into a variable or a slot."""
         if isinstance(target, ast.Subscript):
-            self.line(f"{self.part(target).text} = {value.converted(REAL).text};")
+            self.line(f"{self.subscript(target).text} = {value.converted(REAL).text};")
             return
         if not isinstance(target, ast.Name):
             raise self.refuse(target, ast.unparse(target), "a name or a slot of the memory")
@@ -265,7 +274,7 @@ class Body(Expressions):
         self.declared.add(name)
         self.line(f"{declaration}{in_c(name)} = {value.converted(kind).text};")
 
-    def change(self, node: ast.AugAssign) -> None:
+    def augmented_assignment(self, node: ast.AugAssign) -> None:
         """``a += b``."""
         if type(node.op) not in OPERATORS:
             raise self.refuse(node, ast.unparse(node), "+=, -=, *= or /=")
@@ -286,7 +295,7 @@ class Body(Expressions):
             raise self.refuse(node, ast.unparse(node), "a call")
         self.line(f"{self.expression(node.value).text};")
 
-    def give(self, node: ast.Return) -> None:
+    def return_statement(self, node: ast.Return) -> None:
         """``return``, with or without a value."""
         if node.value is None:
             self.results.append(NOTHING)
@@ -297,7 +306,7 @@ class Body(Expressions):
         kind = self.unit.result if self.is_final else value.type
         self.line(f"return {value.converted(kind).text};")
 
-    def decide(self, node: ast.If) -> None:
+    def if_statement(self, node: ast.If) -> None:
         """``if``, ``elif`` and ``else``, with what a comment says of the test."""
         hint, test, before = (
             self.hints.get(node.lineno, ""),
@@ -306,15 +315,15 @@ class Body(Expressions):
         )
         self.line(f"if ({HINTS[hint]}({test})) {{" if hint else f"if ({test}) {{")
         self.is_rare = before or hint == "rarely"
-        self.inner(node.body)
+        self.inner_block(node.body)
         self.is_rare = before or hint == "usually"
         if node.orelse:
             self.line("} else {")
-            self.inner(node.orelse)
+            self.inner_block(node.orelse)
         self.line("}")
         self.is_rare = before
 
-    def count(self, node: ast.For) -> None:
+    def for_loop(self, node: ast.For) -> None:
         """``for i in range(...)``."""
         loop, target = node.iter, node.target
         is_range = isinstance(loop, ast.Call) and ast.unparse(loop.func) == "range"
@@ -335,15 +344,15 @@ class Body(Expressions):
         before = set(self.declared)
         self.declared.add(target.id)
         self.line(f"for ({declaration}{name} = {first.text}; {while_in}; {further}) {{")
-        self.inner(node.body)
+        self.inner_block(node.body)
         self.line("}")
         self.declared = before
 
-    def repeat(self, node: ast.While) -> None:
+    def while_loop(self, node: ast.While) -> None:
         """``while``."""
         (test,) = self.conditional([node.test], self.truth)
         self.line(f"while ({test.text}) {{")
-        self.inner(node.body)
+        self.inner_block(node.body)
         self.line("}")
 
 

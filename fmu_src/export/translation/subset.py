@@ -16,7 +16,7 @@ Block = list[ast.stmt]
 
 
 @functools.cache
-def parsed(function: FunctionType) -> tuple[ast.FunctionDef, int, str]:
+def parse_function(function: FunctionType) -> tuple[ast.FunctionDef, int, str]:
     """A function's syntax tree, its first line in its file, and its source."""
     lines, first = inspect.getsourcelines(function)
     source = textwrap.dedent("".join(lines))
@@ -35,17 +35,17 @@ def comments_of(source: str) -> dict[int, str]:
 @functools.cache
 def writes_memory(function: FunctionType) -> bool:
     """Whether a function assigns to a slot, or calls a function that does."""
-    tree, _, _ = parsed(function)
+    tree, _, _ = parse_function(function)
     nodes = list(ast.walk(tree))
     if any(isinstance(n, ast.Subscript) and isinstance(n.ctx, ast.Store) for n in nodes):
         return True
     module = sys.modules[function.__module__]
-    called = [named(module, ast.unparse(n.func)) for n in nodes if isinstance(n, ast.Call)]
+    called = [resolve_name(module, ast.unparse(n.func)) for n in nodes if isinstance(n, ast.Call)]
     others = [thing for thing in called if isinstance(thing, FunctionType) and thing != function]
     return any(writes_memory(other) for other in others)
 
 
-def named(module: ModuleType, name: str) -> object:
+def resolve_name(module: ModuleType, name: str) -> object:
     """What a dotted name stands for in a module; None where it stands for nothing."""
     thing: object = module
     for part in name.split("."):
@@ -113,7 +113,7 @@ def inner_blocks(statement: ast.stmt) -> list[Block]:
     return [block for block in blocks if block]
 
 
-def owners(body: Block) -> dict[str, Block]:
+def owner_blocks(body: Block) -> dict[str, Block]:
     """The innermost block that holds all uses of each variable that is assigned somewhere."""
     paths: dict[str, list[list[Block]]] = {}
     assigned: set[str] = set()
@@ -130,10 +130,10 @@ def owners(body: Block) -> dict[str, Block]:
                 visit(part, [*path, block])
 
     visit(body, [])
-    return {name: shared(paths[name]) for name in sorted(assigned - {"_"})}
+    return {name: innermost_shared_block(paths[name]) for name in sorted(assigned - {"_"})}
 
 
-def shared(paths: Sequence[list[Block]]) -> Block:
+def innermost_shared_block(paths: Sequence[list[Block]]) -> Block:
     """The last block that all paths go through."""
     last = paths[0][0]
     for blocks in zip(*paths, strict=False):
@@ -143,7 +143,7 @@ def shared(paths: Sequence[list[Block]]) -> Block:
     return last
 
 
-def depends(targets: Sequence[ast.expr], values: Sequence[ast.expr]) -> bool:
+def needs_temporaries(targets: Sequence[ast.expr], values: Sequence[ast.expr]) -> bool:
     """Whether a value uses what a target before it is assigned: then all are kept first."""
     for place, target in enumerate(targets):
         for later in values[place + 1 :]:

@@ -13,7 +13,7 @@ ROUNDING = 1e-14
 HIGHEST = 5
 
 
-def contact_force(m, x, v):
+def gap_acceleration(m, x, v):
     """The f of (18): the gap's acceleration at displacement ``x`` of both masses from where they
     rest together, and common velocity ``v``.
     """
@@ -44,7 +44,7 @@ def forcing_derivative(m, order, sine, cosine, cubic):
     return value + part, abs(size) + abs(part)
 
 
-def first_derivative(m, x, v, lowest):
+def first_nonzero_derivative(m, x, v, lowest):
     """First derivative of f, from order ``lowest`` on, that does not vanish from (x, v) on.
 
     Returns
@@ -56,8 +56,8 @@ def first_derivative(m, x, v, lowest):
     """
     sine, cosine = m[at.SINE], m[at.COSINE]
     cubic = cubic_at(m, m[at.CUBIC_AGE])
-    twice = 2.0 * m[at.BRANCH_3 + at.DAMPING]
-    square = m[at.BRANCH_3 + at.OMEGA_SQUARED]
+    twice = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING]
+    square = m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
     low, low_size, high, high_size = x, abs(x), v, abs(v)
     for order in range(HIGHEST + 1):
         if order >= lowest:

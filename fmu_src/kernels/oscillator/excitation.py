@@ -46,9 +46,9 @@ def begin_segment(m):
     m[at.FORCING] = m[at.BOX_AMPLITUDE] * eta * eta
     set_grid(m)
     set_secular(m)
-    set_harmonic(m, at.BRANCH_1, at.HARMONIC_1)
-    set_harmonic(m, at.BRANCH_2, at.HARMONIC_2)
-    set_harmonic(m, at.BRANCH_3, at.HARMONIC_3)
+    set_harmonic(m, at.OSCILLATOR_1, at.HARMONIC_1)
+    set_harmonic(m, at.OSCILLATOR_2, at.HARMONIC_2)
+    set_harmonic(m, at.OSCILLATOR_3, at.HARMONIC_3)
 
 
 def begin_cubic(m):

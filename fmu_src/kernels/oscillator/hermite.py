@@ -17,7 +17,7 @@ SAFETY = (
 )  # how far before the lower quintic's root the clear part is taken to end
 
 
-def coefficients(m, l0, l1, l2, r0, r1, r2, low):
+def bernstein_coefficients(m, l0, l1, l2, r0, r1, r2, low):
     """The six Bernstein coefficients of the quintic from values and derivatives at both ends,
     lowered by ``low``.
     """
@@ -30,7 +30,7 @@ def coefficients(m, l0, l1, l2, r0, r1, r2, low):
 
 def present_coefficients(m, low):
     """Those of the present interval."""
-    return coefficients(
+    return bernstein_coefficients(
         m,
         m[at.LEFT_VALUES],
         m[at.LEFT_VALUES + 1],
@@ -58,7 +58,7 @@ def lowest_before(m, h0, h1, h2, low):
     return min(h0 - fifth, b3)
 
 
-def is_positive(b0, b1, b2, b3, b4, b5):
+def has_no_root(b0, b1, b2, b3, b4, b5):
     """Whether a quintic with these coefficients has no root, but perhaps the interval's start."""
     return min(min(b0, b1), min(b2, b3), b4) >= 0.0 and b5 > 0.0
 
@@ -99,11 +99,11 @@ def clear_part(b0, b1, b2, b3, b4, b5):
     """
     s = 0.5
     if b5 < 0.0:
-        s = crossing(b0, b1, b2, b3, b4, b5)
+        s = last_crossing(b0, b1, b2, b3, b4, b5)
     return s if 0.0 < s < 1.0 and part_is_clear(b0, b1, b2, b3, b4, b5, s) else 0.0
 
 
-def crossing(b0, b1, b2, b3, b4, b5):
+def last_crossing(b0, b1, b2, b3, b4, b5):
     """Slightly before the last root of a quintic that is negative at 1; 0 where none is seen."""
     a1, a2 = 5.0 * (b1 - b0), 10.0 * ((b2 - b1) - (b1 - b0))
     a3 = 10.0 * ((b3 - b0) - 3.0 * (b2 - b1))

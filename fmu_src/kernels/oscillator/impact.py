@@ -14,14 +14,14 @@ def common_velocity(m, v1, v2):
     return (v1 + m[at.MU] * v2) * m[at.SHARE]
 
 
-def coefficient(m, closing):
+def restitution_coefficient(m, closing):
     """Coefficient of restitution at a closing velocity (m per unit of tau): e itself, to the last
     bit, where it is constant.
     """
     return m[at.E] / (1.0 + m[at.E_SLOPE] * (closing * m[at.OMEGA]))
 
 
-def restitution(m, v1, v2, e):
+def velocities_after_impact(m, v1, v2, e):
     """Velocities after an impact, (15): momentum kept, gap velocity times -e.
 
     With ``(1+e)/(1+mu)`` in its second line.
@@ -31,7 +31,7 @@ def restitution(m, v1, v2, e):
     return common - m[at.MU] * part, common + part
 
 
-def sticks(m, separation, force):
+def chattering_ends(m, separation, force):
     """Whether chattering ends here, (17) without a velocity scale.
 
     The masses are pressed together by ``force`` (18) < 0 and would part with the velocity

@@ -93,9 +93,9 @@ DRIFT = inside()  # nu_i - eta
 OWN_RATE = inside()  # at least every rate of change of its motion
 STEP_GROWTH = inside(4)  # the amplitude one spacing later, and its rate of change
 GROWTH_SIZE = inside.used - DRIVEN
-BRANCH_1 = slot(inside.used)
-BRANCH_2 = slot(inside.used)
-BRANCH_3 = slot(inside.used)
+OSCILLATOR_1 = slot(inside.used)
+OSCILLATOR_2 = slot(inside.used)
+OSCILLATOR_3 = slot(inside.used)
 
 # -- excitation of the present segment (until an input changes) ------------------------------------
 ETA = slot()  # (2)

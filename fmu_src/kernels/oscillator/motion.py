@@ -13,22 +13,28 @@ digits.
 
 from ..numerics.elementary import fraction, sincos_turns
 from . import memory as at
-from .contact import contact_force, first_derivative
+from .contact import first_nonzero_derivative, gap_acceleration
 from .event_function import (
     begin_nodes,
-    bounds,
+    derivative_bounds,
     evaluate,
     is_constant,
-    set_contact_force,
-    set_gap,
-    set_values,
+    set_contact_event_function,
+    set_flight_event_function,
+    set_node_values,
 )
 from .excitation import cubic_at, set_cubic_response
-from .impact import coefficient, common_velocity, count_impact, restitution, sticks
+from .impact import (
+    chattering_ends,
+    common_velocity,
+    count_impact,
+    restitution_coefficient,
+    velocities_after_impact,
+)
 from .nodes import BLOCK, phasors_at
 from .response import displacement, set_free
-from .roots import INFINITE, accuracy, clear_from_node, step_from
-from .series import series_order, set_series, short_flight, taylor
+from .roots import INFINITE, clear_from_node, clear_step_or_root, root_accuracy
+from .series import required_order, set_series, short_flight_duration, taylor_value
 
 BRIEF = 1e-6  # of a radian of the fastest change: four terms of a Taylor series are exact
 FAINTEST = 2e-292  # m, about 2 to the -969: the last digits of less are below the normal numbers
@@ -46,11 +52,11 @@ def state_at(m, tau):
         # exactly what the state began with: a start from rest is at rest
         return m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
     if m[at.SERIES] != 0.0:
-        x1, v1 = taylor(m, at.SERIES_X, tau), taylor(m, at.SERIES_X + 2, tau)
-        gap, slope = taylor(m, at.SERIES_GAP, tau), taylor(m, at.SERIES_GAP + 2, tau)
+        x1, v1 = taylor_value(m, at.SERIES_X, tau), taylor_value(m, at.SERIES_X + 2, tau)
+        gap, slope = taylor_value(m, at.SERIES_GAP, tau), taylor_value(m, at.SERIES_GAP + 2, tau)
         return x1, v1, x1 + gap if gap > 0.0 else x1, v1 + slope
     x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
-    return moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
+    return state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
 
 
 def state_at_end(m):
@@ -61,7 +67,7 @@ def state_at_end(m):
     if m[at.AT_END_NODE] == 0.0:
         return state_at(m, m[at.END])
     p = at.AT_END
-    return moved(m, m[at.END], m[p], m[p + 1], m[p + 2], m[p + 3], m[p + 4], m[p + 5])
+    return state_from_phasors(m, m[at.END], m[p], m[p + 1], m[p + 2], m[p + 3], m[p + 4], m[p + 5])
 
 
 def brief_contact(m, tau):
@@ -70,7 +76,7 @@ def brief_contact(m, tau):
     From rest they are far below the rounding of the closed form's terms; whether the masses part
     hangs on them.
     """
-    twice, square = 2.0 * m[at.BRANCH_3 + at.DAMPING], m[at.BRANCH_3 + at.OMEGA_SQUARED]
+    twice, square = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING], m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
     drive, eta = m[at.FORCING] * m[at.SINE], m[at.ETA]
     cubic = cubic_at(m, m[at.CUBIC_AGE])
     x, v = m[at.BEGIN], m[at.BEGIN + 1]
@@ -81,7 +87,7 @@ def brief_contact(m, tau):
     return x + way, v + tau * (x2 + tau * (0.5 * x3 + tau * x4 * (1.0 / 6.0)))
 
 
-def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
+def state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
     """Displacements and velocities from all phasors."""
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
@@ -127,7 +133,7 @@ def state_and_phase_at(m, tau):  # inline
     """:func:`state_at`, and cosine and sine of the excitation's phase there."""
     if tau != 0.0 and m[at.SERIES] == 0.0 and m[at.NODE_ETA] != 0.0:
         x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
-        x1, v1, x2, v2 = moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
+        x1, v1, x2, v2 = state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
         return x1, v1, x2, v2, cosine, sine
     x1, v1, x2, v2 = state_at(m, tau)
     cosine, sine = m[at.COSINE], m[at.SINE]
@@ -146,7 +152,7 @@ def move_origin(m, tau):
     over millions of states.
     """
     advance_origin(m, tau)
-    set_turn(m, m[at.TURN] + m[at.ETA_TURNS] * tau)
+    set_phase(m, m[at.TURN] + m[at.ETA_TURNS] * tau)
 
 
 def advance_origin(m, tau):
@@ -160,7 +166,7 @@ def advance_origin(m, tau):
     m[at.CUBIC_AGE] += tau
 
 
-def move_to_end(m):
+def move_origin_to_end(m):
     """Let a new state begin at the end of the present one; its phase is the one there, rotated on
     from node to node, or made anew after as many rotations as free parts are.
     """
@@ -176,7 +182,7 @@ def move_to_end(m):
     m[at.SINE] = m[at.AT_END + 5]
 
 
-def set_turn(m, turns):
+def set_phase(m, turns):
     """Phase at the state's start."""
     m[at.TURN] = fraction(turns)
     sine, cosine = sincos_turns(m[at.TURN])
@@ -184,7 +190,7 @@ def set_turn(m, turns):
     m[at.COSINE] = cosine
 
 
-def begin(m, x1, v1, x2, v2, gap, lowest):
+def begin_state(m, x1, v1, x2, v2, gap, lowest):
     """Begin the state that follows from displacements and velocities.
 
     Parameters
@@ -211,17 +217,17 @@ def begin(m, x1, v1, x2, v2, gap, lowest):
     if v1 > v2:
         v1, v2 = collide(m, x, v1, v2)
     if v2 > v1:  # usually
-        leave_impact(m, x, v1, v2)
+        begin_after_impact(m, x, v1, v2)
         return
-    order, value = first_derivative(m, x, v1, lowest)
+    order, value = first_nonzero_derivative(m, x, v1, lowest)
     if value > 0.0:
         begin_touching_flight(m, x, v1, v1)
-        leave(m, order + 2, value)
+        leave_boundary(m, order + 2, value)
         return
     if m[at.MODE] == at.FLIGHT:
         m[at.CONTACT_COUNT] += 1.0
     begin_common(m, at.CONTACT, x, v1)
-    leave(m, order, -value)
+    leave_boundary(m, order, -value)
 
 
 def collide(m, x, v1, v2):
@@ -229,12 +235,12 @@ def collide(m, x, v1, v2):
     closing = v1 - v2
     common = common_velocity(m, v1, v2)
     time = m[at.START_TIME] + (m[at.ORIGIN] + m[at.ORIGIN_LOW]) / m[at.OMEGA]
-    e = coefficient(m, closing)
-    if sticks(m, e * closing, contact_force(m, x, common)):
+    e = restitution_coefficient(m, closing)
+    if chattering_ends(m, e * closing, gap_acceleration(m, x, common)):
         count_impact(m, time, closing, 1.0)
         return common, common
     count_impact(m, time, closing, (1.0 - e) * (1.0 + e))
-    return restitution(m, v1, v2, e)
+    return velocities_after_impact(m, v1, v2, e)
 
 
 def begin_touching_flight(m, x, v1, v2):
@@ -253,21 +259,21 @@ def begin_flight(m, x1, v1, x2, v2, gap):
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         cubic = cubic_at(m, m[at.CUBIC_AGE])
-        set_cubic_response(m, at.BRANCH_1, at.CUBIC_A, cubic)
-        set_cubic_response(m, at.BRANCH_2, at.CUBIC_B, cubic)
+        set_cubic_response(m, at.OSCILLATOR_1, at.CUBIC_A, cubic)
+        set_cubic_response(m, at.OSCILLATOR_2, at.CUBIC_B, cubic)
     set_free(m, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
     set_free(m, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
-    set_gap(m)
-    open_end(m, x1, v1, x2, v2, gap)
+    set_flight_event_function(m)
+    open_state(m, x1, v1, x2, v2, gap)
     begin_nodes(m)
     slope = v2 - v1
     m[at.LEFT_VALUES] = gap
     m[at.LEFT_VALUES + 1] = slope
     x = x1 if m[at.GAP_OFFSET] == 0.0 else x1 - m[at.REST_1]
     m[at.LEFT_VALUES + 2] = (
-        contact_force(m, x, v1)
-        - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
-        - m[at.BRANCH_2 + at.OMEGA_SQUARED] * gap
+        gap_acceleration(m, x, v1)
+        - 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
+        - m[at.OSCILLATOR_2 + at.OMEGA_SQUARED] * gap
     )
     if is_constant(m):  # rarely
         m[at.CLEAR] = INFINITE
@@ -280,17 +286,17 @@ def begin_common(m, mode, x, v):
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.CUBIC_AGE]))
+        set_cubic_response(m, at.OSCILLATOR_3, at.CUBIC_A, cubic_at(m, m[at.CUBIC_AGE]))
     set_free(m, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
-    set_contact_force(m)
-    open_end(m, x, v, x, v, 0.0)
+    set_contact_event_function(m)
+    open_state(m, x, v, x, v, 0.0)
     begin_nodes(m)
-    set_values(m, at.LEFT_VALUES, at.LEFT, 0.0)
+    set_node_values(m, at.LEFT_VALUES, at.LEFT, 0.0)
     if is_constant(m):  # rarely
         m[at.CLEAR] = INFINITE
 
 
-def open_end(m, x1, v1, x2, v2, gap):
+def open_state(m, x1, v1, x2, v2, gap):
     """The state begins here; its end is not known yet."""
     m[at.SERIES] = 0.0
     m[at.AT_END_NODE] = 0.0
@@ -304,31 +310,31 @@ def open_end(m, x1, v1, x2, v2, gap):
     m[at.END_KIND] = at.END_OPEN
 
 
-def leave_impact(m, x, v1, v2):
+def begin_after_impact(m, x, v1, v2):
     """Leave an impact at displacement ``x`` with velocities ``v2 > v1``; a short flight's end is
     found at once.
     """
     slope = v2 - v1
-    curvature = contact_force(m, x, v1) - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
-    order = series_order(m, slope, curvature)
+    curvature = gap_acceleration(m, x, v1) - 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
+    order = required_order(m, slope, curvature)
     if order > 4:
         set_series(m, x, v1, slope, order)
-        duration = short_flight(m, order)
+        duration = short_flight_duration(m, order)
         if duration > 0.0:
             m[at.MODE] = at.FLIGHT
-            open_end(m, x, v1, x, v2, 0.0)
+            open_state(m, x, v1, x, v2, 0.0)
             m[at.SERIES] = order
             m[at.CLEAR] = duration
             m[at.END] = duration
             m[at.END_KIND] = at.END_EVENT
             return
     begin_touching_flight(m, x, v1, v2)
-    if not leave_clear(m, slope, curvature):  # rarely
+    if not skip_clear_start(m, slope, curvature):  # rarely
         set_series(m, x, v1, slope, 8)
-        creep_away(m, slope, curvature, m[at.SERIES_GAP + 6], m[at.SERIES_GAP + 8])
+        certified_first_step(m, slope, curvature, m[at.SERIES_GAP + 6], m[at.SERIES_GAP + 8])
 
 
-def leave_clear(m, h1, h2):
+def skip_clear_start(m, h1, h2):
     """Whether a part of the first interval is seen to be clear from a start on the boundary with
     the event function's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``; CLEAR moves there.
     """
@@ -338,18 +344,18 @@ def leave_clear(m, h1, h2):
     return clear_from_node(m)
 
 
-def creep_away(m, h1, h2, h3, h4):
+def certified_first_step(m, h1, h2, h3, h4):
     """A certified step from such a start, or the root."""
     _, _, _, _, _, bound = evaluate(m, 0.0)
     reach = m[at.RIGHT_AGE]
-    step, found = step_from(0.0, h1, h2, h3, h4, bound, 0.0, reach, accuracy(m, 0.0))
+    step, found = clear_step_or_root(0.0, h1, h2, h3, h4, bound, 0.0, reach, root_accuracy(m, 0.0))
     m[at.CLEAR] = step
     if found:
         m[at.END] = step
         m[at.END_KIND] = at.END_EVENT
 
 
-def leave(m, order, value):
+def leave_boundary(m, order, value):
     """Leave a start on the boundary where the event function vanishes.
 
     Parameters
@@ -370,8 +376,8 @@ def leave(m, order, value):
     _, _, h2, h3, h4, _ = evaluate(m, 0.0)
     if order <= 2:
         h1, h2 = (value, h2) if order == 1 else (0.0, value)
-        if not leave_clear(m, h1, h2):
-            creep_away(m, h1, h2, h3, h4)
+        if not skip_clear_start(m, h1, h2):
+            certified_first_step(m, h1, h2, h3, h4)
         return
     bound = derivative_bound(m, order + 1)
     # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of
@@ -382,7 +388,7 @@ def leave(m, order, value):
 
 def derivative_bound(m, order):
     """Bound of the event function's derivative of an order over the whole state."""
-    steady, a, b = bounds(m, order)
+    steady, a, b = derivative_bounds(m, order)
     return steady + a + b
 
 
@@ -402,8 +408,8 @@ def end_state(m):
         gap = 0.0
     elif gap <= 0.0:
         x1, x2 = from_rest_together(m, x1, x2)
-    move_to_end(m)
-    begin(m, x1, v1, x2, v2, gap, 1 if event and not flight else 0)
+    move_origin_to_end(m)
+    begin_state(m, x1, v1, x2, v2, gap, 1 if event and not flight else 0)
 
 
 def has_died_away(m, x1, v1, x2, v2):

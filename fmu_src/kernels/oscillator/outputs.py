@@ -2,7 +2,7 @@
 
 from ..numerics.elementary import TWO_PI, fraction, sincos_turns
 from . import memory as at
-from .contact import contact_force
+from .contact import gap_acceleration
 from .excitation import box_derivative, cubic_at
 from .motion import from_unloaded, gap_between, state_and_phase_at
 
@@ -12,7 +12,7 @@ LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the r
 SHORT = 0.01
 
 
-def look(m, tau):  # inline
+def outputs_at(m, tau):  # inline
     """The outputs that belong to a point of time, ``tau`` after the present state's start.
 
     Returns
@@ -26,7 +26,7 @@ def look(m, tau):  # inline
     omega = m[at.OMEGA]
     flight = m[at.MODE] == at.FLIGHT
     gap, gap_speed = gap_between(m, tau, x1, x2), omega * (v2 - v1)
-    force = 0.0 if flight else -contact_force(m, x1, v1)
+    force = 0.0 if flight else -gap_acceleration(m, x1, v1)
     pull_1, pull_2 = m[at.K1] * x1, m[at.K2] * x2  # at rest together, the springs balance
     x1, x2 = from_unloaded(m, x1, x2)
     reduced_mass = m[at.M2] * m[at.SHARE]
@@ -50,8 +50,8 @@ def unit_of_length(m):  # inline
     return unit if abs(unit) >= LEAST_UNIT else 0.0
 
 
-def write(m, seen):  # inline
-    """Write what :func:`look` has found."""
+def write_outputs(m, seen):  # inline
+    """Write what :func:`outputs_at` has found."""
     motion, boundary, rotation = seen
     m[at.X1], m[at.X2], m[at.V1], m[at.V2], m[at.X_REL], m[at.V_REL] = motion[:6]
     m[at.XI1], m[at.XI2], m[at.XI_REL], m[at.BOX_FORCE] = motion[6:]
@@ -59,7 +59,7 @@ def write(m, seen):  # inline
     m[at.PHASE_COSINE], m[at.PHASE_SINE] = rotation
 
 
-def total(seen):  # inline
+def finite_check_sum(seen):  # inline
     """The sum of these outputs: finite only where all are."""
     x1, x2, v1, v2, gap, gap_speed, xi1, xi2, xi_rel, box_force = seen[0]
     contact, _, phase = seen[1]
@@ -67,7 +67,7 @@ def total(seen):  # inline
     return sum_1 + sum_2 + ((gap_speed + xi_rel) + (contact + phase))
 
 
-def written(m, age):  # inline
+def last_written_point(m, age):  # inline
     """The point that was written last, ``age`` after the cubic began, in tau: x1, x2, v1, v2, force
     on the box, cosine and sine of the phase, and the age.
     """
@@ -75,8 +75,8 @@ def written(m, age):  # inline
     return motion, m[at.BOX_FORCE], (m[at.PHASE_COSINE], m[at.PHASE_SINE]), age
 
 
-def found(m, seen, tau):  # inline
-    """The same of what :func:`look` has found, ``tau`` after the present state's start."""
+def point_of(m, seen, tau):  # inline
+    """The same of what :func:`outputs_at` has found, ``tau`` after the present state's start."""
     return seen[0][:4], seen[0][9], seen[2], m[at.CUBIC_AGE] + tau
 
 
@@ -97,9 +97,9 @@ def both_rates(m, drive, x1, v1, x2, v2):  # inline
     the drive's rate.
     """
     if m[at.MODE] == at.FLIGHT:
-        a1 = acceleration(m, at.BRANCH_1, drive, x1, v1)
-        return a1, acceleration(m, at.BRANCH_2, drive, x2, v2)
-    both = acceleration(m, at.BRANCH_3, drive, x1, v1)
+        a1 = acceleration(m, at.OSCILLATOR_1, drive, x1, v1)
+        return a1, acceleration(m, at.OSCILLATOR_2, drive, x2, v2)
+    both = acceleration(m, at.OSCILLATOR_3, drive, x1, v1)
     return both, both
 
 

@@ -5,7 +5,7 @@ where an input jumps, to what comes before the jump of an input and after the im
 """
 
 from . import memory as at
-from .outputs import accelerations, unit_of_length, written
+from .outputs import accelerations, last_written_point, unit_of_length
 from .stepper import local_time
 
 
@@ -17,7 +17,7 @@ def differentiate(m, time):
     int
         OK.
     """
-    a1, a2 = accelerations(m, written(m, m[at.CUBIC_AGE] + local_time(m, m[at.TIME])))
+    a1, a2 = accelerations(m, last_written_point(m, m[at.CUBIC_AGE] + local_time(m, m[at.TIME])))
     omega = m[at.OMEGA]
     v1, v2, v_rel = m[at.V1], m[at.V2], m[at.V_REL]
     unit = unit_of_length(m)

@@ -10,7 +10,7 @@ from ..numerics.elementary import exp_decay, sincos_turns
 from . import memory as at
 
 
-def basis(m, b, tau):
+def fundamental_solutions(m, b, tau):
     """C and S of branch ``b``, and the decay ``e^{-r tau}`` of its envelope.
 
     Parameters

@@ -11,15 +11,23 @@ lie: it goes on where it was left.
 import math
 
 from . import memory as at
-from .event_function import evaluate, rounding, set_remainder, values
+from .event_function import evaluate, event_rounding, event_values, set_remainder
 from .hermite import (
     clear_part,
-    is_positive,
+    has_no_root,
     lowest_after,
     lowest_before,
     present_coefficients,
 )
-from .nodes import BLOCK, is_plain_flight, longest, put, renewed, set_at_end, turned
+from .nodes import (
+    BLOCK,
+    is_plain_flight,
+    max_nodes,
+    next_phasors,
+    phasors_from_closed_form,
+    put_phasors,
+    set_phasors_at_end,
+)
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
@@ -105,25 +113,25 @@ def walk(m, target):
     """
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
         if m[at.CLEAR] >= m[at.RIGHT_AGE]:
-            glide(m, target, INFINITE)
+            cross_clear_intervals(m, target, INFINITE)
         elif m[at.CLEAR] != m[at.LEFT_AGE] or not clear_from_node(m):
-            creep(m)
+            step_inside_interval(m)
 
 
-def glide(m, target, ceiling):
+def cross_clear_intervals(m, target, ceiling):
     """On from node to node, not beyond ``target``, while the intervals between are clear and the
     event function stays below ``ceiling`` in them; after many nodes the state is written anew.
     """
     if not is_plain_flight(m):  # rarely
-        glide_over(m, target, ceiling, False, True)
+        cross_intervals_loop(m, target, ceiling, False, True)
     elif ceiling < INFINITE:
-        glide_over(m, target, ceiling, True, True)
+        cross_intervals_loop(m, target, ceiling, True, True)
     else:
-        glide_over(m, target, ceiling, True, False)
+        cross_intervals_loop(m, target, ceiling, True, False)
 
 
-def glide_over(m, target, ceiling, plain, watched):  # inline
-    """:func:`glide`: ``plain`` in a plain flight, ``watched`` if there may be a ceiling. Both are
+def cross_intervals_loop(m, target, ceiling, plain, watched):  # inline
+    """:func:`cross_clear_intervals`: ``plain`` in a plain flight, ``watched`` if there may be a ceiling. Both are
     constants where this is called: a compiler makes a loop of its own for each.
     """
     x, v, x_b, v_b = m[at.RIGHT], m[at.RIGHT + 1], m[at.RIGHT + 2], m[at.RIGHT + 3]
@@ -131,7 +139,7 @@ def glide_over(m, target, ceiling, plain, watched):  # inline
     r0, r1, r2 = m[at.RIGHT_VALUES], m[at.RIGHT_VALUES + 1], m[at.RIGHT_VALUES + 2]
     node, age, low, h = m[at.NODE], m[at.RIGHT_AGE], m[at.REMAINDER], m[at.SPACING]
     begun = node
-    last = min(node + (m[at.WORK_LIMIT] - m[at.WORK]), longest(m) - 1.0)
+    last = min(node + (m[at.WORK_LIMIT] - m[at.WORK]), max_nodes(m) - 1.0)
     renewal = (math.floor((node + 1.0) * (1.0 / BLOCK)) + 1.0) * BLOCK
     floor, top = lowest_after(m, r0, r1, r2, low), 0.0
     if watched:
@@ -144,11 +152,11 @@ def glide_over(m, target, ceiling, plain, watched):  # inline
         left = age
         age = (node + 1.0) * h
         if node + 1.0 == renewal:  # rarely
-            x, v, x_b, v_b, cosine, sine = renewed(m, age)
+            x, v, x_b, v_b, cosine, sine = phasors_from_closed_form(m, age)
             renewal += BLOCK
         else:
-            x, v, x_b, v_b, cosine, sine = turned(m, plain, x, v, x_b, v_b, cosine, sine)
-        r0, r1, r2 = values(m, plain, x, v, x_b, v_b, cosine, sine, age)
+            x, v, x_b, v_b, cosine, sine = next_phasors(m, plain, x, v, x_b, v_b, cosine, sine)
+        r0, r1, r2 = event_values(m, plain, x, v, x_b, v_b, cosine, sine, age)
         clear = min(floor, lowest_before(m, r0, r1, r2, low)) >= 0.0 and r0 > 0.0
         floor = lowest_after(m, r0, r1, r2, low)
         if watched and ceiling < INFINITE:
@@ -163,8 +171,8 @@ def glide_over(m, target, ceiling, plain, watched):  # inline
     m[at.LEFT_AGE] = left
     m[at.RIGHT_AGE] = age
     m[at.CLEAR] = age if clear else left
-    put(m, at.LEFT, old_x, old_v, old_x_b, old_v_b, old_cosine, old_sine)
-    put(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
+    put_phasors(m, at.LEFT, old_x, old_v, old_x_b, old_v_b, old_cosine, old_sine)
+    put_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
     m[at.LEFT_VALUES] = l0
     m[at.LEFT_VALUES + 1] = l1
     m[at.LEFT_VALUES + 2] = l2
@@ -176,11 +184,11 @@ def glide_over(m, target, ceiling, plain, watched):  # inline
 def clear_from_node(m):
     """Whether a part of the present interval is seen to be clear; CLEAR moves to its end."""
     b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
-    clear = is_positive(b0, b1, b2, b3, b4, b5)
+    clear = has_no_root(b0, b1, b2, b3, b4, b5)
     if not clear and b5 > 0.0:  # rarely
         set_remainder(m)
         b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
-        clear = is_positive(b0, b1, b2, b3, b4, b5)
+        clear = has_no_root(b0, b1, b2, b3, b4, b5)
     if clear:
         m[at.CLEAR] = m[at.RIGHT_AGE]
         return True
@@ -189,28 +197,28 @@ def clear_from_node(m):
     return m[at.CLEAR] > m[at.LEFT_AGE]
 
 
-def creep(m):
+def step_inside_interval(m):
     """One certified step inside the present interval, or the root."""
     tau = m[at.CLEAR]
     reach = m[at.RIGHT_AGE] - tau
     h0, h1, h2, h3, h4, bound = evaluate(m, tau)
     if h0 <= 0.0:  # rarely
-        h0 = lifted(m, tau, h0, h1)
-    step, found = next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy(m, tau))
+        h0 = value_on_decided_side(m, tau, h0, h1)
+    step, found = next_step(h0, h1, h2, h3, h4, bound, tau, reach, root_accuracy(m, tau))
     if found:
         m[at.END] = tau + step
         m[at.END_KIND] = at.END_EVENT
         if m[at.SERIES] == 0.0:
-            set_at_end(m, m[at.END] - tau)
+            set_phasors_at_end(m, m[at.END] - tau)
     m[at.CLEAR] = m[at.RIGHT_AGE] if step >= reach else tau + step
 
 
-def accuracy(m, tau):
+def root_accuracy(m, tau):
     """What a root's age is to be accurate to: its rounding."""
     return EPS * (tau + 4.0 * m[at.SPACING])
 
 
-def lifted(m, tau, h0, h1):
+def value_on_decided_side(m, tau, h0, h1):
     """A value of the event function that is not positive, or a positive one where it is zero but
     for rounding and no crossing is in sight.
 
@@ -218,7 +226,7 @@ def lifted(m, tau, h0, h1):
     for a while; the side was decided when the state began, and holds until the event function is
     seen to cross.
     """
-    floor = rounding(m, tau)
+    floor = event_rounding(m, tau)
     if h0 < -floor or floor < -1e-6 * h1:
         return h0
     return 2.0 * floor
@@ -249,10 +257,10 @@ def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
         root = close_root(h0, h1, h2, h3, h4, bound, accuracy)
         if 0.0 < root < reach:  # usually
             return root, True
-    return step_from(h0, h1, h2, h3, h4, bound, tau, reach, accuracy)
+    return clear_step_or_root(h0, h1, h2, h3, h4, bound, tau, reach, accuracy)
 
 
-def step_from(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
+def clear_step_or_root(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
     """As :func:`next_step`, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
     # powers of time only: scaled amplitudes take the same steps
     scale = 1.0 / bound if bound > LEAST_BOUND else 1.0

@@ -16,7 +16,7 @@ SHORTER = 0.02  # and eight terms
 ENOUGH = 2e-8  # relative: the next step of Newton's method would be a small part of its square
 
 
-def series_order(m, slope, curvature):
+def required_order(m, slope, curvature):
     """How many terms a flight needs that begins with a gap velocity and acceleration: 4 where it is
     not short.
     """
@@ -80,7 +80,7 @@ def set_series(m, x, v, slope, order):
 
 def set_derivatives(m, k, drive):
     """The derivatives of order k from the two before and that of the forcing, of order k - 2."""
-    one, two = at.BRANCH_1, at.BRANCH_2
+    one, two = at.OSCILLATOR_1, at.OSCILLATOR_2
     i = 2 * k
     x, v = m[at.SERIES_X + i - 4], m[at.SERIES_X + i - 2]
     gap, slope = m[at.SERIES_GAP + i - 4], m[at.SERIES_GAP + i - 2]
@@ -90,7 +90,7 @@ def set_derivatives(m, k, drive):
     )
 
 
-def short_flight(m, order):
+def short_flight_duration(m, order):
     """Duration of a short flight, where it is certain: its gap is concave throughout, so it has one
     root; else 0.
 
@@ -126,7 +126,7 @@ def short_flight(m, order):
             5.0 * c6 + 6.0 * c7 * root
         )
         if order > 8:
-            value += t4 * t4 * tail(m, g + 18, root)
+            value += t4 * t4 * series_tail(m, g + 18, root)
         step = value / slope
         root -= step
         if root <= 0.0 or root >= longest:
@@ -136,14 +136,14 @@ def short_flight(m, order):
     return root
 
 
-def tail(m, first, tau):
+def series_tail(m, first, tau):
     """Terms nine to twelve of ``gap/tau``, over ``tau^8``."""
     d9, d10 = m[first] * (1.0 / 362880.0), m[first + 2] * (1.0 / 3628800.0)
     d11, d12 = m[first + 4] * (1.0 / 39916800.0), m[first + 6] * (1.0 / 479001600.0)
     return (d9 + d10 * tau) + tau * tau * (d11 + d12 * tau)
 
 
-def taylor(m, first, tau):
+def taylor_value(m, first, tau):
     """Value of a series with the derivatives in every second slot from ``first`` on."""
     t2 = tau * tau
     t4 = t2 * t2
@@ -167,7 +167,7 @@ def taylor(m, first, tau):
     return value
 
 
-def gap_at(m, tau):
+def gap_derivatives(m, tau):
     """The gap and its first four derivatives."""
     h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
     power = 1.0  # tau^k/k!

@@ -53,7 +53,7 @@ def accelerations(m, sine, cosine, p, q):
     return (inertia * p - coupling * q) / determinant, (mass * q - coupling * p) / determinant
 
 
-def rates(m, stage, t):
+def compute_rates(m, stage, t):
     """Right-hand side at the states in STAGE, into row ``stage`` of RATES.
 
     Parameters

@@ -8,7 +8,7 @@ from . import memory as at
 from .equations import accelerations, force_now, static_current
 
 
-def write(m):
+def write_outputs(m):
     """All outputs but the angle, which is summed where it grows."""
     sine, cosine = sincos_turns(m[at.TURN])
     position, velocity = m[at.STATE + at.POSITION], m[at.STATE + at.VELOCITY]

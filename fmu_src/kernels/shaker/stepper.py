@@ -8,8 +8,8 @@ import math
 from ..numerics.elementary import TWO_PI, fraction
 from . import memory as at
 from .equations import begin_force
-from .integrate import through
-from .outputs import write
+from .integrate import integrate_step
+from .outputs import write_outputs
 
 WORK_BASE = 100000.0  # evaluations of the right-hand side a step may take whatever its length,
 WORK_RATE = 200.0  # and for each radian of box, rotor or no-load speed,
@@ -45,8 +45,8 @@ def initialize(m, time):
     m[at.STATE + at.CURRENT] = m[at.CURRENT_START]
     m[at.ANGLE] = m[at.ANGLE_START]
     m[at.TURN] = fraction(m[at.ANGLE_START] / TWO_PI)
-    write(m)
-    return finite(m)
+    write_outputs(m)
+    return check_finite(m)
 
 
 def advance(m, time):
@@ -74,14 +74,14 @@ def advance(m, time):
         m[at.WORK] = least
         m[at.REPORT] = before
         return too_many
-    code = through(m, length)
+    code = integrate_step(m, length)
     m[at.REPORT] += before
     if code != at.OK:
         return too_many if code == at.UNFINISHED else code
     m[at.TIME] = time
     m[at.EVALUATIONS] = m[at.WORK]
-    write(m)
-    return finite(m)
+    write_outputs(m)
+    return check_finite(m)
 
 
 def fastest_decay(m):
@@ -105,11 +105,11 @@ def refresh(m, time):
         OK, or NOT_FINITE.
     """
     begin_force(m)
-    write(m)
-    return finite(m)
+    write_outputs(m)
+    return check_finite(m)
 
 
-def finite(m):
+def check_finite(m):
     """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
     total = 0.0
     for i in range(at.BOX_POSITION, at.TIME):
