@@ -1,4 +1,4 @@
-"""One C source as a shared library: what orchestration has compiled beside the FMUs.
+"""Compile one C source to a shared library, for what orchestration uses beside the FMUs.
 
 The source includes ``token.h``, which defines ``TOKEN``, and keeps it as a string: so a library of
 other sources is known by its bytes, for whatever platform it was made.
@@ -16,7 +16,7 @@ from .sources import import_closure
 
 
 def guid(source: Path) -> str:
-    """The token that a library of the present source bears, in braces.
+    """Return the token that a library of the present source bears, in braces.
 
     Parameters
     ----------
@@ -41,5 +41,5 @@ def export(source: Path, platform: str) -> bytes:
 
 
 def file_name(source: Path, platform: str) -> str:
-    """Of a library, with its platform as the folder."""
+    """Return the library's file name, with its platform as the folder."""
     return f"{platform}/{source.stem}{PLATFORMS[platform].suffix}"

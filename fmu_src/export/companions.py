@@ -1,4 +1,4 @@
-"""What lies in an FMU by other standards than FMI's core: terminals and icon, licences, FMI-LS-REF.
+"""Files of an FMU by other standards than FMI's core: terminals and icon, licences, FMI-LS-REF.
 
 Terminals and icons are FMI 3.0's, section 2.4.9, which FMI 2.0.5 takes over. FMI-LS-REF (a draft,
 1.0.0-alpha.1) says which files are there to check a run against.
@@ -29,7 +29,7 @@ RELATED = (  # file, type, role, description
 
 
 def companions(model: Model) -> Files:
-    """Files by name, but for the icon.
+    """Return these files by name, except the icon.
 
     Parameters
     ----------
@@ -44,12 +44,14 @@ def companions(model: Model) -> Files:
 
 
 def icon_path(version: str) -> str:
-    """Where tools look for the icon."""
+    """Return the path in the FMU where tools look for the icon."""
     return "terminalsAndIcons/icon.png" if version == "fmi3" else "model.png"
 
 
 def terminals_xml(model: Model) -> bytes:
-    """Variables to be connected together: by their names within the terminal."""
+    """Return ``terminalsAndIcons.xml``: variables to be connected together, by their names within
+    the terminal.
+    """
     root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     if model.terminals:
         parent = ET.SubElement(root, "Terminals")
@@ -64,7 +66,7 @@ def terminals_xml(model: Model) -> bytes:
 
 
 def references_manifest(model: Model) -> bytes:
-    """The manifest of FMI-LS-REF."""
+    """Return the manifest of FMI-LS-REF."""
     ET.register_namespace("fmi-ls", MANIFEST)
     root = ET.Element("fmiReferences", {f"{{{MANIFEST}}}{k}": v for k, v in LS_REF.items()})
     for place, kind, role, description in RELATED:

@@ -1,4 +1,6 @@
-"""What ``modelDescription.xml`` has in common in FMI 2.0 and 3.0."""
+"""Parts of ``modelDescription.xml`` that :func:`.description_fmi2.fmi2_xml` and
+:func:`.description_fmi3.fmi3_xml` share.
+"""
 
 from __future__ import annotations
 
@@ -75,12 +77,12 @@ LOG_CATEGORIES = {
 
 
 def float_text(value: float) -> str:
-    """A float as XML writes it, to the last bit."""
+    """Return a float as XML writes it, to the last bit."""
     return repr(float(value))
 
 
 def root_element(model: Model, **attributes: str) -> ET.Element:
-    """The root element.
+    """Create the root element.
 
     Parameters
     ----------
@@ -101,7 +103,9 @@ def root_element(model: Model, **attributes: str) -> ET.Element:
 
 
 def add_shared_elements(parent: ET.Element, model: Model) -> ET.Element:
-    """Units, log categories and the default experiment; returns the element for the variables."""
+    """Add units, log categories and the default experiment; return the element for the
+    variables.
+    """
     add_units(parent, model)
     categories = ET.SubElement(parent, "LogCategories")
     for name, explanation in LOG_CATEGORIES.items():
@@ -112,7 +116,7 @@ def add_shared_elements(parent: ET.Element, model: Model) -> ET.Element:
 
 
 def add_units(parent: ET.Element, model: Model) -> None:
-    """Definitions of the units in use."""
+    """Add the definitions of the units in use."""
     definitions = ET.SubElement(parent, "UnitDefinitions")
     used = {variable.unit for variable in model.variables} | {"s"}  # of time
     for name, exponents in UNITS.items():
@@ -125,7 +129,7 @@ def add_units(parent: ET.Element, model: Model) -> None:
 
 
 def variable_attributes(variable: Variable, reference: int) -> dict[str, str]:
-    """Attributes every variable has."""
+    """Return the attributes that every variable has."""
     found = {
         "name": variable.name,
         "valueReference": str(reference),
@@ -137,7 +141,7 @@ def variable_attributes(variable: Variable, reference: int) -> dict[str, str]:
 
 
 def add_values(typed: ET.Element, variable: Variable) -> None:
-    """Unit, range, nominal and start value."""
+    """Set unit, range, nominal and start value of a variable."""
     limits = {"min": variable.minimum, "max": variable.maximum}
     given = {key: value for key, value in limits.items() if value is not None}
     if variable.type == REAL:
@@ -157,14 +161,14 @@ def add_values(typed: ET.Element, variable: Variable) -> None:
 
 
 def start_text(variable: Variable) -> str:
-    """A start value as XML writes it."""
+    """Return a start value as XML writes it."""
     if variable.type == BOOLEAN:
         return str(bool(variable.start)).lower()
     return float_text(variable.start) if variable.type == REAL else str(int(variable.start))
 
 
 def xml_bytes(element: ET.Element) -> bytes:
-    """The file."""
+    """Return the XML file of an element, indented."""
     ET.indent(element)
     whole = ET.tostring(element, encoding="UTF-8", xml_declaration=True)
     assert isinstance(whole, bytes)

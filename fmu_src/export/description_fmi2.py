@@ -1,4 +1,4 @@
-"""``modelDescription.xml`` of FMI 2.0 from a variable table."""
+"""Write ``modelDescription.xml`` of FMI 2.0 from a variable table."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def fmi2_xml(
     capabilities: dict[str, str] = NATIVE,
     sources: Sequence[str] = (),
 ) -> bytes:
-    """The model description, as bytes that depend on nothing but the arguments.
+    """Return the model description, as bytes that depend on nothing but the arguments.
 
     Parameters
     ----------
@@ -56,14 +56,16 @@ def fmi2_xml(
 
 
 def add_variable(parent: ET.Element, variable: Variable) -> None:
-    """One ScalarVariable."""
+    """Add one ScalarVariable."""
     attributes = common.variable_attributes(variable, variable.slot)
     scalar = ET.SubElement(parent, "ScalarVariable", attributes)
     common.add_values(ET.SubElement(scalar, variable.type), variable)
 
 
 def add_structure(root: ET.Element, model: Model) -> None:
-    """Dependencies: outputs belong to the last communication point, so few depend on an input."""
+    """Add the dependencies: outputs belong to the last communication point, so few depend on an
+    input.
+    """
     structure = ET.SubElement(root, "ModelStructure")
     index = {variable.name: str(i + 1) for i, variable in enumerate(model.variables)}
     outputs = ET.SubElement(structure, "Outputs")

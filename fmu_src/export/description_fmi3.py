@@ -1,4 +1,4 @@
-"""``modelDescription.xml`` of FMI 3.0 from a variable table."""
+"""Write ``modelDescription.xml`` of FMI 3.0 from a variable table."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EVENT_MODE = {"hasEventMode": "true"}  # of models with a clock
 
 
 def fmi3_xml(model: Model, token: str) -> bytes:
-    """The model description, as bytes that depend on nothing but the arguments.
+    """Return the model description, as bytes that depend on nothing but the arguments.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def fmi3_xml(model: Model, token: str) -> bytes:
 
 
 def add_time(parent: ET.Element, model: Model) -> None:
-    """The independent variable."""
+    """Add the independent variable."""
     attributes = {
         "name": "time",
         "valueReference": str(model.time_slot),
@@ -57,19 +57,19 @@ def add_time(parent: ET.Element, model: Model) -> None:
 
 
 def add_variable(parent: ET.Element, variable: Variable) -> None:
-    """One scalar variable."""
+    """Add one scalar variable."""
     attributes = common.variable_attributes(variable, variable.slot)
     common.add_values(ET.SubElement(parent, TYPES[variable.type], attributes), variable)
 
 
 def array_elements(model: Model, array: Array) -> tuple[Variable, ...]:
-    """The variables an array is made of."""
+    """Return the variables an array is made of."""
     first = [variable.name for variable in model.variables].index(array.first)
     return model.variables[first : first + array.size]
 
 
 def add_array(parent: ET.Element, model: Model, array: Array, reference: int) -> None:
-    """One array output."""
+    """Add one array output."""
     scalar = array_elements(model, array)[0]
     attributes = common.variable_attributes(scalar, reference)
     attributes |= {"name": array.name, "description": array.description, "unit": scalar.unit}
@@ -78,7 +78,7 @@ def add_array(parent: ET.Element, model: Model, array: Array, reference: int) ->
 
 
 def add_clock(parent: ET.Element, model: Model) -> None:
-    """The output clock, where the model has one."""
+    """Add the output clock, where the model has one."""
     if model.clock:
         attributes = {
             "name": model.clock.name,
@@ -91,7 +91,9 @@ def add_clock(parent: ET.Element, model: Model) -> None:
 
 
 def add_structure(root: ET.Element, model: Model) -> None:
-    """Dependencies: outputs belong to the last communication point, so few depend on an input."""
+    """Add the dependencies: outputs belong to the last communication point, so few depend on an
+    input.
+    """
     structure = ET.SubElement(root, "ModelStructure")
     calculated: list[tuple[int, tuple[Variable, ...]]]
     calculated = [(v.slot, (v,)) for v in model.variables if v.causality == "output"]

@@ -1,4 +1,4 @@
-"""What people read in an FMU: the model's page, pictures, an icon, reference results."""
+"""Files in an FMU that people read: the model's page, pictures, an icon, reference results."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .sources import ROOT, Files, load_model
 
 
 def documentation_files(folder: str, digest: str, form: str) -> Files:
-    """Files of ``documentation/``, the icon, and what other standards ask for beside.
+    """Return the files of ``documentation/``, the icon, and what other standards ask for beside.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def documentation_files(folder: str, digest: str, form: str) -> Files:
 
 
 def model_page(template: str, folder: str, digest: str, form: str) -> bytes:
-    """The model's page, its variable table filled in."""
+    """Return the model's page, its variable table filled in."""
     import jinja2
 
     environment = jinja2.Environment(

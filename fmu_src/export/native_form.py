@@ -1,4 +1,6 @@
-"""The native form: the kernel compiled ahead of time, a C shim over the variable table, no more."""
+"""Export the native form: the kernel compiled ahead of time, with a C shim over the variable
+table.
+"""
 
 from __future__ import annotations
 
@@ -48,41 +50,47 @@ SHIM = {
 
 
 def model_description(model: Model, token: str, version: str, sources: Files) -> bytes:
-    """``modelDescription.xml``; FMI 2.0's names the sources, FMI 3.0 has a file of its own."""
+    """Return ``modelDescription.xml``; FMI 2.0's names the sources, FMI 3.0 has a file of its own
+    for them.
+    """
     if version == "fmi2":
         return fmi2_xml(model, token, sources=compiled_files(sources))
     return fmi3_xml(model, token)
 
 
 def shim_sources(version: str) -> Files:
-    """C sources of the shim for an FMI version."""
+    """Return the C sources of the shim for an FMI version."""
     found = read_sources(*(f"runtime/native/{name}" for name in SHIM[version]))
     return {Path(name).name: content for name, content in found.items()}
 
 
 def fmi_headers(version: str) -> Files:
-    """The standard's C headers, which come with FMPy."""
+    """Return the standard's C headers, which come with FMPy."""
     require("fmpy", "brings the C headers of the FMI standard")
     folder = resources.files("fmpy") / "c-code"
     return {name: with_prefix((folder / name).read_bytes()) for name in HEADERS[version]}
 
 
 def with_prefix(header: bytes) -> bytes:
-    """FMI 2.0's header as the standard has it: FMPy's own knows no prefix of functions."""
+    """Return FMI 2.0's header with the standard's prefix of functions, which FMPy's copy may
+    lack.
+    """
     if b"defined(FMI2_FUNCTION_PREFIX)" in header:
         return header
     return header.replace(NO_PREFIX, STANDARD_PREFIX)
 
 
 def guid(folder: str, form: str) -> str:
-    """The GUID: of the sources, the texts, and the exporters that make the FMU from them."""
+    """Return the GUID: a hash of the sources, the texts, and the exporters that make the FMU from
+    them.
+    """
     kind = form.replace("-", " ")
     model = {"sources": model_digest(folder).encode(), "version": kind.encode()}
     return guid_of({**exporter_files("export/native_form.py"), **text_files(folder), **model})
 
 
 def plain_model(model: Model) -> Model:
-    """A model as its plain form tells of it.
+    """Return a model as its plain form describes it.
 
     Scalars alone, without the states kept inside a step: tools' lists of variables stay short, and
     what stumbles over arrays or clocks has none to stumble over.
@@ -104,8 +112,9 @@ def export(
     folder : str
         The model's, below ``fmu_src/models``.
     form : str
-        ``"fmi2"`` or ``"fmi3"``; with ``"-plain"`` see :func:`plain_model`, and with ``"-sources"`` at
-        its end it has no binaries, for targets that compile the sources themselves.
+        ``"fmi2"`` or ``"fmi3"``; with ``"-plain"`` see :func:`plain_model`, and with
+        ``"-sources"`` at its end it has no binaries, for targets that compile the sources
+        themselves.
     target : Path
     platforms : tuple of str, optional
         :func:`.platforms.usual` by default.

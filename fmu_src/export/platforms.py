@@ -79,18 +79,20 @@ CPU_TYPE = 4  # where a Mach-O file has its processor's type, and its subtype af
 
 
 def this_machine() -> str:
-    """The platform's name that this process runs on; it need not be of :data:`PLATFORMS`."""
+    """Return the name of the platform this process runs on; it need not be in :data:`PLATFORMS`."""
     found = machine.machine().lower()
     return f"{ARCHITECTURES.get(found, found)}-{SYSTEMS.get(sys.platform, sys.platform)}"
 
 
 def usual() -> tuple[str, ...]:
-    """What is built unless more is asked for: PCs with Linux and Windows, and this machine."""
+    """Return the platforms that are built by default: PCs with Linux and Windows, and this
+    machine.
+    """
     return tuple(name for name in ALL if name in ("x86_64-linux", "x86_64-windows", this_machine()))
 
 
 def chosen(wanted: Iterable[str]) -> tuple[str, ...]:
-    """Platforms by name, in the table's order; ``all`` and ``this`` stand for what they say.
+    """Return platforms by name, in the table's order; ``all`` and ``this`` stand for what they say.
 
     Raises
     ------
@@ -106,7 +108,7 @@ def chosen(wanted: Iterable[str]) -> tuple[str, ...]:
 
 
 def universal_binary(slices: Iterable[bytes]) -> bytes:
-    """A macOS library for several processors, of one for each."""
+    """Join macOS libraries of one processor each to a library for all of them."""
     libraries = list(slices)
     offset, header, body = 1 << FAT_ALIGNMENT, b"", b""
     for library in libraries:
@@ -119,7 +121,7 @@ def universal_binary(slices: Iterable[bytes]) -> bytes:
 
 
 def binary_files(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Files of ``binaries/``.
+    """Return the files of ``binaries/``.
 
     FMI 2.0 names ``darwin64``, from before there were other processors: tools on both load what
     lies there, so it serves both.

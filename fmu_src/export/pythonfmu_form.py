@@ -1,4 +1,5 @@
-"""The pythonfmu form: the Python kernel inside, its compiled form beside it where one can be made.
+"""Export the pythonfmu form: the Python kernel inside, its compiled form beside it where there is a
+compiler.
 
 Two FMUs, or an FMU and its host, share modules of the same name in one process. So everything
 embedded lies in one package under a content-hashed name, the script bears the hash too, and
@@ -42,24 +43,24 @@ SCRIPT = "runtime/script.py.in"
 
 
 def embedded_sources(folder: str) -> Files:
-    """Files of the embedded package, by their path in it."""
+    """Return the files of the embedded package, by their path in it."""
     return import_closure(f"models/{folder}/model.py", "runtime/slave.py")
 
 
 def source_digest(folder: str) -> str:
-    """Fingerprint of all that runs in the FMU; the GUID is made of it."""
+    """Return the fingerprint of all that runs in the FMU; the GUID is made of it."""
     more = {**read_sources(SCRIPT), "pythonfmu": PYTHONFMU.encode()}
     return fingerprint({**embedded_sources(folder), **more})
 
 
 def guid(folder: str) -> str:
-    """The GUID an FMU of the present sources bears; it is told without pythonfmu."""
+    """Return the GUID that an FMU of the present sources bears; this does not need pythonfmu."""
     sources = {"sources": source_digest(folder).encode()}
     return guid_of({**exporter_files("export/pythonfmu_form.py"), **text_files(folder), **sources})
 
 
 def check_pythonfmu() -> None:
-    """See that the one version is installed that the slave is made for."""
+    """Raise an error unless the one version is installed that the slave is made for."""
     require("pythonfmu", "puts the FMU together")
     if metadata.version("pythonfmu") != PYTHONFMU:
         found = metadata.version("pythonfmu")
@@ -101,7 +102,7 @@ def export(folder: str, target: Path) -> Path:
 
 
 def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
-    """Write what pythonfmu puts together; returns script and package."""
+    """Write the files that pythonfmu packs; return script and package."""
     model = load_model(folder)
     package = scratch / "source" / f"fmu_{digest[:12]}"
     for name, content in embedded_sources(folder).items():
@@ -116,7 +117,9 @@ def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
 
 
 def libraries(folder: str, model: Model) -> Files:
-    """The compiled kernel by file name, a platform each; none, and said so, without a compiler."""
+    """Compile the kernel for each platform and return the libraries by file name; without a
+    compiler warn and return none.
+    """
     optional = {"REFRESH": model.refresh, "COAST": model.coast}
     known = "".join(f"#define {name}\n" for name, entry in optional.items() if entry).encode()
     entry = known + (ROOT / "runtime" / "native" / "library.c").read_bytes()
@@ -131,7 +134,7 @@ def libraries(folder: str, model: Model) -> Files:
 
 
 def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
-    """See that a kernel by the machine's own compiler has the model's bits.
+    """Check that a kernel by the machine's own compiler has the model's bits.
 
     The native forms' libraries see to it themselves, when they are instantiated.
 
@@ -150,7 +153,7 @@ def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
 
 
 def run_pythonfmu(script: Path, package: Path, built: Path) -> Files:
-    """Let pythonfmu put script, package and its own binaries together; returns the files."""
+    """Let pythonfmu pack script, package and its own binaries, and return the FMU's files."""
     command = [sys.executable, "-m", __name__, str(script), str(package), str(built)]
     done = subprocess.run(command, cwd=ROOT.parent, capture_output=True, text=True)
     if done.returncode != 0:

@@ -1,4 +1,6 @@
-"""The C sources inside a native FMU: for targets it has no binary for, and for who reads them."""
+"""The C sources inside a native FMU: for targets it has no binary for, and for those who read
+them.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,7 @@ endif()
 
 @functools.cache
 def kernel_source(folder: str) -> bytes:
-    """The kernel of a model in C, of which all compiled forms are made.
+    """Return the kernel of a model in C, of which all compiled forms are made.
 
     Parameters
     ----------
@@ -49,12 +51,12 @@ def kernel_source(folder: str) -> bytes:
 
 
 def compiled_files(files: Files) -> list[str]:
-    """The files that are compiled, in a fixed order."""
+    """Return the names of the files that are compiled, in a fixed order."""
     return sorted(name for name in files if name.endswith(".c"))
 
 
 def source_files(name: str, version: str, files: Files) -> Files:
-    """What lies in an FMU's ``sources/``, by path in the FMU.
+    """Return the files of an FMU's ``sources/``, by path in the FMU.
 
     Parameters
     ----------
@@ -73,7 +75,7 @@ def source_files(name: str, version: str, files: Files) -> Files:
 
 
 def build_description(name: str, sources: list[str]) -> bytes:
-    """FMI 3.0's list of what to compile, and how."""
+    """Return FMI 3.0's ``buildDescription.xml``: what to compile, and how."""
     root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=name)
     attributes = {"language": "C99", "compilerOptions": OPTIONS}

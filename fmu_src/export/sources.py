@@ -1,4 +1,4 @@
-"""Which source files an FMU is made of: what a module imports, read from its syntax tree."""
+"""Find the source files an FMU is made of: what a module imports, read from its syntax tree."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ parsing = threading.Lock()  # Python 3.11 mixes up syntax trees of two threads
 
 
 def load_model(folder: str) -> Model:
-    """The model in a folder below ``fmu_src/models``."""
+    """Import the model in a folder below ``fmu_src/models``."""
     model = import_module(f"{ROOT.name}.models.{folder}.model").MODEL
     assert isinstance(model, Model)
     return model
 
 
 def read_sources(*names: str) -> Files:
-    """Files below ``fmu_src``, by name."""
+    """Read files below ``fmu_src``; return them by name."""
     return {name: (ROOT / name).read_bytes() for name in names}
 
 
 def import_closure(*names: str) -> Files:
-    """Modules and all that they import from ``fmu_src``, the packages they lie in included.
+    """Return modules and all that they import from ``fmu_src``, with the packages they lie in.
 
     Parameters
     ----------
@@ -56,7 +56,9 @@ def import_closure(*names: str) -> Files:
 
 @functools.cache
 def imported_files(name: str, source: bytes) -> tuple[str, ...]:
-    """Files below ``fmu_src`` that run when a module is imported or its functions are."""
+    """Return the files below ``fmu_src`` that run when a module is imported or its functions are
+    called.
+    """
     package = name.split("/")[:-1]
     found = ["/".join([*package[:depth], "__init__.py"]) for depth in range(len(package) + 1)]
     with parsing:
@@ -74,7 +76,7 @@ def imported_files(name: str, source: bytes) -> tuple[str, ...]:
 
 
 def statements(tree: ast.AST) -> Iterator[ast.AST]:
-    """All statements below a node, those of functions included."""
+    """Yield all statements below a node, including those of functions."""
     for part in ("body", "orelse", "handlers", "finalbody"):
         for node in getattr(tree, part, ()):
             yield node
@@ -83,7 +85,9 @@ def statements(tree: ast.AST) -> Iterator[ast.AST]:
 
 @functools.cache
 def module_file(*parts: str) -> str:
-    """The file of a module or package below ``fmu_src``; an empty string where there is none."""
+    """Return the file of a module or package below ``fmu_src``; an empty string if there is
+    none.
+    """
     for name in ("/".join(parts) + ".py", "/".join([*parts, "__init__.py"])):
         if (ROOT / name).is_file():
             return name
@@ -91,17 +95,21 @@ def module_file(*parts: str) -> str:
 
 
 def model_sources(folder: str) -> Files:
-    """Variable table, texts and kernel of a model: all that decides its numbers."""
+    """Return variable table, texts and kernel of a model: all that decides its numbers."""
     return import_closure(f"models/{folder}/model.py")
 
 
 def model_digest(folder: str) -> str:
-    """Fingerprint of a model; states saved by one native form can be read by the other."""
+    """Return the fingerprint of a model; states saved by one native form can be read by the
+    other.
+    """
     return fingerprint(model_sources(folder))
 
 
 def text_files(folder: str) -> Files:
-    """What people read in a model's FMU: page, pictures, reference results, licence."""
+    """Return the files of a model's FMU that people read: page, pictures, reference results,
+    licence.
+    """
     shared = ROOT / "models"
     names = [path.name for path in sorted(shared.iterdir()) if path.suffix in (".in", ".txt")]
     found = read_folder(shared / folder, f"models/{folder}/")
@@ -110,7 +118,7 @@ def text_files(folder: str) -> Files:
 
 
 def check_unedited() -> None:
-    """See that no source was edited since this process began.
+    """Raise an error if a source was edited since this process began.
 
     Modules and compiled kernels stay in memory, files are read when they are needed: after an edit
     an FMU would be made of both, under a GUID of the later ones.
@@ -128,5 +136,5 @@ def check_unedited() -> None:
 
 
 def exporter_files(name: str) -> Files:
-    """Files of an exporter: a change of theirs makes another FMU too."""
+    """Return the files of an exporter: if they change, the FMU changes too."""
     return {**import_closure(name), **read_folder(ROOT / "runtime" / "native", "runtime/native/")}

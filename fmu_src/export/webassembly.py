@@ -1,4 +1,4 @@
-"""The kernel as a WebAssembly module: the same C as the FMUs', for web pages.
+"""Compile the kernel to a WebAssembly module: the same C as the FMUs', for web pages.
 
 The module exports its memory, ``__heap_base``, from where on instances may lie one after the other,
 and the entry points ``kernel_NAME(address of an instance, time)``. It imports nothing. WebAssembly
@@ -21,7 +21,7 @@ SECTION = "guid"  # name of the custom section that bears the GUID
 
 
 def guid(folder: str) -> str:
-    """The GUID that a module of the present sources bears, in braces."""
+    """Return the GUID that a module of the present sources bears, in braces."""
     return guid_of(
         {**import_closure("export/webassembly.py"), "model": model_digest(folder).encode()}
     )
@@ -57,20 +57,21 @@ def export(folder: str) -> bytes:
 
 
 def custom_section(name: str, text: str) -> bytes:
-    """A custom section of a WebAssembly module; both texts short."""
+    """Return a custom section of a WebAssembly module; both texts must be short."""
     content = bytes([len(name)]) + name.encode() + text.encode()
     assert len(content) < 128, "a length of one byte"
     return bytes([0, len(content)]) + content
 
 
 def guid_inside(module: bytes) -> str:
-    """The GUID that a module bears; an empty string where it has none."""
+    """Return the GUID that a module bears; an empty string where it has none."""
     found = re.search(SECTION.encode() + rb"(\{[0-9a-f-]{36}\})\Z", module)
     return found[1].decode() if found else ""
 
 
 def slots(folder: str) -> dict[str, int]:
-    """Size of a model's memory and the place of each of its variables: series by their first.
+    """Return the size of a model's memory and the slot of each of its variables: of a series its
+    first.
 
     ``SET`` is the flag to be raised when an input between ``CUBIC`` and before ``CUBIC_END`` is
     set.
@@ -87,6 +88,6 @@ def slots(folder: str) -> dict[str, int]:
 
 
 def starts(folder: str) -> dict[str, float]:
-    """Start values of a model's variables, where they are not zero."""
+    """Return the start values of a model's variables, where they are not zero."""
     given = {v.name: float(v.start) for v in load_model(folder).variables if v.start is not None}
     return {name: value for name, value in given.items() if value != 0.0}

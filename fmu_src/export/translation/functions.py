@@ -1,4 +1,4 @@
-"""A function of the kernel in C: its statements, and where its variables are declared.
+"""Translate a function of the kernel to C: its statements, and where its variables are declared.
 
 A body is read until the types of its variables no longer change, and then once more for its text.
 """
@@ -65,22 +65,22 @@ class Unit:
 
 
 class Kernel(Protocol):
-    """What a function has to know of the others."""
+    """What the translation of a function needs from the translation of the kernel."""
 
     begun: set[FunctionType]
 
     def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
-        """Another function, translated."""
+        """Return another function, translated."""
 
     def constant(self, module: ModuleType, name: str) -> str:
-        """The name in C of a module's number."""
+        """Return the name in C of a module's number."""
 
     def c_type(self, kind: Type) -> str:
-        """The name in C of a type."""
+        """Return the name in C of a type."""
 
 
 class Body(Expressions):
-    """Translates one function.
+    """Translator of one function.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class Body(Expressions):
         self.reset()
 
     def reset(self) -> None:
-        """Nothing has been written."""
+        """Discard the lines and declarations written so far."""
         self.lines: list[str] = []
         self.declared, self.count_of_kept, self.depth = set(self.parameters), 0, 1
 
@@ -127,7 +127,7 @@ class Body(Expressions):
         self.unit.text = "\n".join([*self.definition_head(), "{", *self.lines, "}"])
 
     def definition_head(self) -> list[str]:
-        """What the function is for, in the words of its docstring, and its declaration."""
+        """Return the docstring's summary as a comment, and the function's declaration."""
         summary = " ".join((ast.get_docstring(self.tree) or "").partition("\n\n")[0].split())
         comment = f"/* {summary.replace('``', '').replace(':func:', '').replace('`', '')} */"
         parameters = [f"{self.c_type(self.types[name])} {in_c(name)}" for name in self.parameters]
@@ -140,12 +140,14 @@ class Body(Expressions):
     # -- what expressions ask for --
 
     def refuse(self, node: ast.AST, what: str, expected: str) -> CannotExport:
-        """The error that names a line outside the subset."""
+        """Return the error that names a line outside the subset."""
         line = self.first + getattr(node, "lineno", 1) - 1
         return CannotExport(f"{self.module.__file__}, line {line}: {what}; expected {expected}")
 
     def keep(self, value: Value) -> Value:
-        """A value in a variable of its own, before the present statement."""
+        """Assign a value to a variable of its own, before the present statement, and return
+        that.
+        """
         if not self.may_keep:
             instead = "it in a statement of its own before"
             raise self.refuse(self.tree, f"{value.text} would be evaluated too early", instead)
@@ -155,13 +157,13 @@ class Body(Expressions):
         return Value(name, value.type)
 
     def constant(self, module: ModuleType, name: str) -> str:
-        """The name in C of a module's number."""
+        """Return the name in C of a module's number."""
         return self.kernel.constant(module, name)
 
     def function(
         self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
     ) -> tuple[str, Type]:
-        """The name in C of another function, and its result's type."""
+        """Return the name in C of another function, and its result's type."""
         if function in self.kernel.begun:  # nobody could say how much stack it takes
             raise self.refuse(node, f"{function.__name__} calls itself", "a loop, no recursion")
         unit = self.kernel.unit(function, kinds)
@@ -170,18 +172,18 @@ class Body(Expressions):
         return unit.name, unit.result
 
     def c_type(self, kind: Type) -> str:
-        """The name in C of a type."""
+        """Return the name in C of a type."""
         return self.kernel.c_type(kind)
 
     # -- lines --
 
     def line(self, text: str) -> None:
-        """One line of C at the present depth."""
+        """Write one line of C at the present depth."""
         indent = INDENT * self.depth
         self.lines += wrapped(text, indent, indent + INDENT)
 
     def block(self, statements: Block) -> None:
-        """Statements in their order, each after the comments beside it."""
+        """Translate statements in their order, each after the comments beside it."""
         for statement in statements:
             if self.is_final:
                 for line in [line for line in sorted(self.comments) if line <= statement.lineno]:
@@ -189,7 +191,7 @@ class Body(Expressions):
             self.statement(statement)
 
     def inner_block(self, statements: Block) -> None:
-        """A block inside another."""
+        """Translate a block inside another."""
         self.depth += 1
         self.block(statements)
         self.depth -= 1
@@ -212,7 +214,7 @@ class Body(Expressions):
     # -- statements --
 
     def statement(self, node: ast.stmt) -> None:
-        """One statement."""
+        """Translate one statement."""
         known: Mapping[type, Callable[[Any], None]] = {
             ast.Assign: self.assign,
             ast.AugAssign: self.augmented_assignment,
@@ -229,7 +231,7 @@ class Body(Expressions):
         known[type(node)](node)
 
     def assign(self, node: ast.Assign) -> None:
-        """``a = b``, ``a = b = c``, ``a, b = c, d``, ``a, b = f(m)``."""
+        """Translate ``a = b``, ``a = b = c``, ``a, b = c, d``, ``a, b = f(m)``."""
         target = node.targets[0]
         if isinstance(target, ast.Tuple) and len(node.targets) == 1:
             self.assign_parts(target.elts, node.value)
@@ -243,7 +245,7 @@ class Body(Expressions):
             self.set(one, value)
 
     def assign_parts(self, targets: Sequence[ast.expr], source: ast.expr) -> None:
-        """A tuple's parts to several names or slots."""
+        """Assign a tuple's parts to several names or slots."""
         if isinstance(source, ast.Tuple):
             parts = self.operands(source.elts)
             if needs_temporaries(targets, source.elts):
@@ -260,7 +262,7 @@ class Body(Expressions):
                 self.set(target, part)
 
     def set(self, target: ast.expr, value: Value) -> None:
-        """A value into a variable or a slot."""
+        """Assign a value to a variable or a slot."""
         if isinstance(target, ast.Subscript):
             self.line(f"{self.subscript(target).text} = {value.converted(REAL).text};")
             return
@@ -275,7 +277,7 @@ class Body(Expressions):
         self.line(f"{declaration}{in_c(name)} = {value.converted(kind).text};")
 
     def augmented_assignment(self, node: ast.AugAssign) -> None:
-        """``a += b``."""
+        """Translate ``a += b``."""
         if type(node.op) not in OPERATORS:
             raise self.refuse(node, ast.unparse(node), "+=, -=, *= or /=")
         sign = OPERATORS[type(node.op)][0]
@@ -290,13 +292,13 @@ class Body(Expressions):
         self.line(f"{self.expression(node.target).text} {sign}= {value.converted(REAL).text};")
 
     def call_alone(self, node: ast.Expr) -> None:
-        """A call for what it does to the memory."""
+        """Translate a call whose result is not used."""
         if not isinstance(node.value, ast.Call):
             raise self.refuse(node, ast.unparse(node), "a call")
         self.line(f"{self.expression(node.value).text};")
 
     def return_statement(self, node: ast.Return) -> None:
-        """``return``, with or without a value."""
+        """Translate ``return``, with or without a value."""
         if node.value is None:
             self.results.append(NOTHING)
             self.line("return;")
@@ -307,7 +309,7 @@ class Body(Expressions):
         self.line(f"return {value.converted(kind).text};")
 
     def if_statement(self, node: ast.If) -> None:
-        """``if``, ``elif`` and ``else``, with what a comment says of the test."""
+        """Translate ``if``, ``elif`` and ``else``, with what a comment says of the test."""
         hint, test, before = (
             self.hints.get(node.lineno, ""),
             self.truth(node.test).text,
@@ -324,7 +326,7 @@ class Body(Expressions):
         self.is_rare = before
 
     def for_loop(self, node: ast.For) -> None:
-        """``for i in range(...)``."""
+        """Translate ``for i in range(...)``."""
         loop, target = node.iter, node.target
         is_range = isinstance(loop, ast.Call) and ast.unparse(loop.func) == "range"
         ends = loop.args if is_range and isinstance(loop, ast.Call) else []
@@ -349,7 +351,7 @@ class Body(Expressions):
         self.declared = before
 
     def while_loop(self, node: ast.While) -> None:
-        """``while``."""
+        """Translate ``while``."""
         (test,) = self.conditional([node.test], self.truth)
         self.line(f"while ({test.text}) {{")
         self.inner_block(node.body)
@@ -357,7 +359,7 @@ class Body(Expressions):
 
 
 def wrapped(text: str, first: str, later: str) -> list[str]:
-    """A line of C, broken where it is long."""
+    """Break a line of C where it is too long; return the lines."""
     return textwrap.wrap(
         text,
         WIDTH,

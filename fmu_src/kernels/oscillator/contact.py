@@ -14,8 +14,8 @@ HIGHEST = 5
 
 
 def gap_acceleration(m, x, v):
-    """The f of (18): the gap's acceleration at displacement ``x`` of both masses from where they
-    rest together, and common velocity ``v``.
+    """Return f of (18), the gap's acceleration at displacement ``x`` of both masses from where they
+    rest together, and common velocity ``v``; negative where they are pressed together.
     """
     force = m[at.FORCE_V] * v + m[at.FORCE_X] * x
     if m[at.PRELOAD] != 0.0:  # rarely
@@ -24,7 +24,9 @@ def gap_acceleration(m, x, v):
 
 
 def forcing_derivative(m, order, sine, cosine, cubic):
-    """Derivative of the right-hand side of (6), and the size of the terms it is made of."""
+    """Return a derivative of the right-hand side of (6), and the size of the terms it is made
+    of.
+    """
     size = m[at.FORCING]
     for _ in range(order):
         size *= m[at.ETA]
@@ -45,7 +47,8 @@ def forcing_derivative(m, order, sine, cosine, cubic):
 
 
 def first_nonzero_derivative(m, x, v, lowest):
-    """First derivative of f, from order ``lowest`` on, that does not vanish from (x, v) on.
+    """Return the first derivative of f, from order ``lowest`` on, that does not vanish from (x, v)
+    on.
 
     Returns
     -------

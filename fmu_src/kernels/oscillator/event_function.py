@@ -22,7 +22,7 @@ AHEAD = 5.0  # spacings from an evaluation on for which its bound holds
 
 
 def set_flight_event_function(m):
-    """Event function of a flight: ``xi_2 - xi_1`` and the clearance."""
+    """Set the event function of a flight: the gap, ``xi_2 - xi_1`` and the clearance."""
     m[at.EVENT_OFFSET] = m[at.GAP_OFFSET]
     for i in range(2):
         m[at.EVENT_HARMONIC + i] = m[at.HARMONIC_2 + i] - m[at.HARMONIC_1 + i]
@@ -36,8 +36,8 @@ def set_flight_event_function(m):
 
 
 def set_contact_event_function(m):
-    """Event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 - omega_2^2)
-    xi_3`` (18).
+    """Set the event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 -
+    omega_2^2) xi_3`` (18).
     """
     m[at.EVENT_OFFSET] = -m[at.PRELOAD]
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
@@ -58,8 +58,8 @@ def set_contact_event_function(m):
 
 
 def is_constant(m):
-    """Whether the event function stays what it is, above zero: at rest with a clearance, or pressed
-    together by two oscillators that are alike.
+    """Return whether the event function is a constant above zero: at rest with a clearance, or
+    pressed together by two oscillators that are alike.
     """
     if m[at.EVENT_OFFSET] <= 0.0 or m[at.SECULAR] != 0.0:
         return False
@@ -73,19 +73,21 @@ def is_constant(m):
 
 
 def force_phasor(m, x, v):
-    """Free part of minus the contact force from that of the displacement."""
+    """Return the free part of -f (18) from the free part of the displacement, as value and
+    derivative.
+    """
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     return p * v + q * x, p * free_acceleration(m, at.OSCILLATOR_3, x, v) + q * v
 
 
 def free_acceleration(m, b, x, v):
-    """Of a free part: ``x'' = -2 D x' - omega^2 x``."""
+    """Return the acceleration of a free part: ``x'' = -2 D x' - omega^2 x``."""
     return -(2.0 * m[b + at.DAMPING] * v + m[b + at.OMEGA_SQUARED] * x)
 
 
 def derivative_bounds(m, order):
-    """Bounds of the event function's derivative of an order >= 4, at all later times: steady part,
-    free parts A and B at tau = 0.
+    """Return bounds of the event function's derivative of an order >= 4 at all later times: of the
+    steady part and of the free parts A and B at tau = 0.
     """
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     for _ in range(order):
@@ -98,7 +100,7 @@ def derivative_bounds(m, order):
 
 
 def free_bound(m, b, free, order):
-    """Bound of a free part's derivative from the state's start on."""
+    """Return a bound of a free part's derivative of an order, from the state's start on."""
     x, v = m[free], m[free + 1]
     for _ in range(order):
         x, v = v, free_acceleration(m, b, x, v)
@@ -106,7 +108,7 @@ def free_bound(m, b, free, order):
 
 
 def envelope(m, b, x, v):
-    """Bound of a free part from now on."""
+    """Return a bound of a free part from the present values ``x``, ``v`` on."""
     return abs(x) + m[b + at.ENVELOPE_SINE] * abs(v + m[b + at.DAMPING] * x)
 
 
@@ -118,7 +120,7 @@ def begin_nodes(m):
 
 
 def set_node_values(m, slot, node, tau):
-    """Put the event function and two derivatives at a node to ``slot``."""
+    """Write the event function and two derivatives at a node to ``slot`` and the two after it."""
     h0, h1, h2 = event_values(
         m, False, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5], tau
     )
@@ -128,8 +130,8 @@ def set_node_values(m, slot, node, tau):
 
 
 def set_remainder(m):
-    """What the quintic between two nodes may miss from the node to the left on, until the state is
-    written anew.
+    """Set how far the quintic between two nodes may be wrong, from the node to the left on, until
+    the state is written anew.
     """
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     square = m[at.NODE_ETA] * m[at.NODE_ETA]
@@ -157,13 +159,13 @@ def set_remainder(m):
 
 
 def sixth_bound(m, b, x, v):
-    """Bound of the sixth derivative of a free part from now on."""
+    """Return a bound of the sixth derivative of a free part from now on."""
     sixth = b + at.SIXTH
     return envelope(m, b, m[sixth] * x + m[sixth + 1] * v, m[sixth + 2] * x + m[sixth + 3] * v)
 
 
 def difference_bound(m, order, x, v, x_b, v_b, time):
-    """Bound of a derivative of both free parts' difference, for a ``time`` from now on.
+    """Return a bound of a derivative of both free parts' difference, for a ``time`` from now on.
 
     Each derivative of ``xi_2 - xi_1`` moves as oscillator 2, driven by what differs, ``2 (D_1 -
     D_2) xi_1' + (omega_1^2 - omega_2^2) xi_1``; where both move nearly as one, the sum of both
@@ -186,7 +188,7 @@ def difference_bound(m, order, x, v, x_b, v_b, time):
 
 
 def event_values(m, plain, x, v, x_b, v_b, cosine, sine, tau):  # inline
-    """The event function and two derivatives from all phasors; ``plain`` as in
+    """Return the event function and two derivatives from all phasors; ``plain`` as in
     :func:`.nodes.next_phasors`.
     """
     if plain or m[at.MODE] == at.FLIGHT:
@@ -214,21 +216,21 @@ def event_values(m, plain, x, v, x_b, v_b, cosine, sine, tau):  # inline
 
 
 def cubic_values(m, tau):
-    """The event function's cubic and two derivatives."""
+    """Return the event function's cubic and two derivatives at ``tau``."""
     q1, q2, q3 = m[at.EVENT_CUBIC + 1], m[at.EVENT_CUBIC + 2], m[at.EVENT_CUBIC + 3]
     value = m[at.EVENT_CUBIC] + tau * (q1 + 0.5 * tau * (q2 + tau * q3 * (1.0 / 3.0)))
     return value, q1 + tau * (q2 + 0.5 * tau * q3), q2 + tau * q3
 
 
 def free_part_derivatives(m, b, x, v):
-    """A free part, its first four derivatives and a bound of the fifth from now on."""
+    """Return a free part, its first four derivatives and a bound of the fifth from now on."""
     x2, x3, x4, x5, x6 = higher_derivatives(m, b, x, v)
     return x, v, x2, x3, x4, envelope(m, b, x5, x6)
 
 
 def evaluate(m, tau):  # inline
-    """The event function at ``tau``: value, four derivatives, and a bound of the fifth from there
-    on, AHEAD spacings long.
+    """Evaluate the event function at ``tau``: value, four derivatives, and a bound of the fifth
+    that holds for AHEAD spacings from there on.
 
     Returns
     -------
@@ -278,7 +280,7 @@ def evaluate(m, tau):  # inline
 
 
 def event_rounding(m, tau):
-    """What the event function's terms at ``tau`` may lose by rounding."""
+    """Return a bound of the rounding error of the event function at ``tau``."""
     size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1]) + abs(m[at.EVENT_OFFSET])
     size += free_bound(m, oscillator_a(m), at.EVENT_FREE_A, 0) + free_bound(
         m, at.OSCILLATOR_2, at.EVENT_FREE_B, 0

@@ -23,8 +23,8 @@ SMALLEST, GROWTH = 1e-9, 1.25
 
 
 def walk_with_largest_gap(m, start, target):
-    """Walk to ``target`` and enter the largest gap from ``start`` on; the gap at ``start`` and at
-    ``target`` is entered by who looks at these points.
+    """Walk to ``target`` and record the largest gap between ``start`` and there; the caller records
+    the gap at ``start`` and at ``target``.
     """
     if m[at.SERIES] != 0.0:
         stop = target if target < m[at.END] else m[at.END]
@@ -45,7 +45,7 @@ def walk_with_largest_gap(m, start, target):
 
 
 def record_largest_gap(m, start, stop):
-    """Enter the largest gap of a part of the present interval."""
+    """Raise the recorded maximum to the largest gap in a part of the present interval."""
     highest = m[at.X_REL_MAX]
     if interval_is_below(m, highest) or stop <= start:
         return
@@ -60,7 +60,7 @@ def record_largest_gap(m, start, stop):
 
 
 def step_to_summit(h1, h2, h3, h4, bound, reach):
-    """A step towards the next summit, and whether it ends there.
+    """Return a step towards the next summit, and whether it ends there.
 
     Height is of second order in the summit's place: 1e-9 of it will do.
     """
@@ -73,7 +73,7 @@ def step_to_summit(h1, h2, h3, h4, bound, reach):
 
 
 def scaled_clear_step(h0, h1, h2, h3, h4, bound, reach):
-    """:func:`.roots.clear_step` in units of the last bound given, or of the one before: scaled
+    """Return :func:`.roots.clear_step` in units of the bound, or of ``-h4`` without one: scaled
     amplitudes take the same steps.
     """
     unit = bound if bound > 0.0 else -h4
@@ -84,8 +84,8 @@ def scaled_clear_step(h0, h1, h2, h3, h4, bound, reach):
 
 
 def gap_rounding(m, tau):
-    """What rounding makes of the gap at ``tau``, where it was evaluated last: no larger gap is
-    looked for that is larger by less.
+    """Return the rounding error of the gap at ``tau``, where it was evaluated last: a gap that is
+    larger by less does not count.
     """
     if m[at.SERIES] != 0.0:
         return 2.0 * EPS * m[at.SERIES_GAP + 1] * m[at.END]
@@ -103,7 +103,8 @@ def gap_rounding(m, tau):
 
 
 def largest_gap(m, start, stop, highest):
-    """The larger of ``highest`` and the present flight's largest gap in ``start <= tau <= stop``.
+    """Return the larger of ``highest`` and the present flight's largest gap in ``start <= tau <=
+    stop``.
 
     From each point the walk goes on as far as the gap certainly stays below what is known, or,
     climbing, to the first root of the gap's slope.

@@ -41,7 +41,7 @@ FAINTEST = 2e-292  # m, about 2 to the -969: the last digits of less are below t
 
 
 def state_at(m, tau):
-    """Displacements and velocities ``tau`` after the state's start, (10).
+    """Return displacements and velocities ``tau`` after the state's start, (10).
 
     Returns
     -------
@@ -60,7 +60,7 @@ def state_at(m, tau):
 
 
 def state_at_end(m):
-    """:func:`state_at` at the state's end."""
+    """Return :func:`state_at` at the state's end."""
     if m[at.MODE] == at.CONTACT and m[at.END] * m[at.RATE] < BRIEF:  # rarely
         x, v = brief_contact(m, m[at.END])
         return x, v, x, v
@@ -71,7 +71,8 @@ def state_at_end(m):
 
 
 def brief_contact(m, tau):
-    """Displacement and velocity a very short time after a contact's start, by their Taylor series.
+    """Return displacement and velocity a very short time after a contact's start, by their Taylor
+    series.
 
     From rest they are far below the rounding of the closed form's terms; whether the masses part
     hangs on them.
@@ -88,7 +89,7 @@ def brief_contact(m, tau):
 
 
 def state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
-    """Displacements and velocities from all phasors."""
+    """Return displacements and velocities from all phasors."""
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
         x2, v2 = displacement(m, at.HARMONIC_2, at.CUBIC_B, tau, x_b, v_b, sine, cosine)
@@ -100,14 +101,14 @@ def state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
 
 
 def is_from_unloaded(m):  # inline
-    """Whether the present state's displacements count from the unloaded positions, not from where
-    the masses rest together.
+    """Return whether the present state's displacements count from the unloaded positions, not from
+    where the masses rest together.
     """
     return m[at.MODE] == at.FLIGHT and m[at.SERIES] == 0.0
 
 
 def gap_between(m, tau, x1, x2):  # inline
-    """The gap between the displacements of :func:`state_at`, >= 0."""
+    """Return the gap between the displacements of :func:`state_at`, >= 0."""
     gap = x2 - x1
     if m[at.GAP_OFFSET] != 0.0 and is_from_unloaded(m):  # rarely
         gap = m[at.BEGIN_GAP] if tau == 0.0 else gap + m[at.GAP_OFFSET]
@@ -116,21 +117,23 @@ def gap_between(m, tau, x1, x2):  # inline
 
 
 def from_unloaded(m, x1, x2):  # inline
-    """The displacements of :func:`state_at` from the unloaded positions."""
+    """Convert the displacements of :func:`state_at` to those from the unloaded positions."""
     if m[at.GAP_OFFSET] != 0.0 and not is_from_unloaded(m):  # rarely
         x1, x2 = x1 + m[at.REST_1], x2 + m[at.REST_2]
     return x1, x2
 
 
 def from_rest_together(m, x1, x2):
-    """The displacements of :func:`state_at` from where the masses rest together."""
+    """Convert the displacements of :func:`state_at` to those from where the masses rest
+    together.
+    """
     if m[at.GAP_OFFSET] != 0.0 and is_from_unloaded(m):  # rarely
         x1, x2 = x1 - m[at.REST_1], x2 - m[at.REST_2]
     return x1, x2
 
 
 def state_and_phase_at(m, tau):  # inline
-    """:func:`state_at`, and cosine and sine of the excitation's phase there."""
+    """Return :func:`state_at`, and cosine and sine of the excitation's phase there."""
     if tau != 0.0 and m[at.SERIES] == 0.0 and m[at.NODE_ETA] != 0.0:
         x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
         x1, v1, x2, v2 = state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
@@ -143,20 +146,22 @@ def state_and_phase_at(m, tau):  # inline
 
 
 def common_position(m, x1, x2):
-    """The centre of mass, where both masses are put at an impact: they differ by rounding alone."""
+    """Return the centre of mass, where both masses are put at an impact: they differ by rounding
+    alone.
+    """
     return (x1 + m[at.MU] * x2) * m[at.SHARE]
 
 
 def move_origin(m, tau):
-    """Let a new state begin ``tau`` after the start of the present one, (5), without losing digits
-    over millions of states.
+    """Move the origin of time by ``tau`` to a new state's start, (5), without losing digits over
+    millions of states.
     """
     advance_origin(m, tau)
     set_phase(m, m[at.TURN] + m[at.ETA_TURNS] * tau)
 
 
 def advance_origin(m, tau):
-    """The new state's start, without its phase."""
+    """Move the origin of time by ``tau``, but leave the phase."""
     total = m[at.ORIGIN] + tau
     part = total - m[at.ORIGIN]
     error = (m[at.ORIGIN] - (total - part)) + (tau - part)
@@ -167,8 +172,8 @@ def advance_origin(m, tau):
 
 
 def move_origin_to_end(m):
-    """Let a new state begin at the end of the present one; its phase is the one there, rotated on
-    from node to node, or made anew after as many rotations as free parts are.
+    """Move the origin of time to the end of the present state; the phase is rotated there from node
+    to node, or computed anew after as many rotations as a block has nodes.
     """
     turns = m[at.ROTATIONS] + m[at.AT_END_NODE] + 1.0
     if m[at.AT_END_NODE] == 0.0 or m[at.NODE_ETA] == 0.0 or turns > BLOCK:
@@ -183,7 +188,7 @@ def move_origin_to_end(m):
 
 
 def set_phase(m, turns):
-    """Phase at the state's start."""
+    """Set the phase at the state's start, in turns, with its cosine and sine."""
     m[at.TURN] = fraction(turns)
     sine, cosine = sincos_turns(m[at.TURN])
     m[at.SINE] = sine
@@ -231,7 +236,9 @@ def begin_state(m, x1, v1, x2, v2, gap, lowest):
 
 
 def collide(m, x, v1, v2):
-    """Velocities after an impact; both the same where chattering ends in permanent contact."""
+    """Count an impact and return the velocities after it, both the same where chattering ends in
+    permanent contact.
+    """
     closing = v1 - v2
     common = common_velocity(m, v1, v2)
     time = m[at.START_TIME] + (m[at.ORIGIN] + m[at.ORIGIN_LOW]) / m[at.OMEGA]
@@ -244,7 +251,9 @@ def collide(m, x, v1, v2):
 
 
 def begin_touching_flight(m, x, v1, v2):
-    """A flight from no gap, at displacement ``x`` of both masses from where they rest together."""
+    """Begin a flight from no gap, at displacement ``x`` of both masses from where they rest
+    together.
+    """
     x1, x2 = x, x
     if m[at.GAP_OFFSET] != 0.0:  # rarely
         x1, x2 = x + m[at.REST_1], x + m[at.REST_2]
@@ -252,8 +261,8 @@ def begin_touching_flight(m, x, v1, v2):
 
 
 def begin_flight(m, x1, v1, x2, v2, gap):
-    """A flight from initial conditions, from the unloaded positions; its event function is the
-    gap.
+    """Begin a flight from initial conditions that count from the unloaded positions; its event
+    function is the gap.
     """
     m[at.MODE] = at.FLIGHT
     sine, cosine = m[at.SINE], m[at.COSINE]
@@ -280,8 +289,8 @@ def begin_flight(m, x1, v1, x2, v2, gap):
 
 
 def begin_common(m, mode, x, v):
-    """Both masses as one, in contact or glued, from where they rest together; its event function is
-    the contact force.
+    """Begin permanent contact or the glued state, both masses as one, from where they rest
+    together; the event function is ``-f`` of (18).
     """
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
@@ -297,7 +306,7 @@ def begin_common(m, mode, x, v):
 
 
 def open_state(m, x1, v1, x2, v2, gap):
-    """The state begins here; its end is not known yet."""
+    """Set a new state's initial conditions, and mark its end as not known yet."""
     m[at.SERIES] = 0.0
     m[at.AT_END_NODE] = 0.0
     m[at.BEGIN] = x1
@@ -311,8 +320,8 @@ def open_state(m, x1, v1, x2, v2, gap):
 
 
 def begin_after_impact(m, x, v1, v2):
-    """Leave an impact at displacement ``x`` with velocities ``v2 > v1``; a short flight's end is
-    found at once.
+    """Begin the flight after an impact at displacement ``x`` with velocities ``v2 > v1``; a short
+    flight's end is computed at once.
     """
     slope = v2 - v1
     curvature = gap_acceleration(m, x, v1) - 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
@@ -335,8 +344,9 @@ def begin_after_impact(m, x, v1, v2):
 
 
 def skip_clear_start(m, h1, h2):
-    """Whether a part of the first interval is seen to be clear from a start on the boundary with
-    the event function's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``; CLEAR moves there.
+    """Move CLEAR over the part of the first interval that certainly has no root, and return whether
+    there is one; the start is on the boundary, with the event function's derivatives ``h1 > 0``, or
+    ``h1 = 0 < h2``.
     """
     m[at.LEFT_VALUES] = 0.0
     m[at.LEFT_VALUES + 1] = h1
@@ -345,7 +355,7 @@ def skip_clear_start(m, h1, h2):
 
 
 def certified_first_step(m, h1, h2, h3, h4):
-    """A certified step from such a start, or the root."""
+    """Take one certified step from a start on the boundary, or find the root."""
     _, _, _, _, _, bound = evaluate(m, 0.0)
     reach = m[at.RIGHT_AGE]
     step, found = clear_step_or_root(0.0, h1, h2, h3, h4, bound, 0.0, reach, root_accuracy(m, 0.0))
@@ -387,7 +397,7 @@ def leave_boundary(m, order, value):
 
 
 def derivative_bound(m, order):
-    """Bound of the event function's derivative of an order over the whole state."""
+    """Return a bound of the event function's derivative of an order over the whole state."""
     steady, a, b = derivative_bounds(m, order)
     return steady + a + b
 
@@ -413,7 +423,7 @@ def end_state(m):
 
 
 def has_died_away(m, x1, v1, x2, v2):
-    """Whether a motion that nothing drives is too small for its digits: it is at rest then.
+    """Return whether a motion that nothing drives is too small for its digits: it is at rest then.
 
     An undriven motion may decay for ever. Among the subnormal numbers no walk would end: what
     rounding takes there is as large as the motion.

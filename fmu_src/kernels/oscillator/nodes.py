@@ -25,7 +25,9 @@ FASTEST_TAKEN = 1e100
 
 
 def set_grid(m):
-    """Spacing and constant rotations of a segment; nothing where they are what they were."""
+    """Set the spacing and the constant rotations of a segment, unless they are the same as
+    before.
+    """
     eta = m[at.ETA] if m[at.FORCING] != 0.0 else 0.0
     if m[at.SPACING] != 0.0 and eta == m[at.NODE_ETA]:
         return
@@ -52,7 +54,9 @@ def set_grid(m):
 
 
 def node_spacing(fastest):
-    """At most ANGLE over the fastest, eight bits long."""
+    """Return the spacing of the nodes: at most ANGLE over the fastest frequency, eight bits
+    long.
+    """
     longest = ANGLE / fastest
     unit = 1.0
     while unit > longest:
@@ -63,7 +67,7 @@ def node_spacing(fastest):
 
 
 def set_rotation_constants(m, b, h):
-    """A branch's rotation over one spacing."""
+    """Set the rotation of one oscillator's free part over one spacing."""
     xx, xv, vx, vv = rotation_over(m, b, h)
     m[b + at.STEP_ON] = xx
     m[b + at.STEP_ON + 1] = vx
@@ -74,8 +78,8 @@ def set_rotation_constants(m, b, h):
 
 
 def rotation_over(m, b, t):
-    """What a free part's displacement and velocity become in an age t: of x by x and v, of v by x
-    and v.
+    """Return the four factors that turn a free part (x, v) over a time ``t``: those that give the
+    later x from x and v, then those that give the later v.
     """
     C, S, _ = fundamental_solutions(m, b, t)
     damped = m[b + at.DAMPING] * S
@@ -83,17 +87,17 @@ def rotation_over(m, b, t):
 
 
 def oscillator_a(m):
-    """First slot of the branch of free part A."""
+    """Return the first slot of the linear oscillator that free part A belongs to."""
     return at.OSCILLATOR_1 if m[at.MODE] == at.FLIGHT else at.OSCILLATOR_3
 
 
 def max_nodes(m):
-    """Nodes after which the present state is written anew."""
+    """Return the number of nodes after which the present state is written anew."""
     return LONGEST if m[at.SECULAR] == 0.0 else LONGEST_DRIVEN
 
 
 def start_nodes(m):
-    """The first interval of a state that begins: phasors at its start and one spacing later."""
+    """Set the first interval of a state that begins: phasors at its start and one spacing later."""
     m[at.NODE] = 0.0
     m[at.LEFT_AGE] = 0.0
     m[at.RIGHT_AGE] = m[at.SPACING]
@@ -106,7 +110,9 @@ def start_nodes(m):
 
 
 def set_right_phasors(m, node):
-    """Phasors one spacing after those in ``node``, put to the right."""
+    """Set the phasors of the right node to those one spacing after the phasors in the slots from
+    ``node`` on.
+    """
     x, v, x_b, v_b, cosine, sine = next_phasors(
         m, False, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5]
     )
@@ -114,7 +120,7 @@ def set_right_phasors(m, node):
 
 
 def put_phasors(m, slot, p0, p1, p2, p3, cosine, sine):
-    """Put phasors to slots, in the order given."""
+    """Write phasors to six slots, in the order of the arguments."""
     m[slot] = p0
     m[slot + 1] = p1
     m[slot + 2] = p2
@@ -124,12 +130,16 @@ def put_phasors(m, slot, p0, p1, p2, p3, cosine, sine):
 
 
 def is_plain_flight(m):
-    """Whether the present state is a flight that a harmonic alone drives, at no resonance."""
+    """Return whether the present state is a flight that a harmonic alone drives, at no
+    resonance.
+    """
     return m[at.MODE] == at.FLIGHT and m[at.SECULAR] == 0.0 and m[at.CUBIC_PRESENT] == 0.0
 
 
 def next_phasors(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
-    """All phasors one spacing later; ``plain`` where the state is known to be a plain flight."""
+    """Return all phasors one spacing later; ``plain`` where the state is known to be a plain
+    flight.
+    """
     if not plain and m[at.SECULAR] != 0.0:  # rarely
         return next_driven_phasors(m, x, v, x_b, v_b, cosine, sine)
     a = (at.OSCILLATOR_1 if plain else oscillator_a(m)) + at.STEP_ON
@@ -145,12 +155,12 @@ def next_phasors(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
 
 
 def starts_block(node):
-    """Whether phasors at a node are made anew."""
+    """Return whether the phasors at a node are computed anew from the closed form."""
     return math.floor(node * (1.0 / BLOCK)) * BLOCK == node
 
 
 def advance_interval(m):
-    """On to the next interval."""
+    """Make the next interval the present one."""
     m[at.NODE] += 1.0
     m[at.LEFT_AGE] = m[at.RIGHT_AGE]
     m[at.RIGHT_AGE] = (m[at.NODE] + 1.0) * m[at.SPACING]
@@ -163,13 +173,13 @@ def advance_interval(m):
 
 
 def renew_right_phasors(m, node):
-    """Phasors at a node from the closed form, put to the right."""
+    """Set the phasors of the right node to those of ``node`` from the closed form."""
     x, v, x_b, v_b, cosine, sine = phasors_from_closed_form(m, node * m[at.SPACING])
     put_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
 
 
 def phasors_from_closed_form(m, age):
-    """All phasors at an age from the closed form."""
+    """Return all phasors at an age of the state from the closed form."""
     cosine, sine, x_b, v_b = m[at.COSINE], m[at.SINE], 0.0, 0.0
     if m[at.NODE_ETA] != 0.0:  # usually
         sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
@@ -183,14 +193,14 @@ def phasors_from_closed_form(m, age):
 
 
 def free_part_after(m, b, x, v, t):
-    """A free part a time ``t`` later, from the closed form."""
+    """Return a free part a time ``t`` later, from the closed form."""
     xx, xv, vx, vv = rotation_over(m, b, t)
     return x * xx + v * xv, x * vx + v * vv
 
 
 def driven_part_after(m, b, x, v, t, phases):
-    """:func:`free_part_after`, driven on the way where the amplitude grows: ``phases`` are cosine and
-    sine of the excitation before and after.
+    """Return :func:`free_part_after`, driven on the way where the amplitude grows: ``phases`` are
+    cosine and sine of the excitation before and after.
     """
     if m[b + at.DRIVEN] == 0.0:  # usually
         return free_part_after(m, b, x, v, t)
@@ -202,7 +212,7 @@ def driven_part_after(m, b, x, v, t, phases):
 
 
 def next_driven_phasors(m, x, v, x_b, v_b, old_cosine, old_sine):
-    """All phasors one spacing later, where amplitudes grow."""
+    """Return all phasors one spacing later, where amplitudes grow."""
     cosine = old_cosine * m[at.NODE_COSINE] - old_sine * m[at.NODE_SINE]
     sine = old_sine * m[at.NODE_COSINE] + old_cosine * m[at.NODE_SINE]
     phases = old_cosine, old_sine, cosine, sine
@@ -212,7 +222,7 @@ def next_driven_phasors(m, x, v, x_b, v_b, old_cosine, old_sine):
 
 
 def next_driven_part(m, b, x, v, phases):
-    """A free part one spacing later, driven on the way where its amplitude grows."""
+    """Return a free part one spacing later, driven on the way where its amplitude grows."""
     step = b + at.STEP_ON
     if m[b + at.DRIVEN] == 0.0:  # usually
         return x * m[step] + v * m[step + 2], x * m[step + 1] + v * m[step + 3]
@@ -245,7 +255,7 @@ def seek_interval(m, tau):
 
 
 def phasors_at(m, tau):  # inline
-    """All phasors at an age, from the nearer node.
+    """Return all phasors at an age of the state, from the nearer node.
 
     Returns
     -------
@@ -271,8 +281,8 @@ def phasors_at(m, tau):  # inline
 
 
 def set_phasors_at_end(m, t):
-    """Phasors at the state's end, where that is a short time ``t`` after the point evaluated last:
-    by their Taylor series, of which six terms leave less than 1e-17.
+    """Set the phasors at the state's end, where that is a short time ``t`` after the point
+    evaluated last: by their Taylor series, of which six terms leave less than 1e-17.
     """
     if t * m[at.RATE] > NEAR or m[at.SECULAR] != 0.0:  # rarely
         return
@@ -291,7 +301,7 @@ def set_phasors_at_end(m, t):
 
 
 def higher_derivatives(m, b, x, v):
-    """Derivatives two to six of a free part's displacement."""
+    """Return the derivatives two to six of a free part's displacement."""
     twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
     x2 = -(twice * v + square * x)
     x3 = -(twice * x2 + square * v)
@@ -301,7 +311,7 @@ def higher_derivatives(m, b, x, v):
 
 
 def free_part_by_series(m, b, x, v, t):
-    """A free part a short time later."""
+    """Return a free part a short time ``t`` later, by its Taylor series."""
     x2, x3, x4, x5, x6 = higher_derivatives(m, b, x, v)
     half, t2 = 0.5 * t, t * t
     x += t * (
@@ -314,7 +324,7 @@ def free_part_by_series(m, b, x, v, t):
 
 
 def parts_by_functions(m, tau, cosine, sine):
-    """Both free parts where one decays steeply or grows: from the node before, by elementary
+    """Return both free parts where one decays steeply or grows: from the node before, by elementary
     functions.
     """
     t, p = tau - m[at.LEFT_AGE], at.LEFT
@@ -327,7 +337,7 @@ def parts_by_functions(m, tau, cosine, sine):
 
 
 def free_parts(m, node, t):  # inline
-    """Both free parts at most half a spacing from a node."""
+    """Return both free parts at a time ``t`` from a node, at most half a spacing."""
     decay = small_decay(m[oscillator_a(m) + at.DAMPING] * t)
     if m[at.MODE] != at.FLIGHT:
         x_a, v_a = free_part_near_node(m, at.OSCILLATOR_3, node, t, decay)
@@ -341,7 +351,7 @@ def free_parts(m, node, t):  # inline
 
 
 def free_part_near_node(m, b, free, t, decay):  # inline
-    """A free part over a part of a spacing, in which it decays by ``e^{-D t}``."""
+    """Return a free part a time ``t`` from its node, in which it decays by ``e^{-D t}``."""
     x, v = m[free], m[free + 1]
     cosine, sine = small_rotation(m[b + at.NU_SQUARED] * t * t)
     C, S = decay * cosine, decay * sine * t

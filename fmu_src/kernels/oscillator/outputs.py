@@ -13,7 +13,7 @@ SHORT = 0.01
 
 
 def outputs_at(m, tau):  # inline
-    """The outputs that belong to a point of time, ``tau`` after the present state's start.
+    """Return the outputs that belong to a point of time, ``tau`` after the present state's start.
 
     Returns
     -------
@@ -45,13 +45,13 @@ def outputs_at(m, tau):  # inline
 
 
 def unit_of_length(m):  # inline
-    """The ``a eta^2`` of (3), m; 0 where there is none to speak of."""
+    """Return ``a eta^2`` of (3), m; 0 where it is too small to divide by."""
     unit = m[at.FORCING]
     return unit if abs(unit) >= LEAST_UNIT else 0.0
 
 
 def write_outputs(m, seen):  # inline
-    """Write what :func:`outputs_at` has found."""
+    """Write the outputs that :func:`outputs_at` has returned to their slots."""
     motion, boundary, rotation = seen
     m[at.X1], m[at.X2], m[at.V1], m[at.V2], m[at.X_REL], m[at.V_REL] = motion[:6]
     m[at.XI1], m[at.XI2], m[at.XI_REL], m[at.BOX_FORCE] = motion[6:]
@@ -60,7 +60,7 @@ def write_outputs(m, seen):  # inline
 
 
 def finite_check_sum(seen):  # inline
-    """The sum of these outputs: finite only where all are."""
+    """Return the sum of these outputs: finite only where all are."""
     x1, x2, v1, v2, gap, gap_speed, xi1, xi2, xi_rel, box_force = seen[0]
     contact, _, phase = seen[1]
     sum_1, sum_2 = (x1 + v1) + (xi1 + box_force), (x2 + v2) + (xi2 + gap)
@@ -68,20 +68,22 @@ def finite_check_sum(seen):  # inline
 
 
 def last_written_point(m, age):  # inline
-    """The point that was written last, ``age`` after the cubic began, in tau: x1, x2, v1, v2, force
-    on the box, cosine and sine of the phase, and the age.
+    """Return the point that was written last, ``age`` after the cubic began, in tau: x1, x2, v1,
+    v2, force on the box, cosine and sine of the phase, and the age.
     """
     motion = m[at.X1], m[at.X2], m[at.V1], m[at.V2]
     return motion, m[at.BOX_FORCE], (m[at.PHASE_COSINE], m[at.PHASE_SINE]), age
 
 
 def point_of(m, seen, tau):  # inline
-    """The same of what :func:`outputs_at` has found, ``tau`` after the present state's start."""
+    """Return the point, as :func:`last_written_point` does, of outputs ``tau`` after the present
+    state's start.
+    """
     return seen[0][:4], seen[0][9], seen[2], m[at.CUBIC_AGE] + tau
 
 
 def accelerations(m, point):  # inline
-    """Accelerations of both masses relative to the box at a point, m/s2, by (6)."""
+    """Return the accelerations of both masses relative to the box at a point, m/s2, by (6)."""
     motion, _, rotation, age = point
     drive = m[at.FORCING] * rotation[1]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
@@ -93,8 +95,8 @@ def accelerations(m, point):  # inline
 
 
 def both_rates(m, drive, x1, v1, x2, v2):  # inline
-    """Accelerations of both masses, m/s2; or of one order more, from velocities, accelerations and
-    the drive's rate.
+    """Return the accelerations of both masses, m/s2; or their rates, m/s3, from velocities,
+    accelerations and the drive's rate.
     """
     if m[at.MODE] == at.FLIGHT:
         a1 = acceleration(m, at.OSCILLATOR_1, drive, x1, v1)
@@ -104,14 +106,16 @@ def both_rates(m, drive, x1, v1, x2, v2):  # inline
 
 
 def acceleration(m, b, drive, x, v):  # inline
-    """Acceleration of one oscillator at displacement ``x`` (m) and velocity ``v`` (m/s)."""
+    """Return the acceleration of one oscillator at displacement ``x`` (m) and velocity ``v``
+    (m/s).
+    """
     omega = m[at.OMEGA]
     pull = m[b + at.OMEGA_SQUARED] * x
     return omega * (omega * (drive - pull) - 2.0 * m[b + at.DAMPING] * v)
 
 
 def force_rates(m, point):  # inline
-    """First and second time derivative of the force on the box at a point."""
+    """Return the first and second time derivative of the force on the box at a point."""
     motion, _, rotation, age = point
     _, _, v1, v2 = motion
     a1, a2 = accelerations(m, point)
@@ -125,14 +129,14 @@ def force_rates(m, point):  # inline
 
 
 def momentum(m, motion):  # inline
-    """Momentum relative to the box, and its integral, the moment of mass."""
+    """Return the momentum relative to the box, and its integral, the moment of mass."""
     x1, x2, v1, v2 = motion
     return m[at.M1] * v1 + m[at.M2] * v2, m[at.M1] * x1 + m[at.M2] * x2
 
 
 def impulse(m, h, left, reached):  # inline
-    """Integrals of the force on the box over a step of ``h`` seconds between two points, by
-    momentum: impacts are internal and drop out.
+    """Return the impulse of the force on the box, and its moment, over a step of ``h`` seconds
+    between two points, by momentum: impacts are internal and drop out.
 
     ``box_force = -P' - (m1 + m2) y''`` with P the momentum relative to the box and y'' its
     acceleration, so the integral is a difference of momenta, its moment a difference of
@@ -162,8 +166,8 @@ def impulse(m, h, left, reached):  # inline
 
 
 def short_impulse(m, h, left, reached):  # inline
-    """The same over a short step without an impact or a change of state, by the quintic through the
-    force and two derivatives at both points.
+    """Return impulse and moment as :func:`impulse` over a short step without an impact or a change
+    of state, by the quintic through the force and two derivatives at both points.
     """
     rates, rates_after = force_rates(m, left), force_rates(m, reached)
     force, after, square = left[1], reached[1], h * h

@@ -17,7 +17,7 @@ ALIKE = 1e-4
 
 
 def derive(m):
-    """Fill the derived constants of ``m`` from its parameters."""
+    """Compute the derived constants of ``m`` from its parameters."""
     omega = math.sqrt(m[at.K1] / m[at.M1])  # (2)
     mu = m[at.M2] / m[at.M1]
     kappa = m[at.K2] / m[at.K1]
@@ -48,12 +48,12 @@ def derive(m):
 
 
 def are_nearly_equal(m):
-    """Whether the two oscillators are nearly equal."""
+    """Return whether the two oscillators are nearly equal."""
     return abs(m[at.FORCE_V]) + abs(m[at.FORCE_X]) < ALIKE
 
 
 def set_oscillator(m, b, damping, omega_squared):
-    """Constants of one linear oscillator: under-, critically and overdamped alike.
+    """Set the constants of one linear oscillator: under-, critically and overdamped alike.
 
     The envelope (rate r, factor s) bounds both basis functions for all ``t >= 0``: ``|e^{-D t} cos
     nu t| <= e^{-r t}`` and ``|e^{-D t} sin(nu t)/nu| <= s e^{-r t}``, with cosh and sinh beyond

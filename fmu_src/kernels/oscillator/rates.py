@@ -10,7 +10,7 @@ from .stepper import local_time
 
 
 def differentiate(m, time):
-    """Rates of change of the outputs into RATES; ``time`` is not used.
+    """Write the rates of change of the outputs into RATES; ``time`` is not used.
 
     Returns
     -------

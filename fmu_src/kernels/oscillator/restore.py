@@ -27,7 +27,7 @@ MOST_WHOLE = 9007199254740992.0  # 2**53
 
 
 def refuse_slot(m, slot, complaint):
-    """Say which slot is wrong, and why."""
+    """Record which slot is wrong, and why, and return FORGED."""
     m[at.TARGET] = m[slot]
     m[at.WORK] = slot
     m[at.REPORT] = complaint
@@ -35,7 +35,8 @@ def refuse_slot(m, slot, complaint):
 
 
 def restore(m, time):
-    """Check and make whole a memory that was read; it began at ``time`` (s).
+    """Check a memory that was read, and compute what follows from other numbers; it began at
+    ``time`` (s).
 
     The variables have been checked against their ranges.
 
@@ -70,7 +71,7 @@ def restore(m, time):
 
 
 def clear_scratch(m):
-    """What a step writes before it reads it."""
+    """Set to zero what a step writes before it reads it."""
     for i in range(at.WORK, at.WORK_LIMIT + 1):
         m[i] = 0.0
     m[at.TARGET] = 0.0
@@ -84,7 +85,9 @@ def clear_scratch(m):
 
 
 def may_be_infinite(m, slot):
-    """Whether a slot may have no finite number: it is made anew, or has none in a sound state."""
+    """Return whether a slot need not have a finite number: it is computed anew, or may be infinite
+    in a valid state.
+    """
     if at.OMEGA <= slot <= at.NODE_SINE and not (
         at.SEGMENT_INPUTS <= slot < at.CUBIC_ON or slot == at.CUBIC_AGE
     ):
@@ -95,8 +98,8 @@ def may_be_infinite(m, slot):
 
 
 def restore_segment(m):
-    """The excitation's constants from the inputs that the segment was made of; whether an input of
-    the cubic was set since stays as it was.
+    """Compute the excitation's constants from the inputs that the segment was made of; whether an
+    input of the cubic was set since stays as it was.
     """
     for i in range(6):
         value = m[at.SEGMENT_INPUTS + i]
@@ -114,13 +117,13 @@ def restore_segment(m):
 
 
 def segment_inputs(m):
-    """The inputs that the segment was made of."""
+    """Return the inputs that the segment was made of."""
     i = at.SEGMENT_INPUTS
     return m[i], m[i + 1], m[i + 2], m[i + 3], m[i + 4], m[i + 5]
 
 
 def swap_inputs(m, values):
-    """Set all six inputs; gives those there were."""
+    """Set all six inputs and return those before."""
     i = at.BOX_AMPLITUDE
     before = m[i], m[i + 1], m[i + 2], m[i + 3], m[i + 4], m[i + 5]
     m[i], m[i + 1], m[i + 2], m[i + 3], m[i + 4], m[i + 5] = values
@@ -128,13 +131,13 @@ def swap_inputs(m, values):
 
 
 def is_whole(m, slot, highest):
-    """Whether a slot has a whole number from 0 to ``highest``."""
+    """Return whether a slot has a whole number from 0 to ``highest``."""
     value = m[slot]
     return 0.0 <= value <= highest and value == int(value)
 
 
 def check_whole_numbers(m):
-    """Mode, counts and orders."""
+    """Check mode, counts and orders; return OK or FORGED."""
     if not is_whole(m, at.MODE, 2.0) or (m[at.MODE] == at.GLUED) != (m[at.BONDED] != 0.0):
         return refuse_slot(m, at.MODE, at.NO_MODE)
     if not is_whole(m, at.CUBIC_SET, 1.0):
@@ -156,7 +159,7 @@ def check_whole_numbers(m):
 
 
 def check_phase(m):
-    """Whether the phase and its cosine and sine belong together."""
+    """Check that the phase and its cosine and sine belong together; return OK or FORGED."""
     turn = m[at.TURN]
     if not 0.0 <= turn < 1.0:
         return refuse_slot(m, at.TURN, at.NO_PHASE)
@@ -174,7 +177,9 @@ def check_phase(m):
 
 
 def check_times(m):
-    """Whether the present state began before the communication point, and ends after it."""
+    """Check that the present state began before the communication point and ends after it; return
+    OK or FORGED.
+    """
     omega, origin = m[at.OMEGA], m[at.ORIGIN]
     slack = SLACK * (omega * (abs(m[at.TIME]) + abs(m[at.START_TIME])) + origin)
     age = (omega * (m[at.TIME] - m[at.START_TIME]) - origin) - m[at.ORIGIN_LOW]
@@ -196,7 +201,9 @@ def check_times(m):
 
 
 def check_beginning(m):
-    """Whether the masses are where the state may begin, and the outputs where they may be."""
+    """Check that the masses are where the state may begin, and the outputs where they may be;
+    return OK or FORGED.
+    """
     x1, v1, x2, v2 = m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
     flight = m[at.MODE] == at.FLIGHT
     together = not flight or m[at.SERIES] != 0.0
@@ -216,8 +223,8 @@ def check_beginning(m):
 
 
 def gap_fits(m, x1, x2, gap, together):
-    """Whether a gap is that between two displacements: with a clearance, but for rounding, and
-    both from the unloaded positions unless they are ``together``.
+    """Return whether a gap is that between two displacements: with a clearance, but for rounding,
+    and both from the unloaded positions unless they are ``together``.
     """
     offset = 0.0 if together else m[at.GAP_OFFSET]
     slack = CLOSE * (abs(x1) + abs(x2) + abs(offset)) if offset != 0.0 else 0.0
@@ -225,7 +232,7 @@ def gap_fits(m, x1, x2, gap, together):
 
 
 def restore_short_flight(m):
-    """A short flight from its beginning; what is left of the state before it stays."""
+    """Compute a short flight from its beginning; what is left of the state before it stays."""
     x1, v1, v2 = m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 3]
     order = int(m[at.SERIES])
     for i in range(at.SERIES_X, at.STEP):
@@ -241,7 +248,8 @@ def restore_short_flight(m):
 
 
 def restore_state(m):
-    """Free parts, event function and nodes from the state's beginning, its end from what was found.
+    """Compute free parts, event function and nodes from the state's beginning, and take over how
+    far the walk came.
 
     The walk's place in the state is read: it says how far no event was found.
     """
@@ -268,7 +276,9 @@ def restore_state(m):
 
 
 def check_end(m):
-    """Whether the walk can have come to where it stands, and the end is one."""
+    """Check that the walk can have come to where it stands, and that the end is one; return OK or
+    FORGED.
+    """
     clear, end, kind = m[at.CLEAR], m[at.END], m[at.END_KIND]
     if clear == INFINITE:
         forever = (

@@ -40,7 +40,9 @@ CONVERGED = 1e-8  # relative: the next step of Newton's method would be its squa
 
 
 def parabola_root(h0, h1, h2):
-    """First positive root of ``h0 + h1 s + h2 s^2/2`` for ``h0 >= 0``; infinity if none."""
+    """Return the first positive root of ``h0 + h1 s + h2 s^2/2`` for ``h0 >= 0``; infinity if there
+    is none.
+    """
     square = h1 * h1 - 2.0 * h0 * h2
     if square < 0.0:
         return INFINITE
@@ -53,15 +55,17 @@ def parabola_root(h0, h1, h2):
 
 
 def lowest_curvature(h2, h3, h4, bound, s):
-    """The parabola ``h0 + h1 t + c t^2/2`` with this c is below the quintic for ``0 <= t <= s``."""
+    """Return c so that the parabola ``h0 + h1 t + c t^2/2`` is below the quintic for ``0 <= t <=
+    s``.
+    """
     bent = h4 * (1.0 / 12.0) - bound * s * (1.0 / 60.0)
     lowered = h3 * (1.0 / 3.0) + (s * bent if bent < 0.0 else 0.0)
     return h2 + s * lowered if lowered < 0.0 else h2
 
 
 def clear_step(h0, h1, h2, h3, h4, bound, reach):
-    """A step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120`` stays
-    positive.
+    """Return a step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120``
+    stays positive.
 
     For every trial s, ``min(s, first root of the parabola below the quintic up to s)`` is safe;
     trials close in on the s where both agree.
@@ -108,7 +112,7 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
 
 
 def walk(m, target):
-    """Walk on until the state's end is found or no root lies before ``target``; ends early when the
+    """Walk on until the state's end is found or no root lies before ``target``; stop early when the
     step's work is used up.
     """
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
@@ -119,8 +123,8 @@ def walk(m, target):
 
 
 def cross_clear_intervals(m, target, ceiling):
-    """On from node to node, not beyond ``target``, while the intervals between are clear and the
-    event function stays below ``ceiling`` in them; after many nodes the state is written anew.
+    """Go on from node to node, not beyond ``target``, while the intervals between have no root and
+    the event function stays below ``ceiling`` in them; after many nodes the state is written anew.
     """
     if not is_plain_flight(m):  # rarely
         cross_intervals_loop(m, target, ceiling, False, True)
@@ -131,8 +135,9 @@ def cross_clear_intervals(m, target, ceiling):
 
 
 def cross_intervals_loop(m, target, ceiling, plain, watched):  # inline
-    """:func:`cross_clear_intervals`: ``plain`` in a plain flight, ``watched`` if there may be a ceiling. Both are
-    constants where this is called: a compiler makes a loop of its own for each.
+    """Do what :func:`cross_clear_intervals` does: ``plain`` in a plain flight, ``watched`` if there
+    may be a ceiling. Both are constants where this is called: a compiler makes a loop of its own
+    for each.
     """
     x, v, x_b, v_b = m[at.RIGHT], m[at.RIGHT + 1], m[at.RIGHT + 2], m[at.RIGHT + 3]
     cosine, sine = m[at.RIGHT + 4], m[at.RIGHT + 5]
@@ -182,7 +187,9 @@ def cross_intervals_loop(m, target, ceiling, plain, watched):  # inline
 
 
 def clear_from_node(m):
-    """Whether a part of the present interval is seen to be clear; CLEAR moves to its end."""
+    """Move CLEAR to the end of that part of the present interval which certainly has no root, and
+    return whether there is one.
+    """
     b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
     clear = has_no_root(b0, b1, b2, b3, b4, b5)
     if not clear and b5 > 0.0:  # rarely
@@ -198,7 +205,7 @@ def clear_from_node(m):
 
 
 def step_inside_interval(m):
-    """One certified step inside the present interval, or the root."""
+    """Take one certified step inside the present interval, or find the root."""
     tau = m[at.CLEAR]
     reach = m[at.RIGHT_AGE] - tau
     h0, h1, h2, h3, h4, bound = evaluate(m, tau)
@@ -214,13 +221,13 @@ def step_inside_interval(m):
 
 
 def root_accuracy(m, tau):
-    """What a root's age is to be accurate to: its rounding."""
+    """Return the error that a root's age may have: its rounding."""
     return EPS * (tau + 4.0 * m[at.SPACING])
 
 
 def value_on_decided_side(m, tau, h0, h1):
-    """A value of the event function that is not positive, or a positive one where it is zero but
-    for rounding and no crossing is in sight.
+    """Return a value of the event function that is not positive, or a positive one where it is zero
+    but for rounding and no crossing is in sight.
 
     Near a start on the boundary the event function may be smaller than the rounding of its terms
     for a while; the side was decided when the state began, and holds until the event function is
@@ -233,7 +240,7 @@ def value_on_decided_side(m, tau, h0, h1):
 
 
 def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
-    """One step of the walk, and whether it ends on the root.
+    """Return one step of the walk, and whether it ends on the root.
 
     Parameters
     ----------
@@ -261,7 +268,7 @@ def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
 
 
 def clear_step_or_root(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
-    """As :func:`next_step`, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
+    """Return what :func:`next_step` does, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
     # powers of time only: scaled amplitudes take the same steps
     scale = 1.0 / bound if bound > LEAST_BOUND else 1.0
     h0, h1, h2 = h0 * scale, h1 * scale, h2 * scale
@@ -274,7 +281,7 @@ def clear_step_or_root(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
 
 
 def close_root(h0, h1, h2, h3, h4, bound, accuracy):
-    """The root a short way ahead, where the quartic gives it to within ``accuracy``; else 0.
+    """Return the root a short way ahead, where the quartic gives it to within ``accuracy``; else 0.
 
     So short that the slope, negative here, cannot turn before it: there is no other root.
     """
@@ -295,8 +302,8 @@ def close_root(h0, h1, h2, h3, h4, bound, accuracy):
 
 
 def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
-    """The root, where the quartic without the bound gives it to within ``accuracy`` and it is
-    certainly the first; else 0.
+    """Return the root, where the quartic without the bound gives it to within ``accuracy`` and it
+    is certainly the first; else 0.
 
     The step before it is clear; from there on the slope is certainly negative, so there is no other
     root.

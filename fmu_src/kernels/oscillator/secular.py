@@ -21,7 +21,9 @@ SMALL = 0.5  # of |sigma t|: fourteen terms are exact
 
 
 def is_resonant(m, b):
-    """Whether branch ``b`` is driven on its natural frequency, with next to no damping."""
+    """Return whether the linear oscillator ``b`` is driven on its natural frequency, with next to
+    no damping.
+    """
     eta, square = m[at.ETA], m[b + at.OMEGA_SQUARED]
     detuning, twice = square - eta * eta, 2.0 * m[b + at.DAMPING] * eta
     near = detuning * detuning + twice * twice <= 4.0 * NEAR_RESONANCE * square * square
@@ -29,7 +31,7 @@ def is_resonant(m, b):
 
 
 def set_secular(m):
-    """Find the branches whose amplitudes grow, and set theirs; the nodes are set already.
+    """Find the oscillators whose amplitudes grow, and set their growth; the nodes are set already.
 
     Of two oscillators that are nearly equal both do or none: so their gap keeps its digits.
     """
@@ -46,7 +48,7 @@ def set_secular(m):
 
 
 def clear_secular(m):
-    """No amplitude grows."""
+    """Record that no amplitude grows."""
     m[at.SECULAR] = 0.0
     for i in range(at.GROWTH_SIZE):
         m[at.OSCILLATOR_1 + at.DRIVEN + i] = 0.0
@@ -57,7 +59,7 @@ def clear_secular(m):
 
 
 def set_growth(m, b):
-    """How the amplitude of one branch grows."""
+    """Set the constants by which the amplitude of one oscillator grows."""
     m[at.SECULAR] = 1.0
     m[b + at.DRIVEN] = m[at.FORCING]
     eta, damping, nu = m[at.ETA], m[b + at.DAMPING], m[b + at.NU]
@@ -71,7 +73,7 @@ def set_growth(m, b):
 
 
 def set_step_growth(m, b):
-    """The growth over a spacing, which is the same for all nodes."""
+    """Set the growth over a spacing, which is the same for all nodes."""
     h_cos, h_sin, d_cos, d_sin = grown_amplitude(m, b, m[at.SPACING])
     m[b + at.STEP_GROWTH] = h_cos
     m[b + at.STEP_GROWTH + 1] = h_sin
@@ -80,8 +82,8 @@ def set_step_growth(m, b):
 
 
 def grown_amplitude(m, b, t):
-    """The amplitude ``c`` and its rate of change a time ``t >= 0`` after it was zero: parts by
-    cosine and by sine.
+    """Return the amplitude ``c`` and its rate of change a time ``t >= 0`` after it was zero: parts
+    by cosine and by sine.
     """
     # z = sigma t, and (e^z - 1)/z
     real, imag = -m[b + at.DAMPING] * t, m[b + at.DRIFT] * t
@@ -102,7 +104,7 @@ def grown_amplitude(m, b, t):
 
 
 def exponential_quotient(real, imag):
-    """``(e^z - 1)/z`` for ``|z| < SMALL``, both parts."""
+    """Return ``(e^z - 1)/z`` for ``|z| < SMALL`` by its series, real and imaginary part."""
     p, q = 1.0, 0.0
     for k in range(14, 1, -1):
         part = 1.0 / k
@@ -111,18 +113,18 @@ def exponential_quotient(real, imag):
 
 
 def initial_push(m, b, cosine, sine):
-    """The velocity that the growing amplitude begins with, at a phase."""
+    """Return the velocity that the growing amplitude begins with, at a phase."""
     return m[b + at.PUSH] * cosine + m[b + at.PUSH + 1] * sine
 
 
 def growing_motion(m, h_cos, h_sin, d_cos, d_sin, cosine, sine):
-    """Displacement and velocity of an amplitude and its rate of change, at a phase."""
+    """Return displacement and velocity from an amplitude and its rate of change, at a phase."""
     forced = m[at.ETA] * (h_sin * cosine - h_cos * sine)
     return h_cos * cosine + h_sin * sine, forced + (d_cos * cosine + d_sin * sine)
 
 
 def forced_derivative(m, b, order):
-    """What the forcing adds to a derivative of the displacement, beside what follows from
+    """Return what the forcing adds to a derivative of the displacement, beside what follows from
     displacement and velocity: parts by cosine and by sine.
     """
     cosine, sine, next_cosine, next_sine = 0.0, 0.0, 0.0, m[b + at.DRIVEN]
@@ -138,7 +140,7 @@ def forced_derivative(m, b, order):
 
 
 def set_event_drive(m):
-    """What the forcing adds to the derivatives of the event function, from the first on."""
+    """Set what the forcing adds to the derivatives of the event function, from the first on."""
     flight = m[at.MODE] == at.FLIGHT
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     for k in range(1, at.EVENT_ORDERS + 1):
@@ -155,20 +157,20 @@ def set_event_drive(m):
 
 
 def event_drive(m, order, cosine, sine):
-    """The forcing's part of a derivative of the event function, at a phase."""
+    """Return the forcing's part of a derivative of the event function, at a phase."""
     i = at.EVENT_DRIVE + 2 * order - 2
     return m[i] * cosine + m[i + 1] * sine
 
 
 def event_drive_bound(m, order):
-    """Its bound."""
+    """Return a bound of :func:`event_drive` over all phases."""
     i = at.EVENT_DRIVE + 2 * order - 2
     return abs(m[i]) + abs(m[i + 1])
 
 
 def driven_bound(m, b, order, time):
-    """Bound of what the forcing adds to a derivative of the displacement for a ``time`` from now
-    on.
+    """Return a bound of what the forcing adds to a derivative of the displacement for a ``time``
+    from now on.
 
     Each derivative is the response of the same oscillator to the forcing's. With R at least its
     rates, ``2 D/R + (omega/R)^2 <= 1``, the forcing's part of the k-th is at most ``(k - 1) F
@@ -189,7 +191,9 @@ def driven_bound(m, b, order, time):
 
 
 def driven_event_bound(m, order, time):
-    """The same of the event function."""
+    """Return a bound of what the forcing adds to a derivative of the event function for a ``time``
+    from now on.
+    """
     if m[at.MODE] == at.FLIGHT:
         low = driven_bound(m, at.OSCILLATOR_1, order, time)
         return low + driven_bound(m, at.OSCILLATOR_2, order, time)

@@ -84,8 +84,8 @@ def initialize(m, time):
 
 
 def starting_point(m):
-    """Displacements at the start as :func:`.motion.begin_state` takes them, and the gap; below zero where
-    the masses overlap.
+    """Return the displacements at the start as :func:`.motion.begin_state` takes them, and the gap;
+    below zero where the masses overlap.
 
     Start positions count from the position at rest: with a preload that is where the masses rest
     together. With a clearance, a gap that is rounding alone is none.
@@ -102,7 +102,7 @@ def starting_point(m):
 
 
 def local_time(m, time):
-    """Time since the present state's start, in units of tau (4)."""
+    """Return the time since the present state's start, in units of tau (4)."""
     tau = (m[at.OMEGA] * (time - m[at.START_TIME]) - m[at.ORIGIN]) - m[at.ORIGIN_LOW]
     return tau if tau > 0.0 else 0.0
 
@@ -149,7 +149,8 @@ def advance(m, time):
 
 
 def coast(m, time):
-    """As :func:`advance`, where the present state lasts beyond ``time`` and only outputs change.
+    """Advance as :func:`advance` does, where the present state lasts beyond ``time`` and only
+    outputs change.
 
     Returns
     -------
@@ -170,12 +171,14 @@ def coast(m, time):
 
 
 def lasts_beyond(m, tau):
-    """Whether the present state is known to last beyond an age."""
+    """Return whether the present state is known to last beyond an age."""
     return (m[at.CLEAR] if m[at.END_KIND] == at.END_OPEN else m[at.END]) > tau
 
 
 def is_without_summit(m, start, stop):
-    """Whether a part of the present state is seen at once to have its largest gap at an end."""
+    """Return whether a quick test shows that a part of the present state has its largest gap at an
+    end.
+    """
     if m[at.MODE] != at.FLIGHT:
         return True
     within = m[at.LEFT_AGE] < start and stop < m[at.RIGHT_AGE] and m[at.CLEAR] <= m[at.RIGHT_AGE]
@@ -219,7 +222,7 @@ def finish_step(m, time, tau, left, highest, same):
 
 
 def check_finite(sum_of_outputs):
-    """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
+    """Return OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
     return at.OK if sum_of_outputs - sum_of_outputs == 0.0 else at.NOT_FINITE
 
 
@@ -246,7 +249,7 @@ def renew_segment(m, now):
 
 
 def is_inside_state(m, tau):
-    """Whether the event function has not been crossed: positive, or zero but for rounding.
+    """Return whether the event function has not been crossed: positive, or zero but for rounding.
 
     Gap and contact force do not jump with the inputs.
     """
@@ -285,7 +288,7 @@ def keep_sample(m, i, tau):
 
 
 def run_states(m, time, now):
-    """Run through all states that end by ``time``; returns the present state's age there."""
+    """Run through all states that end by ``time``, and return the present state's age there."""
     watching = m[at.X_REL_MAX_ON] != 0.0
     while True:
         tau = local_time(m, time)

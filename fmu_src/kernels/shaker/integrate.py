@@ -36,7 +36,7 @@ TINY, MANY = 1e-300, 1e6
 
 
 def compute_stages(m, t, h):
-    """All stages of a sub-step of length ``h``; its end is in NEXT.
+    """Compute all stages of a sub-step of length ``h``; its end is in NEXT.
 
     It begins ``t`` after the force was set.
     """
@@ -82,7 +82,7 @@ def compute_stages(m, t, h):
 
 
 def error_scale(m, state, h):
-    """What an error of a state is measured by.
+    """Return the scale that an error of a state is measured by.
 
     Its own size, and what the other states make of it within the sub-step.
     """
@@ -106,7 +106,7 @@ def error_scale(m, state, h):
 
 
 def error_ratio(m, h):
-    """Estimated error of the sub-step over what is allowed.
+    """Return the estimated error of the sub-step over what is allowed.
 
     Hairer's combination of the estimates of order 5 and 3.
     """
@@ -136,7 +136,7 @@ def accept_substep(m):
 
 
 def length_factor(ratio):
-    """How much longer the next sub-step may be, for an error ``ratio`` of this one.
+    """Return how much longer the next sub-step may be, for an error ``ratio`` of this one.
 
     Its eighth root, by square roots.
     """

@@ -11,7 +11,7 @@ from .stepper import REGULAR, check_finite
 
 
 def refuse_slot(m, slot, complaint):
-    """Say which slot is wrong, and why."""
+    """Record which slot is wrong, and why, and return FORGED."""
     m[at.TARGET] = m[slot]
     m[at.WORK] = slot
     m[at.REPORT] = complaint
@@ -19,7 +19,8 @@ def refuse_slot(m, slot, complaint):
 
 
 def restore(m, time):
-    """Check and make whole a memory that was read; it began at ``time`` (s).
+    """Check a memory that was read, and compute what follows from other numbers; it began at
+    ``time`` (s).
 
     The variables have been checked against their ranges. Outputs are those for the inputs as they
     are.

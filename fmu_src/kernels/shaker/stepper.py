@@ -85,8 +85,8 @@ def advance(m, time):
 
 
 def fastest_decay(m):
-    """The largest rate, 1/s, at which something decays: the box's speed by its damper, the current
-    by the armature's resistance, or, without inductance, the rotor's speed by the motor.
+    """Return the largest rate, 1/s, at which something decays: the box's speed by its damper, the
+    current by the armature's resistance, or, without inductance, the rotor's speed by the motor.
     """
     constant, resistance = m[at.MOTOR_CONSTANT], m[at.ARMATURE_RESISTANCE]
     if m[at.ARMATURE_INDUCTANCE] > 0.0:
@@ -97,7 +97,7 @@ def fastest_decay(m):
 
 
 def refresh(m, time):
-    """Outputs for the inputs as they are now; ``time`` is not used.
+    """Write the outputs for the inputs as they are now; ``time`` is not used.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def refresh(m, time):
 
 
 def check_finite(m):
-    """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
+    """Return OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
     total = 0.0
     for i in range(at.BOX_POSITION, at.TIME):
         total += m[i]
