@@ -105,7 +105,7 @@ class ResonanceJob(SweepJob):
         alone.
         """
         structure = self.structure.as_delaminated()
-        if structure.clearance == 0.0:
+        if structure.gap_offset == 0.0:
             return {}
         speeds = np.array([point.excitation.frequency for point in self.series.points])
         return threshold_variables(structure, self.series.name, speeds)

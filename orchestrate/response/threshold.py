@@ -51,10 +51,10 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
     # what the accelerations of both masses alone differ by, for a common motion e^{i eta tau}
     differs = (square[0] - square[1]) + 1j * eta * (twice[0] - twice[1])
     one, two, both = ((square[i] - eta**2) + 1j * eta * twice[i] for i in range(3))
-    if structure.clearance < 0.0:
-        held, response = -structure.clearance * square[1] / square[2], differs * eta**2 / both
+    if structure.gap_offset < 0.0:
+        held, response = -structure.gap_offset * square[1] / square[2], differs * eta**2 / both
     else:
-        held, response = structure.clearance, differs * eta**2 / (one * two)
+        held, response = structure.gap_offset, differs * eta**2 / (one * two)
     if held == 0.0:
         return np.zeros_like(eta)
     with np.errstate(divide="ignore"):
@@ -84,7 +84,7 @@ def threshold_variables(structure: Structure, along: str, frequency: Floats) -> 
 
 def event_of(structure: Structure) -> str:
     """Return what happens to a structure at its threshold: it "opens", or it "touches"."""
-    return "opens" if structure.clearance < 0.0 else "touches"
+    return "opens" if structure.gap_offset < 0.0 else "touches"
 
 
 def contact_threshold(

@@ -26,6 +26,7 @@ CASES = [
     *((PAPER, eta) for eta in (0.12, 0.4, 0.6, 0.8, 1.047, 1.315, 1.6, 2.5, 4.0, 6.2, 8.0)),
     *((structure, eta) for structure in (OWN, STRONG) for eta in (0.3, 0.9, 1.7, 3.1)),
     (PAPER.as_bonded(), 1.3),
+    (OWN.replace(e=0.95, e_slope=0.8), 0.9),
 ]
 PERIODS = 4  # of a dense orbit
 
