@@ -81,7 +81,10 @@ class Monolith:
         """State after an impact, and whether the masses stick."""
         o, (x1, v1, x2, v2), after = self.o, state[:4], list(state)
         both = o.m1 + o.m2
-        common, rebound = (o.m1 * v1 + o.m2 * v2) / both, o.e * (v1 - v2)
+        common, rebound = (
+            (o.m1 * v1 + o.m2 * v2) / both,
+            o.e * (v1 - v2) / (1.0 + o.e_slope * (v1 - v2)),
+        )
         after[0] = after[2] = (o.m1 * x1 + o.m2 * x2) / both
         after[1] = after[3] = common
         pressed = self.parting(after)

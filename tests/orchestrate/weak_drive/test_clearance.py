@@ -14,9 +14,10 @@ from .monolithic import Monolith
 
 OPEN = QUICK.with_structure(clearance=3.0)  # two halves that strike each other once a revolution
 PRESSED = QUICK.with_structure(clearance=-3.0)  # part, chatter and stick in each revolution
+SLOWER = OPEN.with_structure(e=0.9, e_slope=0.2)  # restitution that decreases with speed
 SHUT = QUICK.with_structure(clearance=-20.0)  # never part
 APART = QUICK.with_structure(clearance=100.0)  # never touch
-SYSTEMS = {"open": OPEN, "pressed": PRESSED}
+SYSTEMS = {"open": OPEN, "pressed": PRESSED, "slower": SLOWER}
 VOLTAGE, SPEED, TIME = 1.5, 1.25, 40.0
 EXACT = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
 SHORT = {"voltage": VOLTAGE, "speed_start": SPEED, "duration": 60.0}
