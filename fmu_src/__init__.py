@@ -1,1 +1,1 @@
-"""What goes into the FMUs, and how: the kernel, the models made of it, and their export."""
+"""Sources of the FMUs: the kernels, the models made of them, and their export."""

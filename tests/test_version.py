@@ -3,7 +3,7 @@
 import re
 
 import orchestrate
-from fmu_src.export.sources import load
+from fmu_src.export.sources import load_model
 from fmu_src.version import VERSION
 
 from .fresh import ROOT
@@ -25,4 +25,4 @@ def test_results_say_the_version_of_the_code():
 
 
 def test_the_models_bear_the_version():
-    assert {load(folder).version for folder in ("oscillator", "motor_shaker")} == {VERSION}
+    assert {load_model(folder).version for folder in ("oscillator", "motor_shaker")} == {VERSION}

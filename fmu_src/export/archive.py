@@ -1,4 +1,4 @@
-"""An FMU is a zip file: written so that the same contents give the same bytes."""
+"""Write FMUs, which are zip files: the same contents give the same bytes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
 def fingerprint(files: Mapping[str, bytes]) -> str:
-    """Hash of named contents, 32 hexadecimal digits."""
+    """Return a hash of named contents, 32 hexadecimal digits."""
     digest = hashlib.sha256()
     for name in sorted(files):
         digest.update(f"{name}\0{len(files[name])}\0".encode())
@@ -22,7 +22,7 @@ def fingerprint(files: Mapping[str, bytes]) -> str:
 
 
 def guid_of(files: Mapping[str, bytes]) -> str:
-    """Hash of named contents in the form of a GUID."""
+    """Return a hash of named contents in the form of a GUID."""
     digest = fingerprint(files)
     return f"{{{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:]}}}"
 
@@ -42,7 +42,7 @@ def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
     try:
         with os.fdopen(handle, "wb") as stream, zipfile.ZipFile(stream, "w") as archive:
             for entry in sorted(files, key=lambda n: (n != "modelDescription.xml", n)):
-                archive.writestr(information(entry), files[entry])
+                archive.writestr(archive_entry(entry), files[entry])
         temporary.chmod(0o644)
         temporary.replace(path)
     except BaseException:
@@ -50,8 +50,8 @@ def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
         raise
 
 
-def information(name: str) -> zipfile.ZipInfo:
-    """An entry of the archive that tells nothing of when and where it was made."""
+def archive_entry(name: str) -> zipfile.ZipInfo:
+    """Return an entry of the archive that does not depend on when and where it was made."""
     entry = zipfile.ZipInfo(name, EPOCH)
     entry.compress_type = zipfile.ZIP_DEFLATED
     entry.create_system = 3
@@ -60,7 +60,9 @@ def information(name: str) -> zipfile.ZipInfo:
 
 
 def read_folder(folder: Path, prefix: str = "") -> dict[str, bytes]:
-    """All files below a folder, without caches and editors' copies, as a dict of name to bytes."""
+    """Return all files below a folder, without caches and editors' copies, as a dict of name to
+    bytes.
+    """
     return {
         prefix + path.relative_to(folder).as_posix(): path.read_bytes()
         for path in sorted(folder.rglob("*"))

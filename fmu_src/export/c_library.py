@@ -1,4 +1,4 @@
-"""One C source as a shared library: what orchestration has compiled beside the FMUs.
+"""Compile one C source to a shared library, for what orchestration uses beside the FMUs.
 
 The source includes ``token.h``, which defines ``TOKEN``, and keeps it as a string: so a library of
 other sources is known by its bytes, for whatever platform it was made.
@@ -12,18 +12,18 @@ from .archive import guid_of
 from .compiler import link
 from .errors import CannotExport
 from .platforms import PLATFORMS
-from .sources import closure
+from .sources import import_closure
 
 
 def guid(source: Path) -> str:
-    """The token that a library of the present source bears, in braces.
+    """Return the token that a library of the present source bears, in braces.
 
     Parameters
     ----------
     source : Path
         The C file.
     """
-    return guid_of({**closure("export/c_library.py"), source.name: source.read_bytes()})
+    return guid_of({**import_closure("export/c_library.py"), source.name: source.read_bytes()})
 
 
 def export(source: Path, platform: str) -> bytes:
@@ -41,5 +41,5 @@ def export(source: Path, platform: str) -> bytes:
 
 
 def file_name(source: Path, platform: str) -> str:
-    """Of a library, with its platform as the folder."""
+    """Return the library's file name, with its platform as the folder."""
     return f"{platform}/{source.stem}{PLATFORMS[platform].suffix}"

@@ -1,4 +1,4 @@
-"""What lies in an FMU by other standards than FMI's core: terminals and icon, licences, FMI-LS-REF.
+"""Files of an FMU by other standards than FMI's core: terminals and icon, licences, FMI-LS-REF.
 
 Terminals and icons are FMI 3.0's, section 2.4.9, which FMI 2.0.5 takes over. FMI-LS-REF (a draft,
 1.0.0-alpha.1) says which files are there to check a run against.
@@ -9,7 +9,7 @@ from __future__ import annotations
 from xml.etree import ElementTree as ET
 
 from ..runtime.table import Model
-from .description import text
+from .description_common import xml_bytes
 from .sources import ROOT, Files
 
 MANIFEST = "http://fmi-standard.org/fmi-ls-manifest"
@@ -29,7 +29,7 @@ RELATED = (  # file, type, role, description
 
 
 def companions(model: Model) -> Files:
-    """Files by name, but for the icon.
+    """Return these files by name, except the icon.
 
     Parameters
     ----------
@@ -37,19 +37,21 @@ def companions(model: Model) -> Files:
     """
     licence = (ROOT / "models" / "license.txt").read_bytes()
     return {
-        "terminalsAndIcons/terminalsAndIcons.xml": terminals(model),
+        "terminalsAndIcons/terminalsAndIcons.xml": terminals_xml(model),
         "documentation/licenses/license.txt": licence,
-        REFERENCES: references(model),
+        REFERENCES: references_manifest(model),
     }
 
 
-def icon_place(version: str) -> str:
-    """Where tools look for the icon."""
+def icon_path(version: str) -> str:
+    """Return the path in the FMU where tools look for the icon."""
     return "terminalsAndIcons/icon.png" if version == "fmi3" else "model.png"
 
 
-def terminals(model: Model) -> bytes:
-    """Variables to be connected together: by their names within the terminal."""
+def terminals_xml(model: Model) -> bytes:
+    """Return ``terminalsAndIcons.xml``: variables to be connected together, by their names within
+    the terminal.
+    """
     root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     if model.terminals:
         parent = ET.SubElement(root, "Terminals")
@@ -60,15 +62,15 @@ def terminals(model: Model) -> bytes:
         for member, variable in terminal.members.items():
             named = {"variableName": variable, "memberName": member, "variableKind": "signal"}
             ET.SubElement(element, "TerminalMemberVariable", named)
-    return text(root)
+    return xml_bytes(root)
 
 
-def references(model: Model) -> bytes:
-    """The manifest of FMI-LS-REF."""
+def references_manifest(model: Model) -> bytes:
+    """Return the manifest of FMI-LS-REF."""
     ET.register_namespace("fmi-ls", MANIFEST)
     root = ET.Element("fmiReferences", {f"{{{MANIFEST}}}{k}": v for k, v in LS_REF.items()})
     for place, kind, role, description in RELATED:
         source = f"../../documentation/{place.format(name=model.name)}"
         attributes = {"type": kind, "source": source, "role": role, "description": description}
         ET.SubElement(root, "Related", attributes)
-    return text(root)
+    return xml_bytes(root)

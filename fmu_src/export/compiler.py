@@ -1,4 +1,4 @@
-"""From C sources to shared libraries, for each platform an FMU has a binary for.
+"""Compile C sources to shared libraries, for each platform an FMU has a binary for.
 
 The compiler is the clang of the PyPI package ziglang, which compiles for every platform on every
 machine and gives the same bytes everywhere; where that is missing, the machine's own compiler
@@ -48,13 +48,13 @@ WINDOWS_FLAGS = ("-U__CRT__NO_INLINE",)  # its headers' isnan and isfinite, inli
 
 
 @functools.cache
-def say_once(line: str) -> None:
-    """Warn, however many FMUs the line is about."""
+def warn_once(line: str) -> None:
+    """Log a warning, once however many FMUs the line is about."""
     log.warning("%s", line)
 
 
 def ziglang(*arguments: str) -> list[str]:
-    """Command of a program of ziglang's, where that is installed.
+    """Return the command of a program of ziglang's, where that is installed.
 
     Raises
     ------
@@ -65,9 +65,7 @@ def ziglang(*arguments: str) -> list[str]:
 
 
 def own_compiler(name: str) -> list[str]:
-    """Command of the machine's own C compiler; nothing where that does not serve the platform, or
-    is not needed since ziglang is there.
-    """
+    """Return the command of the machine's own C compiler; an empty list where ziglang is there."""
     if importlib.util.find_spec("ziglang"):
         return []
     own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
@@ -102,13 +100,13 @@ def run(command: Iterable[str], folder: str | Path, what: str) -> None:
 
 
 def zig_target(name: str) -> list[str]:
-    """Options for a platform's target."""
+    """Return zig's options for a platform."""
     of = PLATFORMS[name]
     return ["-target", of.zig_target, f"-mcpu={of.cpu}"]
 
 
 def compile_command(name: str) -> list[str]:
-    """Command that compiles a C file for a platform to an object file.
+    """Return the command that compiles a C file for a platform to an object file.
 
     Raises
     ------
@@ -121,7 +119,9 @@ def compile_command(name: str) -> list[str]:
 
 
 def link_command(name: str, title: str, objects: Iterable[str]) -> list[str]:
-    """Command that links object files to a shared library, called as its platform has it."""
+    """Return the command that links object files to a shared library, named as its platform has
+    it.
+    """
     target = f"{title}{PLATFORMS[name].suffix}"
     own = own_compiler(name)
     if own:
@@ -138,7 +138,7 @@ def link_command(name: str, title: str, objects: Iterable[str]) -> list[str]:
 
 
 def kernel_object(name: str, source: bytes) -> bytes:
-    """A C file that includes nothing of ours as an object file, compiled once in a process.
+    """Compile a C file that includes nothing of ours to an object file, once in a process.
 
     Parameters
     ----------
@@ -151,12 +151,12 @@ def kernel_object(name: str, source: bytes) -> bytes:
     CannotExport
         Where there is no compiler, or it fails.
     """
-    return object_of((*compile_command(name), "kernel.c", "-o", "kernel.o"), source, name)
+    return compile_object((*compile_command(name), "kernel.c", "-o", "kernel.o"), source, name)
 
 
 @functools.cache
-def object_of(command: tuple[str, ...], source: bytes, what: str) -> bytes:
-    """What a command makes of ``kernel.c``."""
+def compile_object(command: tuple[str, ...], source: bytes, what: str) -> bytes:
+    """Run a command on the source as ``kernel.c`` and return the ``kernel.o`` that it writes."""
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as folder:
         (Path(folder) / "kernel.c").write_bytes(source)
         run(command, folder, what)
@@ -164,7 +164,7 @@ def object_of(command: tuple[str, ...], source: bytes, what: str) -> bytes:
 
 
 def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
-    """A shared library.
+    """Compile and link a shared library and return its bytes.
 
     Parameters
     ----------
@@ -194,7 +194,9 @@ def link(name: str, title: str, files: Mapping[str, bytes]) -> bytes:
 
 
 def windows_sources() -> dict[str, bytes]:
-    """What the Windows libraries have of mingw-w64, which comes with ziglang."""
+    """Return the files of mingw-w64, which comes with ziglang, that the Windows libraries
+    contain.
+    """
     spec = importlib.util.find_spec("ziglang")
     assert spec is not None and spec.origin is not None
     folder = Path(spec.origin).parent / WINDOWS_FOLDER
@@ -204,7 +206,8 @@ def windows_sources() -> dict[str, bytes]:
 def link_all(
     names: Iterable[str], title: str, kernel: bytes, files: Mapping[str, bytes]
 ) -> dict[str, bytes]:
-    """The same library for every platform this machine can make it for; what is left out is said.
+    """Link the same library for every platform this machine can make it for; warn about what is
+    left out.
 
     Parameters
     ----------
@@ -242,5 +245,5 @@ def link_all(
     if not made:
         raise reasons[0]
     for left_out in reasons:
-        say_once(f"the FMUs will have binaries for {', '.join(made)} alone: {left_out}")
+        warn_once(f"the FMUs will have binaries for {', '.join(made)} alone: {left_out}")
     return made

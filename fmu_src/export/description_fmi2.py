@@ -1,4 +1,4 @@
-"""``modelDescription.xml`` of FMI 2.0 from a variable table."""
+"""Write ``modelDescription.xml`` of FMI 2.0 from a variable table."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
 from ..runtime.table import Model, Variable
-from . import description
+from . import description_common as common
 
 PYTHON = {
     "needsExecutionTool": "true",
@@ -30,7 +30,7 @@ def fmi2_xml(
     capabilities: dict[str, str] = NATIVE,
     sources: Sequence[str] = (),
 ) -> bytes:
-    """The model description, as bytes that depend on nothing but the arguments.
+    """Return the model description, as bytes that depend on nothing but the arguments.
 
     Parameters
     ----------
@@ -41,29 +41,31 @@ def fmi2_xml(
     sources : sequence of str
         Names of the C files in ``sources/`` that make its library.
     """
-    root = description.root(model, fmiVersion="2.0", guid=guid, numberOfEventIndicators="0")
+    root = common.root_element(model, fmiVersion="2.0", guid=guid, numberOfEventIndicators="0")
     attributes = {"modelIdentifier": model.name, **capabilities}
     simulation = ET.SubElement(root, "CoSimulation", attributes)
     if sources:
         files = ET.SubElement(simulation, "SourceFiles")
         for name in sources:
             ET.SubElement(files, "File", name=name)
-    variables = description.add_frame(root, model)
+    variables = common.add_shared_elements(root, model)
     for variable in model.variables:
         add_variable(variables, variable)
     add_structure(root, model)
-    return description.text(root)
+    return common.xml_bytes(root)
 
 
 def add_variable(parent: ET.Element, variable: Variable) -> None:
-    """One ScalarVariable."""
-    attributes = description.attributes(variable, variable.slot)
+    """Add one ScalarVariable."""
+    attributes = common.variable_attributes(variable, variable.slot)
     scalar = ET.SubElement(parent, "ScalarVariable", attributes)
-    description.add_values(ET.SubElement(scalar, variable.type), variable)
+    common.add_values(ET.SubElement(scalar, variable.type), variable)
 
 
 def add_structure(root: ET.Element, model: Model) -> None:
-    """Dependencies: outputs belong to the last communication point, so few depend on an input."""
+    """Add the dependencies: outputs belong to the last communication point, so few depend on an
+    input.
+    """
     structure = ET.SubElement(root, "ModelStructure")
     index = {variable.name: str(i + 1) for i, variable in enumerate(model.variables)}
     outputs = ET.SubElement(structure, "Outputs")

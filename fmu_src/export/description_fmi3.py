@@ -1,11 +1,11 @@
-"""``modelDescription.xml`` of FMI 3.0 from a variable table."""
+"""Write ``modelDescription.xml`` of FMI 3.0 from a variable table."""
 
 from __future__ import annotations
 
 from xml.etree import ElementTree as ET
 
 from ..runtime.table import BOOLEAN, INTEGER, REAL, Array, Model, Variable
-from . import description
+from . import description_common as common
 
 TYPES = {REAL: "Float64", INTEGER: "Int32", BOOLEAN: "Boolean"}
 ARRAY_BASE = 1000  # value references of arrays begin here
@@ -20,7 +20,7 @@ EVENT_MODE = {"hasEventMode": "true"}  # of models with a clock
 
 
 def fmi3_xml(model: Model, token: str) -> bytes:
-    """The model description, as bytes that depend on nothing but the arguments.
+    """Return the model description, as bytes that depend on nothing but the arguments.
 
     Parameters
     ----------
@@ -28,10 +28,10 @@ def fmi3_xml(model: Model, token: str) -> bytes:
     token : str
         Instantiation token.
     """
-    root = description.root(model, fmiVersion="3.0", instantiationToken=token)
+    root = common.root_element(model, fmiVersion="3.0", instantiationToken=token)
     capabilities = {**CAPABILITIES, **(EVENT_MODE if model.clock else {})}
     ET.SubElement(root, "CoSimulation", {"modelIdentifier": model.name, **capabilities})
-    variables = description.add_frame(root, model)
+    variables = common.add_shared_elements(root, model)
     add_time(variables, model)
     for variable in model.variables:
         if not variable.series:
@@ -40,11 +40,11 @@ def fmi3_xml(model: Model, token: str) -> bytes:
         add_array(variables, model, array, ARRAY_BASE + i)
     add_clock(variables, model)
     add_structure(root, model)
-    return description.text(root)
+    return common.xml_bytes(root)
 
 
 def add_time(parent: ET.Element, model: Model) -> None:
-    """The independent variable."""
+    """Add the independent variable."""
     attributes = {
         "name": "time",
         "valueReference": str(model.time_slot),
@@ -57,28 +57,28 @@ def add_time(parent: ET.Element, model: Model) -> None:
 
 
 def add_variable(parent: ET.Element, variable: Variable) -> None:
-    """One scalar variable."""
-    attributes = description.attributes(variable, variable.slot)
-    description.add_values(ET.SubElement(parent, TYPES[variable.type], attributes), variable)
+    """Add one scalar variable."""
+    attributes = common.variable_attributes(variable, variable.slot)
+    common.add_values(ET.SubElement(parent, TYPES[variable.type], attributes), variable)
 
 
-def elements(model: Model, array: Array) -> tuple[Variable, ...]:
-    """The variables an array is made of."""
+def array_elements(model: Model, array: Array) -> tuple[Variable, ...]:
+    """Return the variables an array is made of."""
     first = [variable.name for variable in model.variables].index(array.first)
     return model.variables[first : first + array.size]
 
 
 def add_array(parent: ET.Element, model: Model, array: Array, reference: int) -> None:
-    """One array output."""
-    scalar = elements(model, array)[0]
-    attributes = description.attributes(scalar, reference)
+    """Add one array output."""
+    scalar = array_elements(model, array)[0]
+    attributes = common.variable_attributes(scalar, reference)
     attributes |= {"name": array.name, "description": array.description, "unit": scalar.unit}
     typed = ET.SubElement(parent, "Float64", attributes)
     ET.SubElement(typed, "Dimension", start=str(array.size))
 
 
 def add_clock(parent: ET.Element, model: Model) -> None:
-    """The output clock, where the model has one."""
+    """Add the output clock, where the model has one."""
     if model.clock:
         attributes = {
             "name": model.clock.name,
@@ -91,11 +91,15 @@ def add_clock(parent: ET.Element, model: Model) -> None:
 
 
 def add_structure(root: ET.Element, model: Model) -> None:
-    """Dependencies: outputs belong to the last communication point, so few depend on an input."""
+    """Add the dependencies: outputs belong to the last communication point, so few depend on an
+    input.
+    """
     structure = ET.SubElement(root, "ModelStructure")
     calculated: list[tuple[int, tuple[Variable, ...]]]
     calculated = [(v.slot, (v,)) for v in model.variables if v.causality == "output"]
-    arrays = [(ARRAY_BASE + i, elements(model, array)) for i, array in enumerate(model.arrays)]
+    arrays = [
+        (ARRAY_BASE + i, array_elements(model, array)) for i, array in enumerate(model.arrays)
+    ]
     calculated += [
         (reference, members) for reference, members in arrays if members[0].causality == "output"
     ]

@@ -1,14 +1,14 @@
-"""What people read in an FMU: the model's page, pictures, an icon, reference results."""
+"""Files in an FMU that people read: the model's page, pictures, an icon, reference results."""
 
 from __future__ import annotations
 
 from .archive import read_folder
-from .companions import companions, icon_place
-from .sources import ROOT, Files, load
+from .companions import companions, icon_path
+from .sources import ROOT, Files, load_model
 
 
 def documentation_files(folder: str, digest: str, form: str) -> Files:
-    """Files of ``documentation/``, the icon, and what other standards ask for beside.
+    """Return the files of ``documentation/``, the icon, and what other standards ask for beside.
 
     Parameters
     ----------
@@ -27,14 +27,14 @@ def documentation_files(folder: str, digest: str, form: str) -> Files:
     place = ROOT / "models" / folder
     files = read_folder(place / "documentation", "documentation/")
     template = files.pop("documentation/index.html.in").decode()
-    files["documentation/index.html"] = page(template, folder, digest, form)
+    files["documentation/index.html"] = model_page(template, folder, digest, form)
     files.update(read_folder(place / "reference", "documentation/reference/"))
-    files[icon_place(form[:4])] = (place / "model.png").read_bytes()
-    return {**files, **companions(load(folder))}
+    files[icon_path(form[:4])] = (place / "model.png").read_bytes()
+    return {**files, **companions(load_model(folder))}
 
 
-def page(template: str, folder: str, digest: str, form: str) -> bytes:
-    """The model's page, its variable table filled in."""
+def model_page(template: str, folder: str, digest: str, form: str) -> bytes:
+    """Return the model's page, its variable table filled in."""
     import jinja2
 
     environment = jinja2.Environment(
@@ -43,5 +43,5 @@ def page(template: str, folder: str, digest: str, form: str) -> bytes:
         keep_trailing_newline=True,
         loader=jinja2.FileSystemLoader(ROOT / "models"),
     )
-    known = {"model": load(folder), "digest": digest, "form": form}
+    known = {"model": load_model(folder), "digest": digest, "form": form}
     return environment.from_string(template).render(known).encode()

@@ -1,4 +1,4 @@
-"""Why an FMU cannot be made here."""
+"""The error raised where an FMU cannot be made on this machine."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ EXTRA = 'pip install "vibroimpact[build]"'
 
 
 class CannotExport(Exception):
-    """Why an FMU cannot be made here, as one line."""
+    """An FMU cannot be made on this machine; the message says why, as one line."""
 
 
 def require(package: str, what: str) -> None:
-    """See that a package is installed.
+    """Raise an error unless a package is installed.
 
     Parameters
     ----------

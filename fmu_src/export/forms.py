@@ -1,4 +1,4 @@
-"""The forms and the models there are, and the two questions about each: export it, and its GUID."""
+"""The forms and the models there are; export one of them, or tell its GUID."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ PLAIN_FORMS = ("fmi2-plain", "fmi3-plain")
 
 
 def sources_of(forms: Iterable[str]) -> tuple[str, ...]:
-    """The forms without binaries, for targets that compile the C sources, of some native forms."""
+    """Return the forms without binaries, for targets that compile the C sources, of some native
+    forms.
+    """
     return tuple(f"{form}-sources" for form in forms if form != PYTHON_FORM)
 
 
@@ -59,7 +61,7 @@ def export(name: str, form: str, build: Path, platforms: tuple[str, ...] | None 
 
 
 def guid(name: str, form: str) -> str:
-    """The GUID (FMI 3.0: instantiation token) that an FMU of the present sources bears.
+    """Return the GUID (FMI 3.0: instantiation token) that an FMU of the present sources bears.
 
     Parameters
     ----------

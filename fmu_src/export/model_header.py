@@ -1,4 +1,4 @@
-"""``model.h``: the variable table, sizes and messages of a model, for the C shim."""
+"""Write ``model.h``: the variable table, sizes and messages of a model, for the C shim."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 from ..runtime.table import Model, Variable
 from . import self_test
-from .description import LOG_CATEGORIES
+from .description_common import LOG_CATEGORIES
 from .description_fmi3 import ARRAY_BASE, CLOCK_REFERENCE
 
 TYPES = """\
@@ -22,19 +22,19 @@ typedef struct { unsigned first, size; } Array;"""
 
 
 def c_string(text: str) -> str:
-    """A C string literal."""
+    """Return a C string literal."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
 
 
 def c_number(value: float) -> str:
-    """A C floating-point literal, to the last bit."""
+    """Return a C floating-point literal, to the last bit."""
     if math.isinf(value):
         return "INFINITY" if value > 0 else "-INFINITY"
     return float(value).hex()
 
 
 def c_variable(variable: Variable, model: Model) -> str:
-    """One row of the C variable table."""
+    """Return one row of the C variable table."""
     minimum = -math.inf if variable.minimum is None else variable.minimum
     maximum = math.inf if variable.maximum is None else variable.maximum
     cells = [
@@ -55,8 +55,8 @@ def c_variable(variable: Variable, model: Model) -> str:
     return "    {" + ", ".join(cells) + "},"
 
 
-def definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
-    """What the shim knows of the model by name."""
+def shim_definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
+    """Return the macros of the model that the C shim uses, value by name."""
     inputs = [
         f"orders 1 to {v.input_derivatives} of {v.name}"
         for v in model.variables
@@ -86,7 +86,7 @@ def definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
 
 
 def model_header(model: Model, token: str, digest: str) -> bytes:
-    """The file.
+    """Return the file ``model.h``.
 
     Parameters
     ----------
@@ -100,8 +100,8 @@ def model_header(model: Model, token: str, digest: str) -> bytes:
     known = {
         "MODEL_TOKEN": c_string(token),
         "STATE_MAGIC": c_string(f"vibroimpact state {digest}"),
-        **definitions(model, slots),
-        **self_test.definitions(model),
+        **shim_definitions(model, slots),
+        **self_test.self_test_definitions(model),
     }
     arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]
     lines = [

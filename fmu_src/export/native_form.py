@@ -1,4 +1,6 @@
-"""The native form: the kernel compiled ahead of time, a C shim over the variable table, no more."""
+"""Export the native form: the kernel compiled ahead of time, with a C shim over the variable
+table.
+"""
 
 from __future__ import annotations
 
@@ -14,17 +16,17 @@ from .description_fmi3 import fmi3_xml
 from .documentation import documentation_files
 from .errors import require
 from .model_header import model_header
-from .platforms import binaries, usual
-from .source_code import kernel_source, source_files, units
+from .platforms import binary_files, usual
+from .source_code import compiled_files, kernel_source, source_files
 from .sources import (
     Files,
     check_unedited,
-    exporters,
-    load,
+    exporter_files,
+    load_model,
     model_digest,
     model_sources,
-    read,
-    texts,
+    read_sources,
+    text_files,
 )
 
 HEADERS = {
@@ -47,42 +49,48 @@ SHIM = {
 }
 
 
-def description(model: Model, token: str, version: str, sources: Files) -> bytes:
-    """``modelDescription.xml``; FMI 2.0's names the sources, FMI 3.0 has a file of its own."""
+def model_description(model: Model, token: str, version: str, sources: Files) -> bytes:
+    """Return ``modelDescription.xml``; FMI 2.0's names the sources, FMI 3.0 has a file of its own
+    for them.
+    """
     if version == "fmi2":
-        return fmi2_xml(model, token, sources=units(sources))
+        return fmi2_xml(model, token, sources=compiled_files(sources))
     return fmi3_xml(model, token)
 
 
 def shim_sources(version: str) -> Files:
-    """C sources of the shim for an FMI version."""
-    found = read(*(f"runtime/native/{name}" for name in SHIM[version]))
+    """Return the C sources of the shim for an FMI version."""
+    found = read_sources(*(f"runtime/native/{name}" for name in SHIM[version]))
     return {Path(name).name: content for name, content in found.items()}
 
 
 def fmi_headers(version: str) -> Files:
-    """The standard's C headers, which come with FMPy."""
+    """Return the standard's C headers, which come with FMPy."""
     require("fmpy", "brings the C headers of the FMI standard")
     folder = resources.files("fmpy") / "c-code"
     return {name: with_prefix((folder / name).read_bytes()) for name in HEADERS[version]}
 
 
 def with_prefix(header: bytes) -> bytes:
-    """FMI 2.0's header as the standard has it: FMPy's own knows no prefix of functions."""
+    """Return FMI 2.0's header with the standard's prefix of functions, which FMPy's copy may
+    lack.
+    """
     if b"defined(FMI2_FUNCTION_PREFIX)" in header:
         return header
     return header.replace(NO_PREFIX, STANDARD_PREFIX)
 
 
 def guid(folder: str, form: str) -> str:
-    """The GUID: of the sources, the texts, and the exporters that make the FMU from them."""
+    """Return the GUID: a hash of the sources, the texts, and the exporters that make the FMU from
+    them.
+    """
     kind = form.replace("-", " ")
     model = {"sources": model_digest(folder).encode(), "version": kind.encode()}
-    return guid_of({**exporters("export/native_form.py"), **texts(folder), **model})
+    return guid_of({**exporter_files("export/native_form.py"), **text_files(folder), **model})
 
 
-def plain(model: Model) -> Model:
-    """A model as its plain form tells of it.
+def plain_model(model: Model) -> Model:
+    """Return a model as its plain form describes it.
 
     Scalars alone, without the states kept inside a step: tools' lists of variables stay short, and
     what stumbles over arrays or clocks has none to stumble over.
@@ -104,8 +112,9 @@ def export(
     folder : str
         The model's, below ``fmu_src/models``.
     form : str
-        ``"fmi2"`` or ``"fmi3"``; with ``"-plain"`` see :func:`plain`, and with ``"-sources"`` at
-        its end it has no binaries, for targets that compile the sources themselves.
+        ``"fmi2"`` or ``"fmi3"``; with ``"-plain"`` see :func:`plain_model`, and with
+        ``"-sources"`` at its end it has no binaries, for targets that compile the sources
+        themselves.
     target : Path
     platforms : tuple of str, optional
         :func:`.platforms.usual` by default.
@@ -120,18 +129,18 @@ def export(
     CannotExport
         Where no binary can be made, or a source was edited meanwhile.
     """
-    model, digest = load(folder), model_digest(folder)
+    model, digest = load_model(folder), model_digest(folder)
     version, token = form[:4], guid(folder, form)
     header = {"model.h": model_header(model, token, digest)}
     shim = {**shim_sources(version), **fmi_headers(version), **header}
-    told = plain(model) if "-plain" in form else model
+    told = plain_model(model) if "-plain" in form else model
     kernel = kernel_source(folder)
     sources = {**shim, "kernel.c": kernel}
     files = source_files(model.name, version, sources)
-    files["modelDescription.xml"] = description(told, token, version, sources)
+    files["modelDescription.xml"] = model_description(told, token, version, sources)
     if not form.endswith("-sources"):
         made = link_all(platforms or usual(), model.name, kernel, shim)
-        files.update(binaries(version, model.name, made))
+        files.update(binary_files(version, model.name, made))
     files.update(documentation_files(folder, digest, form))
     python = {k: v for k, v in model_sources(folder).items() if k.startswith("kernels/")}
     files.update({f"documentation/{name}": content for name, content in python.items()})

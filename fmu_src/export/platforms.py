@@ -79,18 +79,20 @@ CPU_TYPE = 4  # where a Mach-O file has its processor's type, and its subtype af
 
 
 def this_machine() -> str:
-    """The platform's name that this process runs on; it need not be of :data:`PLATFORMS`."""
+    """Return the name of the platform this process runs on; it need not be in :data:`PLATFORMS`."""
     found = machine.machine().lower()
     return f"{ARCHITECTURES.get(found, found)}-{SYSTEMS.get(sys.platform, sys.platform)}"
 
 
 def usual() -> tuple[str, ...]:
-    """What is built unless more is asked for: PCs with Linux and Windows, and this machine."""
+    """Return the platforms that are built by default: PCs with Linux and Windows, and this
+    machine.
+    """
     return tuple(name for name in ALL if name in ("x86_64-linux", "x86_64-windows", this_machine()))
 
 
 def chosen(wanted: Iterable[str]) -> tuple[str, ...]:
-    """Platforms by name, in the table's order; ``all`` and ``this`` stand for what they say.
+    """Return platforms by name, in the table's order; ``all`` and ``this`` stand for what they say.
 
     Raises
     ------
@@ -105,8 +107,8 @@ def chosen(wanted: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in ALL if name in names)
 
 
-def universal(slices: Iterable[bytes]) -> bytes:
-    """A macOS library for several processors, of one for each."""
+def universal_binary(slices: Iterable[bytes]) -> bytes:
+    """Join macOS libraries of one processor each to a library for all of them."""
     libraries = list(slices)
     offset, header, body = 1 << FAT_ALIGNMENT, b"", b""
     for library in libraries:
@@ -118,8 +120,8 @@ def universal(slices: Iterable[bytes]) -> bytes:
     return head.ljust(1 << FAT_ALIGNMENT, b"\0") + body
 
 
-def binaries(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Files of ``binaries/``.
+def binary_files(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Return the files of ``binaries/``.
 
     FMI 2.0 names ``darwin64``, from before there were other processors: tools on both load what
     lies there, so it serves both.
@@ -139,5 +141,5 @@ def binaries(version: str, name: str, made: Mapping[str, bytes]) -> dict[str, by
         files[f"binaries/{of.folders[version]}/{name}{of.suffix}"] = library
     apple = [library for platform, library in made.items() if platform.endswith("-darwin")]
     if version == "fmi2" and apple:
-        files[f"binaries/darwin64/{name}.dylib"] = universal(apple)
+        files[f"binaries/darwin64/{name}.dylib"] = universal_binary(apple)
     return files

@@ -1,4 +1,5 @@
-"""The pythonfmu form: the Python kernel inside, its compiled form beside it where one can be made.
+"""Export the pythonfmu form: the Python kernel inside, its compiled form beside it where there is a
+compiler.
 
 Two FMUs, or an FMU and its host, share modules of the same name in one process. So everything
 embedded lies in one package under a content-hashed name, the script bears the hash too, and
@@ -19,38 +20,47 @@ from pathlib import Path
 from ..runtime.compiled import LIBRARIES
 from ..runtime.table import Model
 from .archive import fingerprint, guid_of, write_archive
-from .compiler import link_all, own_compiler, say_once
+from .compiler import link_all, own_compiler, warn_once
 from .description_fmi2 import PYTHON, fmi2_xml
 from .documentation import documentation_files
 from .errors import EXTRA, CannotExport, require
 from .platforms import PLATFORMS, this_machine
 from .self_test import has_right_bits
 from .source_code import kernel_source
-from .sources import ROOT, Files, check_unedited, closure, exporters, load, read, texts
+from .sources import (
+    ROOT,
+    Files,
+    check_unedited,
+    exporter_files,
+    import_closure,
+    load_model,
+    read_sources,
+    text_files,
+)
 
 PYTHONFMU = "0.7.0"  # the slave works around what this version does, see there
 SCRIPT = "runtime/script.py.in"
 
 
 def embedded_sources(folder: str) -> Files:
-    """Files of the embedded package, by their path in it."""
-    return closure(f"models/{folder}/model.py", "runtime/slave.py")
+    """Return the files of the embedded package, by their path in it."""
+    return import_closure(f"models/{folder}/model.py", "runtime/slave.py")
 
 
 def source_digest(folder: str) -> str:
-    """Fingerprint of all that runs in the FMU; the GUID is made of it."""
-    more = {**read(SCRIPT), "pythonfmu": PYTHONFMU.encode()}
+    """Return the fingerprint of all that runs in the FMU; the GUID is made of it."""
+    more = {**read_sources(SCRIPT), "pythonfmu": PYTHONFMU.encode()}
     return fingerprint({**embedded_sources(folder), **more})
 
 
 def guid(folder: str) -> str:
-    """The GUID an FMU of the present sources bears; it is told without pythonfmu."""
+    """Return the GUID that an FMU of the present sources bears; this does not need pythonfmu."""
     sources = {"sources": source_digest(folder).encode()}
-    return guid_of({**exporters("export/pythonfmu_form.py"), **texts(folder), **sources})
+    return guid_of({**exporter_files("export/pythonfmu_form.py"), **text_files(folder), **sources})
 
 
 def check_pythonfmu() -> None:
-    """See that the one version is installed that the slave is made for."""
+    """Raise an error unless the one version is installed that the slave is made for."""
     require("pythonfmu", "puts the FMU together")
     if metadata.version("pythonfmu") != PYTHONFMU:
         found = metadata.version("pythonfmu")
@@ -77,7 +87,7 @@ def export(folder: str, target: Path) -> Path:
         Where pythonfmu is missing, or is another version, or a source was edited meanwhile.
     """
     check_pythonfmu()
-    model, digest = load(folder), source_digest(folder)
+    model, digest = load_model(folder), source_digest(folder)
     with tempfile.TemporaryDirectory(prefix="vibroimpact-") as scratch:
         script, package = write_sources(Path(scratch), folder, digest)
         for name, library in libraries(folder, model).items():
@@ -92,8 +102,8 @@ def export(folder: str, target: Path) -> Path:
 
 
 def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
-    """Write what pythonfmu puts together; returns script and package."""
-    model = load(folder)
+    """Write the files that pythonfmu packs; return script and package."""
+    model = load_model(folder)
     package = scratch / "source" / f"fmu_{digest[:12]}"
     for name, content in embedded_sources(folder).items():
         (package / name).parent.mkdir(parents=True, exist_ok=True)
@@ -107,7 +117,9 @@ def write_sources(scratch: Path, folder: str, digest: str) -> tuple[Path, Path]:
 
 
 def libraries(folder: str, model: Model) -> Files:
-    """The compiled kernel by file name, a platform each; none, and said so, without a compiler."""
+    """Compile the kernel for each platform and return the libraries by file name; without a
+    compiler warn and return none.
+    """
     optional = {"REFRESH": model.refresh, "COAST": model.coast}
     known = "".join(f"#define {name}\n" for name, entry in optional.items() if entry).encode()
     entry = known + (ROOT / "runtime" / "native" / "library.c").read_bytes()
@@ -116,13 +128,13 @@ def libraries(folder: str, model: Model) -> Files:
         made = link_all(platforms, "kernel", kernel_source(folder), {"library.c": entry})
         check_bits(model, made)
     except CannotExport as reason:
-        say_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")
+        warn_once(f"the FMUs of the form fmi2-python will run in pure Python: {reason}")
         return {}
     return {library: made[name] for name, library in LIBRARIES.values() if name in made}
 
 
 def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
-    """See that a kernel by the machine's own compiler has the model's bits.
+    """Check that a kernel by the machine's own compiler has the model's bits.
 
     The native forms' libraries see to it themselves, when they are instantiated.
 
@@ -141,7 +153,7 @@ def check_bits(model: Model, made: Mapping[str, bytes]) -> None:
 
 
 def run_pythonfmu(script: Path, package: Path, built: Path) -> Files:
-    """Let pythonfmu put script, package and its own binaries together; returns the files."""
+    """Let pythonfmu pack script, package and its own binaries, and return the FMU's files."""
     command = [sys.executable, "-m", __name__, str(script), str(package), str(built)]
     done = subprocess.run(command, cwd=ROOT.parent, capture_output=True, text=True)
     if done.returncode != 0:

@@ -1,4 +1,4 @@
-"""What an FMU's library computes when it is instantiated, to see that it has its model's bits.
+"""The short run by which an FMU's library checks, at instantiation, that it has its model's bits.
 
 A compiler may fuse or reorder operations where it was asked to be fast. The same short run as in
 ``runtime/native/self_test.c``, by the Python of the kernel, whose bits are the model's.
@@ -23,7 +23,7 @@ MASK = (1 << 64) - 1
 
 
 def fingerprint(total: int, values: list[float]) -> int:
-    """The bits of numbers as one number; each of them counts, and its place."""
+    """Return a number that depends on every bit of the values and on their order."""
     for value in values:
         (bits,) = struct.unpack("<Q", struct.pack("<d", value))
         total = ((total << 7) | (total >> 57)) & MASK ^ bits
@@ -32,12 +32,14 @@ def fingerprint(total: int, values: list[float]) -> int:
 
 @functools.cache
 def expected_sum(model: Model) -> int:
-    """The fingerprint that the model's Python has; see :func:`sum_of_run`."""
+    """Return the fingerprint of the run by the model's Python; see :func:`sum_of_run`."""
     return sum_of_run(model, [0.0] * model.memory_size, model.initialize, model.advance)
 
 
 def has_right_bits(model: Model, path: Path) -> bool:
-    """Whether a kernel as a library of its own, for this machine, has the bits of its Python."""
+    """Return whether a kernel, as a library of its own for this machine, has the bits of its
+    Python.
+    """
     library = ctypes.CDLL(str(path))
     for entry in (library.initialize, library.advance):
         entry.argtypes = [ctypes.c_void_p, ctypes.c_double]
@@ -46,8 +48,8 @@ def has_right_bits(model: Model, path: Path) -> bool:
 
 
 def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> int:
-    """The fingerprint of all variables over a short run from the start values; for its second half
-    all real inputs are moved.
+    """Return the fingerprint of all variables over a short run from the start values; for its
+    second half all real inputs are moved.
 
     Parameters
     ----------
@@ -79,8 +81,8 @@ def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> 
     return total
 
 
-def definitions(model: Model) -> dict[str, str]:
-    """What the C of the self-test knows by name."""
+def self_test_definitions(model: Model) -> dict[str, str]:
+    """Return the macros that the C of the self-test uses, value by name."""
     return {
         "SELF_TEST_STEPS": str(STEPS),
         "SELF_TEST_STEP": STEP.hex(),

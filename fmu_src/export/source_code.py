@@ -1,12 +1,14 @@
-"""The C sources inside a native FMU: for targets it has no binary for, and for who reads them."""
+"""The C sources inside a native FMU: for targets it has no binary for, and for those who read
+them.
+"""
 
 from __future__ import annotations
 
 import functools
 from xml.etree import ElementTree as ET
 
-from . import description
-from .sources import Files, load
+from . import description_common
+from .sources import Files, load_model
 from .translation.kernel import translate
 
 OPTIONS = (
@@ -33,7 +35,7 @@ endif()
 
 @functools.cache
 def kernel_source(folder: str) -> bytes:
-    """The kernel of a model in C, of which all compiled forms are made.
+    """Return the kernel of a model in C, of which all compiled forms are made.
 
     Parameters
     ----------
@@ -45,16 +47,16 @@ def kernel_source(folder: str) -> bytes:
     CannotExport
         Where a line of it cannot be translated.
     """
-    return translate(load(folder).entries).encode()
+    return translate(load_model(folder).entries).encode()
 
 
-def units(files: Files) -> list[str]:
-    """The files that are compiled, in a fixed order."""
+def compiled_files(files: Files) -> list[str]:
+    """Return the names of the files that are compiled, in a fixed order."""
     return sorted(name for name in files if name.endswith(".c"))
 
 
 def source_files(name: str, version: str, files: Files) -> Files:
-    """What lies in an FMU's ``sources/``, by path in the FMU.
+    """Return the files of an FMU's ``sources/``, by path in the FMU.
 
     Parameters
     ----------
@@ -65,19 +67,19 @@ def source_files(name: str, version: str, files: Files) -> Files:
     files : dict of str to bytes
         C files and headers.
     """
-    cmake = CMAKE.format(name=name, units=" ".join(units(files)), options=OPTIONS)
+    cmake = CMAKE.format(name=name, units=" ".join(compiled_files(files)), options=OPTIONS)
     inside = {**files, "CMakeLists.txt": cmake.encode()}
     if version == "fmi3":
-        inside["buildDescription.xml"] = build_description(name, units(files))
+        inside["buildDescription.xml"] = build_description(name, compiled_files(files))
     return {f"sources/{file}": content for file, content in inside.items()}
 
 
 def build_description(name: str, sources: list[str]) -> bytes:
-    """FMI 3.0's list of what to compile, and how."""
+    """Return FMI 3.0's ``buildDescription.xml``: what to compile, and how."""
     root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=name)
     attributes = {"language": "C99", "compilerOptions": OPTIONS}
     several = ET.SubElement(configuration, "SourceFileSet", attributes)
     for source in sources:
         ET.SubElement(several, "SourceFile", name=source)
-    return description.text(root)
+    return description_common.xml_bytes(root)

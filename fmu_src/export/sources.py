@@ -1,4 +1,4 @@
-"""Which source files an FMU is made of: what a module imports, read from its syntax tree."""
+"""Find the source files an FMU is made of: what a module imports, read from its syntax tree."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ AT_IMPORT = read_folder(ROOT)  # what this process runs, since it imports the re
 parsing = threading.Lock()  # Python 3.11 mixes up syntax trees of two threads
 
 
-def load(folder: str) -> Model:
-    """The model in a folder below ``fmu_src/models``."""
+def load_model(folder: str) -> Model:
+    """Import the model in a folder below ``fmu_src/models``."""
     model = import_module(f"{ROOT.name}.models.{folder}.model").MODEL
     assert isinstance(model, Model)
     return model
 
 
-def read(*names: str) -> Files:
-    """Files below ``fmu_src``, by name."""
+def read_sources(*names: str) -> Files:
+    """Read files below ``fmu_src``; return them by name."""
     return {name: (ROOT / name).read_bytes() for name in names}
 
 
-def closure(*names: str) -> Files:
-    """Modules and all that they import from ``fmu_src``, the packages they lie in included.
+def import_closure(*names: str) -> Files:
+    """Return modules and all that they import from ``fmu_src``, with the packages they lie in.
 
     Parameters
     ----------
@@ -49,14 +49,16 @@ def closure(*names: str) -> Files:
     while waiting:
         name = waiting.pop()
         if name not in found:
-            found.update(read(name))
-            waiting += imported(name, found[name])
+            found.update(read_sources(name))
+            waiting += imported_files(name, found[name])
     return found
 
 
 @functools.cache
-def imported(name: str, source: bytes) -> tuple[str, ...]:
-    """Files below ``fmu_src`` that run when a module is imported or its functions are."""
+def imported_files(name: str, source: bytes) -> tuple[str, ...]:
+    """Return the files below ``fmu_src`` that run when a module is imported or its functions are
+    called.
+    """
     package = name.split("/")[:-1]
     found = ["/".join([*package[:depth], "__init__.py"]) for depth in range(len(package) + 1)]
     with parsing:
@@ -74,7 +76,7 @@ def imported(name: str, source: bytes) -> tuple[str, ...]:
 
 
 def statements(tree: ast.AST) -> Iterator[ast.AST]:
-    """All statements below a node, those of functions included."""
+    """Yield all statements below a node, including those of functions."""
     for part in ("body", "orelse", "handlers", "finalbody"):
         for node in getattr(tree, part, ()):
             yield node
@@ -83,7 +85,9 @@ def statements(tree: ast.AST) -> Iterator[ast.AST]:
 
 @functools.cache
 def module_file(*parts: str) -> str:
-    """The file of a module or package below ``fmu_src``; an empty string where there is none."""
+    """Return the file of a module or package below ``fmu_src``; an empty string if there is
+    none.
+    """
     for name in ("/".join(parts) + ".py", "/".join([*parts, "__init__.py"])):
         if (ROOT / name).is_file():
             return name
@@ -91,26 +95,30 @@ def module_file(*parts: str) -> str:
 
 
 def model_sources(folder: str) -> Files:
-    """Variable table, texts and kernel of a model: all that decides its numbers."""
-    return closure(f"models/{folder}/model.py")
+    """Return variable table, texts and kernel of a model: all that decides its numbers."""
+    return import_closure(f"models/{folder}/model.py")
 
 
 def model_digest(folder: str) -> str:
-    """Fingerprint of a model; states saved by one native form can be read by the other."""
+    """Return the fingerprint of a model; states saved by one native form can be read by the
+    other.
+    """
     return fingerprint(model_sources(folder))
 
 
-def texts(folder: str) -> Files:
-    """What people read in a model's FMU: page, pictures, reference results, licence."""
+def text_files(folder: str) -> Files:
+    """Return the files of a model's FMU that people read: page, pictures, reference results,
+    licence.
+    """
     shared = ROOT / "models"
     names = [path.name for path in sorted(shared.iterdir()) if path.suffix in (".in", ".txt")]
     found = read_folder(shared / folder, f"models/{folder}/")
     own = {name: content for name, content in found.items() if not name.endswith(".py")}
-    return {**own, **read(*(f"models/{name}" for name in names))}
+    return {**own, **read_sources(*(f"models/{name}" for name in names))}
 
 
 def check_unedited() -> None:
-    """See that no source was edited since this process began.
+    """Raise an error if a source was edited since this process began.
 
     Modules and compiled kernels stay in memory, files are read when they are needed: after an edit
     an FMU would be made of both, under a GUID of the later ones.
@@ -127,6 +135,6 @@ def check_unedited() -> None:
         raise CannotExport(f"{place} was edited since this process began: expected a new process")
 
 
-def exporters(name: str) -> Files:
-    """Files of an exporter: a change of theirs makes another FMU too."""
-    return {**closure(name), **read_folder(ROOT / "runtime" / "native", "runtime/native/")}
+def exporter_files(name: str) -> Files:
+    """Return the files of an exporter: if they change, the FMU changes too."""
+    return {**import_closure(name), **read_folder(ROOT / "runtime" / "native", "runtime/native/")}

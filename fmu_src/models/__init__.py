@@ -1,4 +1,4 @@
-"""The models as the world sees them.
+"""The models: variable tables, texts and reference results.
 
 A folder each with variable table, texts, documentation and reference results.
 """

@@ -1,4 +1,4 @@
-"""What travels inside the FMUs around kernel and model.
+"""Code that travels inside the FMUs, around kernel and model.
 
 The Python slave, and the C shim of the native forms.
 """

@@ -1,4 +1,4 @@
-"""The compiled form of the kernel, where one lies beside the source and fits the machine.
+"""Load the compiled form of the kernel, where one lies beside the source and fits the machine.
 
 Else the source itself runs; both give the same bits. ``VIBROIMPACT_PURE_PYTHON=1`` in the
 environment asks for the source. Standard library only, Python 3.9: it travels inside the FMU.
@@ -23,7 +23,7 @@ loaded: dict[
 
 
 def load_compiled(folder: str, key: str, names: Sequence[str]) -> list[Any] | None:
-    """Entry points of the library in ``folder``, or None.
+    """Return the entry points of the library in ``folder``, or None.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ STATE_HEAD, CHECKSUM = 64, 8  # bytes
 
 
 class FmuError(Exception):
-    """A user's mistake or an unfinished step, as one line."""
+    """A user's mistake or an unfinished step; the message is one line."""
 
 
 class Callbacks(ctypes.Structure):
@@ -51,7 +51,7 @@ class Text(ctypes.Structure):
     _fields_ = (("words", ctypes.c_uint64 * 2), ("length", ctypes.c_uint64 * 2))
 
     def read(self) -> bytes:
-        """The characters."""
+        """Return the characters."""
         if os.name == "nt":
             length, capacity = self.length
             start = self.words[0] if capacity > 15 else ctypes.addressof(self)
@@ -61,7 +61,7 @@ class Text(ctypes.Structure):
 
 
 class Logger(ctypes.Structure):
-    """pythonfmu's logger, whose address a slave is given: what of it says who hears a message.
+    """pythonfmu's logger, whose address a slave is given: its fields say who receives a message.
 
     The C++ object of the library that travels in this very FMU: virtual table, a flag that the
     importer switches logging on with, instance name, the categories it wants (a ``std::vector``:
@@ -79,12 +79,12 @@ class Logger(ctypes.Structure):
     )
 
     def categories(self) -> list[str]:
-        """The categories that the importer wants; none for all of them."""
+        """Return the categories that the importer wants; an empty list for all of them."""
         places = range(self.begin, self.end, ctypes.sizeof(Text))
         return [Text.from_address(place).read().decode() for place in places]
 
     def hand_over(self, category: str, text: str) -> None:
-        """Give the importer an error's message at once."""
+        """Pass an error's message to the importer at once."""
         functions = self.functions.contents
         message = text.replace("%", "%%").encode()  # it is a printf format
         name, status = self.name.read(), 3  # fmi2Error
@@ -97,7 +97,7 @@ def keep(thing: Any) -> None:
 
 
 def state_problem(variable: Variable, value: float) -> str:
-    """Why a variable cannot have a value in a saved state; an empty string where it can."""
+    """Say why a variable cannot have a value in a saved state; return an empty string if it can."""
     problem = variable.problem(value)
     if problem or variable.type == REAL:
         return problem
@@ -143,7 +143,7 @@ class Slave:
         self._checked: dict[str, Any] = {REAL: None, INTEGER: None, BOOLEAN: None}
 
     def _choose_kernel(self, resources: str) -> None:
-        """Take the compiled kernel where it is there: it lies with this instance's package."""
+        """Use the compiled kernel where it is there: it lies with this instance's package."""
         package = __name__.split(".")[0]  # under its content-hashed name
         names = tuple(self._entries)
         kernel = load_compiled(os.path.join(resources, package), package, names)
@@ -154,14 +154,14 @@ class Slave:
     # -- failing without a crash -------------------------------------------------------------------
 
     def listening(self) -> tuple[bool, bool]:
-        """Whether the importer has switched logging on, and whether for all categories."""
+        """Return whether the importer has switched logging on, and whether for all categories."""
         if not self._logger:
             return False, False
         logger = Logger.from_address(self._logger)
         return bool(logger.on), logger.begin == logger.end
 
     def report(self, text: str) -> None:
-        """One line to the error output, where the importer may not hear what is logged.
+        """Write one line to the error output, where the importer may not hear what is logged.
 
         It may take a discarded step for success.
         """
@@ -174,7 +174,7 @@ class Slave:
             pass
 
     def refuse(self, text: str) -> NoReturn:
-        """Give the call an error status, with ``text`` as its message."""
+        """Raise an error with ``text`` as its message: the call returns an error status."""
         self.report(text)
         self.hand_over(text)
         for kept in (type(self), self, self.log_queue):
@@ -182,7 +182,8 @@ class Slave:
         raise FmuError(text.replace("%", "%%"))  # the text ends up as a printf format
 
     def hand_over(self, text: str) -> None:
-        """Tell an importer that asked for the category of errors what an exception will not.
+        """Log an error for an importer that asked for the category of errors, which an exception
+        does not reach.
 
         pythonfmu logs an exception without a category. It would empty its own queue of messages
         while the exception is set, and from Python 3.13 on an importer's callback written in
@@ -196,7 +197,7 @@ class Slave:
                 logger.hand_over(category, text)
 
     def category(self) -> str:
-        """Under which category the importer hears of errors."""
+        """Return the category under which the importer hears of errors."""
         if not self._logger:
             return ERRORS
         wanted = Logger.from_address(self._logger).categories()
@@ -212,7 +213,7 @@ class Slave:
     # -- life cycle --------------------------------------------------------------------------------
 
     def setup_experiment(self, start_time: float, stop_time: float | None = None, *_: Any) -> None:
-        """Start and stop time of the experiment; the tolerance does not matter."""
+        """Set start and stop time of the experiment; the tolerance does not matter."""
         if self._phase != INSTANTIATED:
             self.refuse("fmi2SetupExperiment: expected one call before initialisation")
         if start_time - start_time != 0.0:
@@ -230,7 +231,7 @@ class Slave:
         self._phase = INITIALIZING
 
     def exit_initialization_mode(self) -> None:
-        """Check and take over what was set."""
+        """Check the values set and initialise the kernel with them."""
         if self._phase != INITIALIZING:
             self.refuse("fmi2ExitInitializationMode: expected one call in initialisation mode")
         self.start()
@@ -242,25 +243,25 @@ class Slave:
             self.enter("initialize", self._start_time)
 
     def enter(self, entry: str, time: float) -> None:
-        """Call the kernel for outputs that belong to the values set."""
+        """Call an entry point of the kernel, which computes the outputs for the values set."""
         code = self._entries[entry](self._memory, time)
         if code:
             self.refuse(explain(self.model, self._memory, code))
         self._stale = False
 
     def catch_up(self) -> None:
-        """Outputs for the values set since they were computed."""
+        """Compute the outputs for the values set since they were computed."""
         if self._phase == INITIALIZING:
             self.start()
         elif self._phase == STEPPING and self.model.refresh:
             self.enter("refresh", self._memory[self.model.time_slot])
 
     def terminate(self) -> None:
-        """End of the simulation run; values can still be read."""
+        """End the simulation run; values can still be read."""
         self._phase = TERMINATED
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """One communication step.
+        """Do one communication step.
 
         Returns
         -------
@@ -277,7 +278,7 @@ class Slave:
         return not problem
 
     def step_problem(self, current_time: float, step_size: float) -> str:
-        """Why a step cannot be tried; an empty string where it can."""
+        """Say why a step cannot be tried; return an empty string if it can."""
         if self._phase != STEPPING:
             return "fmi2DoStep: expected after initialisation and before fmi2Terminate"
         if not 0.0 <= step_size < float("inf"):
@@ -294,7 +295,7 @@ class Slave:
         return ""
 
     def step(self, time: float) -> str:
-        """Advance; on failure the memory is put back and the reason returned."""
+        """Advance to ``time``; on failure put the memory back and return the reason."""
         coast = self._entries.get("coast")
         if coast and not coast(self._memory, time):
             return ""
@@ -311,7 +312,7 @@ class Slave:
     # -- values ------------------------------------------------------------------------------------
 
     def find(self, references: Sequence[int], kind: str) -> list[Variable]:
-        """The variables at value references, all of one type."""
+        """Return the variables at value references, all of one type."""
         found = []
         for reference in references:
             known = 0 <= reference < len(self.model.variables)
@@ -322,7 +323,7 @@ class Slave:
         return found
 
     def read(self, references: Sequence[int], kind: str) -> list[float]:
-        """Values at value references."""
+        """Return the values at value references."""
         if references != self._checked[kind]:
             self.find(references, kind)
             self._checked[kind] = list(references)
@@ -331,19 +332,19 @@ class Slave:
         return list(map(self._memory.__getitem__, references))
 
     def get_real(self, references: Sequence[int]) -> list[float]:
-        """Values of Real variables."""
+        """Return values of Real variables."""
         return self.read(references, REAL)
 
     def get_integer(self, references: Sequence[int]) -> list[int]:
-        """Values of Integer variables."""
+        """Return values of Integer variables."""
         return [int(value) for value in self.read(references, INTEGER)]
 
     def get_boolean(self, references: Sequence[int]) -> list[bool]:
-        """Values of Boolean variables."""
+        """Return values of Boolean variables."""
         return [value != 0.0 for value in self.read(references, BOOLEAN)]
 
     def get_string(self, references: Sequence[int]) -> list[str]:
-        """There are no String variables."""
+        """Refuse any reference: there are no String variables."""
         self.find(references, "String")
         return []
 
@@ -361,7 +362,9 @@ class Slave:
         self._stale = True
 
     def write_problem(self, variable: Variable, value: float) -> str:
-        """Why a variable cannot be set now, or not to that; an empty string where it can."""
+        """Say why a variable cannot be set now, or not to that value; return an empty string if it
+        can.
+        """
         given = f"{variable.name} = {variable.text(value)}"
         if variable.calculated:
             return f"{given}: an output cannot be set, expected a parameter or an input"
@@ -382,7 +385,7 @@ class Slave:
         self.write(references, [1.0 if value else 0.0 for value in values], BOOLEAN)
 
     def set_string(self, references: Sequence[int], values: Sequence[str]) -> None:
-        """There are no String variables."""
+        """Refuse any reference: there are no String variables."""
         self.find(references, "String")
 
     # -- state -------------------------------------------------------------------------------------
@@ -392,12 +395,12 @@ class Slave:
         return self._sealed(struct.pack(f"<{len(numbers)}d", *numbers))
 
     def _sealed(self, body: bytes) -> bytes:
-        """A saved state: what it is of, a checksum, and its numbers."""
+        """Return a saved state: which model it is of, a checksum, and its numbers."""
         head = (STATE_MAGIC + self.fingerprint.encode()).ljust(STATE_HEAD - CHECKSUM, b"\0")
         return head + hashlib.sha256(head + body).digest()[:CHECKSUM] + body
 
     def _is_state(self, state: Any) -> bool:
-        """Whether this FMU saved it, and it is undamaged."""
+        """Return whether this FMU saved the state, and it is undamaged."""
         length = STATE_HEAD + 8 * (3 + len(self._memory))
         right = isinstance(state, bytes) and len(state) == length
         return right and state == self._sealed(state[STATE_HEAD:])
@@ -416,7 +419,7 @@ class Slave:
         self._memory = memory
 
     def _state_problem(self, head: Sequence[float], memory: Any) -> str:
-        """Why a saved state cannot be one that this FMU had; an empty string where it can.
+        """Say why a saved state cannot be one that this FMU had; return an empty string if it can.
 
         What follows from other numbers in it is computed anew.
         """

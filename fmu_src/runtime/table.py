@@ -1,4 +1,4 @@
-"""What a model tells the world, once, for the slave, the XML, the documentation and the tests.
+"""The variable table and all else that slave, XML, documentation and tests know of a model.
 
 Standard library only, Python 3.9: this file travels inside the FMU.
 """
@@ -81,7 +81,7 @@ class Variable:
         return self.variability == "fixed"
 
     def text(self, value: float) -> str:
-        """A value as people write it: Integers without a fraction, Booleans as words."""
+        """Return a value as people write it: Integers without a fraction, Booleans as words."""
         if self.type == BOOLEAN and value in (0.0, 1.0):
             return "true" if value else "false"
         if self.type == INTEGER and isfinite(value) and value == int(value):
@@ -89,7 +89,7 @@ class Variable:
         return repr(float(value))
 
     def problem(self, value: float) -> str:
-        """Why ``value`` cannot be the variable's, as one line; an empty string where it can."""
+        """Say why ``value`` is not allowed, as one line; return an empty string if it is."""
         if self.type == BOOLEAN:
             return ""
         low = self.minimum is None or value >= self.minimum
@@ -100,7 +100,7 @@ class Variable:
         return f"{self.name} = {self.text(value)}{unit}: expected {self.range_text()}"
 
     def range_text(self) -> str:
-        """The expected range in words."""
+        """Return the expected range in words."""
         if self.type == BOOLEAN:
             return "true or false"
         if self.minimum is None and self.maximum is None:
@@ -111,13 +111,15 @@ class Variable:
 
 
 def parameter(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
-    """A parameter, fixed unless said otherwise."""
+    """Return a parameter, fixed unless said otherwise."""
     given = {"variability": "fixed", "initial": "exact", **more}
     return Variable(name, description, "parameter", unit, start=start, **given)
 
 
 def evaluation_limit(function: str) -> Variable:
-    """The parameter that bounds the longest communication step, by evaluations of a function."""
+    """Return the parameter that bounds the longest communication step, by evaluations of a
+    function.
+    """
     return parameter(
         "evaluation_limit",
         "",
@@ -132,7 +134,7 @@ def evaluation_limit(function: str) -> Variable:
 
 
 def drive(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
-    """An input."""
+    """Return an input, of either sign unless said otherwise."""
     given = {"minimum": -HUGE, "maximum": HUGE, **more}
     return Variable(name, description, "input", unit, start=start, **given)
 
@@ -140,13 +142,13 @@ def drive(name: str, unit: str, start: float, description: str, **more: Any) -> 
 def output(
     name: str, unit: str, description: str, known: Iterable[str] = (), **more: Any
 ) -> Variable:
-    """An output, calculated from the start values ``known``."""
+    """Return an output, calculated from the start values ``known``."""
     given = {"initial": "calculated", "initial_dependencies": tuple(known), **more}
     return Variable(name, description, "output", unit, **given)
 
 
 def numbered(variables: Sequence[Variable], memory: ModuleType) -> tuple[Variable, ...]:
-    """The variables in their order, each with its place as its slot.
+    """Return the variables in their order, each with its place as its slot.
 
     Parameters
     ----------
@@ -220,7 +222,7 @@ class Terminal:
 
 @dataclass(frozen=True, eq=False)  # each is one thing: known by itself, not by its contents
 class Model:
-    """A model as the exporters see it.
+    """Everything that the exporters need to know of a model.
 
     Attributes
     ----------
@@ -293,7 +295,9 @@ class Model:
     coast: Entry | None = None
 
     def rate_slot(self, variable: Variable) -> int:
-        """Slot of a variable's rate of change; -1 where it has none: no continuous output."""
+        """Return the slot of a variable's rate of change; -1 if it is no continuous output and has
+        none.
+        """
         if variable.causality != "output" or variable.variability != "continuous":
             return -1
         first = max(slot for slot in self.rates if slot <= variable.slot)
@@ -320,7 +324,9 @@ class Model:
 
 
 def with_slots(messages: Mapping[int, str], memory: ModuleType) -> dict[int, str]:
-    """Messages with the slots of a kernel's memory in place of their names: ``{E}`` is ``{6}``."""
+    """Return messages with the slots of a kernel's memory in place of their names: ``{E}`` is
+    ``{6}``.
+    """
 
     def slot(match: re.Match[str]) -> str:
         return f"{{{getattr(memory, match.group(1))}"
@@ -329,7 +335,7 @@ def with_slots(messages: Mapping[int, str], memory: ModuleType) -> dict[int, str
 
 
 def explain(model: Model, memory: Sequence[float], code: int) -> str:
-    """What a return code of the kernel says, as one line.
+    """Return what a return code of the kernel means, as one line.
 
     In a message ``{12}`` stands for the value in slot 12, ``{12:0}`` for the whole number next to
     it, ``{12:flight|contact}`` for one of the words, chosen by it. The native FMU fills in the same

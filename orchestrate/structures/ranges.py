@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from fmu_src.export.description import UNITS
+from fmu_src.export.description_common import UNITS
 from fmu_src.models.motor_shaker import variables as motor_shaker
 from fmu_src.models.oscillator import variables as oscillator
 

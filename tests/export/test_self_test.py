@@ -3,13 +3,13 @@
 import pytest
 
 from fmu_src.export import self_test
-from fmu_src.export.sources import load
+from fmu_src.export.sources import load_model
 
 
 @pytest.mark.parametrize("folder", ["oscillator", "motor_shaker"])
 def test_a_cubic_input_begins_in_it(folder):
     """Its values are moved as an importer sets them, with the flag that it begins anew."""
-    model = load(folder)
+    model = load_model(folder)
     flags = []
 
     def advance(memory, time):
@@ -25,7 +25,7 @@ def test_a_cubic_input_begins_in_it(folder):
 
 def test_each_last_bit_counts():
     """Of any variable, in any step."""
-    model = load("oscillator")
+    model = load_model("oscillator")
 
     def advance(memory, time):
         code = model.advance(memory, time)

@@ -41,11 +41,11 @@ def test_the_embedded_package_is_made_of_what_it_imports(folder):
 
 def test_an_import_that_leads_nowhere_is_named():
     with pytest.raises(FileNotFoundError, match=r"runtime/x.py, line 2: from .nothing import it"):
-        list(sources.imported("runtime/x.py", b"import math\nfrom .nothing import it\n"))
+        list(sources.imported_files("runtime/x.py", b"import math\nfrom .nothing import it\n"))
 
 
 def test_the_native_forms_know_nothing_of_pythonfmu():
-    files = sources.exporters("export/native_form.py")
+    files = sources.exporter_files("export/native_form.py")
     assert "export/pythonfmu_form.py" not in files
     assert not [name for name, text in files.items() if b"import pythonfmu" in text]
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fmu_src.export.errors import CannotExport
-from fmu_src.export.sources import load
+from fmu_src.export.sources import load_model
 from fmu_src.export.translation.kernel import translate
 
 from . import kernel_like
@@ -127,7 +127,7 @@ def test_comments_say_how_often_lines_run(tmp_path):
     assert "static COLD int entry(" in translate({"restore": module.entry})
     body = "if m[0] != 0.0:  # usually\n    m[0] = helper(m, time)\nreturn 0"
     assert "static inline double helper(" in translate({"entry": module_of(tmp_path, body).entry})
-    kernel = translate(load("oscillator").entries)
+    kernel = translate(load_model("oscillator").entries)
     assert "static INLINE Reals6 turned(" in kernel and "/* inline */" not in kernel
 
 
@@ -160,7 +160,7 @@ def test_kernels_compile_without_a_warning(tmp_path, folder):
     """As C99, and by what they say need nothing but sqrt and fabs of the C library."""
     if CC is None:
         pytest.skip("no C compiler on this machine")
-    model = load(folder)
+    model = load_model(folder)
     library(tmp_path, translate(model.entries), "-O1")
     undefined = subprocess.run(
         ["nm", "-u", "kernel-O1.so"], cwd=tmp_path, capture_output=True, text=True, check=True
@@ -172,10 +172,10 @@ def test_kernels_compile_without_a_warning(tmp_path, folder):
 
 def test_kernel_reads_like_the_paper():
     """Functions and slots keep their names, equations their numbers, comments their places."""
-    text = translate(load("oscillator").entries)
+    text = translate(load_model("oscillator").entries)
     assert "static inline Reals4 state_at(double *RESTRICT m, double tau)" in text
     assert "/* Displacements and velocities tau after the state's start, (10). */" in text
-    assert "m[BRANCH_3 + OMEGA_SQUARED]" in text
+    assert "m[OSCILLATOR_3 + OMEGA_SQUARED]" in text
     assert "static const double BRIEF = 0x1.0c6f7a0b5ed8dp-20 /* 1e-06 */;" in text
     assert "/* exactly what the state began with: a start from rest is at rest */" in text
     assert max(map(len, text.splitlines())) <= 100

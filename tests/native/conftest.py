@@ -58,7 +58,7 @@ def hide(monkeypatch):
     """A function that takes a C compiler away from the exporter: ``"ziglang"``, or ``"own"``, the
     machine's.
     """
-    compiler.say_once.cache_clear()
+    compiler.warn_once.cache_clear()
 
     def away(*names):
         if "ziglang" in names:
@@ -71,7 +71,7 @@ def hide(monkeypatch):
             monkeypatch.setattr(compiler, "shutil", SimpleNamespace(which=lambda _: None))
 
     yield away
-    compiler.say_once.cache_clear()
+    compiler.warn_once.cache_clear()
 
 
 @pytest.fixture(scope="session")

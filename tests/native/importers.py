@@ -133,7 +133,7 @@ def rebuild_shim(version, folder, objects, options=SANITIZE, model="oscillator",
     """
     folder.mkdir(parents=True, exist_ok=True)
     token = native_form.guid(model, version)
-    header = model_header(sources.load(model), token, sources.model_digest(model))
+    header = model_header(sources.load_model(model), token, sources.model_digest(model))
     files = {**native_form.shim_sources(version), **native_form.fmi_headers(version)}
     files |= {"model.h": header, "kernel.o": objects["x86_64-linux"]}
     for name, content in files.items():

@@ -12,7 +12,7 @@ import pytest
 
 from fmu_src.export import compiler, forms
 from fmu_src.export.errors import CannotExport
-from fmu_src.export.platforms import ALL, chosen, this_machine, universal, usual
+from fmu_src.export.platforms import ALL, chosen, this_machine, universal_binary, usual
 from fmu_src.export.source_code import kernel_source
 
 from . import importers
@@ -77,7 +77,7 @@ def slices(data):
 def test_a_universal_library_holds_both():
     one = struct.pack("<III", 0xFEEDFACF, 0x01000007, 3) + b"x" * 20_000
     other = struct.pack("<III", 0xFEEDFACF, 0x0100000C, 0) + b"y" * 100
-    assert slices(universal([one, other])) == {0x01000007: one, 0x0100000C: other}
+    assert slices(universal_binary([one, other])) == {0x01000007: one, 0x0100000C: other}
 
 
 def load_commands(library):

@@ -1,4 +1,4 @@
-"""The kernel in C99, translated from its Python; :func:`.kernel.translate` is the way in.
+"""Translate the kernels' Python to C99; :func:`.kernel.translate` is the way in.
 
 ==================  ============================================================================
 module              idea

@@ -1,4 +1,4 @@
-"""An expression of the kernel in C.
+"""Translate an expression of the kernel to C.
 
 Operations keep their order. Where C leaves the order of evaluation open, and one part may change
 the memory that another one reads, the parts are kept in variables before.
@@ -13,7 +13,7 @@ from types import FunctionType, ModuleType
 from typing import Any
 
 from ..errors import CannotExport
-from .subset import named, origin, writes_memory
+from .subset import origin, resolve_name, writes_memory
 from .values import (
     AND,
     ATOM,
@@ -69,7 +69,7 @@ TAKEN = frozenset(WORDS.split())
 
 
 class Expressions(ABC):
-    """Translates expressions of one module's functions.
+    """Translator of the expressions in one module's functions.
 
     Attributes
     ----------
@@ -87,38 +87,42 @@ class Expressions(ABC):
 
     @abstractmethod
     def refuse(self, node: ast.AST, what: str, expected: str) -> CannotExport:
-        """The error that names a line outside the subset."""
+        """Return the error that names a line outside the subset."""
 
     @abstractmethod
     def keep(self, value: Value) -> Value:
-        """A value in a variable of its own, before the present statement."""
+        """Assign a value to a variable of its own, before the present statement, and return
+        that.
+        """
 
     @abstractmethod
     def constant(self, module: ModuleType, name: str) -> str:
-        """The name in C of a module's number."""
+        """Return the name in C of a module's number."""
 
     @abstractmethod
     def function(
         self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
     ) -> tuple[str, Type]:
-        """The name in C of a function for arguments of these types, and its result's type."""
+        """Return the name in C of a function for arguments of these types, and its result's
+        type.
+        """
 
     @abstractmethod
     def c_type(self, kind: Type) -> str:
-        """The name in C of a type."""
+        """Return the name in C of a type."""
 
     def expression(self, node: ast.expr) -> Value:
-        """One expression."""
+        """Translate one expression."""
         known: Mapping[type, Callable[[Any], Value]] = {
             ast.Constant: self.literal,
             ast.Name: self.read,
             ast.Attribute: self.read,
-            ast.Subscript: self.part,
+            ast.Subscript: self.subscript,
             ast.BinOp: self.operation,
             ast.UnaryOp: self.unary,
-            ast.BoolOp: self.junction,
+            ast.BoolOp: self.boolean_operation,
             ast.Compare: self.comparison,
-            ast.IfExp: self.choice,
+            ast.IfExp: self.conditional_expression,
             ast.Call: self.call,
             ast.Tuple: lambda node: self.grouped(self.operands(node.elts)),
         }
@@ -129,7 +133,7 @@ class Expressions(ABC):
     # -- what is read --
 
     def literal(self, node: ast.Constant) -> Value:
-        """A number, or a truth value."""
+        """Translate a number, or a truth value."""
         if isinstance(node.value, bool):
             return Value(str(int(node.value)), TRUTH)
         if isinstance(node.value, (int, float)):
@@ -137,7 +141,7 @@ class Expressions(ABC):
         raise self.refuse(node, repr(node.value), "a number")
 
     def read(self, node: ast.Name | ast.Attribute) -> Value:
-        """A variable, or a constant of a module."""
+        """Translate a variable, or a constant of a module."""
         if isinstance(node, ast.Name) and node.id in self.types:
             return Value(in_c(node.id), self.types[node.id])
         thing, module, name = self.resolved(node)
@@ -146,19 +150,19 @@ class Expressions(ABC):
         return Value(self.constant(module, name), WHOLE if isinstance(thing, int) else REAL)
 
     def resolved(self, node: ast.expr) -> tuple[object, ModuleType, str]:
-        """What a name stands for, and the module and name that it was defined under."""
+        """Return what a name stands for, and the module and name that it was defined under."""
         name = ast.unparse(node)
-        thing = named(self.module, name)
+        thing = resolve_name(self.module, name)
         if thing is None:
             raise self.refuse(node, f"{name} is not known here", "a variable or a constant")
         if isinstance(node, ast.Attribute):
-            module = named(self.module, ast.unparse(node.value))
+            module = resolve_name(self.module, ast.unparse(node.value))
             assert isinstance(module, ModuleType)
             return thing, *origin(module, node.attr)
         return thing, *origin(self.module, name)
 
-    def part(self, node: ast.Subscript) -> Value:
-        """A slot of the memory; a part of a tuple, or several."""
+    def subscript(self, node: ast.Subscript) -> Value:
+        """Translate a slot of the memory, or one or several parts of a tuple."""
         whole = self.expression(node.value)
         if whole.type == MEMORY:
             place = self.expression(node.slice)
@@ -180,7 +184,7 @@ class Expressions(ABC):
     # -- what is computed --
 
     def operation(self, node: ast.BinOp) -> Value:
-        """``a + b`` and the like."""
+        """Translate ``a + b`` and the like."""
         if type(node.op) not in OPERATORS:
             raise self.refuse(node, ast.unparse(node), "one of + - * / % &")
         sign, rank = OPERATORS[type(node.op)]
@@ -194,7 +198,7 @@ class Expressions(ABC):
         return Value(f"{one.within(rank)} {sign} {other.within(rank + 1)}", kind, rank)
 
     def unary(self, node: ast.UnaryOp) -> Value:
-        """``-a`` and ``not a``."""
+        """Translate ``-a`` and ``not a``."""
         if isinstance(node.op, ast.Not):
             return Value(f"!{self.truth(node.operand).within(UNARY)}", TRUTH, UNARY)
         if not isinstance(node.op, ast.USub):
@@ -204,14 +208,14 @@ class Expressions(ABC):
         return Value(f"-({text})" if text.startswith("-") else f"-{text}", value.type, UNARY)
 
     def truth(self, node: ast.expr) -> Value:
-        """An expression that is true or false."""
+        """Translate an expression that is true or false; refuse any other."""
         value = self.expression(node)
         if value.type != TRUTH:
             raise self.refuse(node, ast.unparse(node), "a comparison")
         return value
 
-    def junction(self, node: ast.BoolOp) -> Value:
-        """``a and b``, ``a or b``."""
+    def boolean_operation(self, node: ast.BoolOp) -> Value:
+        """Translate ``a and b``, ``a or b``."""
         sign, rank = ("&&", AND) if isinstance(node.op, ast.And) else ("||", OR)
         first, *others = node.values
         values = [self.truth(first), *self.conditional(others, self.truth)]
@@ -219,7 +223,7 @@ class Expressions(ABC):
         return Value(f" {sign} ".join(value.within(BITS) for value in values), TRUTH, rank)
 
     def comparison(self, node: ast.Compare) -> Value:
-        """``a < b``, ``a < b < c``."""
+        """Translate ``a < b``, ``a < b < c``."""
         first, *others = self.operands([node.left, *node.comparators])
         middle = [v if is_simple(v) or "(" not in v.text else self.keep(v) for v in others[:-1]]
         values = [first, *middle, others[-1]]
@@ -233,8 +237,8 @@ class Expressions(ABC):
             return pairs[0]
         return Value(" && ".join(pair.text for pair in pairs), TRUTH, AND)
 
-    def choice(self, node: ast.IfExp) -> Value:
-        """``a if b else c``."""
+    def conditional_expression(self, node: ast.IfExp) -> Value:
+        """Translate ``a if b else c``."""
         test = self.truth(node.test)
         one, other = self.conditional([node.body, node.orelse], self.expression)
         kind = common_type([one.type, other.type])
@@ -244,19 +248,21 @@ class Expressions(ABC):
     def conditional(
         self, nodes: Sequence[ast.expr], read: Callable[[ast.expr], Value]
     ) -> list[Value]:
-        """Expressions that are evaluated only where a test says so: nothing is kept before."""
+        """Translate expressions that are evaluated only where a test says so: nothing may be kept
+        before.
+        """
         before, self.may_keep = self.may_keep, False
         values = [read(node) for node in nodes]
         self.may_keep = before
         return values
 
     def grouped(self, parts: Sequence[Value]) -> Value:
-        """A structure of values."""
+        """Return a C structure of values."""
         kind = tuple(part.type for part in parts)
         return Value(f"({self.c_type(kind)}){{{', '.join(part.text for part in parts)}}}", kind)
 
     def call(self, node: ast.Call) -> Value:
-        """A call of a kernel's function, or of one that C has."""
+        """Translate a call of a kernel's function, or of one that C has."""
         name = ast.unparse(node.func)
         if node.keywords:
             raise self.refuse(node, ast.unparse(node), "arguments without names")
@@ -270,7 +276,7 @@ class Expressions(ABC):
         return Value(f"{known}({', '.join(value.text for value in values)})", result)
 
     def built_in(self, node: ast.Call, name: str) -> Value:
-        """Functions that every C has, and the helpers of the C file."""
+        """Translate a call of a function that every C has, or of a helper of the C file."""
         values = self.operands(node.args)
         kind = common_type([value.type for value in values])
         if name == "int":
@@ -290,7 +296,7 @@ class Expressions(ABC):
     # -- the order of evaluation --
 
     def operands(self, nodes: Sequence[ast.expr]) -> list[Value]:
-        """Expressions that Python evaluates in this order, and C in any."""
+        """Translate expressions that Python evaluates in this order, and C in any."""
         readers = [self.may_read(node) for node in nodes]
         if sum(readers) < 2 or not any(self.may_write(node) for node in nodes):
             return [self.expression(node) for node in nodes]
@@ -301,7 +307,7 @@ class Expressions(ABC):
         return values
 
     def may_read(self, node: ast.expr) -> bool:
-        """Whether an expression looks at the memory, or hands it on to a function."""
+        """Return whether an expression reads the memory, or passes it to a function."""
         parents = [part for part in ast.walk(node) if isinstance(part, (ast.Subscript, ast.Call))]
         inside = [
             part
@@ -311,17 +317,17 @@ class Expressions(ABC):
         return any(isinstance(p, ast.Name) and self.types.get(p.id) == MEMORY for p in inside)
 
     def may_write(self, node: ast.expr) -> bool:
-        """Whether evaluating an expression may change the memory."""
+        """Return whether evaluating an expression may change the memory."""
         calls = [part.func for part in ast.walk(node) if isinstance(part, ast.Call)]
-        things = [named(self.module, ast.unparse(function)) for function in calls]
+        things = [resolve_name(self.module, ast.unparse(function)) for function in calls]
         return any(isinstance(thing, FunctionType) and writes_memory(thing) for thing in things)
 
 
 def in_c(name: str) -> str:
-    """A variable's name in C."""
+    """Return a variable's name in C."""
     return f"{name}_" if name in TAKEN else name
 
 
 def is_simple(value: Value) -> bool:
-    """Whether an expression is a variable, or a part of one."""
+    """Return whether an expression is a variable, or a part of one."""
     return value.rank == ATOM and all(part.isidentifier() for part in value.text.split("."))

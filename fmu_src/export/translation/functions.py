@@ -1,4 +1,4 @@
-"""A function of the kernel in C: its statements, and where its variables are declared.
+"""Translate a function of the kernel to C: its statements, and where its variables are declared.
 
 A body is read until the types of its variables no longer change, and then once more for its text.
 """
@@ -15,7 +15,16 @@ from typing import Any, Protocol
 
 from ..errors import CannotExport
 from .expressions import OPERATORS, Expressions, in_c, is_simple
-from .subset import Block, assigned_in, comments_of, depends, may_declare, names_in, owners, parsed
+from .subset import (
+    Block,
+    assigned_in,
+    comments_of,
+    may_declare,
+    names_in,
+    needs_temporaries,
+    owner_blocks,
+    parse_function,
+)
 from .values import MEMORY, NOTHING, REAL, WHOLE, Type, Value, common_type
 
 WIDTH = 100
@@ -56,22 +65,22 @@ class Unit:
 
 
 class Kernel(Protocol):
-    """What a function has to know of the others."""
+    """What the translation of a function needs from the translation of the kernel."""
 
     begun: set[FunctionType]
 
     def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
-        """Another function, translated."""
+        """Return another function, translated."""
 
     def constant(self, module: ModuleType, name: str) -> str:
-        """The name in C of a module's number."""
+        """Return the name in C of a module's number."""
 
     def c_type(self, kind: Type) -> str:
-        """The name in C of a type."""
+        """Return the name in C of a type."""
 
 
 class Body(Expressions):
-    """Translates one function.
+    """Translator of one function.
 
     Parameters
     ----------
@@ -83,7 +92,7 @@ class Body(Expressions):
     def __init__(self, kernel: Kernel, unit: Unit) -> None:
         self.kernel, self.unit = kernel, unit
         self.module = sys.modules[unit.function.__module__]
-        self.tree, self.first, source = parsed(unit.function)
+        self.tree, self.first, source = parse_function(unit.function)
         self.comments = comments_of(source)
         self.parameters = [argument.arg for argument in self.tree.args.args]
         if len(self.parameters) != len(unit.kinds):
@@ -95,10 +104,10 @@ class Body(Expressions):
         self.hints = {line: text for line, text in self.comments.items() if text in known}
         for line in self.hints:
             del self.comments[line]
-        self.begin()
+        self.reset()
 
-    def begin(self) -> None:
-        """Nothing has been written."""
+    def reset(self) -> None:
+        """Discard the lines and declarations written so far."""
         self.lines: list[str] = []
         self.declared, self.count_of_kept, self.depth = set(self.parameters), 0, 1
 
@@ -108,17 +117,17 @@ class Body(Expressions):
         known: dict[str, Type] = {}
         while known != self.types:  # a variable may turn out to be real after its first use
             known, self.results = dict(self.types), []
-            self.begin()
+            self.reset()
             self.block(body)
         self.unit.result = common_type(self.results) if self.results else NOTHING
         self.is_final = True
-        self.begin()
+        self.reset()
         self.declare_first(body)
         self.block(body)
-        self.unit.text = "\n".join([*self.head(), "{", *self.lines, "}"])
+        self.unit.text = "\n".join([*self.definition_head(), "{", *self.lines, "}"])
 
-    def head(self) -> list[str]:
-        """What the function is for, in the words of its docstring, and its declaration."""
+    def definition_head(self) -> list[str]:
+        """Return the docstring's summary as a comment, and the function's declaration."""
         summary = " ".join((ast.get_docstring(self.tree) or "").partition("\n\n")[0].split())
         comment = f"/* {summary.replace('``', '').replace(':func:', '').replace('`', '')} */"
         parameters = [f"{self.c_type(self.types[name])} {in_c(name)}" for name in self.parameters]
@@ -131,12 +140,14 @@ class Body(Expressions):
     # -- what expressions ask for --
 
     def refuse(self, node: ast.AST, what: str, expected: str) -> CannotExport:
-        """The error that names a line outside the subset."""
+        """Return the error that names a line outside the subset."""
         line = self.first + getattr(node, "lineno", 1) - 1
         return CannotExport(f"{self.module.__file__}, line {line}: {what}; expected {expected}")
 
     def keep(self, value: Value) -> Value:
-        """A value in a variable of its own, before the present statement."""
+        """Assign a value to a variable of its own, before the present statement, and return
+        that.
+        """
         if not self.may_keep:
             instead = "it in a statement of its own before"
             raise self.refuse(self.tree, f"{value.text} would be evaluated too early", instead)
@@ -146,13 +157,13 @@ class Body(Expressions):
         return Value(name, value.type)
 
     def constant(self, module: ModuleType, name: str) -> str:
-        """The name in C of a module's number."""
+        """Return the name in C of a module's number."""
         return self.kernel.constant(module, name)
 
     def function(
         self, node: ast.AST, function: FunctionType, kinds: tuple[Type, ...]
     ) -> tuple[str, Type]:
-        """The name in C of another function, and its result's type."""
+        """Return the name in C of another function, and its result's type."""
         if function in self.kernel.begun:  # nobody could say how much stack it takes
             raise self.refuse(node, f"{function.__name__} calls itself", "a loop, no recursion")
         unit = self.kernel.unit(function, kinds)
@@ -161,26 +172,26 @@ class Body(Expressions):
         return unit.name, unit.result
 
     def c_type(self, kind: Type) -> str:
-        """The name in C of a type."""
+        """Return the name in C of a type."""
         return self.kernel.c_type(kind)
 
     # -- lines --
 
     def line(self, text: str) -> None:
-        """One line of C at the present depth."""
+        """Write one line of C at the present depth."""
         indent = INDENT * self.depth
         self.lines += wrapped(text, indent, indent + INDENT)
 
     def block(self, statements: Block) -> None:
-        """Statements in their order, each after the comments beside it."""
+        """Translate statements in their order, each after the comments beside it."""
         for statement in statements:
             if self.is_final:
                 for line in [line for line in sorted(self.comments) if line <= statement.lineno]:
                     self.line(f"/* {self.comments.pop(line)} */")
             self.statement(statement)
 
-    def inner(self, statements: Block) -> None:
-        """A block inside another."""
+    def inner_block(self, statements: Block) -> None:
+        """Translate a block inside another."""
         self.depth += 1
         self.block(statements)
         self.depth -= 1
@@ -191,7 +202,7 @@ class Body(Expressions):
         for name in [name for name in self.parameters if name not in used]:
             self.line(f"(void){in_c(name)};")
         several: dict[Type, list[str]] = {}
-        for name, owner in owners(body).items():
+        for name, owner in owner_blocks(body).items():
             first = next(statement for statement in owner if name in names_in(statement))
             if name not in self.declared and not may_declare(first, name):
                 self.declared.add(name)
@@ -203,15 +214,15 @@ class Body(Expressions):
     # -- statements --
 
     def statement(self, node: ast.stmt) -> None:
-        """One statement."""
+        """Translate one statement."""
         known: Mapping[type, Callable[[Any], None]] = {
             ast.Assign: self.assign,
-            ast.AugAssign: self.change,
+            ast.AugAssign: self.augmented_assignment,
             ast.Expr: self.call_alone,
-            ast.Return: self.give,
-            ast.If: self.decide,
-            ast.For: self.count,
-            ast.While: self.repeat,
+            ast.Return: self.return_statement,
+            ast.If: self.if_statement,
+            ast.For: self.for_loop,
+            ast.While: self.while_loop,
             ast.Break: lambda node: self.line("break;"),
         }
         if type(node) not in known:
@@ -220,7 +231,7 @@ class Body(Expressions):
         known[type(node)](node)
 
     def assign(self, node: ast.Assign) -> None:
-        """``a = b``, ``a = b = c``, ``a, b = c, d``, ``a, b = f(m)``."""
+        """Translate ``a = b``, ``a = b = c``, ``a, b = c, d``, ``a, b = f(m)``."""
         target = node.targets[0]
         if isinstance(target, ast.Tuple) and len(node.targets) == 1:
             self.assign_parts(target.elts, node.value)
@@ -234,10 +245,10 @@ class Body(Expressions):
             self.set(one, value)
 
     def assign_parts(self, targets: Sequence[ast.expr], source: ast.expr) -> None:
-        """A tuple's parts to several names or slots."""
+        """Assign a tuple's parts to several names or slots."""
         if isinstance(source, ast.Tuple):
             parts = self.operands(source.elts)
-            if depends(targets, source.elts):
+            if needs_temporaries(targets, source.elts):
                 parts = [self.keep(part) for part in parts]
         else:
             whole = self.expression(source)
@@ -251,9 +262,9 @@ class Body(Expressions):
                 self.set(target, part)
 
     def set(self, target: ast.expr, value: Value) -> None:
-        """A value into a variable or a slot."""
+        """Assign a value to a variable or a slot."""
         if isinstance(target, ast.Subscript):
-            self.line(f"{self.part(target).text} = {value.converted(REAL).text};")
+            self.line(f"{self.subscript(target).text} = {value.converted(REAL).text};")
             return
         if not isinstance(target, ast.Name):
             raise self.refuse(target, ast.unparse(target), "a name or a slot of the memory")
@@ -265,8 +276,8 @@ class Body(Expressions):
         self.declared.add(name)
         self.line(f"{declaration}{in_c(name)} = {value.converted(kind).text};")
 
-    def change(self, node: ast.AugAssign) -> None:
-        """``a += b``."""
+    def augmented_assignment(self, node: ast.AugAssign) -> None:
+        """Translate ``a += b``."""
         if type(node.op) not in OPERATORS:
             raise self.refuse(node, ast.unparse(node), "+=, -=, *= or /=")
         sign = OPERATORS[type(node.op)][0]
@@ -281,13 +292,13 @@ class Body(Expressions):
         self.line(f"{self.expression(node.target).text} {sign}= {value.converted(REAL).text};")
 
     def call_alone(self, node: ast.Expr) -> None:
-        """A call for what it does to the memory."""
+        """Translate a call whose result is not used."""
         if not isinstance(node.value, ast.Call):
             raise self.refuse(node, ast.unparse(node), "a call")
         self.line(f"{self.expression(node.value).text};")
 
-    def give(self, node: ast.Return) -> None:
-        """``return``, with or without a value."""
+    def return_statement(self, node: ast.Return) -> None:
+        """Translate ``return``, with or without a value."""
         if node.value is None:
             self.results.append(NOTHING)
             self.line("return;")
@@ -297,8 +308,8 @@ class Body(Expressions):
         kind = self.unit.result if self.is_final else value.type
         self.line(f"return {value.converted(kind).text};")
 
-    def decide(self, node: ast.If) -> None:
-        """``if``, ``elif`` and ``else``, with what a comment says of the test."""
+    def if_statement(self, node: ast.If) -> None:
+        """Translate ``if``, ``elif`` and ``else``, with what a comment says of the test."""
         hint, test, before = (
             self.hints.get(node.lineno, ""),
             self.truth(node.test).text,
@@ -306,16 +317,16 @@ class Body(Expressions):
         )
         self.line(f"if ({HINTS[hint]}({test})) {{" if hint else f"if ({test}) {{")
         self.is_rare = before or hint == "rarely"
-        self.inner(node.body)
+        self.inner_block(node.body)
         self.is_rare = before or hint == "usually"
         if node.orelse:
             self.line("} else {")
-            self.inner(node.orelse)
+            self.inner_block(node.orelse)
         self.line("}")
         self.is_rare = before
 
-    def count(self, node: ast.For) -> None:
-        """``for i in range(...)``."""
+    def for_loop(self, node: ast.For) -> None:
+        """Translate ``for i in range(...)``."""
         loop, target = node.iter, node.target
         is_range = isinstance(loop, ast.Call) and ast.unparse(loop.func) == "range"
         ends = loop.args if is_range and isinstance(loop, ast.Call) else []
@@ -335,20 +346,20 @@ class Body(Expressions):
         before = set(self.declared)
         self.declared.add(target.id)
         self.line(f"for ({declaration}{name} = {first.text}; {while_in}; {further}) {{")
-        self.inner(node.body)
+        self.inner_block(node.body)
         self.line("}")
         self.declared = before
 
-    def repeat(self, node: ast.While) -> None:
-        """``while``."""
+    def while_loop(self, node: ast.While) -> None:
+        """Translate ``while``."""
         (test,) = self.conditional([node.test], self.truth)
         self.line(f"while ({test.text}) {{")
-        self.inner(node.body)
+        self.inner_block(node.body)
         self.line("}")
 
 
 def wrapped(text: str, first: str, later: str) -> list[str]:
-    """A line of C, broken where it is long."""
+    """Break a line of C where it is too long; return the lines."""
     return textwrap.wrap(
         text,
         WIDTH,

@@ -1,4 +1,4 @@
-"""The kernel in C: its subset of Python, translated function by function to readable C99.
+"""Translate a kernel, from its subset of Python, function by function to readable C99.
 
 Every function is translated once for each tuple of argument types it is called with, under its own
 name and with the first line of its docstring; constants and slots keep their names. Operations keep
@@ -99,7 +99,7 @@ static inline double floored(double value)
 
 @dataclass
 class Translation:
-    """All that has been translated so far.
+    """Functions, constants, structures and names that have been translated so far.
 
     Attributes
     ----------
@@ -122,7 +122,9 @@ class Translation:
     begun: set[FunctionType] = field(default_factory=set)
 
     def unit(self, function: FunctionType, kinds: tuple[Type, ...]) -> Unit:
-        """A function for arguments of these types, translated where it was not yet."""
+        """Return a function for arguments of these types, and translate it if that was not done
+        yet.
+        """
         key = function, kinds
         if key not in self.units:
             unit = Unit(function, kinds, self.own_name(function.__name__, key, function.__module__))
@@ -133,7 +135,9 @@ class Translation:
         return self.units[key]
 
     def own_name(self, name: str, thing: object, module: str) -> str:
-        """A name of one thing alone: with its module's before it, where another one has it."""
+        """Return a name that only one thing has: with its module's before it, where another one has
+        it.
+        """
         place = module.rpartition(".")[2]
         longer = f"{place.upper() if name.isupper() else place}_{name}"
         for known in (name, longer, *(f"{longer}_{number}" for number in range(2, 100))):
@@ -142,13 +146,13 @@ class Translation:
         raise CannotExport(f"{name}: too many things of this name")
 
     def constant(self, module: ModuleType, name: str) -> str:
-        """The name in C of a module's number."""
+        """Return the name in C of a module's number, and remember its value."""
         known = self.own_name(name, (module.__name__, name), module.__name__)
         self.constants[known] = getattr(module, name)
         return known
 
     def c_type(self, kind: Type) -> str:
-        """The name in C of a type; that of a tuple says how many numbers it has, if no more."""
+        """Return the name in C of a type; that of a tuple of reals says how many they are."""
         if isinstance(kind, str):
             return C_TYPES[kind]
         if kind not in self.structures:
@@ -160,7 +164,9 @@ class Translation:
         return self.structures[kind]
 
     def declarations(self) -> list[str]:
-        """Slots and other whole numbers, real constants, and structures."""
+        """Return the declarations of slots and other whole numbers, of real constants, and of
+        structures.
+        """
         whole = sorted((n, name) for name, n in self.constants.items() if isinstance(n, int))
         real = [(name, n) for name, n in self.constants.items() if not isinstance(n, int)]
         structures = []
@@ -176,14 +182,14 @@ class Translation:
 
 
 def literal(number: float) -> str:
-    """A constant to the last bit, and how people write it."""
+    """Return a constant to the last bit, and how people write it."""
     known = {"inf": "INFINITY", "-inf": "-INFINITY", "nan": "NAN"}
     text = repr(number)
     return known.get(text) or f"{number.hex()} /* {text} */"
 
 
 def stored(units: Iterable[Unit], often: set[str]) -> Iterator[str]:
-    """The functions' texts; those that are reached by rare ways alone are kept out of the others.
+    """Yield the functions' texts; those that are called in rare cases only are not inlined.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What can be read off the kernels' Python before it is translated."""
+"""Read off the kernels' Python what the translation needs to know beforehand."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ Block = list[ast.stmt]
 
 
 @functools.cache
-def parsed(function: FunctionType) -> tuple[ast.FunctionDef, int, str]:
-    """A function's syntax tree, its first line in its file, and its source."""
+def parse_function(function: FunctionType) -> tuple[ast.FunctionDef, int, str]:
+    """Return a function's syntax tree, its first line in its file, and its source."""
     lines, first = inspect.getsourcelines(function)
     source = textwrap.dedent("".join(lines))
     tree = ast.parse(source).body[0]
@@ -26,7 +26,7 @@ def parsed(function: FunctionType) -> tuple[ast.FunctionDef, int, str]:
 
 
 def comments_of(source: str) -> dict[int, str]:
-    """The comments in a source, by line."""
+    """Return the comments in a source, by line."""
     tokens = tokenize.generate_tokens(io.StringIO(source).readline)
     kind = tokenize.COMMENT
     return {token.start[0]: token.string.lstrip("# ") for token in tokens if token.type == kind}
@@ -34,19 +34,19 @@ def comments_of(source: str) -> dict[int, str]:
 
 @functools.cache
 def writes_memory(function: FunctionType) -> bool:
-    """Whether a function assigns to a slot, or calls a function that does."""
-    tree, _, _ = parsed(function)
+    """Return whether a function assigns to a slot, or calls a function that does."""
+    tree, _, _ = parse_function(function)
     nodes = list(ast.walk(tree))
     if any(isinstance(n, ast.Subscript) and isinstance(n.ctx, ast.Store) for n in nodes):
         return True
     module = sys.modules[function.__module__]
-    called = [named(module, ast.unparse(n.func)) for n in nodes if isinstance(n, ast.Call)]
+    called = [resolve_name(module, ast.unparse(n.func)) for n in nodes if isinstance(n, ast.Call)]
     others = [thing for thing in called if isinstance(thing, FunctionType) and thing != function]
     return any(writes_memory(other) for other in others)
 
 
-def named(module: ModuleType, name: str) -> object:
-    """What a dotted name stands for in a module; None where it stands for nothing."""
+def resolve_name(module: ModuleType, name: str) -> object:
+    """Return what a dotted name stands for in a module; None where it stands for nothing."""
     thing: object = module
     for part in name.split("."):
         thing = getattr(thing, part, None)
@@ -55,7 +55,7 @@ def named(module: ModuleType, name: str) -> object:
 
 @functools.cache
 def imports(module: ModuleType) -> dict[str, tuple[str, str]]:
-    """Module and name that each imported name was defined under."""
+    """Return module and name that each imported name was defined under."""
     known: dict[str, tuple[str, str]] = {}
     if not getattr(module, "__file__", "").endswith(".py"):  # written in C, as math
         return known
@@ -68,7 +68,7 @@ def imports(module: ModuleType) -> dict[str, tuple[str, str]]:
 
 
 def origin(module: ModuleType, name: str) -> tuple[ModuleType, str]:
-    """The module and the name under which a constant was defined."""
+    """Return the module and the name under which a constant was defined."""
     if name in imports(module):
         source, original = imports(module)[name]
         return origin(sys.modules[source], original)
@@ -76,12 +76,12 @@ def origin(module: ModuleType, name: str) -> tuple[ModuleType, str]:
 
 
 def names_in(node: ast.AST) -> set[str]:
-    """All names in a part of the tree."""
+    """Return all names in a part of the tree."""
     return {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
 
 
 def targets_of(statement: ast.stmt) -> list[ast.expr]:
-    """What a statement assigns to, tuples taken apart."""
+    """Return what a statement assigns to, tuples taken apart."""
     if isinstance(statement, ast.AugAssign):
         return [statement.target]
     if not isinstance(statement, ast.Assign):
@@ -94,27 +94,29 @@ def targets_of(statement: ast.stmt) -> list[ast.expr]:
 
 
 def assigned_in(block: Block) -> list[ast.expr]:
-    """All that statements assign to, those inside others included."""
+    """Return all that statements assign to, including those inside others."""
     inside = [part for statement in block for part in ast.walk(statement)]
     statements = [part for part in inside if isinstance(part, ast.stmt)]
     return [target for statement in statements for target in targets_of(statement)]
 
 
 def may_declare(statement: ast.stmt, name: str) -> bool:
-    """Whether a statement assigns to a name that it does not read."""
+    """Return whether a statement assigns to a name that it does not read."""
     if not isinstance(statement, ast.Assign) or name in names_in(statement.value):
         return False
     return any(isinstance(one, ast.Name) and one.id == name for one in targets_of(statement))
 
 
 def inner_blocks(statement: ast.stmt) -> list[Block]:
-    """The blocks of a compound statement."""
+    """Return the blocks of a compound statement."""
     blocks = (getattr(statement, part, []) for part in ("body", "orelse"))
     return [block for block in blocks if block]
 
 
-def owners(body: Block) -> dict[str, Block]:
-    """The innermost block that holds all uses of each variable that is assigned somewhere."""
+def owner_blocks(body: Block) -> dict[str, Block]:
+    """Return the innermost block that holds all uses of each variable that is assigned
+    somewhere.
+    """
     paths: dict[str, list[list[Block]]] = {}
     assigned: set[str] = set()
 
@@ -130,11 +132,11 @@ def owners(body: Block) -> dict[str, Block]:
                 visit(part, [*path, block])
 
     visit(body, [])
-    return {name: shared(paths[name]) for name in sorted(assigned - {"_"})}
+    return {name: innermost_shared_block(paths[name]) for name in sorted(assigned - {"_"})}
 
 
-def shared(paths: Sequence[list[Block]]) -> Block:
-    """The last block that all paths go through."""
+def innermost_shared_block(paths: Sequence[list[Block]]) -> Block:
+    """Return the last block that all paths go through."""
     last = paths[0][0]
     for blocks in zip(*paths, strict=False):
         if any(block is not blocks[0] for block in blocks):
@@ -143,8 +145,8 @@ def shared(paths: Sequence[list[Block]]) -> Block:
     return last
 
 
-def depends(targets: Sequence[ast.expr], values: Sequence[ast.expr]) -> bool:
-    """Whether a value uses what a target before it is assigned: then all are kept first."""
+def needs_temporaries(targets: Sequence[ast.expr], values: Sequence[ast.expr]) -> bool:
+    """Return whether a value uses what a target before it is assigned: then all are kept first."""
     for place, target in enumerate(targets):
         for later in values[place + 1 :]:
             if isinstance(target, ast.Name) and target.id in names_in(later):

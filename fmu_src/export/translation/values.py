@@ -43,20 +43,22 @@ class Value:
     real: str = ""
 
     def within(self, rank: int) -> str:
-        """Its text as an operand of an operator that binds so closely."""
+        """Return its text as an operand of an operator that binds so closely."""
         return self.text if self.rank >= rank else f"({self.text})"
 
     def item(self, place: int) -> Value:
-        """A part of a tuple."""
+        """Return a part of a tuple."""
         assert isinstance(self.type, tuple)
         return Value(f"{self.within(ATOM)}.i{place}", self.type[place])
 
     def items(self) -> list[Value]:
-        """All parts of a tuple."""
+        """Return all parts of a tuple."""
         return [self.item(place) for place in range(len(self.type))]
 
     def converted(self, kind: Type) -> Value:
-        """The value as another type; only what C would convert with a loss is written out."""
+        """Return the value as another type; only what C would convert with a loss is written
+        out.
+        """
         if self.real and kind == REAL:
             return Value(self.real, REAL)
         if self.type == LONG and kind == REAL:
@@ -65,7 +67,7 @@ class Value:
 
 
 def common_type(kinds: Sequence[Type]) -> Type:
-    """The type that can hold values of all types.
+    """Return the type that can hold values of all types.
 
     Raises
     ------

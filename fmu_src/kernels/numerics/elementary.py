@@ -16,7 +16,7 @@ EXP_ZERO = 700.0  # e^-700 = 1e-304: from here on zero, before subnormal numbers
 
 
 def sincos_turns(u):
-    """Sine and cosine of ``2 pi u``.
+    """Return sine and cosine of ``2 pi u``.
 
     An argument in turns reduces to an eighth of a turn without any rounding.
 
@@ -54,7 +54,7 @@ def sincos_turns(u):
 
 
 def exp_decay(x):
-    """``e**-x`` for ``x >= 0``; 0 from 700 on.
+    """Return ``e**-x`` for ``x >= 0``; 0 from 700 on.
 
     Parameters
     ----------
@@ -85,13 +85,14 @@ def exp_decay(x):
 
 
 def fraction(u):
-    """The part of ``u`` in [0, 1): an angle in turns without its full turns."""
+    """Return the part of ``u`` in [0, 1): an angle in turns without its full turns."""
     f = u - math.floor(u)
     return f if f < 1.0 else 0.0
 
 
 def small_rotation(y):  # inline
-    """``cos x`` and ``sin(x)/x`` for ``y = x**2``, ``|y| <= 0.42``; cosh and sinh where y < 0.
+    """Return ``cos x`` and ``sin(x)/x`` for ``y = x**2``, ``|y| <= 0.42``; cosh and sinh where y <
+    0.
 
     Returns
     -------
@@ -113,7 +114,7 @@ def small_rotation(y):  # inline
 
 
 def small_decay(x):  # inline
-    """``e**-x`` for ``|x| <= 0.7``."""
+    """Return ``e**-x`` for ``|x| <= 0.7``."""
     if -0.03125 <= x <= 0.03125:
         x2 = x * x
         y = (0.5 - x * (1.0 / 6.0)) + x2 * (1.0 / 24.0 - x * (1.0 / 120.0))

@@ -7,7 +7,7 @@ no part of the numeric path.
 
 
 class Slots:
-    """A counter of slots.
+    """Counter that numbers the slots of a flat memory.
 
     Examples
     --------
@@ -21,7 +21,7 @@ class Slots:
         self.used = 0
 
     def __call__(self, size: int = 1) -> int:
-        """The first of the next ``size`` slots."""
+        """Reserve the next ``size`` slots and return the first of them."""
         first = self.used
         self.used += size
         return first

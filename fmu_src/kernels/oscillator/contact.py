@@ -13,9 +13,9 @@ ROUNDING = 1e-14
 HIGHEST = 5
 
 
-def contact_force(m, x, v):
-    """The f of (18): the gap's acceleration at displacement ``x`` of both masses from where they
-    rest together, and common velocity ``v``.
+def gap_acceleration(m, x, v):
+    """Return f of (18), the gap's acceleration at displacement ``x`` of both masses from where they
+    rest together, and common velocity ``v``; negative where they are pressed together.
     """
     force = m[at.FORCE_V] * v + m[at.FORCE_X] * x
     if m[at.PRELOAD] != 0.0:  # rarely
@@ -24,7 +24,9 @@ def contact_force(m, x, v):
 
 
 def forcing_derivative(m, order, sine, cosine, cubic):
-    """Derivative of the right-hand side of (6), and the size of the terms it is made of."""
+    """Return a derivative of the right-hand side of (6), and the size of the terms it is made
+    of.
+    """
     size = m[at.FORCING]
     for _ in range(order):
         size *= m[at.ETA]
@@ -44,8 +46,9 @@ def forcing_derivative(m, order, sine, cosine, cubic):
     return value + part, abs(size) + abs(part)
 
 
-def first_derivative(m, x, v, lowest):
-    """First derivative of f, from order ``lowest`` on, that does not vanish from (x, v) on.
+def first_nonzero_derivative(m, x, v, lowest):
+    """Return the first derivative of f, from order ``lowest`` on, that does not vanish from (x, v)
+    on.
 
     Returns
     -------
@@ -56,8 +59,8 @@ def first_derivative(m, x, v, lowest):
     """
     sine, cosine = m[at.SINE], m[at.COSINE]
     cubic = cubic_at(m, m[at.CUBIC_AGE])
-    twice = 2.0 * m[at.BRANCH_3 + at.DAMPING]
-    square = m[at.BRANCH_3 + at.OMEGA_SQUARED]
+    twice = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING]
+    square = m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
     low, low_size, high, high_size = x, abs(x), v, abs(v)
     for order in range(HIGHEST + 1):
         if order >= lowest:

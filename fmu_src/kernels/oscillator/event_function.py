@@ -7,16 +7,22 @@ form for all later times. A clearance adds a constant to the signal, none to its
 """
 
 from . import memory as at
-from .nodes import branch_a, derivatives, longest, phasors_at, put, start_nodes
-from .parameters import alike
-from .secular import driven_bound, event_bound, event_drive, event_drive_size, set_event_drive
-from .series import gap_at
+from .nodes import higher_derivatives, max_nodes, oscillator_a, phasors_at, put_phasors, start_nodes
+from .parameters import are_nearly_equal
+from .secular import (
+    driven_bound,
+    driven_event_bound,
+    event_drive,
+    event_drive_bound,
+    set_event_drive,
+)
+from .series import gap_derivatives
 
 AHEAD = 5.0  # spacings from an evaluation on for which its bound holds
 
 
-def set_gap(m):
-    """Event function of a flight: ``xi_2 - xi_1`` and the clearance."""
+def set_flight_event_function(m):
+    """Set the event function of a flight: the gap, ``xi_2 - xi_1`` and the clearance."""
     m[at.EVENT_OFFSET] = m[at.GAP_OFFSET]
     for i in range(2):
         m[at.EVENT_HARMONIC + i] = m[at.HARMONIC_2 + i] - m[at.HARMONIC_1 + i]
@@ -29,9 +35,9 @@ def set_gap(m):
         set_event_drive(m)
 
 
-def set_contact_force(m):
-    """Event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 - omega_2^2)
-    xi_3`` (18).
+def set_contact_event_function(m):
+    """Set the event function of permanent contact: ``-f = -2 (D1 - D2) xi_3' - (omega_1^2 -
+    omega_2^2) xi_3`` (18).
     """
     m[at.EVENT_OFFSET] = -m[at.PRELOAD]
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
@@ -52,8 +58,8 @@ def set_contact_force(m):
 
 
 def is_constant(m):
-    """Whether the event function stays what it is, above zero: at rest with a clearance, or pressed
-    together by two oscillators that are alike.
+    """Return whether the event function is a constant above zero: at rest with a clearance, or
+    pressed together by two oscillators that are alike.
     """
     if m[at.EVENT_OFFSET] <= 0.0 or m[at.SECULAR] != 0.0:
         return False
@@ -67,53 +73,55 @@ def is_constant(m):
 
 
 def force_phasor(m, x, v):
-    """Free part of minus the contact force from that of the displacement."""
+    """Return the free part of -f (18) from the free part of the displacement, as value and
+    derivative.
+    """
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
-    return p * v + q * x, p * acceleration(m, at.BRANCH_3, x, v) + q * v
+    return p * v + q * x, p * free_acceleration(m, at.OSCILLATOR_3, x, v) + q * v
 
 
-def acceleration(m, b, x, v):
-    """Of a free part: ``x'' = -2 D x' - omega^2 x``."""
+def free_acceleration(m, b, x, v):
+    """Return the acceleration of a free part: ``x'' = -2 D x' - omega^2 x``."""
     return -(2.0 * m[b + at.DAMPING] * v + m[b + at.OMEGA_SQUARED] * x)
 
 
-def bounds(m, order):
-    """Bounds of the event function's derivative of an order >= 4, at all later times: steady part,
-    free parts A and B at tau = 0.
+def derivative_bounds(m, order):
+    """Return bounds of the event function's derivative of an order >= 4 at all later times: of the
+    steady part and of the free parts A and B at tau = 0.
     """
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     for _ in range(order):
         steady *= m[at.ETA]
     if m[at.SECULAR] != 0.0:  # rarely
-        steady += event_bound(m, order, longest(m) * m[at.SPACING])
-    a = free_bound(m, branch_a(m), at.EVENT_FREE_A, order)
-    b = free_bound(m, at.BRANCH_2, at.EVENT_FREE_B, order) if m[at.MODE] == at.FLIGHT else 0.0
+        steady += driven_event_bound(m, order, max_nodes(m) * m[at.SPACING])
+    a = free_bound(m, oscillator_a(m), at.EVENT_FREE_A, order)
+    b = free_bound(m, at.OSCILLATOR_2, at.EVENT_FREE_B, order) if m[at.MODE] == at.FLIGHT else 0.0
     return steady, a, b
 
 
 def free_bound(m, b, free, order):
-    """Bound of a free part's derivative from the state's start on."""
+    """Return a bound of a free part's derivative of an order, from the state's start on."""
     x, v = m[free], m[free + 1]
     for _ in range(order):
-        x, v = v, acceleration(m, b, x, v)
+        x, v = v, free_acceleration(m, b, x, v)
     return envelope(m, b, x, v)
 
 
 def envelope(m, b, x, v):
-    """Bound of a free part from now on."""
+    """Return a bound of a free part from the present values ``x``, ``v`` on."""
     return abs(x) + m[b + at.ENVELOPE_SINE] * abs(v + m[b + at.DAMPING] * x)
 
 
 def begin_nodes(m):
     """Set the state's first interval: the event function at its end, and the remainder."""
     start_nodes(m)
-    set_values(m, at.RIGHT_VALUES, at.RIGHT, m[at.RIGHT_AGE])
+    set_node_values(m, at.RIGHT_VALUES, at.RIGHT, m[at.RIGHT_AGE])
     set_remainder(m)
 
 
-def set_values(m, slot, node, tau):
-    """Put the event function and two derivatives at a node to ``slot``."""
-    h0, h1, h2 = values(
+def set_node_values(m, slot, node, tau):
+    """Write the event function and two derivatives at a node to ``slot`` and the two after it."""
+    h0, h1, h2 = event_values(
         m, False, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5], tau
     )
     m[slot] = h0
@@ -122,69 +130,75 @@ def set_values(m, slot, node, tau):
 
 
 def set_remainder(m):
-    """What the quintic between two nodes may miss from the node to the left on, until the state is
-    written anew.
+    """Set how far the quintic between two nodes may be wrong, from the node to the left on, until
+    the state is written anew.
     """
     steady = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1])
     square = m[at.NODE_ETA] * m[at.NODE_ETA]
     bound = steady * (square * square * square)
-    time = longest(m) * m[at.SPACING]
+    time = max_nodes(m) * m[at.SPACING]
     driven = 0.0
     if m[at.SECULAR] != 0.0:  # rarely
-        driven = event_bound(m, 6, time)
+        driven = driven_event_bound(m, 6, time)
     x, v = m[at.LEFT], m[at.LEFT + 1]
     if m[at.MODE] == at.FLIGHT:
         x_b, v_b = m[at.LEFT + 2], m[at.LEFT + 3]
-        apart = bound + sixth_bound(m, at.BRANCH_2, x_b, v_b) + sixth_bound(m, at.BRANCH_1, x, v)
+        apart = (
+            bound
+            + sixth_bound(m, at.OSCILLATOR_2, x_b, v_b)
+            + sixth_bound(m, at.OSCILLATOR_1, x, v)
+        )
         apart += driven
-        if alike(m):  # rarely
+        if are_nearly_equal(m):  # rarely
             apart = min(apart, bound + difference_bound(m, 6, x, v, x_b, v_b, time))
         bound = apart
     else:
         x, v = force_phasor(m, x, v)
-        bound += sixth_bound(m, at.BRANCH_3, x, v) + driven
+        bound += sixth_bound(m, at.OSCILLATOR_3, x, v) + driven
     m[at.REMAINDER] = bound * m[at.HERMITE + 2]
 
 
 def sixth_bound(m, b, x, v):
-    """Bound of the sixth derivative of a free part from now on."""
+    """Return a bound of the sixth derivative of a free part from now on."""
     sixth = b + at.SIXTH
     return envelope(m, b, m[sixth] * x + m[sixth + 1] * v, m[sixth + 2] * x + m[sixth + 3] * v)
 
 
 def difference_bound(m, order, x, v, x_b, v_b, time):
-    """Bound of a derivative of both free parts' difference, for a ``time`` from now on.
+    """Return a bound of a derivative of both free parts' difference, for a ``time`` from now on.
 
     Each derivative of ``xi_2 - xi_1`` moves as oscillator 2, driven by what differs, ``2 (D_1 -
     D_2) xi_1' + (omega_1^2 - omega_2^2) xi_1``; where both move nearly as one, the sum of both
     bounds is far above it.
     """
     for _ in range(order):
-        x, v = v, acceleration(m, at.BRANCH_1, x, v)
-        x_b, v_b = v_b, acceleration(m, at.BRANCH_2, x_b, v_b)
-    size = envelope(m, at.BRANCH_1, x, v)
-    change = envelope(m, at.BRANCH_1, v, acceleration(m, at.BRANCH_1, x, v))
-    own = envelope(m, at.BRANCH_2, x_b - x, v_b - v)
+        x, v = v, free_acceleration(m, at.OSCILLATOR_1, x, v)
+        x_b, v_b = v_b, free_acceleration(m, at.OSCILLATOR_2, x_b, v_b)
+    size = envelope(m, at.OSCILLATOR_1, x, v)
+    change = envelope(m, at.OSCILLATOR_1, v, free_acceleration(m, at.OSCILLATOR_1, x, v))
+    own = envelope(m, at.OSCILLATOR_2, x_b - x, v_b - v)
     if m[at.SECULAR] != 0.0:  # rarely
-        size += driven_bound(m, at.BRANCH_1, order, time)
-        change += driven_bound(m, at.BRANCH_1, order + 1, time)
-        damped = m[at.BRANCH_2 + at.DAMPING] * event_drive_size(m, order)
-        sine = m[at.BRANCH_2 + at.ENVELOPE_SINE] * (event_drive_size(m, order + 1) + damped)
-        own += event_drive_size(m, order) + sine
+        size += driven_bound(m, at.OSCILLATOR_1, order, time)
+        change += driven_bound(m, at.OSCILLATOR_1, order + 1, time)
+        damped = m[at.OSCILLATOR_2 + at.DAMPING] * event_drive_bound(m, order)
+        sine = m[at.OSCILLATOR_2 + at.ENVELOPE_SINE] * (event_drive_bound(m, order + 1) + damped)
+        own += event_drive_bound(m, order) + sine
     drive = abs(m[at.FORCE_V]) * change + abs(m[at.FORCE_X]) * size
-    return own + m[at.BRANCH_2 + at.ENVELOPE_SINE] * time * drive + 4e-15 * size
+    return own + m[at.OSCILLATOR_2 + at.ENVELOPE_SINE] * time * drive + 4e-15 * size
 
 
-def values(m, plain, x, v, x_b, v_b, cosine, sine, tau):  # inline
-    """The event function and two derivatives from all phasors; ``plain`` as in
-    :func:`.nodes.turned`.
+def event_values(m, plain, x, v, x_b, v_b, cosine, sine, tau):  # inline
+    """Return the event function and two derivatives from all phasors; ``plain`` as in
+    :func:`.nodes.next_phasors`.
     """
     if plain or m[at.MODE] == at.FLIGHT:
         h0, h1 = x_b - x, v_b - v
-        h2 = acceleration(m, at.BRANCH_2, x_b, v_b) - acceleration(m, at.BRANCH_1, x, v)
+        h2 = free_acceleration(m, at.OSCILLATOR_2, x_b, v_b) - free_acceleration(
+            m, at.OSCILLATOR_1, x, v
+        )
     else:
         h0, h1 = force_phasor(m, x, v)
-        h2 = acceleration(m, at.BRANCH_3, h0, h1)
+        h2 = free_acceleration(m, at.OSCILLATOR_3, h0, h1)
     if not plain and m[at.SECULAR] != 0.0:  # rarely
         h1 += event_drive(m, 1, cosine, sine)
         h2 += event_drive(m, 2, cosine, sine)
@@ -202,21 +216,21 @@ def values(m, plain, x, v, x_b, v_b, cosine, sine, tau):  # inline
 
 
 def cubic_values(m, tau):
-    """The event function's cubic and two derivatives."""
+    """Return the event function's cubic and two derivatives at ``tau``."""
     q1, q2, q3 = m[at.EVENT_CUBIC + 1], m[at.EVENT_CUBIC + 2], m[at.EVENT_CUBIC + 3]
     value = m[at.EVENT_CUBIC] + tau * (q1 + 0.5 * tau * (q2 + tau * q3 * (1.0 / 3.0)))
     return value, q1 + tau * (q2 + 0.5 * tau * q3), q2 + tau * q3
 
 
-def free_part(m, b, x, v):
-    """A free part, its first four derivatives and a bound of the fifth from now on."""
-    x2, x3, x4, x5, x6 = derivatives(m, b, x, v)
+def free_part_derivatives(m, b, x, v):
+    """Return a free part, its first four derivatives and a bound of the fifth from now on."""
+    x2, x3, x4, x5, x6 = higher_derivatives(m, b, x, v)
     return x, v, x2, x3, x4, envelope(m, b, x5, x6)
 
 
 def evaluate(m, tau):  # inline
-    """The event function at ``tau``: value, four derivatives, and a bound of the fifth from there
-    on, AHEAD spacings long.
+    """Evaluate the event function at ``tau``: value, four derivatives, and a bound of the fifth
+    that holds for AHEAD spacings from there on.
 
     Returns
     -------
@@ -224,24 +238,24 @@ def evaluate(m, tau):  # inline
     """
     m[at.WORK] += 1.0
     if m[at.SERIES] != 0.0:  # rarely
-        h0, h1, h2, h3, h4 = gap_at(m, tau)
+        h0, h1, h2, h3, h4 = gap_derivatives(m, tau)
         return h0, h1, h2, h3, h4, m[at.SERIES_BOUND]
     x, x_b, v, v_b, cosine, sine = phasors_at(m, tau)
-    put(m, at.POINT, x, x_b, v, v_b, cosine, sine)
+    put_phasors(m, at.POINT, x, x_b, v, v_b, cosine, sine)
     time = AHEAD * m[at.SPACING]
     driven = 0.0
     if m[at.SECULAR] != 0.0:  # rarely
-        driven = event_bound(m, 5, time)
+        driven = driven_event_bound(m, 5, time)
     if m[at.MODE] == at.FLIGHT:
-        a0, a1, a2, a3, a4, bound_a = free_part(m, at.BRANCH_1, x, v)
-        h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_2, x_b, v_b)
+        a0, a1, a2, a3, a4, bound_a = free_part_derivatives(m, at.OSCILLATOR_1, x, v)
+        h0, h1, h2, h3, h4, bound = free_part_derivatives(m, at.OSCILLATOR_2, x_b, v_b)
         h0, h1, h2, h3, h4, bound = h0 - a0, h1 - a1, h2 - a2, h3 - a3, h4 - a4, bound + bound_a
         bound += driven
-        if alike(m):  # rarely
+        if are_nearly_equal(m):  # rarely
             bound = min(bound, difference_bound(m, 5, x, v, x_b, v_b, time))
     else:
         x, v = force_phasor(m, x, v)
-        h0, h1, h2, h3, h4, bound = free_part(m, at.BRANCH_3, x, v)
+        h0, h1, h2, h3, h4, bound = free_part_derivatives(m, at.OSCILLATOR_3, x, v)
         bound += driven
     if m[at.SECULAR] != 0.0:  # rarely
         h1 += event_drive(m, 1, cosine, sine)
@@ -265,14 +279,14 @@ def evaluate(m, tau):  # inline
     return h0, h1, h2, h3, h4, bound
 
 
-def rounding(m, tau):
-    """What the event function's terms at ``tau`` may lose by rounding."""
+def event_rounding(m, tau):
+    """Return a bound of the rounding error of the event function at ``tau``."""
     size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1]) + abs(m[at.EVENT_OFFSET])
-    size += free_bound(m, branch_a(m), at.EVENT_FREE_A, 0) + free_bound(
-        m, at.BRANCH_2, at.EVENT_FREE_B, 0
+    size += free_bound(m, oscillator_a(m), at.EVENT_FREE_A, 0) + free_bound(
+        m, at.OSCILLATOR_2, at.EVENT_FREE_B, 0
     )
     if m[at.SECULAR] != 0.0:  # rarely
-        size += event_bound(m, 0, tau)
+        size += driven_event_bound(m, 0, tau)
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         power = 1.0
         for i in range(4):

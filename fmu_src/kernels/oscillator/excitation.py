@@ -12,7 +12,7 @@ from .secular import set_secular
 
 
 def inputs_changed(m):
-    """Whether the present inputs call for a new segment."""
+    """Return whether the present inputs call for a new segment."""
     if m[at.CUBIC_ON] != 0.0 and m[at.CUBIC_SET] != 0.0:
         return True
     for i in range(6):
@@ -22,7 +22,7 @@ def inputs_changed(m):
 
 
 def cubic_begins(m):
-    """Whether the present inputs call for a new cubic: one was set, or has another value."""
+    """Return whether the present inputs call for a new cubic: one was set, or has another value."""
     if m[at.CUBIC_SET] != 0.0:
         return True
     for i in range(2, 6):
@@ -32,8 +32,8 @@ def cubic_begins(m):
 
 
 def begin_segment(m):
-    """Take the present inputs over into the excitation constants; the cubic goes on where its
-    inputs were not set.
+    """Set the excitation constants from the present inputs; the cubic goes on where its inputs were
+    not set.
     """
     if cubic_begins(m):
         begin_cubic(m)
@@ -46,13 +46,13 @@ def begin_segment(m):
     m[at.FORCING] = m[at.BOX_AMPLITUDE] * eta * eta
     set_grid(m)
     set_secular(m)
-    set_harmonic(m, at.BRANCH_1, at.HARMONIC_1)
-    set_harmonic(m, at.BRANCH_2, at.HARMONIC_2)
-    set_harmonic(m, at.BRANCH_3, at.HARMONIC_3)
+    set_harmonic(m, at.OSCILLATOR_1, at.HARMONIC_1)
+    set_harmonic(m, at.OSCILLATOR_2, at.HARMONIC_2)
+    set_harmonic(m, at.OSCILLATOR_3, at.HARMONIC_3)
 
 
 def begin_cubic(m):
-    """Let the present inputs' cubic begin at the present state's start."""
+    """Begin the present inputs' cubic at the present state's start."""
     scale = 1.0 / m[at.OMEGA]
     unit = scale * scale
     m[at.CUBIC_ON] = 0.0
@@ -69,7 +69,9 @@ def begin_cubic(m):
 
 
 def set_harmonic(m, b, harmonic):
-    """Forced amplitudes a_i, b_i of (11), times ``a eta^2``; none where the amplitude grows."""
+    """Set the forced amplitudes a_i, b_i of (11), times ``a eta^2``; zeros where the amplitude
+    grows.
+    """
     forcing, eta = m[at.FORCING], m[at.ETA]
     m[harmonic] = 0.0
     m[harmonic + 1] = 0.0
@@ -83,7 +85,9 @@ def set_harmonic(m, b, harmonic):
 
 
 def cubic_at(m, age):
-    """Value and three derivatives of the forcing's cubic, ``age`` after it began, in tau."""
+    """Return the value and three derivatives of the forcing's cubic, ``age`` after it began, in
+    tau.
+    """
     p0, p1, p2, p3 = m[at.CUBIC], m[at.CUBIC + 1], m[at.CUBIC + 2], m[at.CUBIC + 3]
     q2 = p2 + p3 * age
     q1 = p1 + age * (p2 + 0.5 * age * p3)
@@ -92,7 +96,8 @@ def cubic_at(m, age):
 
 
 def box_derivative(m, order, age):
-    """Derivative of the acceleration that the inputs' cubic is, ``age`` after it began, in tau; SI.
+    """Return a derivative, in SI, of the box acceleration that the inputs' cubic gives, ``age`` (in
+    tau) after it began.
 
     A constant keeps its bits.
     """
@@ -104,7 +109,7 @@ def box_derivative(m, order, age):
 
 
 def set_cubic_response(m, b, response, cubic):
-    """The cubic that solves (6) for a cubic forcing: value and three derivatives.
+    """Set the cubic that solves (6) for a cubic forcing: value and three derivatives.
 
     By comparing coefficients.
     """

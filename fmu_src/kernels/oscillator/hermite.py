@@ -17,9 +17,9 @@ SAFETY = (
 )  # how far before the lower quintic's root the clear part is taken to end
 
 
-def coefficients(m, l0, l1, l2, r0, r1, r2, low):
-    """The six Bernstein coefficients of the quintic from values and derivatives at both ends,
-    lowered by ``low``.
+def bernstein_coefficients(m, l0, l1, l2, r0, r1, r2, low):
+    """Return the six Bernstein coefficients of the quintic from values and derivatives at both
+    ends, b_2 and b_3 lowered by ``low``.
     """
     fifth, twentieth = m[at.HERMITE], m[at.HERMITE + 1]
     l1, r1 = fifth * l1, fifth * r1
@@ -29,8 +29,8 @@ def coefficients(m, l0, l1, l2, r0, r1, r2, low):
 
 
 def present_coefficients(m, low):
-    """Those of the present interval."""
-    return coefficients(
+    """Return the Bernstein coefficients of the present interval, b_2 and b_3 lowered by ``low``."""
+    return bernstein_coefficients(
         m,
         m[at.LEFT_VALUES],
         m[at.LEFT_VALUES + 1],
@@ -43,8 +43,8 @@ def present_coefficients(m, low):
 
 
 def lowest_after(m, h0, h1, h2, low):
-    """The lowest of the three coefficients that belong to the left end of an interval, from value
-    and derivatives there.
+    """Return the lowest of the three coefficients that belong to the left end of an interval, from
+    value and derivatives there.
     """
     fifth = m[at.HERMITE] * h1
     b2 = (h0 + 2.0 * fifth) + (m[at.HERMITE + 1] * h2 - low)
@@ -52,25 +52,31 @@ def lowest_after(m, h0, h1, h2, low):
 
 
 def lowest_before(m, h0, h1, h2, low):
-    """The same of the right end, but for the value itself."""
+    """Return the lower of the two inner coefficients that belong to the right end of an interval,
+    from value and derivatives there.
+    """
     fifth = m[at.HERMITE] * h1
     b3 = (h0 - 2.0 * fifth) + (m[at.HERMITE + 1] * h2 - low)
     return min(h0 - fifth, b3)
 
 
-def is_positive(b0, b1, b2, b3, b4, b5):
-    """Whether a quintic with these coefficients has no root, but perhaps the interval's start."""
+def has_no_root(b0, b1, b2, b3, b4, b5):
+    """Return whether the Bernstein coefficients prove that the quintic has no root, except perhaps
+    at the interval's start.
+    """
     return min(min(b0, b1), min(b2, b3), b4) >= 0.0 and b5 > 0.0
 
 
 def interval_is_below(m, ceiling):
-    """Whether the event function does not rise above ``ceiling`` in the present interval."""
+    """Return whether the event function certainly does not rise above ``ceiling`` in the present
+    interval.
+    """
     b0, b1, b2, b3, b4, b5 = present_coefficients(m, -m[at.REMAINDER])
     return max(max(b0, b1), max(b2, b3), max(b4, b5)) <= ceiling
 
 
 def has_summit(m, start, stop):
-    """Whether the event function may have a summit in a part of the present interval.
+    """Return whether the event function may have a summit in a part of the present interval.
 
     It has none where its slope at the start outweighs what curvature and third derivative make of
     it. The quintic's derivatives miss at most ``sqrt(5) h^5 B6/30000``, ``h^4 B6/1920`` and ``h^3
@@ -92,19 +98,22 @@ def has_summit(m, start, stop):
 
 
 def clear_part(b0, b1, b2, b3, b4, b5):
-    """A part of an interval, from its start, where a quintic has no root; 0 where none is seen.
+    """Return a part of an interval, from its start, where a quintic has no root; 0 if none is
+    proved.
 
     Near the quintic's root from the right, found by Newton's method; the coefficients of the
     quintic's part before it prove that it is clear.
     """
     s = 0.5
     if b5 < 0.0:
-        s = crossing(b0, b1, b2, b3, b4, b5)
+        s = last_crossing(b0, b1, b2, b3, b4, b5)
     return s if 0.0 < s < 1.0 and part_is_clear(b0, b1, b2, b3, b4, b5, s) else 0.0
 
 
-def crossing(b0, b1, b2, b3, b4, b5):
-    """Slightly before the last root of a quintic that is negative at 1; 0 where none is seen."""
+def last_crossing(b0, b1, b2, b3, b4, b5):
+    """Return a point slightly before the last root of a quintic that is negative at 1; 0 if none is
+    found.
+    """
     a1, a2 = 5.0 * (b1 - b0), 10.0 * ((b2 - b1) - (b1 - b0))
     a3 = 10.0 * ((b3 - b0) - 3.0 * (b2 - b1))
     a4 = 5.0 * ((b4 + b0) - 4.0 * (b3 + b1) + 6.0 * b2)
@@ -130,7 +139,9 @@ def crossing(b0, b1, b2, b3, b4, b5):
 
 
 def part_is_clear(b0, b1, b2, b3, b4, b5, s):
-    """Whether the quintic's part up to s has no negative coefficient: de Casteljau's algorithm."""
+    """Return whether the quintic's part up to s has no negative coefficient, by de Casteljau's
+    algorithm.
+    """
     if b0 < 0.0:
         return False
     b0, b1, b2, b3, b4 = (

@@ -10,19 +10,21 @@ from . import memory as at
 
 
 def common_velocity(m, v1, v2):
-    """Velocity of both masses after a perfectly plastic impact: momentum is kept."""
+    """Return the velocity of both masses after a perfectly plastic impact, which keeps the
+    momentum.
+    """
     return (v1 + m[at.MU] * v2) * m[at.SHARE]
 
 
-def coefficient(m, closing):
-    """Coefficient of restitution at a closing velocity (m per unit of tau): e itself, to the last
-    bit, where it is constant.
+def restitution_coefficient(m, closing):
+    """Return the coefficient of restitution at a closing velocity (m per unit of tau): e itself, to
+    the last bit, where it is constant.
     """
     return m[at.E] / (1.0 + m[at.E_SLOPE] * (closing * m[at.OMEGA]))
 
 
-def restitution(m, v1, v2, e):
-    """Velocities after an impact, (15): momentum kept, gap velocity times -e.
+def velocities_after_impact(m, v1, v2, e):
+    """Return both velocities after an impact, (15): momentum kept, gap velocity times -e.
 
     With ``(1+e)/(1+mu)`` in its second line.
     """
@@ -31,8 +33,8 @@ def restitution(m, v1, v2, e):
     return common - m[at.MU] * part, common + part
 
 
-def sticks(m, separation, force):
-    """Whether chattering ends here, (17) without a velocity scale.
+def chattering_ends(m, separation, force):
+    """Return whether chattering ends here in permanent contact, (17) without a velocity scale.
 
     The masses are pressed together by ``force`` (18) < 0 and would part with the velocity
     ``separation``: the next flight, a parabola of duration ``2 separation/|force|``, would last
@@ -50,7 +52,7 @@ def sticks(m, separation, force):
 
 
 def count_impact(m, time, closing, lost):
-    """Enter an impact into the energy balance.
+    """Count an impact and add its loss to the energy balance.
 
     ``closing`` is the velocity before it (m per unit of tau), ``lost`` the part of its square that
     is lost.

@@ -6,38 +6,46 @@ From summit to summit, with the certified steps of the root finder.
 from . import memory as at
 from .event_function import AHEAD, envelope, evaluate
 from .hermite import has_summit, interval_is_below
-from .roots import EPS, LEAST_BOUND, clear_from_node, clear_step, creep, glide, parabola_root
-from .series import taylor
+from .roots import (
+    EPS,
+    LEAST_BOUND,
+    clear_from_node,
+    clear_step,
+    cross_clear_intervals,
+    parabola_root,
+    step_inside_interval,
+)
+from .series import taylor_value
 
 # least progress, of a spacing: a summit is flat, nothing is lost; it grows from step to step, so
 # that no rounding can hold the search up: after 95 steps an interval is through
 SMALLEST, GROWTH = 1e-9, 1.25
 
 
-def watch(m, start, target):
-    """Walk to ``target`` and enter the largest gap from ``start`` on; the gap at ``start`` and at
-    ``target`` is entered by who looks at these points.
+def walk_with_largest_gap(m, start, target):
+    """Walk to ``target`` and record the largest gap between ``start`` and there; the caller records
+    the gap at ``start`` and at ``target``.
     """
     if m[at.SERIES] != 0.0:
         stop = target if target < m[at.END] else m[at.END]
         # a concave gap stays below its tangents at both ends
-        rise, fall = m[at.SERIES_GAP + 2], -taylor(m, at.SERIES_GAP + 2, m[at.END])
+        rise, fall = m[at.SERIES_GAP + 2], -taylor_value(m, at.SERIES_GAP + 2, m[at.END])
         if rise * fall * m[at.END] > (rise + fall) * m[at.X_REL_MAX]:
             m[at.X_REL_MAX] = largest_gap(m, start, stop, m[at.X_REL_MAX])
         return
     tau = start
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
         if m[at.CLEAR] >= m[at.RIGHT_AGE]:
-            enter(m, tau, m[at.RIGHT_AGE])
-            glide(m, target, m[at.X_REL_MAX])
+            record_largest_gap(m, tau, m[at.RIGHT_AGE])
+            cross_clear_intervals(m, target, m[at.X_REL_MAX])
             tau = m[at.LEFT_AGE]
         elif m[at.CLEAR] != m[at.LEFT_AGE] or not clear_from_node(m):
-            creep(m)
-    enter(m, tau, target if target < m[at.END] else m[at.END])
+            step_inside_interval(m)
+    record_largest_gap(m, tau, target if target < m[at.END] else m[at.END])
 
 
-def enter(m, start, stop):
-    """Enter the largest gap of a part of the present interval."""
+def record_largest_gap(m, start, stop):
+    """Raise the recorded maximum to the largest gap in a part of the present interval."""
     highest = m[at.X_REL_MAX]
     if interval_is_below(m, highest) or stop <= start:
         return
@@ -51,8 +59,8 @@ def enter(m, start, stop):
     m[at.X_REL_MAX] = largest_gap(m, start, stop, highest)
 
 
-def climb(h1, h2, h3, h4, bound, reach):
-    """A step towards the next summit, and whether it ends there.
+def step_to_summit(h1, h2, h3, h4, bound, reach):
+    """Return a step towards the next summit, and whether it ends there.
 
     Height is of second order in the summit's place: 1e-9 of it will do.
     """
@@ -61,11 +69,11 @@ def climb(h1, h2, h3, h4, bound, reach):
         h2 + h3 * root
     ):
         return root, True
-    return clear(h1, h2, h3, h4, -bound, 0.0, reach), False
+    return scaled_clear_step(h1, h2, h3, h4, -bound, 0.0, reach), False
 
 
-def clear(h0, h1, h2, h3, h4, bound, reach):
-    """:func:`.roots.clear_step` in units of the last bound given, or of the one before: scaled
+def scaled_clear_step(h0, h1, h2, h3, h4, bound, reach):
+    """Return :func:`.roots.clear_step` in units of the bound, or of ``-h4`` without one: scaled
     amplitudes take the same steps.
     """
     unit = bound if bound > 0.0 else -h4
@@ -75,15 +83,17 @@ def clear(h0, h1, h2, h3, h4, bound, reach):
     )
 
 
-def noise(m, tau):
-    """What rounding makes of the gap at ``tau``, where it was evaluated last: no larger gap is
-    looked for that is larger by less.
+def gap_rounding(m, tau):
+    """Return the rounding error of the gap at ``tau``, where it was evaluated last: a gap that is
+    larger by less does not count.
     """
     if m[at.SERIES] != 0.0:
         return 2.0 * EPS * m[at.SERIES_GAP + 1] * m[at.END]
     p = at.POINT
     size = abs(m[at.EVENT_HARMONIC]) + abs(m[at.EVENT_HARMONIC + 1]) + abs(m[at.EVENT_OFFSET])
-    size += envelope(m, at.BRANCH_1, m[p], m[p + 1]) + envelope(m, at.BRANCH_2, m[p + 2], m[p + 3])
+    size += envelope(m, at.OSCILLATOR_1, m[p], m[p + 1]) + envelope(
+        m, at.OSCILLATOR_2, m[p + 2], m[p + 3]
+    )
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         power = 1.0
         for i in range(4):
@@ -93,7 +103,8 @@ def noise(m, tau):
 
 
 def largest_gap(m, start, stop, highest):
-    """The larger of ``highest`` and the present flight's largest gap in ``start <= tau <= stop``.
+    """Return the larger of ``highest`` and the present flight's largest gap in ``start <= tau <=
+    stop``.
 
     From each point the walk goes on as far as the gap certainly stays below what is known, or,
     climbing, to the first root of the gap's slope.
@@ -110,11 +121,11 @@ def largest_gap(m, start, stop, highest):
             break
         step, reached = 0.0, False
         if h1 > 0.0 and not summit:
-            step, reached = climb(h1, h2, h3, h4, bound, reach)
+            step, reached = step_to_summit(h1, h2, h3, h4, bound, reach)
         summit = reached
         if not summit:
-            room = (highest - h0) + noise(m, tau)
-            step = max(step, clear(room, -h1, -h2, -h3, -h4, bound, reach))
+            room = (highest - h0) + gap_rounding(m, tau)
+            step = max(step, scaled_clear_step(room, -h1, -h2, -h3, -h4, bound, reach))
         step = max(step, least)
         least *= GROWTH
         tau = tau + step if tau + step < stop else stop

@@ -77,7 +77,7 @@ REST_1 = slot()  # where both masses rest while they are held together, from unl
 REST_2 = slot()
 PRELOAD = slot()  # f of (18) there, m: < 0 presses the masses together
 
-inside = Slots()  # a branch, one linear oscillator
+inside = Slots()  # one linear oscillator: 1, 2, or 3, both masses together
 DAMPING = inside()  # D_i (8)
 OMEGA_SQUARED = inside()  # omega_i^2 (7)
 NU_SQUARED = inside()  # nu_i^2 = omega_i^2 - D_i^2 (11)
@@ -93,15 +93,15 @@ DRIFT = inside()  # nu_i - eta
 OWN_RATE = inside()  # at least every rate of change of its motion
 STEP_GROWTH = inside(4)  # the amplitude one spacing later, and its rate of change
 GROWTH_SIZE = inside.used - DRIVEN
-BRANCH_1 = slot(inside.used)
-BRANCH_2 = slot(inside.used)
-BRANCH_3 = slot(inside.used)
+OSCILLATOR_1 = slot(inside.used)
+OSCILLATOR_2 = slot(inside.used)
+OSCILLATOR_3 = slot(inside.used)
 
 # -- excitation of the present segment (until an input changes) ------------------------------------
 ETA = slot()  # (2)
 ETA_TURNS = slot()  # eta/2pi
 FORCING = slot()  # a eta^2
-SECULAR = slot()  # some branch's amplitude grows with time
+SECULAR = slot()  # some oscillator's amplitude grows with time
 HARMONIC_1 = slot(2)  # a eta^2 (a_i, b_i) of (11), cosine and sine; 0 where the amplitude grows
 HARMONIC_2 = slot(2)
 HARMONIC_3 = slot(2)
@@ -112,7 +112,7 @@ CUBIC_AGE = slot()  # tau since then, at the present state's start
 SPACING = slot()  # of the nodes, in tau; a few bits long, so that ages of nodes are exact
 HALF_SPACING = slot()
 HERMITE = slot(3)  # h/5, h^2/20, h^6/28800
-STEEP = slot()  # some branch decays too fast for a polynomial over half a spacing
+STEEP = slot()  # some free part decays too fast for a polynomial over half a spacing
 RATE = slot()  # at least every rate of change of a flight, and its inverse
 RATE_INVERSE = slot()
 NODE_ETA = slot()  # eta; 0 where there is no harmonic forcing
@@ -125,7 +125,7 @@ FLIGHT, CONTACT, GLUED = 0.0, 1.0, 2.0
 ORIGIN = slot()  # tau_s (5) as an unevaluated sum of two floats
 ORIGIN_LOW = slot()
 TURN = slot()  # phase there in turns, [0, 1)
-FREE_A = slot(2)  # displacement and velocity of the free part, branch 1 or 3,
+FREE_A = slot(2)  # displacement and velocity of the free part of 1 or 3,
 FREE_B = slot(2)  # and 2
 CUBIC_A = slot(4)  # response to the cubic: value and three derivatives at the state's start
 CUBIC_B = slot(4)

@@ -13,29 +13,35 @@ digits.
 
 from ..numerics.elementary import fraction, sincos_turns
 from . import memory as at
-from .contact import contact_force, first_derivative
+from .contact import first_nonzero_derivative, gap_acceleration
 from .event_function import (
     begin_nodes,
-    bounds,
+    derivative_bounds,
     evaluate,
     is_constant,
-    set_contact_force,
-    set_gap,
-    set_values,
+    set_contact_event_function,
+    set_flight_event_function,
+    set_node_values,
 )
 from .excitation import cubic_at, set_cubic_response
-from .impact import coefficient, common_velocity, count_impact, restitution, sticks
+from .impact import (
+    chattering_ends,
+    common_velocity,
+    count_impact,
+    restitution_coefficient,
+    velocities_after_impact,
+)
 from .nodes import BLOCK, phasors_at
 from .response import displacement, set_free
-from .roots import INFINITE, accuracy, clear_from_node, step_from
-from .series import series_order, set_series, short_flight, taylor
+from .roots import INFINITE, clear_from_node, clear_step_or_root, root_accuracy
+from .series import required_order, set_series, short_flight_duration, taylor_value
 
 BRIEF = 1e-6  # of a radian of the fastest change: four terms of a Taylor series are exact
 FAINTEST = 2e-292  # m, about 2 to the -969: the last digits of less are below the normal numbers
 
 
 def state_at(m, tau):
-    """Displacements and velocities ``tau`` after the state's start, (10).
+    """Return displacements and velocities ``tau`` after the state's start, (10).
 
     Returns
     -------
@@ -46,31 +52,32 @@ def state_at(m, tau):
         # exactly what the state began with: a start from rest is at rest
         return m[at.BEGIN], m[at.BEGIN + 1], m[at.BEGIN + 2], m[at.BEGIN + 3]
     if m[at.SERIES] != 0.0:
-        x1, v1 = taylor(m, at.SERIES_X, tau), taylor(m, at.SERIES_X + 2, tau)
-        gap, slope = taylor(m, at.SERIES_GAP, tau), taylor(m, at.SERIES_GAP + 2, tau)
+        x1, v1 = taylor_value(m, at.SERIES_X, tau), taylor_value(m, at.SERIES_X + 2, tau)
+        gap, slope = taylor_value(m, at.SERIES_GAP, tau), taylor_value(m, at.SERIES_GAP + 2, tau)
         return x1, v1, x1 + gap if gap > 0.0 else x1, v1 + slope
     x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
-    return moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
+    return state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
 
 
 def state_at_end(m):
-    """:func:`state_at` at the state's end."""
+    """Return :func:`state_at` at the state's end."""
     if m[at.MODE] == at.CONTACT and m[at.END] * m[at.RATE] < BRIEF:  # rarely
         x, v = brief_contact(m, m[at.END])
         return x, v, x, v
     if m[at.AT_END_NODE] == 0.0:
         return state_at(m, m[at.END])
     p = at.AT_END
-    return moved(m, m[at.END], m[p], m[p + 1], m[p + 2], m[p + 3], m[p + 4], m[p + 5])
+    return state_from_phasors(m, m[at.END], m[p], m[p + 1], m[p + 2], m[p + 3], m[p + 4], m[p + 5])
 
 
 def brief_contact(m, tau):
-    """Displacement and velocity a very short time after a contact's start, by their Taylor series.
+    """Return displacement and velocity a very short time after a contact's start, by their Taylor
+    series.
 
     From rest they are far below the rounding of the closed form's terms; whether the masses part
     hangs on them.
     """
-    twice, square = 2.0 * m[at.BRANCH_3 + at.DAMPING], m[at.BRANCH_3 + at.OMEGA_SQUARED]
+    twice, square = 2.0 * m[at.OSCILLATOR_3 + at.DAMPING], m[at.OSCILLATOR_3 + at.OMEGA_SQUARED]
     drive, eta = m[at.FORCING] * m[at.SINE], m[at.ETA]
     cubic = cubic_at(m, m[at.CUBIC_AGE])
     x, v = m[at.BEGIN], m[at.BEGIN + 1]
@@ -81,8 +88,8 @@ def brief_contact(m, tau):
     return x + way, v + tau * (x2 + tau * (0.5 * x3 + tau * x4 * (1.0 / 6.0)))
 
 
-def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
-    """Displacements and velocities from all phasors."""
+def state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
+    """Return displacements and velocities from all phasors."""
     if m[at.MODE] == at.FLIGHT:
         x1, v1 = displacement(m, at.HARMONIC_1, at.CUBIC_A, tau, x_a, v_a, sine, cosine)
         x2, v2 = displacement(m, at.HARMONIC_2, at.CUBIC_B, tau, x_b, v_b, sine, cosine)
@@ -94,14 +101,14 @@ def moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine):  # inline
 
 
 def is_from_unloaded(m):  # inline
-    """Whether the present state's displacements count from the unloaded positions, not from where
-    the masses rest together.
+    """Return whether the present state's displacements count from the unloaded positions, not from
+    where the masses rest together.
     """
     return m[at.MODE] == at.FLIGHT and m[at.SERIES] == 0.0
 
 
 def gap_between(m, tau, x1, x2):  # inline
-    """The gap between the displacements of :func:`state_at`, >= 0."""
+    """Return the gap between the displacements of :func:`state_at`, >= 0."""
     gap = x2 - x1
     if m[at.GAP_OFFSET] != 0.0 and is_from_unloaded(m):  # rarely
         gap = m[at.BEGIN_GAP] if tau == 0.0 else gap + m[at.GAP_OFFSET]
@@ -110,24 +117,26 @@ def gap_between(m, tau, x1, x2):  # inline
 
 
 def from_unloaded(m, x1, x2):  # inline
-    """The displacements of :func:`state_at` from the unloaded positions."""
+    """Convert the displacements of :func:`state_at` to those from the unloaded positions."""
     if m[at.GAP_OFFSET] != 0.0 and not is_from_unloaded(m):  # rarely
         x1, x2 = x1 + m[at.REST_1], x2 + m[at.REST_2]
     return x1, x2
 
 
 def from_rest_together(m, x1, x2):
-    """The displacements of :func:`state_at` from where the masses rest together."""
+    """Convert the displacements of :func:`state_at` to those from where the masses rest
+    together.
+    """
     if m[at.GAP_OFFSET] != 0.0 and is_from_unloaded(m):  # rarely
         x1, x2 = x1 - m[at.REST_1], x2 - m[at.REST_2]
     return x1, x2
 
 
 def state_and_phase_at(m, tau):  # inline
-    """:func:`state_at`, and cosine and sine of the excitation's phase there."""
+    """Return :func:`state_at`, and cosine and sine of the excitation's phase there."""
     if tau != 0.0 and m[at.SERIES] == 0.0 and m[at.NODE_ETA] != 0.0:
         x_a, x_b, v_a, v_b, cosine, sine = phasors_at(m, tau)
-        x1, v1, x2, v2 = moved(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
+        x1, v1, x2, v2 = state_from_phasors(m, tau, x_a, x_b, v_a, v_b, cosine, sine)
         return x1, v1, x2, v2, cosine, sine
     x1, v1, x2, v2 = state_at(m, tau)
     cosine, sine = m[at.COSINE], m[at.SINE]
@@ -137,20 +146,22 @@ def state_and_phase_at(m, tau):  # inline
 
 
 def common_position(m, x1, x2):
-    """The centre of mass, where both masses are put at an impact: they differ by rounding alone."""
+    """Return the centre of mass, where both masses are put at an impact: they differ by rounding
+    alone.
+    """
     return (x1 + m[at.MU] * x2) * m[at.SHARE]
 
 
 def move_origin(m, tau):
-    """Let a new state begin ``tau`` after the start of the present one, (5), without losing digits
-    over millions of states.
+    """Move the origin of time by ``tau`` to a new state's start, (5), without losing digits over
+    millions of states.
     """
     advance_origin(m, tau)
-    set_turn(m, m[at.TURN] + m[at.ETA_TURNS] * tau)
+    set_phase(m, m[at.TURN] + m[at.ETA_TURNS] * tau)
 
 
 def advance_origin(m, tau):
-    """The new state's start, without its phase."""
+    """Move the origin of time by ``tau``, but leave the phase."""
     total = m[at.ORIGIN] + tau
     part = total - m[at.ORIGIN]
     error = (m[at.ORIGIN] - (total - part)) + (tau - part)
@@ -160,9 +171,9 @@ def advance_origin(m, tau):
     m[at.CUBIC_AGE] += tau
 
 
-def move_to_end(m):
-    """Let a new state begin at the end of the present one; its phase is the one there, rotated on
-    from node to node, or made anew after as many rotations as free parts are.
+def move_origin_to_end(m):
+    """Move the origin of time to the end of the present state; the phase is rotated there from node
+    to node, or computed anew after as many rotations as a block has nodes.
     """
     turns = m[at.ROTATIONS] + m[at.AT_END_NODE] + 1.0
     if m[at.AT_END_NODE] == 0.0 or m[at.NODE_ETA] == 0.0 or turns > BLOCK:
@@ -176,15 +187,15 @@ def move_to_end(m):
     m[at.SINE] = m[at.AT_END + 5]
 
 
-def set_turn(m, turns):
-    """Phase at the state's start."""
+def set_phase(m, turns):
+    """Set the phase at the state's start, in turns, with its cosine and sine."""
     m[at.TURN] = fraction(turns)
     sine, cosine = sincos_turns(m[at.TURN])
     m[at.SINE] = sine
     m[at.COSINE] = cosine
 
 
-def begin(m, x1, v1, x2, v2, gap, lowest):
+def begin_state(m, x1, v1, x2, v2, gap, lowest):
     """Begin the state that follows from displacements and velocities.
 
     Parameters
@@ -211,34 +222,38 @@ def begin(m, x1, v1, x2, v2, gap, lowest):
     if v1 > v2:
         v1, v2 = collide(m, x, v1, v2)
     if v2 > v1:  # usually
-        leave_impact(m, x, v1, v2)
+        begin_after_impact(m, x, v1, v2)
         return
-    order, value = first_derivative(m, x, v1, lowest)
+    order, value = first_nonzero_derivative(m, x, v1, lowest)
     if value > 0.0:
         begin_touching_flight(m, x, v1, v1)
-        leave(m, order + 2, value)
+        leave_boundary(m, order + 2, value)
         return
     if m[at.MODE] == at.FLIGHT:
         m[at.CONTACT_COUNT] += 1.0
     begin_common(m, at.CONTACT, x, v1)
-    leave(m, order, -value)
+    leave_boundary(m, order, -value)
 
 
 def collide(m, x, v1, v2):
-    """Velocities after an impact; both the same where chattering ends in permanent contact."""
+    """Count an impact and return the velocities after it, both the same where chattering ends in
+    permanent contact.
+    """
     closing = v1 - v2
     common = common_velocity(m, v1, v2)
     time = m[at.START_TIME] + (m[at.ORIGIN] + m[at.ORIGIN_LOW]) / m[at.OMEGA]
-    e = coefficient(m, closing)
-    if sticks(m, e * closing, contact_force(m, x, common)):
+    e = restitution_coefficient(m, closing)
+    if chattering_ends(m, e * closing, gap_acceleration(m, x, common)):
         count_impact(m, time, closing, 1.0)
         return common, common
     count_impact(m, time, closing, (1.0 - e) * (1.0 + e))
-    return restitution(m, v1, v2, e)
+    return velocities_after_impact(m, v1, v2, e)
 
 
 def begin_touching_flight(m, x, v1, v2):
-    """A flight from no gap, at displacement ``x`` of both masses from where they rest together."""
+    """Begin a flight from no gap, at displacement ``x`` of both masses from where they rest
+    together.
+    """
     x1, x2 = x, x
     if m[at.GAP_OFFSET] != 0.0:  # rarely
         x1, x2 = x + m[at.REST_1], x + m[at.REST_2]
@@ -246,52 +261,52 @@ def begin_touching_flight(m, x, v1, v2):
 
 
 def begin_flight(m, x1, v1, x2, v2, gap):
-    """A flight from initial conditions, from the unloaded positions; its event function is the
-    gap.
+    """Begin a flight from initial conditions that count from the unloaded positions; its event
+    function is the gap.
     """
     m[at.MODE] = at.FLIGHT
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
         cubic = cubic_at(m, m[at.CUBIC_AGE])
-        set_cubic_response(m, at.BRANCH_1, at.CUBIC_A, cubic)
-        set_cubic_response(m, at.BRANCH_2, at.CUBIC_B, cubic)
+        set_cubic_response(m, at.OSCILLATOR_1, at.CUBIC_A, cubic)
+        set_cubic_response(m, at.OSCILLATOR_2, at.CUBIC_B, cubic)
     set_free(m, at.HARMONIC_1, at.FREE_A, at.CUBIC_A, x1, v1, sine, cosine)
     set_free(m, at.HARMONIC_2, at.FREE_B, at.CUBIC_B, x2, v2, sine, cosine)
-    set_gap(m)
-    open_end(m, x1, v1, x2, v2, gap)
+    set_flight_event_function(m)
+    open_state(m, x1, v1, x2, v2, gap)
     begin_nodes(m)
     slope = v2 - v1
     m[at.LEFT_VALUES] = gap
     m[at.LEFT_VALUES + 1] = slope
     x = x1 if m[at.GAP_OFFSET] == 0.0 else x1 - m[at.REST_1]
     m[at.LEFT_VALUES + 2] = (
-        contact_force(m, x, v1)
-        - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
-        - m[at.BRANCH_2 + at.OMEGA_SQUARED] * gap
+        gap_acceleration(m, x, v1)
+        - 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
+        - m[at.OSCILLATOR_2 + at.OMEGA_SQUARED] * gap
     )
     if is_constant(m):  # rarely
         m[at.CLEAR] = INFINITE
 
 
 def begin_common(m, mode, x, v):
-    """Both masses as one, in contact or glued, from where they rest together; its event function is
-    the contact force.
+    """Begin permanent contact or the glued state, both masses as one, from where they rest
+    together; the event function is ``-f`` of (18).
     """
     m[at.MODE] = mode
     sine, cosine = m[at.SINE], m[at.COSINE]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
-        set_cubic_response(m, at.BRANCH_3, at.CUBIC_A, cubic_at(m, m[at.CUBIC_AGE]))
+        set_cubic_response(m, at.OSCILLATOR_3, at.CUBIC_A, cubic_at(m, m[at.CUBIC_AGE]))
     set_free(m, at.HARMONIC_3, at.FREE_A, at.CUBIC_A, x, v, sine, cosine)
-    set_contact_force(m)
-    open_end(m, x, v, x, v, 0.0)
+    set_contact_event_function(m)
+    open_state(m, x, v, x, v, 0.0)
     begin_nodes(m)
-    set_values(m, at.LEFT_VALUES, at.LEFT, 0.0)
+    set_node_values(m, at.LEFT_VALUES, at.LEFT, 0.0)
     if is_constant(m):  # rarely
         m[at.CLEAR] = INFINITE
 
 
-def open_end(m, x1, v1, x2, v2, gap):
-    """The state begins here; its end is not known yet."""
+def open_state(m, x1, v1, x2, v2, gap):
+    """Set a new state's initial conditions, and mark its end as not known yet."""
     m[at.SERIES] = 0.0
     m[at.AT_END_NODE] = 0.0
     m[at.BEGIN] = x1
@@ -304,33 +319,34 @@ def open_end(m, x1, v1, x2, v2, gap):
     m[at.END_KIND] = at.END_OPEN
 
 
-def leave_impact(m, x, v1, v2):
-    """Leave an impact at displacement ``x`` with velocities ``v2 > v1``; a short flight's end is
-    found at once.
+def begin_after_impact(m, x, v1, v2):
+    """Begin the flight after an impact at displacement ``x`` with velocities ``v2 > v1``; a short
+    flight's end is computed at once.
     """
     slope = v2 - v1
-    curvature = contact_force(m, x, v1) - 2.0 * m[at.BRANCH_2 + at.DAMPING] * slope
-    order = series_order(m, slope, curvature)
+    curvature = gap_acceleration(m, x, v1) - 2.0 * m[at.OSCILLATOR_2 + at.DAMPING] * slope
+    order = required_order(m, slope, curvature)
     if order > 4:
         set_series(m, x, v1, slope, order)
-        duration = short_flight(m, order)
+        duration = short_flight_duration(m, order)
         if duration > 0.0:
             m[at.MODE] = at.FLIGHT
-            open_end(m, x, v1, x, v2, 0.0)
+            open_state(m, x, v1, x, v2, 0.0)
             m[at.SERIES] = order
             m[at.CLEAR] = duration
             m[at.END] = duration
             m[at.END_KIND] = at.END_EVENT
             return
     begin_touching_flight(m, x, v1, v2)
-    if not leave_clear(m, slope, curvature):  # rarely
+    if not skip_clear_start(m, slope, curvature):  # rarely
         set_series(m, x, v1, slope, 8)
-        creep_away(m, slope, curvature, m[at.SERIES_GAP + 6], m[at.SERIES_GAP + 8])
+        certified_first_step(m, slope, curvature, m[at.SERIES_GAP + 6], m[at.SERIES_GAP + 8])
 
 
-def leave_clear(m, h1, h2):
-    """Whether a part of the first interval is seen to be clear from a start on the boundary with
-    the event function's derivatives, ``h1 > 0``, or ``h1 = 0 < h2``; CLEAR moves there.
+def skip_clear_start(m, h1, h2):
+    """Move CLEAR over the part of the first interval that certainly has no root, and return whether
+    there is one; the start is on the boundary, with the event function's derivatives ``h1 > 0``, or
+    ``h1 = 0 < h2``.
     """
     m[at.LEFT_VALUES] = 0.0
     m[at.LEFT_VALUES + 1] = h1
@@ -338,18 +354,18 @@ def leave_clear(m, h1, h2):
     return clear_from_node(m)
 
 
-def creep_away(m, h1, h2, h3, h4):
-    """A certified step from such a start, or the root."""
+def certified_first_step(m, h1, h2, h3, h4):
+    """Take one certified step from a start on the boundary, or find the root."""
     _, _, _, _, _, bound = evaluate(m, 0.0)
     reach = m[at.RIGHT_AGE]
-    step, found = step_from(0.0, h1, h2, h3, h4, bound, 0.0, reach, accuracy(m, 0.0))
+    step, found = clear_step_or_root(0.0, h1, h2, h3, h4, bound, 0.0, reach, root_accuracy(m, 0.0))
     m[at.CLEAR] = step
     if found:
         m[at.END] = step
         m[at.END_KIND] = at.END_EVENT
 
 
-def leave(m, order, value):
+def leave_boundary(m, order, value):
     """Leave a start on the boundary where the event function vanishes.
 
     Parameters
@@ -370,8 +386,8 @@ def leave(m, order, value):
     _, _, h2, h3, h4, _ = evaluate(m, 0.0)
     if order <= 2:
         h1, h2 = (value, h2) if order == 1 else (0.0, value)
-        if not leave_clear(m, h1, h2):
-            creep_away(m, h1, h2, h3, h4)
+        if not skip_clear_start(m, h1, h2):
+            certified_first_step(m, h1, h2, h3, h4)
         return
     bound = derivative_bound(m, order + 1)
     # value s^k/k! - bound s^(k+1)/(k+1)! > 0 for s < (k+1) value/bound; half of it, to be clear of
@@ -381,8 +397,8 @@ def leave(m, order, value):
 
 
 def derivative_bound(m, order):
-    """Bound of the event function's derivative of an order over the whole state."""
-    steady, a, b = bounds(m, order)
+    """Return a bound of the event function's derivative of an order over the whole state."""
+    steady, a, b = derivative_bounds(m, order)
     return steady + a + b
 
 
@@ -402,12 +418,12 @@ def end_state(m):
         gap = 0.0
     elif gap <= 0.0:
         x1, x2 = from_rest_together(m, x1, x2)
-    move_to_end(m)
-    begin(m, x1, v1, x2, v2, gap, 1 if event and not flight else 0)
+    move_origin_to_end(m)
+    begin_state(m, x1, v1, x2, v2, gap, 1 if event and not flight else 0)
 
 
 def has_died_away(m, x1, v1, x2, v2):
-    """Whether a motion that nothing drives is too small for its digits: it is at rest then.
+    """Return whether a motion that nothing drives is too small for its digits: it is at rest then.
 
     An undriven motion may decay for ever. Among the subnormal numbers no walk would end: what
     rounding takes there is as large as the motion.

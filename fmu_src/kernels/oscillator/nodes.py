@@ -12,8 +12,8 @@ import math
 
 from ..numerics.elementary import sincos_turns, small_decay, small_rotation
 from . import memory as at
-from .response import basis
-from .secular import LONGEST_DRIVEN, growth, pushed, risen
+from .response import fundamental_solutions
+from .secular import LONGEST_DRIVEN, growing_motion, grown_amplitude, initial_push
 
 ANGLE = 1.25  # of the fastest oscillation over a spacing: half of it is for the polynomials
 STEEPEST = 0.65  # decay over half a spacing that small_decay serves
@@ -25,15 +25,17 @@ FASTEST_TAKEN = 1e100
 
 
 def set_grid(m):
-    """Spacing and constant rotations of a segment; nothing where they are what they were."""
+    """Set the spacing and the constant rotations of a segment, unless they are the same as
+    before.
+    """
     eta = m[at.ETA] if m[at.FORCING] != 0.0 else 0.0
     if m[at.SPACING] != 0.0 and eta == m[at.NODE_ETA]:
         return
     m[at.NODE_ETA] = eta
-    damping = max(m[at.BRANCH_1 + at.DAMPING], m[at.BRANCH_2 + at.DAMPING])
+    damping = max(m[at.OSCILLATOR_1 + at.DAMPING], m[at.OSCILLATOR_2 + at.DAMPING])
     m[at.RATE] = max(eta, m[at.FASTEST] + 2.0 * damping)  # 2 D/rate + (omega/rate)^2 <= 1
     m[at.RATE_INVERSE] = 1.0 / m[at.RATE]
-    h = spacing(min(max(m[at.FASTEST], eta), FASTEST_TAKEN))
+    h = node_spacing(min(max(m[at.FASTEST], eta), FASTEST_TAKEN))
     sine, cosine = sincos_turns(m[at.ETA_TURNS] * h if eta != 0.0 else 0.0)
     m[at.NODE_COSINE] = cosine
     m[at.NODE_SINE] = sine
@@ -46,13 +48,15 @@ def set_grid(m):
     m[at.HERMITE + 1] = square * 0.05
     m[at.HERMITE + 2] = square * square * square * (1.0 / 28800.0)
     m[at.STEEP] = 0.0
-    set_turn_constants(m, at.BRANCH_1, h)
-    set_turn_constants(m, at.BRANCH_2, h)
-    set_turn_constants(m, at.BRANCH_3, h)
+    set_rotation_constants(m, at.OSCILLATOR_1, h)
+    set_rotation_constants(m, at.OSCILLATOR_2, h)
+    set_rotation_constants(m, at.OSCILLATOR_3, h)
 
 
-def spacing(fastest):
-    """At most ANGLE over the fastest, eight bits long."""
+def node_spacing(fastest):
+    """Return the spacing of the nodes: at most ANGLE over the fastest frequency, eight bits
+    long.
+    """
     longest = ANGLE / fastest
     unit = 1.0
     while unit > longest:
@@ -62,9 +66,9 @@ def spacing(fastest):
     return math.floor(longest / unit * 128.0) * 0.0078125 * unit
 
 
-def set_turn_constants(m, b, h):
-    """A branch's rotation over one spacing."""
-    xx, xv, vx, vv = turn_by(m, b, h)
+def set_rotation_constants(m, b, h):
+    """Set the rotation of one oscillator's free part over one spacing."""
+    xx, xv, vx, vv = rotation_over(m, b, h)
     m[b + at.STEP_ON] = xx
     m[b + at.STEP_ON + 1] = vx
     m[b + at.STEP_ON + 2] = xv
@@ -73,27 +77,27 @@ def set_turn_constants(m, b, h):
         m[at.STEEP] = 1.0
 
 
-def turn_by(m, b, t):
-    """What a free part's displacement and velocity become in an age t: of x by x and v, of v by x
-    and v.
+def rotation_over(m, b, t):
+    """Return the four factors that turn a free part (x, v) over a time ``t``: those that give the
+    later x from x and v, then those that give the later v.
     """
-    C, S, _ = basis(m, b, t)
+    C, S, _ = fundamental_solutions(m, b, t)
     damped = m[b + at.DAMPING] * S
     return C + damped, S, -m[b + at.OMEGA_SQUARED] * S, C - damped
 
 
-def branch_a(m):
-    """First slot of the branch of free part A."""
-    return at.BRANCH_1 if m[at.MODE] == at.FLIGHT else at.BRANCH_3
+def oscillator_a(m):
+    """Return the first slot of the linear oscillator that free part A belongs to."""
+    return at.OSCILLATOR_1 if m[at.MODE] == at.FLIGHT else at.OSCILLATOR_3
 
 
-def longest(m):
-    """Nodes after which the present state is written anew."""
+def max_nodes(m):
+    """Return the number of nodes after which the present state is written anew."""
     return LONGEST if m[at.SECULAR] == 0.0 else LONGEST_DRIVEN
 
 
 def start_nodes(m):
-    """The first interval of a state that begins: phasors at its start and one spacing later."""
+    """Set the first interval of a state that begins: phasors at its start and one spacing later."""
     m[at.NODE] = 0.0
     m[at.LEFT_AGE] = 0.0
     m[at.RIGHT_AGE] = m[at.SPACING]
@@ -102,19 +106,21 @@ def start_nodes(m):
         m[at.LEFT + 2 + i] = m[at.FREE_B + i]
     m[at.LEFT + 4] = m[at.COSINE]
     m[at.LEFT + 5] = m[at.SINE]
-    set_right(m, at.LEFT)
+    set_right_phasors(m, at.LEFT)
 
 
-def set_right(m, node):
-    """Phasors one spacing after those in ``node``, put to the right."""
-    x, v, x_b, v_b, cosine, sine = turned(
+def set_right_phasors(m, node):
+    """Set the phasors of the right node to those one spacing after the phasors in the slots from
+    ``node`` on.
+    """
+    x, v, x_b, v_b, cosine, sine = next_phasors(
         m, False, m[node], m[node + 1], m[node + 2], m[node + 3], m[node + 4], m[node + 5]
     )
-    put(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
+    put_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
 
 
-def put(m, slot, p0, p1, p2, p3, cosine, sine):
-    """Put phasors to slots, in the order given."""
+def put_phasors(m, slot, p0, p1, p2, p3, cosine, sine):
+    """Write phasors to six slots, in the order of the arguments."""
     m[slot] = p0
     m[slot + 1] = p1
     m[slot + 2] = p2
@@ -124,16 +130,20 @@ def put(m, slot, p0, p1, p2, p3, cosine, sine):
 
 
 def is_plain_flight(m):
-    """Whether the present state is a flight that a harmonic alone drives, at no resonance."""
+    """Return whether the present state is a flight that a harmonic alone drives, at no
+    resonance.
+    """
     return m[at.MODE] == at.FLIGHT and m[at.SECULAR] == 0.0 and m[at.CUBIC_PRESENT] == 0.0
 
 
-def turned(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
-    """All phasors one spacing later; ``plain`` where the state is known to be a plain flight."""
+def next_phasors(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
+    """Return all phasors one spacing later; ``plain`` where the state is known to be a plain
+    flight.
+    """
     if not plain and m[at.SECULAR] != 0.0:  # rarely
-        return driven_on(m, x, v, x_b, v_b, cosine, sine)
-    a = (at.BRANCH_1 if plain else branch_a(m)) + at.STEP_ON
-    b = at.BRANCH_2 + at.STEP_ON
+        return next_driven_phasors(m, x, v, x_b, v_b, cosine, sine)
+    a = (at.OSCILLATOR_1 if plain else oscillator_a(m)) + at.STEP_ON
+    b = at.OSCILLATOR_2 + at.STEP_ON
     return (
         x * m[a] + v * m[a + 2],
         x * m[a + 1] + v * m[a + 3],
@@ -145,86 +155,88 @@ def turned(m, plain, x, v, x_b, v_b, cosine, sine):  # inline
 
 
 def starts_block(node):
-    """Whether phasors at a node are made anew."""
+    """Return whether the phasors at a node are computed anew from the closed form."""
     return math.floor(node * (1.0 / BLOCK)) * BLOCK == node
 
 
-def turn_interval(m):
-    """On to the next interval."""
+def advance_interval(m):
+    """Make the next interval the present one."""
     m[at.NODE] += 1.0
     m[at.LEFT_AGE] = m[at.RIGHT_AGE]
     m[at.RIGHT_AGE] = (m[at.NODE] + 1.0) * m[at.SPACING]
     for i in range(6):
         m[at.LEFT + i] = m[at.RIGHT + i]
     if starts_block(m[at.NODE] + 1.0):  # rarely
-        renew_right(m, m[at.NODE] + 1.0)
+        renew_right_phasors(m, m[at.NODE] + 1.0)
     else:
-        set_right(m, at.RIGHT)
+        set_right_phasors(m, at.RIGHT)
 
 
-def renew_right(m, node):
-    """Phasors at a node from the closed form, put to the right."""
-    x, v, x_b, v_b, cosine, sine = renewed(m, node * m[at.SPACING])
-    put(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
+def renew_right_phasors(m, node):
+    """Set the phasors of the right node to those of ``node`` from the closed form."""
+    x, v, x_b, v_b, cosine, sine = phasors_from_closed_form(m, node * m[at.SPACING])
+    put_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
 
 
-def renewed(m, age):
-    """All phasors at an age from the closed form."""
+def phasors_from_closed_form(m, age):
+    """Return all phasors at an age of the state from the closed form."""
     cosine, sine, x_b, v_b = m[at.COSINE], m[at.SINE], 0.0, 0.0
     if m[at.NODE_ETA] != 0.0:  # usually
         sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
     phases = m[at.COSINE], m[at.SINE], cosine, sine
-    x, v = driven_by(m, branch_a(m), m[at.FREE_A], m[at.FREE_A + 1], age, phases)
+    x, v = driven_part_after(m, oscillator_a(m), m[at.FREE_A], m[at.FREE_A + 1], age, phases)
     if m[at.MODE] == at.FLIGHT:
-        x_b, v_b = driven_by(m, at.BRANCH_2, m[at.FREE_B], m[at.FREE_B + 1], age, phases)
+        x_b, v_b = driven_part_after(
+            m, at.OSCILLATOR_2, m[at.FREE_B], m[at.FREE_B + 1], age, phases
+        )
     return x, v, x_b, v_b, cosine, sine
 
 
-def turned_by(m, b, x, v, t):
-    """A free part a time ``t`` later, from the closed form."""
-    xx, xv, vx, vv = turn_by(m, b, t)
+def free_part_after(m, b, x, v, t):
+    """Return a free part a time ``t`` later, from the closed form."""
+    xx, xv, vx, vv = rotation_over(m, b, t)
     return x * xx + v * xv, x * vx + v * vv
 
 
-def driven_by(m, b, x, v, t, phases):
-    """:func:`turned_by`, driven on the way where the amplitude grows: ``phases`` are cosine and
-    sine of the excitation before and after.
+def driven_part_after(m, b, x, v, t, phases):
+    """Return :func:`free_part_after`, driven on the way where the amplitude grows: ``phases`` are
+    cosine and sine of the excitation before and after.
     """
     if m[b + at.DRIVEN] == 0.0:  # usually
-        return turned_by(m, b, x, v, t)
+        return free_part_after(m, b, x, v, t)
     old_cosine, old_sine, cosine, sine = phases
-    x, v = turned_by(m, b, x, v - pushed(m, b, old_cosine, old_sine), t)
-    h_cos, h_sin, d_cos, d_sin = growth(m, b, t)
-    x_driven, v_driven = risen(m, h_cos, h_sin, d_cos, d_sin, cosine, sine)
+    x, v = free_part_after(m, b, x, v - initial_push(m, b, old_cosine, old_sine), t)
+    h_cos, h_sin, d_cos, d_sin = grown_amplitude(m, b, t)
+    x_driven, v_driven = growing_motion(m, h_cos, h_sin, d_cos, d_sin, cosine, sine)
     return x + x_driven, v + v_driven
 
 
-def driven_on(m, x, v, x_b, v_b, old_cosine, old_sine):
-    """All phasors one spacing later, where amplitudes grow."""
+def next_driven_phasors(m, x, v, x_b, v_b, old_cosine, old_sine):
+    """Return all phasors one spacing later, where amplitudes grow."""
     cosine = old_cosine * m[at.NODE_COSINE] - old_sine * m[at.NODE_SINE]
     sine = old_sine * m[at.NODE_COSINE] + old_cosine * m[at.NODE_SINE]
     phases = old_cosine, old_sine, cosine, sine
-    x, v = driven_part(m, branch_a(m), x, v, phases)
-    x_b, v_b = driven_part(m, at.BRANCH_2, x_b, v_b, phases)
+    x, v = next_driven_part(m, oscillator_a(m), x, v, phases)
+    x_b, v_b = next_driven_part(m, at.OSCILLATOR_2, x_b, v_b, phases)
     return x, v, x_b, v_b, cosine, sine
 
 
-def driven_part(m, b, x, v, phases):
-    """A free part one spacing later, driven on the way where its amplitude grows."""
+def next_driven_part(m, b, x, v, phases):
+    """Return a free part one spacing later, driven on the way where its amplitude grows."""
     step = b + at.STEP_ON
     if m[b + at.DRIVEN] == 0.0:  # usually
         return x * m[step] + v * m[step + 2], x * m[step + 1] + v * m[step + 3]
     old_cosine, old_sine, cosine, sine = phases
-    v -= pushed(m, b, old_cosine, old_sine)
+    v -= initial_push(m, b, old_cosine, old_sine)
     g = b + at.STEP_GROWTH
-    x_driven, v_driven = risen(m, m[g], m[g + 1], m[g + 2], m[g + 3], cosine, sine)
+    x_driven, v_driven = growing_motion(m, m[g], m[g + 1], m[g + 2], m[g + 3], cosine, sine)
     return (
         x * m[step] + v * m[step + 2] + x_driven,
         x * m[step + 1] + v * m[step + 3] + v_driven,
     )
 
 
-def seek(m, tau):
+def seek_interval(m, tau):
     """Make the interval around ``tau`` the present one."""
     node = math.floor(tau / m[at.SPACING]) * 1.0
     if node * m[at.SPACING] > tau:
@@ -236,14 +248,14 @@ def seek(m, tau):
         else:
             m[at.NODE] = block - 1.0
             m[at.RIGHT_AGE] = block * m[at.SPACING]
-            renew_right(m, block)
-            turn_interval(m)
+            renew_right_phasors(m, block)
+            advance_interval(m)
     while m[at.NODE] < node:
-        turn_interval(m)
+        advance_interval(m)
 
 
 def phasors_at(m, tau):  # inline
-    """All phasors at an age, from the nearer node.
+    """Return all phasors at an age of the state, from the nearer node.
 
     Returns
     -------
@@ -251,7 +263,7 @@ def phasors_at(m, tau):  # inline
         Displacements before velocities: so a compiler takes both free parts side by side.
     """
     if tau < m[at.LEFT_AGE] or tau > m[at.RIGHT_AGE]:  # rarely
-        seek(m, tau)
+        seek_interval(m, tau)
     node, t = at.LEFT, tau - m[at.LEFT_AGE]
     if t > m[at.HALF_SPACING]:
         node, t = at.RIGHT, tau - m[at.RIGHT_AGE]
@@ -268,26 +280,28 @@ def phasors_at(m, tau):  # inline
     return x_a, x_b, v_a, v_b, cosine, sine
 
 
-def set_at_end(m, t):
-    """Phasors at the state's end, where that is a short time ``t`` after the point evaluated last:
-    by their Taylor series, of which six terms leave less than 1e-17.
+def set_phasors_at_end(m, t):
+    """Set the phasors at the state's end, where that is a short time ``t`` after the point
+    evaluated last: by their Taylor series, of which six terms leave less than 1e-17.
     """
     if t * m[at.RATE] > NEAR or m[at.SECULAR] != 0.0:  # rarely
         return
     p = at.POINT
-    x, v = advanced(m, branch_a(m), m[p], m[p + 2], t)
-    x_b, v_b = advanced(m, at.BRANCH_2, m[p + 1], m[p + 3], t)  # zeros but in a flight
+    x, v = free_part_by_series(m, oscillator_a(m), m[p], m[p + 2], t)
+    x_b, v_b = free_part_by_series(
+        m, at.OSCILLATOR_2, m[p + 1], m[p + 3], t
+    )  # zeros but in a flight
     angle = m[at.NODE_ETA] * t
     square = angle * angle
     c = 1.0 - square * (0.5 - square * (1.0 / 24.0))
     s = angle * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0)))
     cosine, sine = m[p + 4], m[p + 5]
-    put(m, at.AT_END, x, x_b, v, v_b, cosine * c - sine * s, sine * c + cosine * s)
+    put_phasors(m, at.AT_END, x, x_b, v, v_b, cosine * c - sine * s, sine * c + cosine * s)
     m[at.AT_END_NODE] = m[at.NODE] + 1.0
 
 
-def derivatives(m, b, x, v):
-    """Derivatives two to six of a free part's displacement."""
+def higher_derivatives(m, b, x, v):
+    """Return the derivatives two to six of a free part's displacement."""
     twice, square = 2.0 * m[b + at.DAMPING], m[b + at.OMEGA_SQUARED]
     x2 = -(twice * v + square * x)
     x3 = -(twice * x2 + square * v)
@@ -296,9 +310,9 @@ def derivatives(m, b, x, v):
     return x2, x3, x4, x5, -(twice * x5 + square * x4)
 
 
-def advanced(m, b, x, v, t):
-    """A free part a short time later."""
-    x2, x3, x4, x5, x6 = derivatives(m, b, x, v)
+def free_part_by_series(m, b, x, v, t):
+    """Return a free part a short time ``t`` later, by its Taylor series."""
+    x2, x3, x4, x5, x6 = higher_derivatives(m, b, x, v)
     half, t2 = 0.5 * t, t * t
     x += t * (
         v + half * x2 + t2 * ((x3 * (1.0 / 6.0) + t * x4 * (1.0 / 24.0)) + t2 * x5 * (1.0 / 120.0))
@@ -310,34 +324,34 @@ def advanced(m, b, x, v, t):
 
 
 def parts_by_functions(m, tau, cosine, sine):
-    """Both free parts where one decays steeply or grows: from the node before, by elementary
+    """Return both free parts where one decays steeply or grows: from the node before, by elementary
     functions.
     """
     t, p = tau - m[at.LEFT_AGE], at.LEFT
     phases = m[p + 4], m[p + 5], cosine, sine
-    x_a, v_a = driven_by(m, branch_a(m), m[p], m[p + 1], t, phases)
+    x_a, v_a = driven_part_after(m, oscillator_a(m), m[p], m[p + 1], t, phases)
     if m[at.MODE] != at.FLIGHT:
         return x_a, 0.0, v_a, 0.0
-    x_b, v_b = driven_by(m, at.BRANCH_2, m[p + 2], m[p + 3], t, phases)
+    x_b, v_b = driven_part_after(m, at.OSCILLATOR_2, m[p + 2], m[p + 3], t, phases)
     return x_a, x_b, v_a, v_b
 
 
 def free_parts(m, node, t):  # inline
-    """Both free parts at most half a spacing from a node."""
-    decay = small_decay(m[branch_a(m) + at.DAMPING] * t)
+    """Return both free parts at a time ``t`` from a node, at most half a spacing."""
+    decay = small_decay(m[oscillator_a(m) + at.DAMPING] * t)
     if m[at.MODE] != at.FLIGHT:
-        x_a, v_a = turned_part(m, at.BRANCH_3, node, t, decay)
+        x_a, v_a = free_part_near_node(m, at.OSCILLATOR_3, node, t, decay)
         return x_a, 0.0, v_a, 0.0
     decay_b = decay
-    if m[at.BRANCH_1 + at.DAMPING] != m[at.BRANCH_2 + at.DAMPING]:  # rarely
-        decay_b = small_decay(m[at.BRANCH_2 + at.DAMPING] * t)
-    x_a, v_a = turned_part(m, at.BRANCH_1, node, t, decay)
-    x_b, v_b = turned_part(m, at.BRANCH_2, node + 2, t, decay_b)
+    if m[at.OSCILLATOR_1 + at.DAMPING] != m[at.OSCILLATOR_2 + at.DAMPING]:  # rarely
+        decay_b = small_decay(m[at.OSCILLATOR_2 + at.DAMPING] * t)
+    x_a, v_a = free_part_near_node(m, at.OSCILLATOR_1, node, t, decay)
+    x_b, v_b = free_part_near_node(m, at.OSCILLATOR_2, node + 2, t, decay_b)
     return x_a, x_b, v_a, v_b
 
 
-def turned_part(m, b, free, t, decay):  # inline
-    """A free part over a part of a spacing, in which it decays by ``e^{-D t}``."""
+def free_part_near_node(m, b, free, t, decay):  # inline
+    """Return a free part a time ``t`` from its node, in which it decays by ``e^{-D t}``."""
     x, v = m[free], m[free + 1]
     cosine, sine = small_rotation(m[b + at.NU_SQUARED] * t * t)
     C, S = decay * cosine, decay * sine * t

@@ -2,7 +2,7 @@
 
 from ..numerics.elementary import TWO_PI, fraction, sincos_turns
 from . import memory as at
-from .contact import contact_force
+from .contact import gap_acceleration
 from .excitation import box_derivative, cubic_at
 from .motion import from_unloaded, gap_between, state_and_phase_at
 
@@ -12,8 +12,8 @@ LEAST_UNIT = 1e-200  # m: displacements over a smaller a eta^2 could leave the r
 SHORT = 0.01
 
 
-def look(m, tau):  # inline
-    """The outputs that belong to a point of time, ``tau`` after the present state's start.
+def outputs_at(m, tau):  # inline
+    """Return the outputs that belong to a point of time, ``tau`` after the present state's start.
 
     Returns
     -------
@@ -26,7 +26,7 @@ def look(m, tau):  # inline
     omega = m[at.OMEGA]
     flight = m[at.MODE] == at.FLIGHT
     gap, gap_speed = gap_between(m, tau, x1, x2), omega * (v2 - v1)
-    force = 0.0 if flight else -contact_force(m, x1, v1)
+    force = 0.0 if flight else -gap_acceleration(m, x1, v1)
     pull_1, pull_2 = m[at.K1] * x1, m[at.K2] * x2  # at rest together, the springs balance
     x1, x2 = from_unloaded(m, x1, x2)
     reduced_mass = m[at.M2] * m[at.SHARE]
@@ -45,13 +45,13 @@ def look(m, tau):  # inline
 
 
 def unit_of_length(m):  # inline
-    """The ``a eta^2`` of (3), m; 0 where there is none to speak of."""
+    """Return ``a eta^2`` of (3), m; 0 where it is too small to divide by."""
     unit = m[at.FORCING]
     return unit if abs(unit) >= LEAST_UNIT else 0.0
 
 
-def write(m, seen):  # inline
-    """Write what :func:`look` has found."""
+def write_outputs(m, seen):  # inline
+    """Write the outputs that :func:`outputs_at` has returned to their slots."""
     motion, boundary, rotation = seen
     m[at.X1], m[at.X2], m[at.V1], m[at.V2], m[at.X_REL], m[at.V_REL] = motion[:6]
     m[at.XI1], m[at.XI2], m[at.XI_REL], m[at.BOX_FORCE] = motion[6:]
@@ -59,29 +59,31 @@ def write(m, seen):  # inline
     m[at.PHASE_COSINE], m[at.PHASE_SINE] = rotation
 
 
-def total(seen):  # inline
-    """The sum of these outputs: finite only where all are."""
+def finite_check_sum(seen):  # inline
+    """Return the sum of these outputs: finite only where all are."""
     x1, x2, v1, v2, gap, gap_speed, xi1, xi2, xi_rel, box_force = seen[0]
     contact, _, phase = seen[1]
     sum_1, sum_2 = (x1 + v1) + (xi1 + box_force), (x2 + v2) + (xi2 + gap)
     return sum_1 + sum_2 + ((gap_speed + xi_rel) + (contact + phase))
 
 
-def written(m, age):  # inline
-    """The point that was written last, ``age`` after the cubic began, in tau: x1, x2, v1, v2, force
-    on the box, cosine and sine of the phase, and the age.
+def last_written_point(m, age):  # inline
+    """Return the point that was written last, ``age`` after the cubic began, in tau: x1, x2, v1,
+    v2, force on the box, cosine and sine of the phase, and the age.
     """
     motion = m[at.X1], m[at.X2], m[at.V1], m[at.V2]
     return motion, m[at.BOX_FORCE], (m[at.PHASE_COSINE], m[at.PHASE_SINE]), age
 
 
-def found(m, seen, tau):  # inline
-    """The same of what :func:`look` has found, ``tau`` after the present state's start."""
+def point_of(m, seen, tau):  # inline
+    """Return the point, as :func:`last_written_point` does, of outputs ``tau`` after the present
+    state's start.
+    """
     return seen[0][:4], seen[0][9], seen[2], m[at.CUBIC_AGE] + tau
 
 
 def accelerations(m, point):  # inline
-    """Accelerations of both masses relative to the box at a point, m/s2, by (6)."""
+    """Return the accelerations of both masses relative to the box at a point, m/s2, by (6)."""
     motion, _, rotation, age = point
     drive = m[at.FORCING] * rotation[1]
     if m[at.CUBIC_PRESENT] != 0.0:  # rarely
@@ -93,25 +95,27 @@ def accelerations(m, point):  # inline
 
 
 def both_rates(m, drive, x1, v1, x2, v2):  # inline
-    """Accelerations of both masses, m/s2; or of one order more, from velocities, accelerations and
-    the drive's rate.
+    """Return the accelerations of both masses, m/s2; or their rates, m/s3, from velocities,
+    accelerations and the drive's rate.
     """
     if m[at.MODE] == at.FLIGHT:
-        a1 = acceleration(m, at.BRANCH_1, drive, x1, v1)
-        return a1, acceleration(m, at.BRANCH_2, drive, x2, v2)
-    both = acceleration(m, at.BRANCH_3, drive, x1, v1)
+        a1 = acceleration(m, at.OSCILLATOR_1, drive, x1, v1)
+        return a1, acceleration(m, at.OSCILLATOR_2, drive, x2, v2)
+    both = acceleration(m, at.OSCILLATOR_3, drive, x1, v1)
     return both, both
 
 
 def acceleration(m, b, drive, x, v):  # inline
-    """Acceleration of one oscillator at displacement ``x`` (m) and velocity ``v`` (m/s)."""
+    """Return the acceleration of one oscillator at displacement ``x`` (m) and velocity ``v``
+    (m/s).
+    """
     omega = m[at.OMEGA]
     pull = m[b + at.OMEGA_SQUARED] * x
     return omega * (omega * (drive - pull) - 2.0 * m[b + at.DAMPING] * v)
 
 
 def force_rates(m, point):  # inline
-    """First and second time derivative of the force on the box at a point."""
+    """Return the first and second time derivative of the force on the box at a point."""
     motion, _, rotation, age = point
     _, _, v1, v2 = motion
     a1, a2 = accelerations(m, point)
@@ -125,14 +129,14 @@ def force_rates(m, point):  # inline
 
 
 def momentum(m, motion):  # inline
-    """Momentum relative to the box, and its integral, the moment of mass."""
+    """Return the momentum relative to the box, and its integral, the moment of mass."""
     x1, x2, v1, v2 = motion
     return m[at.M1] * v1 + m[at.M2] * v2, m[at.M1] * x1 + m[at.M2] * x2
 
 
 def impulse(m, h, left, reached):  # inline
-    """Integrals of the force on the box over a step of ``h`` seconds between two points, by
-    momentum: impacts are internal and drop out.
+    """Return the impulse of the force on the box, and its moment, over a step of ``h`` seconds
+    between two points, by momentum: impacts are internal and drop out.
 
     ``box_force = -P' - (m1 + m2) y''`` with P the momentum relative to the box and y'' its
     acceleration, so the integral is a difference of momenta, its moment a difference of
@@ -162,8 +166,8 @@ def impulse(m, h, left, reached):  # inline
 
 
 def short_impulse(m, h, left, reached):  # inline
-    """The same over a short step without an impact or a change of state, by the quintic through the
-    force and two derivatives at both points.
+    """Return impulse and moment as :func:`impulse` over a short step without an impact or a change
+    of state, by the quintic through the force and two derivatives at both points.
     """
     rates, rates_after = force_rates(m, left), force_rates(m, reached)
     force, after, square = left[1], reached[1], h * h

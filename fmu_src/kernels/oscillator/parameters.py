@@ -17,7 +17,7 @@ ALIKE = 1e-4
 
 
 def derive(m):
-    """Fill the derived constants of ``m`` from its parameters."""
+    """Compute the derived constants of ``m`` from its parameters."""
     omega = math.sqrt(m[at.K1] / m[at.M1])  # (2)
     mu = m[at.M2] / m[at.M1]
     kappa = m[at.K2] / m[at.K1]
@@ -35,9 +35,9 @@ def derive(m):
     m[at.SHARE] = 1.0 / (1.0 + mu)
     m[at.FORCE_V] = 2.0 * (damping_1 - damping_2)  # (18)
     m[at.FORCE_X] = 1.0 - omega_2_squared
-    set_branch(m, at.BRANCH_1, damping_1, 1.0)
-    set_branch(m, at.BRANCH_2, damping_2, omega_2_squared)
-    set_branch(m, at.BRANCH_3, damping_3, (1.0 + kappa) / (1.0 + mu))
+    set_oscillator(m, at.OSCILLATOR_1, damping_1, 1.0)
+    set_oscillator(m, at.OSCILLATOR_2, damping_2, omega_2_squared)
+    set_oscillator(m, at.OSCILLATOR_3, damping_3, (1.0 + kappa) / (1.0 + mu))
     m[at.SPACING] = 0.0  # the nodes are to be set anew
     m[at.FASTEST] = max(1.0, math.sqrt(omega_2_squared))  # omega_3 lies between
     clearance = m[at.CLEARANCE] if m[at.BONDED] == 0.0 else 0.0
@@ -47,13 +47,13 @@ def derive(m):
     m[at.PRELOAD] = clearance * omega_2_squared * ((1.0 + mu) / (1.0 + kappa))
 
 
-def alike(m):
-    """Whether the two oscillators are nearly equal."""
+def are_nearly_equal(m):
+    """Return whether the two oscillators are nearly equal."""
     return abs(m[at.FORCE_V]) + abs(m[at.FORCE_X]) < ALIKE
 
 
-def set_branch(m, b, damping, omega_squared):
-    """Constants of one linear oscillator: under-, critically and overdamped alike.
+def set_oscillator(m, b, damping, omega_squared):
+    """Set the constants of one linear oscillator: under-, critically and overdamped alike.
 
     The envelope (rate r, factor s) bounds both basis functions for all ``t >= 0``: ``|e^{-D t} cos
     nu t| <= e^{-r t}`` and ``|e^{-D t} sin(nu t)/nu| <= s e^{-r t}``, with cosh and sinh beyond

@@ -5,19 +5,19 @@ where an input jumps, to what comes before the jump of an input and after the im
 """
 
 from . import memory as at
-from .outputs import accelerations, unit_of_length, written
+from .outputs import accelerations, last_written_point, unit_of_length
 from .stepper import local_time
 
 
 def differentiate(m, time):
-    """Rates of change of the outputs into RATES; ``time`` is not used.
+    """Write the rates of change of the outputs into RATES; ``time`` is not used.
 
     Returns
     -------
     int
         OK.
     """
-    a1, a2 = accelerations(m, written(m, m[at.CUBIC_AGE] + local_time(m, m[at.TIME])))
+    a1, a2 = accelerations(m, last_written_point(m, m[at.CUBIC_AGE] + local_time(m, m[at.TIME])))
     omega = m[at.OMEGA]
     v1, v2, v_rel = m[at.V1], m[at.V2], m[at.V_REL]
     unit = unit_of_length(m)

@@ -10,14 +10,15 @@ from ..numerics.elementary import exp_decay, sincos_turns
 from . import memory as at
 
 
-def basis(m, b, tau):
-    """C and S of branch ``b``, and the decay ``e^{-r tau}`` of its envelope.
+def fundamental_solutions(m, b, tau):
+    """Return C and S of (10) for the linear oscillator ``b`` at ``tau``, and the decay ``e^{-r
+    tau}`` of its envelope.
 
     Parameters
     ----------
     m : flat memory
     b : int
-        First slot of the branch.
+        First slot of the linear oscillator.
     tau : float
         Time since the state's start, >= 0.
 
@@ -52,14 +53,16 @@ def basis(m, b, tau):
 
 
 def cubic_value(m, response, tau):
-    """Value and first derivative of a cubic kept as value and derivatives at its start."""
+    """Return value and first derivative of a cubic that is kept as value and derivatives at its
+    start.
+    """
     q1, q2, q3 = m[response + 1], m[response + 2], m[response + 3]
     value = m[response] + tau * (q1 + 0.5 * tau * (q2 + tau * q3 * (1.0 / 3.0)))
     return value, q1 + tau * (q2 + 0.5 * tau * q3)
 
 
 def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):  # inline
-    """Displacement and velocity of one oscillator (10).
+    """Return displacement and velocity of one oscillator (10).
 
     Parameters
     ----------
@@ -87,7 +90,7 @@ def displacement(m, harmonic, cubic, tau, x, v, sine, cosine):  # inline
 
 
 def set_free(m, harmonic, free, cubic, x, v, sine, cosine):
-    """Displacement and velocity of the free part from the initial conditions (9): alpha_i and
+    """Set displacement and velocity of the free part from the initial conditions (9): alpha_i and
     beta_i of (11).
     """
     h_cos, h_sin = m[harmonic], m[harmonic + 1]

@@ -11,15 +11,23 @@ lie: it goes on where it was left.
 import math
 
 from . import memory as at
-from .event_function import evaluate, rounding, set_remainder, values
+from .event_function import evaluate, event_rounding, event_values, set_remainder
 from .hermite import (
     clear_part,
-    is_positive,
+    has_no_root,
     lowest_after,
     lowest_before,
     present_coefficients,
 )
-from .nodes import BLOCK, is_plain_flight, longest, put, renewed, set_at_end, turned
+from .nodes import (
+    BLOCK,
+    is_plain_flight,
+    max_nodes,
+    next_phasors,
+    phasors_from_closed_form,
+    put_phasors,
+    set_phasors_at_end,
+)
 
 INFINITE = float("inf")
 EPS = 1.1102230246251565e-16  # 2**-53
@@ -32,7 +40,9 @@ CONVERGED = 1e-8  # relative: the next step of Newton's method would be its squa
 
 
 def parabola_root(h0, h1, h2):
-    """First positive root of ``h0 + h1 s + h2 s^2/2`` for ``h0 >= 0``; infinity if none."""
+    """Return the first positive root of ``h0 + h1 s + h2 s^2/2`` for ``h0 >= 0``; infinity if there
+    is none.
+    """
     square = h1 * h1 - 2.0 * h0 * h2
     if square < 0.0:
         return INFINITE
@@ -45,15 +55,17 @@ def parabola_root(h0, h1, h2):
 
 
 def lowest_curvature(h2, h3, h4, bound, s):
-    """The parabola ``h0 + h1 t + c t^2/2`` with this c is below the quintic for ``0 <= t <= s``."""
+    """Return c so that the parabola ``h0 + h1 t + c t^2/2`` is below the quintic for ``0 <= t <=
+    s``.
+    """
     bent = h4 * (1.0 / 12.0) - bound * s * (1.0 / 60.0)
     lowered = h3 * (1.0 / 3.0) + (s * bent if bent < 0.0 else 0.0)
     return h2 + s * lowered if lowered < 0.0 else h2
 
 
 def clear_step(h0, h1, h2, h3, h4, bound, reach):
-    """A step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120`` stays
-    positive.
+    """Return a step over which ``h0 + h1 s + h2 s^2/2 + h3 s^3/6 + h4 s^4/24 - bound s^5/120``
+    stays positive.
 
     For every trial s, ``min(s, first root of the parabola below the quintic up to s)`` is safe;
     trials close in on the s where both agree.
@@ -100,38 +112,39 @@ def clear_step(h0, h1, h2, h3, h4, bound, reach):
 
 
 def walk(m, target):
-    """Walk on until the state's end is found or no root lies before ``target``; ends early when the
+    """Walk on until the state's end is found or no root lies before ``target``; stop early when the
     step's work is used up.
     """
     while m[at.END_KIND] == at.END_OPEN and m[at.CLEAR] <= target and m[at.WORK] < m[at.WORK_LIMIT]:
         if m[at.CLEAR] >= m[at.RIGHT_AGE]:
-            glide(m, target, INFINITE)
+            cross_clear_intervals(m, target, INFINITE)
         elif m[at.CLEAR] != m[at.LEFT_AGE] or not clear_from_node(m):
-            creep(m)
+            step_inside_interval(m)
 
 
-def glide(m, target, ceiling):
-    """On from node to node, not beyond ``target``, while the intervals between are clear and the
-    event function stays below ``ceiling`` in them; after many nodes the state is written anew.
+def cross_clear_intervals(m, target, ceiling):
+    """Go on from node to node, not beyond ``target``, while the intervals between have no root and
+    the event function stays below ``ceiling`` in them; after many nodes the state is written anew.
     """
     if not is_plain_flight(m):  # rarely
-        glide_over(m, target, ceiling, False, True)
+        cross_intervals_loop(m, target, ceiling, False, True)
     elif ceiling < INFINITE:
-        glide_over(m, target, ceiling, True, True)
+        cross_intervals_loop(m, target, ceiling, True, True)
     else:
-        glide_over(m, target, ceiling, True, False)
+        cross_intervals_loop(m, target, ceiling, True, False)
 
 
-def glide_over(m, target, ceiling, plain, watched):  # inline
-    """:func:`glide`: ``plain`` in a plain flight, ``watched`` if there may be a ceiling. Both are
-    constants where this is called: a compiler makes a loop of its own for each.
+def cross_intervals_loop(m, target, ceiling, plain, watched):  # inline
+    """Do what :func:`cross_clear_intervals` does: ``plain`` in a plain flight, ``watched`` if there
+    may be a ceiling. Both are constants where this is called: a compiler makes a loop of its own
+    for each.
     """
     x, v, x_b, v_b = m[at.RIGHT], m[at.RIGHT + 1], m[at.RIGHT + 2], m[at.RIGHT + 3]
     cosine, sine = m[at.RIGHT + 4], m[at.RIGHT + 5]
     r0, r1, r2 = m[at.RIGHT_VALUES], m[at.RIGHT_VALUES + 1], m[at.RIGHT_VALUES + 2]
     node, age, low, h = m[at.NODE], m[at.RIGHT_AGE], m[at.REMAINDER], m[at.SPACING]
     begun = node
-    last = min(node + (m[at.WORK_LIMIT] - m[at.WORK]), longest(m) - 1.0)
+    last = min(node + (m[at.WORK_LIMIT] - m[at.WORK]), max_nodes(m) - 1.0)
     renewal = (math.floor((node + 1.0) * (1.0 / BLOCK)) + 1.0) * BLOCK
     floor, top = lowest_after(m, r0, r1, r2, low), 0.0
     if watched:
@@ -144,11 +157,11 @@ def glide_over(m, target, ceiling, plain, watched):  # inline
         left = age
         age = (node + 1.0) * h
         if node + 1.0 == renewal:  # rarely
-            x, v, x_b, v_b, cosine, sine = renewed(m, age)
+            x, v, x_b, v_b, cosine, sine = phasors_from_closed_form(m, age)
             renewal += BLOCK
         else:
-            x, v, x_b, v_b, cosine, sine = turned(m, plain, x, v, x_b, v_b, cosine, sine)
-        r0, r1, r2 = values(m, plain, x, v, x_b, v_b, cosine, sine, age)
+            x, v, x_b, v_b, cosine, sine = next_phasors(m, plain, x, v, x_b, v_b, cosine, sine)
+        r0, r1, r2 = event_values(m, plain, x, v, x_b, v_b, cosine, sine, age)
         clear = min(floor, lowest_before(m, r0, r1, r2, low)) >= 0.0 and r0 > 0.0
         floor = lowest_after(m, r0, r1, r2, low)
         if watched and ceiling < INFINITE:
@@ -163,8 +176,8 @@ def glide_over(m, target, ceiling, plain, watched):  # inline
     m[at.LEFT_AGE] = left
     m[at.RIGHT_AGE] = age
     m[at.CLEAR] = age if clear else left
-    put(m, at.LEFT, old_x, old_v, old_x_b, old_v_b, old_cosine, old_sine)
-    put(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
+    put_phasors(m, at.LEFT, old_x, old_v, old_x_b, old_v_b, old_cosine, old_sine)
+    put_phasors(m, at.RIGHT, x, v, x_b, v_b, cosine, sine)
     m[at.LEFT_VALUES] = l0
     m[at.LEFT_VALUES + 1] = l1
     m[at.LEFT_VALUES + 2] = l2
@@ -174,13 +187,15 @@ def glide_over(m, target, ceiling, plain, watched):  # inline
 
 
 def clear_from_node(m):
-    """Whether a part of the present interval is seen to be clear; CLEAR moves to its end."""
+    """Move CLEAR to the end of that part of the present interval which certainly has no root, and
+    return whether there is one.
+    """
     b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
-    clear = is_positive(b0, b1, b2, b3, b4, b5)
+    clear = has_no_root(b0, b1, b2, b3, b4, b5)
     if not clear and b5 > 0.0:  # rarely
         set_remainder(m)
         b0, b1, b2, b3, b4, b5 = present_coefficients(m, m[at.REMAINDER])
-        clear = is_positive(b0, b1, b2, b3, b4, b5)
+        clear = has_no_root(b0, b1, b2, b3, b4, b5)
     if clear:
         m[at.CLEAR] = m[at.RIGHT_AGE]
         return True
@@ -189,43 +204,43 @@ def clear_from_node(m):
     return m[at.CLEAR] > m[at.LEFT_AGE]
 
 
-def creep(m):
-    """One certified step inside the present interval, or the root."""
+def step_inside_interval(m):
+    """Take one certified step inside the present interval, or find the root."""
     tau = m[at.CLEAR]
     reach = m[at.RIGHT_AGE] - tau
     h0, h1, h2, h3, h4, bound = evaluate(m, tau)
     if h0 <= 0.0:  # rarely
-        h0 = lifted(m, tau, h0, h1)
-    step, found = next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy(m, tau))
+        h0 = value_on_decided_side(m, tau, h0, h1)
+    step, found = next_step(h0, h1, h2, h3, h4, bound, tau, reach, root_accuracy(m, tau))
     if found:
         m[at.END] = tau + step
         m[at.END_KIND] = at.END_EVENT
         if m[at.SERIES] == 0.0:
-            set_at_end(m, m[at.END] - tau)
+            set_phasors_at_end(m, m[at.END] - tau)
     m[at.CLEAR] = m[at.RIGHT_AGE] if step >= reach else tau + step
 
 
-def accuracy(m, tau):
-    """What a root's age is to be accurate to: its rounding."""
+def root_accuracy(m, tau):
+    """Return the error that a root's age may have: its rounding."""
     return EPS * (tau + 4.0 * m[at.SPACING])
 
 
-def lifted(m, tau, h0, h1):
-    """A value of the event function that is not positive, or a positive one where it is zero but
-    for rounding and no crossing is in sight.
+def value_on_decided_side(m, tau, h0, h1):
+    """Return a value of the event function that is not positive, or a positive one where it is zero
+    but for rounding and no crossing is in sight.
 
     Near a start on the boundary the event function may be smaller than the rounding of its terms
     for a while; the side was decided when the state began, and holds until the event function is
     seen to cross.
     """
-    floor = rounding(m, tau)
+    floor = event_rounding(m, tau)
     if h0 < -floor or floor < -1e-6 * h1:
         return h0
     return 2.0 * floor
 
 
 def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
-    """One step of the walk, and whether it ends on the root.
+    """Return one step of the walk, and whether it ends on the root.
 
     Parameters
     ----------
@@ -249,11 +264,11 @@ def next_step(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
         root = close_root(h0, h1, h2, h3, h4, bound, accuracy)
         if 0.0 < root < reach:  # usually
             return root, True
-    return step_from(h0, h1, h2, h3, h4, bound, tau, reach, accuracy)
+    return clear_step_or_root(h0, h1, h2, h3, h4, bound, tau, reach, accuracy)
 
 
-def step_from(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
-    """As :func:`next_step`, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
+def clear_step_or_root(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
+    """Return what :func:`next_step` does, also from ``h0 = 0 < h1`` and ``h0 = h1 = 0 < h2``."""
     # powers of time only: scaled amplitudes take the same steps
     scale = 1.0 / bound if bound > LEAST_BOUND else 1.0
     h0, h1, h2 = h0 * scale, h1 * scale, h2 * scale
@@ -266,7 +281,7 @@ def step_from(h0, h1, h2, h3, h4, bound, tau, reach, accuracy):
 
 
 def close_root(h0, h1, h2, h3, h4, bound, accuracy):
-    """The root a short way ahead, where the quartic gives it to within ``accuracy``; else 0.
+    """Return the root a short way ahead, where the quartic gives it to within ``accuracy``; else 0.
 
     So short that the slope, negative here, cannot turn before it: there is no other root.
     """
@@ -287,8 +302,8 @@ def close_root(h0, h1, h2, h3, h4, bound, accuracy):
 
 
 def taylor_root(h0, h1, h2, h3, h4, bound, step, accuracy):
-    """The root, where the quartic without the bound gives it to within ``accuracy`` and it is
-    certainly the first; else 0.
+    """Return the root, where the quartic without the bound gives it to within ``accuracy`` and it
+    is certainly the first; else 0.
 
     The step before it is clear; from there on the slope is certainly negative, so there is no other
     root.

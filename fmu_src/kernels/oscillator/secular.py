@@ -11,7 +11,7 @@ An amplitude stands as two slots, its parts by the cosine and by the sine of the
 
 from ..numerics.elementary import TWO_PI, exp_decay, sincos_turns
 from . import memory as at
-from .parameters import alike
+from .parameters import are_nearly_equal
 
 # detuning^2 + (damping over critical)^2 below which the closed form has no four digits to spare
 NEAR_RESONANCE = 1e-8
@@ -20,8 +20,10 @@ LONGEST_DRIVEN = 32.0
 SMALL = 0.5  # of |sigma t|: fourteen terms are exact
 
 
-def is_near(m, b):
-    """Whether branch ``b`` is driven on its natural frequency, with next to no damping."""
+def is_resonant(m, b):
+    """Return whether the linear oscillator ``b`` is driven on its natural frequency, with next to
+    no damping.
+    """
     eta, square = m[at.ETA], m[b + at.OMEGA_SQUARED]
     detuning, twice = square - eta * eta, 2.0 * m[b + at.DAMPING] * eta
     near = detuning * detuning + twice * twice <= 4.0 * NEAR_RESONANCE * square * square
@@ -29,35 +31,35 @@ def is_near(m, b):
 
 
 def set_secular(m):
-    """Find the branches whose amplitudes grow, and set theirs; the nodes are set already.
+    """Find the oscillators whose amplitudes grow, and set their growth; the nodes are set already.
 
     Of two oscillators that are nearly equal both do or none: so their gap keeps its digits.
     """
     if m[at.SECULAR] != 0.0:  # rarely
         clear_secular(m)
-    near_1, near_2 = is_near(m, at.BRANCH_1), is_near(m, at.BRANCH_2)
-    both = (near_1 or near_2) and alike(m)
+    near_1, near_2 = is_resonant(m, at.OSCILLATOR_1), is_resonant(m, at.OSCILLATOR_2)
+    both = (near_1 or near_2) and are_nearly_equal(m)
     if near_1 or both:
-        set_growth(m, at.BRANCH_1)
+        set_growth(m, at.OSCILLATOR_1)
     if near_2 or both:
-        set_growth(m, at.BRANCH_2)
-    if is_near(m, at.BRANCH_3):
-        set_growth(m, at.BRANCH_3)
+        set_growth(m, at.OSCILLATOR_2)
+    if is_resonant(m, at.OSCILLATOR_3):
+        set_growth(m, at.OSCILLATOR_3)
 
 
 def clear_secular(m):
-    """No amplitude grows."""
+    """Record that no amplitude grows."""
     m[at.SECULAR] = 0.0
     for i in range(at.GROWTH_SIZE):
-        m[at.BRANCH_1 + at.DRIVEN + i] = 0.0
-        m[at.BRANCH_2 + at.DRIVEN + i] = 0.0
-        m[at.BRANCH_3 + at.DRIVEN + i] = 0.0
+        m[at.OSCILLATOR_1 + at.DRIVEN + i] = 0.0
+        m[at.OSCILLATOR_2 + at.DRIVEN + i] = 0.0
+        m[at.OSCILLATOR_3 + at.DRIVEN + i] = 0.0
     for i in range(2 * at.EVENT_ORDERS):
         m[at.EVENT_DRIVE + i] = 0.0
 
 
 def set_growth(m, b):
-    """How the amplitude of one branch grows."""
+    """Set the constants by which the amplitude of one oscillator grows."""
     m[at.SECULAR] = 1.0
     m[b + at.DRIVEN] = m[at.FORCING]
     eta, damping, nu = m[at.ETA], m[b + at.DAMPING], m[b + at.NU]
@@ -71,23 +73,23 @@ def set_growth(m, b):
 
 
 def set_step_growth(m, b):
-    """The growth over a spacing, which is the same for all nodes."""
-    h_cos, h_sin, d_cos, d_sin = growth(m, b, m[at.SPACING])
+    """Set the growth over a spacing, which is the same for all nodes."""
+    h_cos, h_sin, d_cos, d_sin = grown_amplitude(m, b, m[at.SPACING])
     m[b + at.STEP_GROWTH] = h_cos
     m[b + at.STEP_GROWTH + 1] = h_sin
     m[b + at.STEP_GROWTH + 2] = d_cos
     m[b + at.STEP_GROWTH + 3] = d_sin
 
 
-def growth(m, b, t):
-    """The amplitude ``c`` and its rate of change a time ``t >= 0`` after it was zero: parts by
-    cosine and by sine.
+def grown_amplitude(m, b, t):
+    """Return the amplitude ``c`` and its rate of change a time ``t >= 0`` after it was zero: parts
+    by cosine and by sine.
     """
     # z = sigma t, and (e^z - 1)/z
     real, imag = -m[b + at.DAMPING] * t, m[b + at.DRIFT] * t
     square = real * real + imag * imag
     if square < SMALL * SMALL:
-        p, q = series(real, imag)
+        p, q = exponential_quotient(real, imag)
         e_real, e_imag = 1.0 + (real * p - imag * q), real * q + imag * p
     else:
         decay = exp_decay(-real)
@@ -101,8 +103,8 @@ def growth(m, b, t):
     return h_cos, h_sin, d_cos, d_sin
 
 
-def series(real, imag):
-    """``(e^z - 1)/z`` for ``|z| < SMALL``, both parts."""
+def exponential_quotient(real, imag):
+    """Return ``(e^z - 1)/z`` for ``|z| < SMALL`` by its series, real and imaginary part."""
     p, q = 1.0, 0.0
     for k in range(14, 1, -1):
         part = 1.0 / k
@@ -110,19 +112,19 @@ def series(real, imag):
     return p, q
 
 
-def pushed(m, b, cosine, sine):
-    """The velocity that the growing amplitude begins with, at a phase."""
+def initial_push(m, b, cosine, sine):
+    """Return the velocity that the growing amplitude begins with, at a phase."""
     return m[b + at.PUSH] * cosine + m[b + at.PUSH + 1] * sine
 
 
-def risen(m, h_cos, h_sin, d_cos, d_sin, cosine, sine):
-    """Displacement and velocity of an amplitude and its rate of change, at a phase."""
+def growing_motion(m, h_cos, h_sin, d_cos, d_sin, cosine, sine):
+    """Return displacement and velocity from an amplitude and its rate of change, at a phase."""
     forced = m[at.ETA] * (h_sin * cosine - h_cos * sine)
     return h_cos * cosine + h_sin * sine, forced + (d_cos * cosine + d_sin * sine)
 
 
 def forced_derivative(m, b, order):
-    """What the forcing adds to a derivative of the displacement, beside what follows from
+    """Return what the forcing adds to a derivative of the displacement, beside what follows from
     displacement and velocity: parts by cosine and by sine.
     """
     cosine, sine, next_cosine, next_sine = 0.0, 0.0, 0.0, m[b + at.DRIVEN]
@@ -138,37 +140,37 @@ def forced_derivative(m, b, order):
 
 
 def set_event_drive(m):
-    """What the forcing adds to the derivatives of the event function, from the first on."""
+    """Set what the forcing adds to the derivatives of the event function, from the first on."""
     flight = m[at.MODE] == at.FLIGHT
     p, q = -m[at.FORCE_V], -m[at.FORCE_X]
     for k in range(1, at.EVENT_ORDERS + 1):
         if flight:
-            low_cosine, low_sine = forced_derivative(m, at.BRANCH_1, k)
-            cosine, sine = forced_derivative(m, at.BRANCH_2, k)
+            low_cosine, low_sine = forced_derivative(m, at.OSCILLATOR_1, k)
+            cosine, sine = forced_derivative(m, at.OSCILLATOR_2, k)
             cosine, sine = cosine - low_cosine, sine - low_sine
         else:
-            low_cosine, low_sine = forced_derivative(m, at.BRANCH_3, k)
-            cosine, sine = forced_derivative(m, at.BRANCH_3, k + 1)
+            low_cosine, low_sine = forced_derivative(m, at.OSCILLATOR_3, k)
+            cosine, sine = forced_derivative(m, at.OSCILLATOR_3, k + 1)
             cosine, sine = p * cosine + q * low_cosine, p * sine + q * low_sine
         m[at.EVENT_DRIVE + 2 * k - 2] = cosine
         m[at.EVENT_DRIVE + 2 * k - 1] = sine
 
 
 def event_drive(m, order, cosine, sine):
-    """The forcing's part of a derivative of the event function, at a phase."""
+    """Return the forcing's part of a derivative of the event function, at a phase."""
     i = at.EVENT_DRIVE + 2 * order - 2
     return m[i] * cosine + m[i + 1] * sine
 
 
-def event_drive_size(m, order):
-    """Its bound."""
+def event_drive_bound(m, order):
+    """Return a bound of :func:`event_drive` over all phases."""
     i = at.EVENT_DRIVE + 2 * order - 2
     return abs(m[i]) + abs(m[i + 1])
 
 
 def driven_bound(m, b, order, time):
-    """Bound of what the forcing adds to a derivative of the displacement for a ``time`` from now
-    on.
+    """Return a bound of what the forcing adds to a derivative of the displacement for a ``time``
+    from now on.
 
     Each derivative is the response of the same oscillator to the forcing's. With R at least its
     rates, ``2 D/R + (omega/R)^2 <= 1``, the forcing's part of the k-th is at most ``(k - 1) F
@@ -188,10 +190,12 @@ def driven_bound(m, b, order, time):
     return bound
 
 
-def event_bound(m, order, time):
-    """The same of the event function."""
+def driven_event_bound(m, order, time):
+    """Return a bound of what the forcing adds to a derivative of the event function for a ``time``
+    from now on.
+    """
     if m[at.MODE] == at.FLIGHT:
-        low = driven_bound(m, at.BRANCH_1, order, time)
-        return low + driven_bound(m, at.BRANCH_2, order, time)
-    high = abs(m[at.FORCE_V]) * driven_bound(m, at.BRANCH_3, order + 1, time)
-    return high + abs(m[at.FORCE_X]) * driven_bound(m, at.BRANCH_3, order, time)
+        low = driven_bound(m, at.OSCILLATOR_1, order, time)
+        return low + driven_bound(m, at.OSCILLATOR_2, order, time)
+    high = abs(m[at.FORCE_V]) * driven_bound(m, at.OSCILLATOR_3, order + 1, time)
+    return high + abs(m[at.FORCE_X]) * driven_bound(m, at.OSCILLATOR_3, order, time)

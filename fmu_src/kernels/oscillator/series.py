@@ -16,9 +16,9 @@ SHORTER = 0.02  # and eight terms
 ENOUGH = 2e-8  # relative: the next step of Newton's method would be a small part of its square
 
 
-def series_order(m, slope, curvature):
-    """How many terms a flight needs that begins with a gap velocity and acceleration: 4 where it is
-    not short.
+def required_order(m, slope, curvature):
+    """Return the order of the series that a flight needs, which begins with a gap velocity
+    ``slope`` and acceleration ``curvature``: 4 where it is not short.
     """
     if curvature >= 0.0:
         return 4
@@ -29,7 +29,8 @@ def series_order(m, slope, curvature):
 
 
 def fifth_bound(m):
-    """Bound of the gap's fifth derivative up to 0.3 of the fastest rate's radian after the start.
+    """Return a bound of the gap's fifth derivative up to 0.3 of the fastest rate's radian after the
+    start.
 
     With R the rate and ``Z = |xi_1| + |xi_1'|/R + |forcing|/R^2`` at the start, all growth up to
     there is below ``e^0.3 < 1.35``, so (6) gives ``|xi_1^(k)| <= (k + 1) R^k Z``, k = 2, 3, 4, to
@@ -50,8 +51,8 @@ def fifth_bound(m):
 
 
 def set_series(m, x, v, slope, order):
-    """Derivatives of xi_1 and of the gap from ``gap = 0, gap' = slope`` at displacement ``x``,
-    velocity ``v`` of mass 1: at least as many as a series of an order needs.
+    """Set the derivatives of xi_1 and of the gap from ``gap = 0, gap' = slope`` at displacement
+    ``x``, velocity ``v`` of mass 1: at least as many as a series of an order needs.
     """
     m[at.SERIES_X] = x
     m[at.SERIES_X + 2] = v
@@ -79,8 +80,10 @@ def set_series(m, x, v, slope, order):
 
 
 def set_derivatives(m, k, drive):
-    """The derivatives of order k from the two before and that of the forcing, of order k - 2."""
-    one, two = at.BRANCH_1, at.BRANCH_2
+    """Set the derivatives of order k from the two before and that of the forcing, of order k -
+    2.
+    """
+    one, two = at.OSCILLATOR_1, at.OSCILLATOR_2
     i = 2 * k
     x, v = m[at.SERIES_X + i - 4], m[at.SERIES_X + i - 2]
     gap, slope = m[at.SERIES_GAP + i - 4], m[at.SERIES_GAP + i - 2]
@@ -90,9 +93,9 @@ def set_derivatives(m, k, drive):
     )
 
 
-def short_flight(m, order):
-    """Duration of a short flight, where it is certain: its gap is concave throughout, so it has one
-    root; else 0.
+def short_flight_duration(m, order):
+    """Return the duration of a short flight, where it is certain: its gap is concave throughout, so
+    it has one root; else 0.
 
     Parameters
     ----------
@@ -126,7 +129,7 @@ def short_flight(m, order):
             5.0 * c6 + 6.0 * c7 * root
         )
         if order > 8:
-            value += t4 * t4 * tail(m, g + 18, root)
+            value += t4 * t4 * series_tail(m, g + 18, root)
         step = value / slope
         root -= step
         if root <= 0.0 or root >= longest:
@@ -136,15 +139,15 @@ def short_flight(m, order):
     return root
 
 
-def tail(m, first, tau):
-    """Terms nine to twelve of ``gap/tau``, over ``tau^8``."""
+def series_tail(m, first, tau):
+    """Return the terms nine to twelve of ``gap/tau``, over ``tau^8``."""
     d9, d10 = m[first] * (1.0 / 362880.0), m[first + 2] * (1.0 / 3628800.0)
     d11, d12 = m[first + 4] * (1.0 / 39916800.0), m[first + 6] * (1.0 / 479001600.0)
     return (d9 + d10 * tau) + tau * tau * (d11 + d12 * tau)
 
 
-def taylor(m, first, tau):
-    """Value of a series with the derivatives in every second slot from ``first`` on."""
+def taylor_value(m, first, tau):
+    """Return the value of a series with the derivatives in every second slot from ``first`` on."""
     t2 = tau * tau
     t4 = t2 * t2
     value = (m[first] + tau * m[first + 2]) + t2 * (
@@ -167,8 +170,8 @@ def taylor(m, first, tau):
     return value
 
 
-def gap_at(m, tau):
-    """The gap and its first four derivatives."""
+def gap_derivatives(m, tau):
+    """Return the gap and its first four derivatives at ``tau``."""
     h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
     power = 1.0  # tau^k/k!
     for k in range(int(m[at.SERIES]) + 1):

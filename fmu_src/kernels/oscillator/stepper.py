@@ -9,22 +9,31 @@ from . import memory as at
 from .event_function import evaluate
 from .excitation import begin_segment, inputs_changed
 from .hermite import has_summit
-from .maximum import watch
+from .maximum import walk_with_largest_gap
 from .motion import (
-    begin,
     begin_common,
     begin_flight,
+    begin_state,
     end_state,
     from_rest_together,
     from_unloaded,
     gap_between,
     move_origin,
-    set_turn,
+    set_phase,
     state_at,
 )
-from .outputs import SHORT, found, impulse, look, short_impulse, total, write, written
+from .outputs import (
+    SHORT,
+    finite_check_sum,
+    impulse,
+    last_written_point,
+    outputs_at,
+    point_of,
+    short_impulse,
+    write_outputs,
+)
 from .parameters import derive
-from .roots import lifted, walk
+from .roots import value_on_decided_side, walk
 
 TOUCHING = 4.440892098500626e-16  # 2**-51, relative: a gap at the start that is rounding alone
 WORK_BASE = 100000.0  # evaluations of the event function a step may take whatever its length,
@@ -61,22 +70,22 @@ def initialize(m, time):
         m[at.X2_START] != m[at.X1_START] or m[at.V2_START] != m[at.V1_START]
     ):
         return at.START_BONDED
-    set_turn(m, m[at.PHASE_START] / TWO_PI)
+    set_phase(m, m[at.PHASE_START] / TWO_PI)
     m[at.CUBIC_SET] = 1.0
     begin_segment(m)
     m[at.CUBIC_SET] = 0.0
     m[at.WORK_LIMIT] = WORK_BASE
     m[at.MODE] = at.GLUED if m[at.BONDED] != 0.0 else at.CONTACT
-    begin(m, x1, m[at.V1_START] / m[at.OMEGA], x2, m[at.V2_START] / m[at.OMEGA], gap, 0)
-    seen = look(m, 0.0)
-    write(m, seen)
+    begin_state(m, x1, m[at.V1_START] / m[at.OMEGA], x2, m[at.V2_START] / m[at.OMEGA], gap, 0)
+    seen = outputs_at(m, 0.0)
+    write_outputs(m, seen)
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
-    return finite(total(seen))
+    return check_finite(finite_check_sum(seen))
 
 
 def starting_point(m):
-    """Displacements at the start as :func:`.motion.begin` takes them, and the gap; below zero where
-    the masses overlap.
+    """Return the displacements at the start as :func:`.motion.begin_state` takes them, and the gap;
+    below zero where the masses overlap.
 
     Start positions count from the position at rest: with a preload that is where the masses rest
     together. With a clearance, a gap that is rounding alone is none.
@@ -93,7 +102,7 @@ def starting_point(m):
 
 
 def local_time(m, time):
-    """Time since the present state's start, in units of tau (4)."""
+    """Return the time since the present state's start, in units of tau (4)."""
     tau = (m[at.OMEGA] * (time - m[at.START_TIME]) - m[at.ORIGIN]) - m[at.ORIGIN_LOW]
     return tau if tau > 0.0 else 0.0
 
@@ -123,7 +132,11 @@ def advance(m, time):
         now = 0.0
         m[at.PHASE_COSINE] = m[at.COSINE]
         m[at.PHASE_SINE] = m[at.SINE]
-    left, mode, impacts = written(m, m[at.CUBIC_AGE] + now), m[at.MODE], m[at.IMPACT_COUNT]
+    left, mode, impacts = (
+        last_written_point(m, m[at.CUBIC_AGE] + now),
+        m[at.MODE],
+        m[at.IMPACT_COUNT],
+    )
     m[at.X_REL_MAX] = m[at.X_REL] if m[at.X_REL_MAX_ON] != 0.0 else 0.0
     tau = run_samples(m, before, time, now)
     if m[at.WORK] >= m[at.WORK_LIMIT]:  # rarely
@@ -132,11 +145,12 @@ def advance(m, time):
     if m[at.STOPPED] != 0.0:  # rarely
         time = min(time, m[at.IMPACT_TIME])
     same = m[at.MODE] == mode and m[at.IMPACT_COUNT] == impacts
-    return arrive(m, time, tau, left, m[at.X_REL_MAX], same)
+    return finish_step(m, time, tau, left, m[at.X_REL_MAX], same)
 
 
 def coast(m, time):
-    """As :func:`advance`, where the present state lasts beyond ``time`` and only outputs change.
+    """Advance as :func:`advance` does, where the present state lasts beyond ``time`` and only
+    outputs change.
 
     Returns
     -------
@@ -144,7 +158,7 @@ def coast(m, time):
         OK, or UNFINISHED where there is more to do, or NOT_FINITE: then nothing has changed.
     """
     tau = local_time(m, time)
-    if not lasts(m, tau) or m[at.SAMPLE_COUNT] != 0.0 or inputs_changed(m):
+    if not lasts_beyond(m, tau) or m[at.SAMPLE_COUNT] != 0.0 or inputs_changed(m):
         return at.UNFINISHED
     now = local_time(m, m[at.TIME])
     highest = 0.0
@@ -153,23 +167,25 @@ def coast(m, time):
         if not is_without_summit(m, now, tau):
             return at.UNFINISHED
     m[at.WORK] = 0.0
-    return arrive(m, time, tau, written(m, m[at.CUBIC_AGE] + now), highest, True)
+    return finish_step(m, time, tau, last_written_point(m, m[at.CUBIC_AGE] + now), highest, True)
 
 
-def lasts(m, tau):
-    """Whether the present state is known to last beyond an age."""
+def lasts_beyond(m, tau):
+    """Return whether the present state is known to last beyond an age."""
     return (m[at.CLEAR] if m[at.END_KIND] == at.END_OPEN else m[at.END]) > tau
 
 
 def is_without_summit(m, start, stop):
-    """Whether a part of the present state is seen at once to have its largest gap at an end."""
+    """Return whether a quick test shows that a part of the present state has its largest gap at an
+    end.
+    """
     if m[at.MODE] != at.FLIGHT:
         return True
     within = m[at.LEFT_AGE] < start and stop < m[at.RIGHT_AGE] and m[at.CLEAR] <= m[at.RIGHT_AGE]
     return within and m[at.SERIES] == 0.0 and not has_summit(m, start, stop)
 
 
-def arrive(m, time, tau, left, highest, same):
+def finish_step(m, time, tau, left, highest, same):
     """Write all outputs at the point ``time``, at the present state's age ``tau``, if all are
     finite.
 
@@ -182,8 +198,8 @@ def arrive(m, time, tau, left, highest, same):
         OK, or NOT_FINITE; then nothing is written.
     """
     h = time - m[at.TIME]
-    seen = look(m, tau)
-    reached = found(m, seen, tau)
+    seen = outputs_at(m, tau)
+    reached = point_of(m, seen, tau)
     if same and h * m[at.OMEGA] * m[at.RATE] < SHORT:
         force, moment = short_impulse(m, h, left, reached)
     else:
@@ -192,12 +208,12 @@ def arrive(m, time, tau, left, highest, same):
     if m[at.X_REL_MAX_ON] != 0.0 and gap > highest:
         highest = gap
     last = m[at.IMPACT_TIME] + m[at.IMPACT_VELOCITY] + m[at.IMPACT_ENERGY]
-    code = finite(total(seen) + (force + moment) + (highest + last))
+    code = check_finite(finite_check_sum(seen) + (force + moment) + (highest + last))
     if code == at.OK:
         m[at.TIME] = time
         m[at.STEP] = h
         m[at.CUBIC_SET] = 0.0
-        write(m, seen)
+        write_outputs(m, seen)
         m[at.BOX_IMPULSE] = force
         m[at.BOX_IMPULSE_MOMENT] = moment
         m[at.X_REL_MAX] = highest
@@ -205,8 +221,8 @@ def arrive(m, time, tau, left, highest, same):
     return code
 
 
-def finite(sum_of_outputs):
-    """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
+def check_finite(sum_of_outputs):
+    """Return OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
     return at.OK if sum_of_outputs - sum_of_outputs == 0.0 else at.NOT_FINITE
 
 
@@ -217,7 +233,7 @@ def renew_segment(m, now):
     """
     x1, v1, x2, v2 = state_at(m, now)
     gap = gap_between(m, now, x1, x2)
-    goes_on = now > 0.0 and m[at.MODE] != at.GLUED and (gap > 0.0 or inside(m, now))
+    goes_on = now > 0.0 and m[at.MODE] != at.GLUED and (gap > 0.0 or is_inside_state(m, now))
     if gap > 0.0 or (goes_on and m[at.MODE] == at.FLIGHT):
         x1, x2 = from_unloaded(m, x1, x2)
     else:
@@ -225,20 +241,20 @@ def renew_segment(m, now):
     move_origin(m, now)
     begin_segment(m)
     if not goes_on:
-        begin(m, x1, v1, x2, v2, gap, 0)
+        begin_state(m, x1, v1, x2, v2, gap, 0)
     elif m[at.MODE] == at.FLIGHT:
         begin_flight(m, x1, v1, x2, v2, gap)
     else:
         begin_common(m, at.CONTACT, x1, v1)
 
 
-def inside(m, tau):
-    """Whether the event function has not been crossed: positive, or zero but for rounding.
+def is_inside_state(m, tau):
+    """Return whether the event function has not been crossed: positive, or zero but for rounding.
 
     Gap and contact force do not jump with the inputs.
     """
     h0, h1, _, _, _, _ = evaluate(m, tau)
-    return h0 > 0.0 or lifted(m, tau, h0, h1) > 0.0
+    return h0 > 0.0 or value_on_decided_side(m, tau, h0, h1) > 0.0
 
 
 def run_samples(m, start, time, now):
@@ -272,12 +288,12 @@ def keep_sample(m, i, tau):
 
 
 def run_states(m, time, now):
-    """Run through all states that end by ``time``; returns the present state's age there."""
+    """Run through all states that end by ``time``, and return the present state's age there."""
     watching = m[at.X_REL_MAX_ON] != 0.0
     while True:
         tau = local_time(m, time)
         if watching and m[at.MODE] == at.FLIGHT:
-            watch(m, now, tau)
+            walk_with_largest_gap(m, now, tau)
         else:
             walk(m, tau)
         if m[at.END_KIND] == at.END_OPEN or m[at.END] > tau or m[at.WORK] >= m[at.WORK_LIMIT]:

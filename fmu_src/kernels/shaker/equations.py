@@ -17,21 +17,21 @@ NO_NUMBER = 1e400 - 1e400  # and the sub-step is tried again
 
 
 def begin_force(m):
-    """Let the force's cubic begin at the communication point, where one of its inputs was set."""
+    """Begin the force's cubic at the communication point, where one of its inputs was set."""
     if m[at.FORCE_SET] != 0.0:
         m[at.FORCE_TIME] = m[at.TIME]
         m[at.FORCE_SET] = 0.0
 
 
 def force(m, t):
-    """Force on the box, N, ``t`` after it was set."""
+    """Return the force on the box, N, ``t`` after it was set."""
     return m[at.BOX_FORCE] + t * (
         m[at.BOX_FORCE_1] + 0.5 * t * (m[at.BOX_FORCE_2] + t * m[at.BOX_FORCE_3] / 3.0)
     )
 
 
 def force_now(m):
-    """Force on the box at the communication point, N, and two time derivatives."""
+    """Return the force on the box at the communication point, N, and two time derivatives."""
     t = m[at.TIME] - m[at.FORCE_TIME]
     second = m[at.BOX_FORCE_2] + t * m[at.BOX_FORCE_3]
     first = m[at.BOX_FORCE_1] + t * (m[at.BOX_FORCE_2] + 0.5 * t * m[at.BOX_FORCE_3])
@@ -39,7 +39,7 @@ def force_now(m):
 
 
 def static_current(m, speed):
-    """Current without inductance, A."""
+    """Return the current without inductance, A."""
     return (m[at.VOLTAGE] - m[at.MOTOR_CONSTANT] * speed) / m[at.ARMATURE_RESISTANCE]
 
 
@@ -53,8 +53,8 @@ def accelerations(m, sine, cosine, p, q):
     return (inertia * p - coupling * q) / determinant, (mass * q - coupling * p) / determinant
 
 
-def rates(m, stage, t):
-    """Right-hand side at the states in STAGE, into row ``stage`` of RATES.
+def compute_rates(m, stage, t):
+    """Write the right-hand side at the states in STAGE into row ``stage`` of RATES.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ import math
 from ..numerics.elementary import TWO_PI, fraction
 from . import memory as at
 from . import tableau as formula
-from .equations import rates
+from .equations import compute_rates
 from .tableau import (
     deviation_3,
     deviation_5,
@@ -35,54 +35,54 @@ SAFETY, SMALLEST, LARGEST = 0.9, 0.2, 5.0  # change of length from one sub-step 
 TINY, MANY = 1e-300, 1e6
 
 
-def stages(m, t, h):
-    """All stages of a sub-step of length ``h``; its end is in NEXT.
+def compute_stages(m, t, h):
+    """Compute all stages of a sub-step of length ``h``; its end is in NEXT.
 
     It begins ``t`` after the force was set.
     """
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s]
-    rates(m, 0, t)
+    compute_rates(m, 0, t)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_1(m, s)
-    rates(m, 1, t + formula.NODE_1 * h)
+    compute_rates(m, 1, t + formula.NODE_1 * h)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_2(m, s)
-    rates(m, 2, t + formula.NODE_2 * h)
+    compute_rates(m, 2, t + formula.NODE_2 * h)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_3(m, s)
-    rates(m, 3, t + formula.NODE_3 * h)
+    compute_rates(m, 3, t + formula.NODE_3 * h)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_4(m, s)
-    rates(m, 4, t + formula.NODE_4 * h)
+    compute_rates(m, 4, t + formula.NODE_4 * h)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_5(m, s)
-    rates(m, 5, t + formula.NODE_5 * h)
+    compute_rates(m, 5, t + formula.NODE_5 * h)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_6(m, s)
-    rates(m, 6, t + formula.NODE_6 * h)
+    compute_rates(m, 6, t + formula.NODE_6 * h)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_7(m, s)
-    rates(m, 7, t + formula.NODE_7 * h)
+    compute_rates(m, 7, t + formula.NODE_7 * h)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_8(m, s)
-    rates(m, 8, t + formula.NODE_8 * h)
+    compute_rates(m, 8, t + formula.NODE_8 * h)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_9(m, s)
-    rates(m, 9, t + formula.NODE_9 * h)
+    compute_rates(m, 9, t + formula.NODE_9 * h)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_10(m, s)
-    rates(m, 10, t + formula.NODE_10 * h)
+    compute_rates(m, 10, t + formula.NODE_10 * h)
     for s in range(at.STATES):
         m[at.STAGE + s] = m[at.STATE + s] + h * slope_11(m, s)
-    rates(m, 11, t + formula.NODE_11 * h)
+    compute_rates(m, 11, t + formula.NODE_11 * h)
     for s in range(at.STATES):
         m[at.NEXT + s] = m[at.STATE + s] + h * slope(m, s)
     m[at.WORK] += at.STAGES
 
 
-def scale(m, state, h):
-    """What an error of a state is measured by.
+def error_scale(m, state, h):
+    """Return the scale that an error of a state is measured by.
 
     Its own size, and what the other states make of it within the sub-step.
     """
@@ -105,14 +105,14 @@ def scale(m, state, h):
     return size
 
 
-def error(m, h):
-    """Estimated error of the sub-step over what is allowed.
+def error_ratio(m, h):
+    """Return the estimated error of the sub-step over what is allowed.
 
     Hairer's combination of the estimates of order 5 and 3.
     """
     sum_5, sum_3 = 0.0, 0.0
     for state in range(at.CONTROLLED):
-        allowed = TOLERANCE * scale(m, state, h) + TINY
+        allowed = TOLERANCE * error_scale(m, state, h) + TINY
         e5 = deviation_5(m, state) * h / allowed
         e3 = deviation_3(m, state) * h / allowed
         sum_5 += e5 * e5
@@ -122,7 +122,7 @@ def error(m, h):
     return sum_5 / math.sqrt((sum_5 + 0.01 * sum_3) * at.CONTROLLED)
 
 
-def accept(m):
+def accept_substep(m):
     """Make the sub-step's end the present state."""
     turned = m[at.NEXT + at.ROTATION]
     for state in range(at.STATES):
@@ -135,8 +135,8 @@ def accept(m):
     m[at.ANGLE] = total
 
 
-def factor(ratio):
-    """How much longer the next sub-step may be, for an error ``ratio`` of this one.
+def length_factor(ratio):
+    """Return how much longer the next sub-step may be, for an error ``ratio`` of this one.
 
     Its eighth root, by square roots.
     """
@@ -146,7 +146,7 @@ def factor(ratio):
     return min(LARGEST, max(SMALLEST, change))
 
 
-def through(m, length):
+def integrate_step(m, length):
     """Integrate over a communication step of ``length`` s.
 
     Returns
@@ -169,14 +169,16 @@ def through(m, length):
         m[at.REPORT] = t
         if m[at.WORK] >= m[at.WORK_LIMIT]:
             return at.UNFINISHED
-        stages(m, age + t, h)
-        ratio = error(m, h)
+        compute_stages(m, age + t, h)
+        ratio = error_ratio(m, h)
         if ratio <= 1.0:
-            accept(m)
+            accept_substep(m)
             t = length if h == left else t + h
-            m[at.HINT] = h * factor(ratio)
+            m[at.HINT] = h * length_factor(ratio)
         elif h <= 1e-14 * length:
             return at.NOT_FINITE
         else:
-            m[at.HINT] = h * min(1.0, factor(ratio)) if ratio - ratio == 0.0 else h * SMALLEST
+            m[at.HINT] = (
+                h * min(1.0, length_factor(ratio)) if ratio - ratio == 0.0 else h * SMALLEST
+            )
     return at.OK

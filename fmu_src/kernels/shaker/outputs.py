@@ -8,8 +8,8 @@ from . import memory as at
 from .equations import accelerations, force_now, static_current
 
 
-def write(m):
-    """All outputs but the angle, which is summed where it grows."""
+def write_outputs(m):
+    """Write all outputs but the angle, which is summed where it grows."""
     sine, cosine = sincos_turns(m[at.TURN])
     position, velocity = m[at.STATE + at.POSITION], m[at.STATE + at.VELOCITY]
     speed = m[at.STATE + at.ROTATION_SPEED]
@@ -41,7 +41,7 @@ def write(m):
 
 
 def current_rate(m, rotor):
-    """Time derivative of the current, A/s, with the voltage constant."""
+    """Return the time derivative of the current, A/s, with the voltage constant."""
     constant = m[at.MOTOR_CONSTANT]
     if m[at.ARMATURE_INDUCTANCE] > 0.0:
         drop = m[at.VOLTAGE] - m[at.ARMATURE_RESISTANCE] * m[at.STATE + at.CURRENT]
@@ -51,7 +51,7 @@ def current_rate(m, rotor):
 
 
 def jerks(m, sine, cosine, box, rotor):
-    """Time derivatives of the accelerations of box and rotor.
+    """Return the time derivatives of the accelerations of box and rotor.
 
     The equations differentiated once, with the voltage constant.
     """

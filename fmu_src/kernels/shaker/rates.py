@@ -7,7 +7,7 @@ from .outputs import current_rate, jerks
 
 
 def differentiate(m, time):
-    """Rates of change of the outputs into OUTPUT_RATES; ``time`` is not used.
+    """Write the rates of change of the outputs into OUTPUT_RATES; ``time`` is not used.
 
     Returns
     -------
@@ -39,19 +39,20 @@ def differentiate(m, time):
 
 
 def right_hand_side(m, sine):
-    """Right-hand side of the box's equation at the communication point, N."""
+    """Return the right-hand side of the box's equation at the communication point, N."""
     speed = m[at.SPEED]
     p = m[at.UNBALANCE] * speed * speed * sine - m[at.BOX_DAMPING] * m[at.BOX_VELOCITY]
     return p - m[at.BOX_STIFFNESS] * m[at.BOX_POSITION] + force_now(m)[0]
 
 
 def rotor_acceleration(m, sine, cosine):
-    """Acceleration of the rotor, rad/s2."""
+    """Return the acceleration of the rotor, rad/s2."""
     return accelerations(m, sine, cosine, right_hand_side(m, sine), m[at.MOTOR_TORQUE])[1]
 
 
 def snap(m, sine, cosine, b):
-    """Second time derivative of the box's acceleration, the equations differentiated twice.
+    """Return the second time derivative of the box's acceleration, the equations differentiated
+    twice.
 
     ``b`` is the rotor's acceleration.
     """

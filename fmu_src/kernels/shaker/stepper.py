@@ -8,8 +8,8 @@ import math
 from ..numerics.elementary import TWO_PI, fraction
 from . import memory as at
 from .equations import begin_force
-from .integrate import through
-from .outputs import write
+from .integrate import integrate_step
+from .outputs import write_outputs
 
 WORK_BASE = 100000.0  # evaluations of the right-hand side a step may take whatever its length,
 WORK_RATE = 200.0  # and for each radian of box, rotor or no-load speed,
@@ -45,8 +45,8 @@ def initialize(m, time):
     m[at.STATE + at.CURRENT] = m[at.CURRENT_START]
     m[at.ANGLE] = m[at.ANGLE_START]
     m[at.TURN] = fraction(m[at.ANGLE_START] / TWO_PI)
-    write(m)
-    return finite(m)
+    write_outputs(m)
+    return check_finite(m)
 
 
 def advance(m, time):
@@ -74,19 +74,19 @@ def advance(m, time):
         m[at.WORK] = least
         m[at.REPORT] = before
         return too_many
-    code = through(m, length)
+    code = integrate_step(m, length)
     m[at.REPORT] += before
     if code != at.OK:
         return too_many if code == at.UNFINISHED else code
     m[at.TIME] = time
     m[at.EVALUATIONS] = m[at.WORK]
-    write(m)
-    return finite(m)
+    write_outputs(m)
+    return check_finite(m)
 
 
 def fastest_decay(m):
-    """The largest rate, 1/s, at which something decays: the box's speed by its damper, the current
-    by the armature's resistance, or, without inductance, the rotor's speed by the motor.
+    """Return the largest rate, 1/s, at which something decays: the box's speed by its damper, the
+    current by the armature's resistance, or, without inductance, the rotor's speed by the motor.
     """
     constant, resistance = m[at.MOTOR_CONSTANT], m[at.ARMATURE_RESISTANCE]
     if m[at.ARMATURE_INDUCTANCE] > 0.0:
@@ -97,7 +97,7 @@ def fastest_decay(m):
 
 
 def refresh(m, time):
-    """Outputs for the inputs as they are now; ``time`` is not used.
+    """Write the outputs for the inputs as they are now; ``time`` is not used.
 
     Returns
     -------
@@ -105,12 +105,12 @@ def refresh(m, time):
         OK, or NOT_FINITE.
     """
     begin_force(m)
-    write(m)
-    return finite(m)
+    write_outputs(m)
+    return check_finite(m)
 
 
-def finite(m):
-    """OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
+def check_finite(m):
+    """Return OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
     total = 0.0
     for i in range(at.BOX_POSITION, at.TIME):
         total += m[i]

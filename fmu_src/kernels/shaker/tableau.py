@@ -35,22 +35,22 @@ K11 = RATES + 11 * STATES
 
 
 def slope_1(m, s):
-    """Mean rate up to stage 1."""
+    """Return the mean rate of state ``s`` up to stage 1."""
     return 0.05260015195876773 * m[K0 + s]
 
 
 def slope_2(m, s):
-    """Mean rate up to stage 2."""
+    """Return the mean rate of state ``s`` up to stage 2."""
     return 0.0197250569845379 * m[K0 + s] + 0.0591751709536137 * m[K1 + s]
 
 
 def slope_3(m, s):
-    """Mean rate up to stage 3."""
+    """Return the mean rate of state ``s`` up to stage 3."""
     return 0.02958758547680685 * m[K0 + s] + 0.08876275643042054 * m[K2 + s]
 
 
 def slope_4(m, s):
-    """Mean rate up to stage 4."""
+    """Return the mean rate of state ``s`` up to stage 4."""
     return (
         0.2413651341592667 * m[K0 + s]
         + -0.8845494793282861 * m[K2 + s]
@@ -59,7 +59,7 @@ def slope_4(m, s):
 
 
 def slope_5(m, s):
-    """Mean rate up to stage 5."""
+    """Return the mean rate of state ``s`` up to stage 5."""
     return (
         0.037037037037037035 * m[K0 + s]
         + 0.17082860872947386 * m[K3 + s]
@@ -68,7 +68,7 @@ def slope_5(m, s):
 
 
 def slope_6(m, s):
-    """Mean rate up to stage 6."""
+    """Return the mean rate of state ``s`` up to stage 6."""
     return (
         0.037109375 * m[K0 + s]
         + 0.17025221101954405 * m[K3 + s]
@@ -78,7 +78,7 @@ def slope_6(m, s):
 
 
 def slope_7(m, s):
-    """Mean rate up to stage 7."""
+    """Return the mean rate of state ``s`` up to stage 7."""
     return (
         0.03709200011850479 * m[K0 + s]
         + 0.17038392571223998 * m[K3 + s]
@@ -89,7 +89,7 @@ def slope_7(m, s):
 
 
 def slope_8(m, s):
-    """Mean rate up to stage 8."""
+    """Return the mean rate of state ``s`` up to stage 8."""
     return (
         0.6241109587160757 * m[K0 + s]
         + -3.3608926294469414 * m[K3 + s]
@@ -101,7 +101,7 @@ def slope_8(m, s):
 
 
 def slope_9(m, s):
-    """Mean rate up to stage 9."""
+    """Return the mean rate of state ``s`` up to stage 9."""
     return (
         0.47766253643826434 * m[K0 + s]
         + -2.4881146199716677 * m[K3 + s]
@@ -114,7 +114,7 @@ def slope_9(m, s):
 
 
 def slope_10(m, s):
-    """Mean rate up to stage 10."""
+    """Return the mean rate of state ``s`` up to stage 10."""
     return (
         -0.9371424300859873 * m[K0 + s]
         + 5.186372428844064 * m[K3 + s]
@@ -128,7 +128,7 @@ def slope_10(m, s):
 
 
 def slope_11(m, s):
-    """Mean rate up to stage 11."""
+    """Return the mean rate of state ``s`` up to stage 11."""
     return (
         2.273310147516538 * m[K0 + s]
         + -10.53449546673725 * m[K3 + s]
@@ -143,7 +143,7 @@ def slope_11(m, s):
 
 
 def slope(m, s):
-    """Mean rate over the whole sub-step, order 8."""
+    """Return the mean rate of state ``s`` over the whole sub-step, order 8."""
     return (
         0.054293734116568765 * m[K0 + s]
         + 4.450312892752409 * m[K5 + s]
@@ -157,7 +157,7 @@ def slope(m, s):
 
 
 def deviation_5(m, s):
-    """Its difference to a formula of order 5."""
+    """Return the difference of :func:`slope` to a formula of order 5."""
     return (
         0.01312004499419488 * m[K0 + s]
         + -1.2251564463762044 * m[K5 + s]
@@ -171,7 +171,7 @@ def deviation_5(m, s):
 
 
 def deviation_3(m, s):
-    """Its difference to a formula of order 3."""
+    """Return the difference of :func:`slope` to a formula of order 3."""
     return (
         -0.18980075407240762 * m[K0 + s]
         + 4.450312892752409 * m[K5 + s]

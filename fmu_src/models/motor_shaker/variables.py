@@ -34,22 +34,22 @@ ALL = (*BOX, *ROTOR, *(name for name in CIRCUIT if name not in ROTOR), "voltage"
 
 
 def positive(name: str, unit: str, start: float, description: str) -> Variable:
-    """A parameter that is not zero."""
+    """Return a parameter that is not zero."""
     return parameter(name, unit, start, description, minimum=TINY, maximum=LARGE)
 
 
 def not_negative(name: str, unit: str, start: float, description: str) -> Variable:
-    """A parameter that may be zero."""
+    """Return a parameter that may be zero."""
     return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE)
 
 
 def start(name: str, unit: str, description: str, limit: float = LIMIT, **more: Any) -> Variable:
-    """The start value of a state."""
+    """Return the start value of a state."""
     return parameter(name, unit, 0.0, description, minimum=-limit, maximum=limit, **more)
 
 
 def given(name: str, unit: str, description: str, start: float = 0.0, **more: Any) -> Variable:
-    """An input."""
+    """Return an input."""
     return drive(name, unit, start, description, minimum=-LIMIT, maximum=LIMIT, **more)
 
 

@@ -1,4 +1,6 @@
-"""What the return codes of the kernel say. Standard library only: it travels inside the FMU."""
+"""The messages for the return codes of the kernel. Standard library only: it travels inside the
+FMU.
+"""
 
 from ...kernels.oscillator import memory as at
 from ...runtime.table import with_slots

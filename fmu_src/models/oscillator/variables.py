@@ -58,7 +58,7 @@ ALL = (*STRUCTURE, "bonded", *STARTS, *DRIVE, *EXTRA)
 
 
 def start(name: str, unit: str, description: str) -> Variable:
-    """The start value of a co-ordinate."""
+    """Return the start value of a co-ordinate."""
     return parameter(name, unit, 0.0, description, minimum=-HUGE, maximum=HUGE)
 
 
@@ -67,7 +67,7 @@ COUNT: dict[str, Any] = {"variability": "discrete", "type": INTEGER, "minimum": 
 
 
 def samples(name: str, unit: str, description: str) -> tuple[Variable, ...]:
-    """A local variable for each state kept inside a step."""
+    """Return a local variable for each state kept inside a step."""
     return tuple(
         Variable(
             f"{name}[{i + 1}]",

@@ -73,7 +73,7 @@ def test_messages_name_slots():
 
 def test_no_slot_lies_in_another():
     """Each name has its own place; offsets inside a branch count from 0 on their own."""
-    assert oscillator.BRANCH_2 - oscillator.BRANCH_1 == oscillator.STEP_GROWTH + 4
+    assert oscillator.OSCILLATOR_2 - oscillator.OSCILLATOR_1 == oscillator.STEP_GROWTH + 4
     outputs = oscillator.X1_SAMPLE - oscillator.X1
     assert oscillator.RATES + outputs == oscillator.ADDED_RATES
     added = oscillator.TIME - oscillator.EVALUATIONS

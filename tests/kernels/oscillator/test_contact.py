@@ -11,7 +11,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.contact import contact_force
+from fmu_src.kernels.oscillator.contact import gap_acceleration
 from fmu_src.kernels.oscillator.motion import state_at
 
 from . import truth
@@ -114,7 +114,9 @@ def test_pressed_together_all_through_contact(values):
     assert len(contacts) >= 5
     for state, entry, end in contacts:
         ages = np.linspace(entry, end, 200)
-        force = np.array([contact_force(state, *state_at(state, float(age))[:2]) for age in ages])
+        force = np.array(
+            [gap_acceleration(state, *state_at(state, float(age))[:2]) for age in ages]
+        )
         size = np.abs(force).max()
         assert force[1:-1].max() < 0.0
         if state[at.END_KIND] == at.END_EVENT:

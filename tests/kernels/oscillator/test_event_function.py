@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import event_function
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.contact import first_derivative
+from fmu_src.kernels.oscillator.contact import first_nonzero_derivative
 from fmu_src.kernels.oscillator.motion import begin_common
 from fmu_src.kernels.oscillator.nodes import LONGEST
 
@@ -92,7 +92,7 @@ def test_bounds_of_nearly_equal_oscillators_hold_as_long_as_they_are_used(
     equal = {"k2": values["m2"] * (1.0 + near), "d2": values["d1"] * values["m2"] * (1.0 - near)}
     x1, v1, rise, speed = state
     m, signal = flight_and_gap({**values, **equal}, (x1, v1, x1 + gap * rise, v1 + gap * speed))
-    assert event_function.alike(m)
+    assert event_function.are_nearly_equal(m)
     spacing = m[at.SPACING]
     found = event_function.evaluate(m, age)[5]
     for _ in range(5):
@@ -111,7 +111,7 @@ def test_bounds_of_higher_derivatives(values, state, order):
     for _ in range(order):
         signal = signal.derivative()
     highest = np.abs(signal.sample(np.linspace(0.0, 60.0, 3000))).max()
-    assert highest <= sum(event_function.bounds(m, order)) * (1 + 1e-9) + rounding
+    assert highest <= sum(event_function.derivative_bounds(m, order)) * (1 + 1e-9) + rounding
 
 
 @examples(60)
@@ -119,7 +119,7 @@ def test_bounds_of_higher_derivatives(values, state, order):
 def test_the_derivative_that_decides_on_the_boundary_is_newtons(values, state, lowest):
     """Dampers, box and all, in each order: what comes after a release hangs on them."""
     m, signal = contact_and_pull(values, state)
-    order, value = first_derivative(m, state[0], state[1], lowest)
+    order, value = first_nonzero_derivative(m, state[0], state[1], lowest)
     assume(order >= 0)
     rate = max(1.0, signal.fastest())
     scale = (size(signal) + 1.0) * rate ** (order + 2)

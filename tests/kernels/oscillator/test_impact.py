@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.impact import (
-    coefficient,
+    chattering_ends,
     common_velocity,
     count_impact,
-    restitution,
-    sticks,
+    restitution_coefficient,
+    velocities_after_impact,
 )
 from fmu_src.kernels.oscillator.motion import end_state, state_at
 
@@ -40,7 +40,7 @@ def kinetic(m, v1, v2):
 def test_momentum_restitution_and_energy(mu, e, v1, v2):
     assume(v1 > v2)
     m = structure(mu, e)
-    w1, w2 = restitution(m, v1, v2, e)
+    w1, w2 = velocities_after_impact(m, v1, v2, e)
     speed = abs(v1) + abs(v2)
     assert w1 + mu * w2 == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
     assert w2 - w1 == pytest.approx(e * (v1 - v2), abs=4e-15 * speed)
@@ -56,9 +56,9 @@ def test_restitution_that_decreases_with_the_speed_never_adds_energy(mu, e, slop
     assume(v1 > v2)
     m = structure(mu, e, e_slope=slope)
     closing, speed = v1 - v2, abs(v1) + abs(v2)
-    now = coefficient(m, closing)
+    now = restitution_coefficient(m, closing)
     assert now == pytest.approx(e / (1.0 + slope * m[at.OMEGA] * closing), rel=1e-15)
-    w1, w2 = restitution(m, v1, v2, now)
+    w1, w2 = velocities_after_impact(m, v1, v2, now)
     assert w1 + mu * w2 == pytest.approx(v1 + mu * v2, abs=4e-15 * (1.0 + mu) * speed)
     assert w2 - w1 == pytest.approx(now * closing, abs=4e-15 * speed)
     assert kinetic(m, w1, w2) <= kinetic(m, v1, v2) + 1e-13 * kinetic(m, speed, speed)
@@ -70,24 +70,24 @@ def test_a_faster_impact_parts_faster_by_a_smaller_coefficient(e, slope, one, tw
     """And towards no speed the coefficient is e: chattering ends as with e."""
     m = structure(1.0, e, e_slope=slope)
     slow, fast = sorted((one, two))
-    parting = [coefficient(m, v) * v for v in (slow, fast)]
+    parting = [restitution_coefficient(m, v) * v for v in (slow, fast)]
     assert parting[0] <= parting[1] * (1.0 + 1e-15)
-    assert e >= coefficient(m, slow) >= coefficient(m, fast) >= 0.0
-    assert coefficient(m, 1e-17 / slope) == e
+    assert e >= restitution_coefficient(m, slow) >= restitution_coefficient(m, fast) >= 0.0
+    assert restitution_coefficient(m, 1e-17 / slope) == e
 
 
 @examples(200)
 @given(st.floats(0.0, 1.0), st.floats(0.0, 1e300))
 def test_without_a_slope_the_coefficient_is_e_to_the_last_bit(e, closing):
-    assert coefficient(structure(1.0, e), closing) == e
+    assert restitution_coefficient(structure(1.0, e), closing) == e
 
 
 @examples(200)
 @given(st.floats(0.0, 1.0), sizes(1e-3, 1e3), sizes(1e-6, 1e6), st.integers(-300, 300))
 def test_the_coefficient_scales_with_the_amplitude(e, slope, closing, n):
-    plain = coefficient(structure(1.0, e, e_slope=slope), closing)
+    plain = restitution_coefficient(structure(1.0, e, e_slope=slope), closing)
     scaled = structure(1.0, e, e_slope=math.ldexp(slope, -n))
-    assert coefficient(scaled, math.ldexp(closing, n)) == plain
+    assert restitution_coefficient(scaled, math.ldexp(closing, n)) == plain
 
 
 @examples(200)
@@ -108,19 +108,19 @@ def test_sticking_is_scale_free(separation, force, gamma, n):
     m = unstarted(gamma=gamma)
     assume(force == 0.0 or abs(force) > 1e-100)
     assume(separation == 0.0 or separation > 1e-100)
-    assert sticks(m, separation, force) == sticks(
+    assert chattering_ends(m, separation, force) == chattering_ends(
         m, math.ldexp(separation, n), math.ldexp(force, n)
     )
 
 
 def test_masses_that_are_pulled_apart_do_not_stick():
     m = unstarted(gamma=1.0)
-    assert not sticks(m, 0.0, 0.0)
-    assert not sticks(m, 1e-12, 1.0)
-    assert not sticks(m, 0.0, 1.0)
-    assert sticks(m, 0.0, -1e-12)
-    assert not sticks(m, 0.51, -1.0)  # the next flight lasts 1.02
-    assert sticks(m, 0.49, -1.0)
+    assert not chattering_ends(m, 0.0, 0.0)
+    assert not chattering_ends(m, 1e-12, 1.0)
+    assert not chattering_ends(m, 0.0, 1.0)
+    assert chattering_ends(m, 0.0, -1e-12)
+    assert not chattering_ends(m, 0.51, -1.0)  # the next flight lasts 1.02
+    assert chattering_ends(m, 0.49, -1.0)
 
 
 @pytest.mark.parametrize(

@@ -17,8 +17,8 @@ STEEP = {"m2": 0.35, "k2": 0.468, "d1": 0.03, "d2": 0.9765, "box_frequency": 1.1
 def closed_form(m, age):
     """All phasors by elementary functions."""
     sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA_TURNS] * age)
-    x_a, v_a = nodes.turned_by(m, at.BRANCH_1, m[at.FREE_A], m[at.FREE_A + 1], age)
-    x_b, v_b = nodes.turned_by(m, at.BRANCH_2, m[at.FREE_B], m[at.FREE_B + 1], age)
+    x_a, v_a = nodes.free_part_after(m, at.OSCILLATOR_1, m[at.FREE_A], m[at.FREE_A + 1], age)
+    x_b, v_b = nodes.free_part_after(m, at.OSCILLATOR_2, m[at.FREE_B], m[at.FREE_B + 1], age)
     return x_a, x_b, v_a, v_b, cosine, sine
 
 
@@ -49,7 +49,7 @@ def test_they_do_not_depend_on_the_way_to_them(values, ages):
 
 @pytest.mark.parametrize("fastest", [1e-9, 0.3, 1.0, 1.25, 7.7, 1e5, 1e100])
 def test_the_spacing_has_few_digits(fastest):
-    h = nodes.spacing(fastest)
+    h = nodes.node_spacing(fastest)
     assert 0.99 * nodes.ANGLE / fastest <= h <= nodes.ANGLE / fastest
     for node in (3.0, 1023.0, 2.0**40 + 1.0):
         age = node * h

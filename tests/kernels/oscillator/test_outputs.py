@@ -66,7 +66,9 @@ def integrals(passed, functions):
         count = max(
             1,
             math.ceil(
-                (end - entry) * max(m[at.FASTEST], m[at.ETA], m[at.BRANCH_1], m[at.BRANCH_2]) / 0.7
+                (end - entry)
+                * max(m[at.FASTEST], m[at.ETA], m[at.OSCILLATOR_1], m[at.OSCILLATOR_2])
+                / 0.7
             ),
         )
         edges = np.linspace(entry, end, count + 1)

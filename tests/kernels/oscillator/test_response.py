@@ -14,14 +14,14 @@ from scipy.integrate import solve_ivp
 from fmu_src.kernels.numerics.elementary import TWO_PI, sincos_turns
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.excitation import cubic_at, set_cubic_response, set_harmonic
-from fmu_src.kernels.oscillator.nodes import turned_by
-from fmu_src.kernels.oscillator.parameters import set_branch
-from fmu_src.kernels.oscillator.response import basis, displacement, set_free
+from fmu_src.kernels.oscillator.nodes import free_part_after
+from fmu_src.kernels.oscillator.parameters import set_oscillator
+from fmu_src.kernels.oscillator.response import displacement, fundamental_solutions, set_free
 
 from . import truth
 from .kernel import examples, sizes
 
-BRANCH, HARMONIC, FREE, CUBIC = at.BRANCH_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A
+BRANCH, HARMONIC, FREE, CUBIC = at.OSCILLATOR_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A
 # over omega_i; 1 is critical
 DAMPINGS = [
     0.0,
@@ -50,7 +50,7 @@ FORCING = {
 def oscillator(damping, omega_squared, x, v, phase, forcing=FORCING):
     """A memory whose first branch is one oscillator with omega = 1, from initial conditions."""
     m = [0.0] * at.SIZE
-    set_branch(m, BRANCH, damping, omega_squared)
+    set_oscillator(m, BRANCH, damping, omega_squared)
     m[at.ETA], m[at.TURN] = forcing["box_frequency"], phase / TWO_PI
     m[at.FORCING] = forcing["box_amplitude"] * forcing["box_frequency"] ** 2
     for i, name in enumerate(("acceleration", "jerk", "snap", "crackle")):
@@ -64,7 +64,7 @@ def oscillator(damping, omega_squared, x, v, phase, forcing=FORCING):
 
 def state(m, tau):
     """Displacement and velocity at an age."""
-    x, v = turned_by(m, BRANCH, m[FREE], m[FREE + 1], tau)
+    x, v = free_part_after(m, BRANCH, m[FREE], m[FREE + 1], tau)
     sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA] / TWO_PI * tau)
     return displacement(m, HARMONIC, CUBIC, tau, x, v, sine, cosine)
 
@@ -146,9 +146,9 @@ def test_continuous_across_critical_damping(omega_squared, tau, k):
 
 def test_critical_damping_is_met_exactly():
     m = [0.0] * at.SIZE
-    set_branch(m, BRANCH, 1.5, 2.25)
+    set_oscillator(m, BRANCH, 1.5, 2.25)
     assert m[BRANCH + at.NU_SQUARED] == 0.0
-    found = basis(m, BRANCH, 2.0)
+    found = fundamental_solutions(m, BRANCH, 2.0)
     assert list(found[:2]) == pytest.approx([math.exp(-3.0), 2.0 * math.exp(-3.0)], rel=1e-15)
 
 
@@ -162,9 +162,9 @@ def test_critical_damping_is_met_exactly():
 @example(1.0328, 1.0, 8.0)
 def test_envelope_bounds_the_basis(ratio, omega_squared, age):
     m = [0.0] * at.SIZE
-    set_branch(m, BRANCH, ratio * math.sqrt(omega_squared), omega_squared)
+    set_oscillator(m, BRANCH, ratio * math.sqrt(omega_squared), omega_squared)
     tau = age / math.sqrt(omega_squared)
-    C, S, decay = basis(m, BRANCH, tau)
+    C, S, decay = fundamental_solutions(m, BRANCH, tau)
     room = 1.0 + 1e-12
     assert abs(C) <= decay * room
     assert abs(S) <= m[BRANCH + at.ENVELOPE_SINE] * decay * room
@@ -176,10 +176,10 @@ def test_envelope_bounds_the_basis(ratio, omega_squared, age):
 @pytest.mark.parametrize("ratio", DAMPINGS)
 def test_basis_solves_its_initial_value_problem(ratio, tau):
     m = [0.0] * at.SIZE
-    set_branch(m, BRANCH, ratio, 1.0)
+    set_oscillator(m, BRANCH, ratio, 1.0)
     with mp.workdps(80):
         still = truth.box({"box_amplitude": 0.0}, 0)
         cosine = truth.oscillator(1, 2 * mp.mpf(ratio), 1, 1, -mp.mpf(ratio), still)(tau)
         sine = truth.oscillator(1, 2 * mp.mpf(ratio), 1, 0, 1, still)(tau)
-    found = basis(m, BRANCH, tau)
+    found = fundamental_solutions(m, BRANCH, tau)
     assert list(found[:2]) == pytest.approx([float(cosine), float(sine)], rel=3e-14, abs=1e-15)

@@ -91,7 +91,7 @@ def test_value_and_derivatives_of_the_event_function(make, values, state, age):
 def test_bounds_hold_as_long_as_they_are_used(make, values, state, age):
     m, signal = make(values, state)
     spacing = m[at.SPACING]
-    limits = {order: sum(event_function.bounds(m, order)) for order in (5, 6, 7, 8)}
+    limits = {order: sum(event_function.derivative_bounds(m, order)) for order in (5, 6, 7, 8)}
     sixth = m[at.REMAINDER] / m[at.HERMITE + 2]
     fifth = event_function.evaluate(m, age)[5]
     later = spacing * np.linspace(0.0, secular.LONGEST_DRIVEN, 24)
@@ -117,7 +117,7 @@ def test_a_gap_of_nearly_equal_oscillators_is_bounded_by_its_own(state, near, ga
     m = started(
         x1_start=x1, v1_start=v1, x2_start=x1 + gap * rise, v2_start=v1 + gap * speed, **values
     )
-    assert event_function.alike(m)
+    assert event_function.are_nearly_equal(m)
     starts = (m[at.X1_START], m[at.V1_START], m[at.X2_START], m[at.V2_START])
     first, second = truth.apart({**DEFAULTS, **values}, starts, mp.mpf(0))
     signal = second - first

@@ -1,4 +1,6 @@
-"""What ``modelDescription.xml`` has in common in FMI 2.0 and 3.0."""
+"""Parts of ``modelDescription.xml`` that :func:`.description_fmi2.fmi2_xml` and
+:func:`.description_fmi3.fmi3_xml` share.
+"""
 
 from __future__ import annotations
 
@@ -74,13 +76,13 @@ LOG_CATEGORIES = {
 }
 
 
-def number(value: float) -> str:
-    """A float as XML writes it, to the last bit."""
+def float_text(value: float) -> str:
+    """Return a float as XML writes it, to the last bit."""
     return repr(float(value))
 
 
-def root(model: Model, **attributes: str) -> ET.Element:
-    """The root element.
+def root_element(model: Model, **attributes: str) -> ET.Element:
+    """Create the root element.
 
     Parameters
     ----------
@@ -100,19 +102,21 @@ def root(model: Model, **attributes: str) -> ET.Element:
     return ET.Element("fmiModelDescription", {**attributes, **shared})
 
 
-def add_frame(parent: ET.Element, model: Model) -> ET.Element:
-    """Units, log categories and the default experiment; returns the element for the variables."""
+def add_shared_elements(parent: ET.Element, model: Model) -> ET.Element:
+    """Add units, log categories and the default experiment; return the element for the
+    variables.
+    """
     add_units(parent, model)
     categories = ET.SubElement(parent, "LogCategories")
     for name, explanation in LOG_CATEGORIES.items():
         ET.SubElement(categories, "Category", name=name, description=explanation)
-    stop, step = number(model.stop_time), number(model.step_size)
+    stop, step = float_text(model.stop_time), float_text(model.step_size)
     ET.SubElement(parent, "DefaultExperiment", startTime="0.0", stopTime=stop, stepSize=step)
     return ET.SubElement(parent, "ModelVariables")
 
 
 def add_units(parent: ET.Element, model: Model) -> None:
-    """Definitions of the units in use."""
+    """Add the definitions of the units in use."""
     definitions = ET.SubElement(parent, "UnitDefinitions")
     used = {variable.unit for variable in model.variables} | {"s"}  # of time
     for name, exponents in UNITS.items():
@@ -121,11 +125,11 @@ def add_units(parent: ET.Element, model: Model) -> None:
             base = {key: str(value) for key, value in exponents.items()}
             ET.SubElement(unit, "BaseUnit", base)
             for other, factor in DISPLAY_UNITS.get(name, {}).items():
-                ET.SubElement(unit, "DisplayUnit", name=other, factor=number(factor))
+                ET.SubElement(unit, "DisplayUnit", name=other, factor=float_text(factor))
 
 
-def attributes(variable: Variable, reference: int) -> dict[str, str]:
-    """Attributes every variable has."""
+def variable_attributes(variable: Variable, reference: int) -> dict[str, str]:
+    """Return the attributes that every variable has."""
     found = {
         "name": variable.name,
         "valueReference": str(reference),
@@ -137,7 +141,7 @@ def attributes(variable: Variable, reference: int) -> dict[str, str]:
 
 
 def add_values(typed: ET.Element, variable: Variable) -> None:
-    """Unit, range, nominal and start value."""
+    """Set unit, range, nominal and start value of a variable."""
     limits = {"min": variable.minimum, "max": variable.maximum}
     given = {key: value for key, value in limits.items() if value is not None}
     if variable.type == REAL:
@@ -147,8 +151,8 @@ def add_values(typed: ET.Element, variable: Variable) -> None:
         if variable.display_unit:
             typed.set("displayUnit", variable.display_unit)
         for key, value in given.items():
-            typed.set(key, number(value))
-        typed.set("nominal", number(variable.nominal or abs(variable.start) or 1.0))
+            typed.set(key, float_text(value))
+        typed.set("nominal", float_text(variable.nominal or abs(variable.start) or 1.0))
     if variable.type == INTEGER:
         for key, value in given.items():
             typed.set(key, str(int(value)))
@@ -157,14 +161,14 @@ def add_values(typed: ET.Element, variable: Variable) -> None:
 
 
 def start_text(variable: Variable) -> str:
-    """A start value as XML writes it."""
+    """Return a start value as XML writes it."""
     if variable.type == BOOLEAN:
         return str(bool(variable.start)).lower()
-    return number(variable.start) if variable.type == REAL else str(int(variable.start))
+    return float_text(variable.start) if variable.type == REAL else str(int(variable.start))
 
 
-def text(element: ET.Element) -> bytes:
-    """The file."""
+def xml_bytes(element: ET.Element) -> bytes:
+    """Return the XML file of an element, indented."""
     ET.indent(element)
     whole = ET.tostring(element, encoding="UTF-8", xml_declaration=True)
     assert isinstance(whole, bytes)
