@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from .labels import title_from_attributes
 from .scales import acceleration_scale, along, frequency_scale
-from .style import BLACK, panels, set_title, styled
+from .style import BLACK, panels, set_title, styled, write_plain_numbers
 
 THRESHOLD = "threshold_acceleration"
 LOWEST = "lowest_threshold"
@@ -43,6 +43,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     mark_lowest(plane, data)
     if np.nanmax(level, initial=0.0) > 0.0:
         plane.set_yscale("log")
+        write_plain_numbers(plane)
     plane.set(xlabel=x.label, ylabel=f"peak acceleration of the box in {unit}")
     plane.legend()
     return figure
