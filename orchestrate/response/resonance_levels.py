@@ -147,7 +147,8 @@ def resonance_levels(
     Parameters
     ----------
     structure : Structure
-        With a clearance; without one the curves at two levels are in proportion.
+        With a clearance, or a restitution that depends on the speed; without both the curves at
+        two levels are in proportion.
     frequency : array_like
         rad/s.
     level : array_like

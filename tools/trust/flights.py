@@ -86,10 +86,11 @@ class Energy(Campaign):
     name = "energy"
     title = "Momentum and energy"
     asks = (
-        "Momentum is kept in every impact, the speeds follow the coefficient of restitution, and "
-        "the energy lost is what the FMU says. The speeds before an impact come from the closed "
-        "form of the flight in C, those after it from the FMU, and the FMU's sum of losses is "
-        "compared with ours at the end of each run. Deviations are in parts of the momentum and "
+        "Momentum is kept in every impact, the speeds follow the coefficient of restitution (in "
+        "half of the runs it decreases with the closing speed), and the energy lost is what the "
+        "FMU says. The speeds before an impact come from the closed form of the flight in C, "
+        "those after it from the FMU, and the FMU's sum of losses is compared with ours at the "
+        "end of each run. Deviations are in parts of the momentum and "
         "energy of the motion's terms; the clock of the run resolves 7e-15 of a radian. More than "
         "1e-12 is a finding."
     )

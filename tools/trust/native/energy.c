@@ -27,7 +27,7 @@ static double balance(const Flight *before, double t, const Flight *after, bool 
         + m2 * velocity(m2, before->d2, before->k2, before->x2, before->v2, before, t, &v[1]);
     double lack = fabs(m1 * v[0] + m2 * v[1] - m1 * after->v1 - m2 * after->v2) / speed;
     double closing = v[0] - v[1], opened = after->v2 - after->v1;
-    double wrong = fabs(opened - (stuck ? 0.0 : before->e * closing)) * fmin(m1, m2) / speed;
+    double wrong = fabs(opened - (stuck ? 0.0 : before->e * closing / (1.0 + before->e_slope * closing))) * fmin(m1, m2) / speed;
     double lost = 0.5 * (m1 * (v[0] - after->v1) * (v[0] + after->v1) + m2 * (v[1] - after->v2) * (v[1] + after->v2));
     double expected = 0.5 * m1 * m2 / (m1 + m2) * (closing * closing - opened * opened);
     double whole = speed * speed / (m1 + m2);
@@ -73,6 +73,7 @@ int main(int count, char **arguments) {
     void *it = open_with("energy", true, true);
     for (int kind = 0; seen < wanted; kind = (kind + 1) % KINDS, runs++) {
         Flight f = draw(&seed, kind == CONTACT || kind == CUBIC ? EQUAL : kind);
+        f.e_slope = chance(&seed, 0.5) ? 0.0 : decades(&seed, 1e-3, 1e2);
         if (!begin(it, &f, decades(&seed, GAMMA, 1e-3))) continue;
         if (count > 4) f.e *= 1.0 - 1e-9;
         seen += run(it, f, wanted - seen < MOST ? wanted - seen : MOST, &worst, &failed);

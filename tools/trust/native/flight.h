@@ -18,7 +18,7 @@ static const double HORIZON[KINDS] = {12.0, 12.0, 12.0, 6.0, 12.0, 3.0, 60.0}; /
 typedef struct {
     int kind;
     bool closed;
-    double m1, m2, k1, k2, d1, d2, e, amplitude, frequency, phase, box[BOX], x1, x2, v1, v2, clearance;
+    double m1, m2, k1, k2, d1, d2, e, amplitude, frequency, phase, box[BOX], x1, x2, v1, v2, clearance, e_slope;
 } Flight;
 
 /* Re sum c_k e^{s_k t} + sum p_k t^k / k!; and the sizes of what c_0 and p are differences of, for these may cancel. */
@@ -206,9 +206,9 @@ _Thread_local int messages;
 _Thread_local char message[4096];
 
 /* Value references, in the order of their names below. */
-enum { PARAMETERS = 20, STATE = 6 };
+enum { PARAMETERS = 21, STATE = 6 };
 static const char *const SET[PARAMETERS] = {"m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma", "box_amplitude", "box_frequency", "phase_start",
-    "box_acceleration", "box_jerk", "box_snap", "box_crackle", "x1_start", "x2_start", "v1_start", "v2_start", "clearance"};
+    "box_acceleration", "box_jerk", "box_snap", "box_crackle", "x1_start", "x2_start", "v1_start", "v2_start", "clearance", "e_slope"};
 static const char *const GET[STATE] = {"x1", "x2", "v1", "v2", "phase", "impact_energy"};
 static unsigned set_references[PARAMETERS], get_references[STATE], in_contact_reference, watched_reference;
 
@@ -233,7 +233,7 @@ static bool begin(void *it, const Flight *f, double gamma) {
     double x1 = pressed ? f->x1 - rest_1(f) : f->x1, x2 = pressed ? f->x2 - rest_2(f) : f->x2;
     if (pressed && f->closed) x2 = x1;
     double values[PARAMETERS] = {f->m1, f->m2, f->k1, f->k2, f->d1, f->d2, f->e, gamma, f->amplitude, f->frequency, f->phase,
-        f->box[0], f->box[1], f->box[2], f->box[3], x1, x2, f->v1, f->v2, f->clearance};
+        f->box[0], f->box[1], f->box[2], f->box[3], x1, x2, f->v1, f->v2, f->clearance, f->e_slope};
     fmi3Boolean off = false;
     bool taken = fmi.SetFloat64(it, set_references, PARAMETERS, values, PARAMETERS) == fmi3OK
         && fmi.SetBoolean(it, &watched_reference, 1, &off, 1) == fmi3OK
