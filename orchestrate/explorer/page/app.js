@@ -3,7 +3,7 @@
 import { BasinPart } from "./basin_part.js";
 import { diagramCommand, motionCommand } from "./command.js";
 import { Controls } from "./controls.js";
-import { Crew } from "./crew.js";
+import { WorkerPool } from "./worker_pool.js";
 import { nearest, scaled, startAt } from "./diagram.js";
 import { listen } from "./diagram_input.js";
 import { DrivePart } from "./drive_part.js";
@@ -53,15 +53,15 @@ export class App {
     this.eta = NaN;
     this.waiting = false; // for the start of the chosen response
     const size = Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
-    this.crew = new Crew(worker, compiled, size);
-    this.crew.onerror = (text) => this.tell(text);
-    this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.crew, diagram, table, () => this.refreshDiagram());
-    this.inspector = new Inspector(at, this.crew, () => this.refreshMotion());
-    this.basin = new BasinPart(at, this.crew, {
+    this.pool = new WorkerPool(worker, compiled, size);
+    this.pool.onerror = (text) => this.tell(text);
+    this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.pool, diagram, table, () => this.refreshDiagram());
+    this.inspector = new Inspector(at, this.pool, () => this.refreshMotion());
+    this.basin = new BasinPart(at, this.pool, {
       choose: (start) => this.inspect(this.eta, start),
       seen: () => this.computeBasin(),
     });
-    this.drive = new DrivePart(at, this.crew, table.drive);
+    this.drive = new DrivePart(at, this.pool, table.drive);
     this.controls = new Controls(at, this.structure, table.ranges, (structure) => this.change(structure));
     this.shaking = new Shaking(at, this.structure, this.level, {
       choose: (eta, exactly) => this.choose(eta, exactly),
@@ -117,7 +117,7 @@ export class App {
     onNumber(input("pitch"), (pitch) => {
       if (inspector.sound.playing) inspector.listen(pitch);
     });
-    acceptRecords(at, this.crew, (measured) => this.lay(measured));
+    acceptRecords(at, this.pool, (measured) => this.lay(measured));
     addEventListener("hashchange", () => this.restore(location.hash));
     addEventListener("keydown", (event) => this.pressed(event));
     document.querySelectorAll("button[data-save]").forEach((button) =>

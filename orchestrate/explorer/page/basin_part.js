@@ -1,22 +1,22 @@
 /** Other motions at the chosen frequency: where a plane of starts leads to, asked of all workers. */
 
 import { BasinView, coarseFirst } from "./basin_view.js";
-import { shares } from "./orders.js";
+import { shares } from "./requests.js";
 
 const SIDE = 64; // cells
 
 export class BasinPart {
   /**
    * @param {(id: string) => HTMLElement} at
-   * @param {import("./crew.js").Crew} crew
+   * @param {import("./worker_pool.js").WorkerPool} pool
    * @param {{choose: (start: number[]) => void, seen: () => void}} acts
    */
-  constructor(at, crew, { choose, seen }) {
+  constructor(at, pool, { choose, seen }) {
     this.at = at;
-    this.crew = crew;
+    this.pool = pool;
     this.choose = choose;
     this.view = new BasinView(/** @type {HTMLCanvasElement} */ (at("basin")), choose);
-    /** @type {import("./crew.js").Order | null} */
+    /** @type {import("./worker_pool.js").Order | null} */
     this.order = null;
     this.point = ""; // that it was computed at
     this.visible = false;
@@ -46,8 +46,8 @@ export class BasinPart {
     const mean = /** @type {[number, number]} */ ([(end[0] + end[1]) / 2, (end[2] + end[3]) / 2]);
     const plane = { side: SIDE, gap: reach, speed: reach * Math.max(point.eta, 1), mean };
     this.view.begin(point, plane, level);
-    const asked = shares(coarseFirst(SIDE), this.crew.workers.length).map((cells) => ({ point, plane, cells }));
-    const order = this.crew.askAll("basin", asked, (parts) => {
+    const asked = shares(coarseFirst(SIDE), this.pool.workers.length).map((cells) => ({ point, plane, cells }));
+    const order = this.pool.askAll("basin", asked, (parts) => {
       parts.forEach((part) => this.view.take(part));
       this.tell(false);
     });

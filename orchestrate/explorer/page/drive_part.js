@@ -12,10 +12,10 @@ const SWEEP = 2e-4; // V/s of a ramp, times the largest voltage
 /** @typedef {{time: number, voltage: number, speed: number, amplitude: number, impacts: number}} Row */
 
 export class DrivePart {
-  /** @param {(id: string) => HTMLElement} at @param {import("./crew.js").Crew} crew @param {import("./coupled.js").Start} start */
-  constructor(at, crew, start) {
+  /** @param {(id: string) => HTMLElement} at @param {import("./worker_pool.js").WorkerPool} pool @param {import("./coupled.js").Start} start */
+  constructor(at, pool, start) {
     this.at = at;
-    this.crew = crew;
+    this.pool = pool;
     this.start = start;
     this.voltage = /** @type {HTMLInputElement} */ (at("voltage"));
     this.picture = new Picture(/** @type {HTMLCanvasElement} */ (at("drive")), (pen, size, theme) => this.draw(pen, size, theme));
@@ -25,7 +25,7 @@ export class DrivePart {
     this.state = null;
     /** @type {Row[]} */
     this.rows = [];
-    /** @type {import("./crew.js").Order | null} */
+    /** @type {import("./worker_pool.js").Order | null} */
     this.order = null;
     at("drive-go").addEventListener("click", () => this.run(!this.running));
     at("ramp-up").addEventListener("click", () => this.drift(1));
@@ -86,7 +86,7 @@ export class DrivePart {
       structure: { ...structure, bonded },
       drive: { ...drive, voltage: voltages[0], speed_start: voltages[0] / drive.motor_constant },
     };
-    const order = this.crew.ask("drive", { run: this.state, start, voltages }, ([part]) => this.take(part));
+    const order = this.pool.ask("drive", { run: this.state, start, voltages }, ([part]) => this.take(part));
     this.order = order;
     void order.done.then(() => {
       if (this.order === order) this.order = null;

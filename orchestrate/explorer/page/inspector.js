@@ -13,7 +13,7 @@ import {
   sentenceOf,
   spectrumChart,
 } from "./motion_view.js";
-import { Sound } from "./sound.js";
+import { Sound } from "./audio.js";
 
 /**
  * @typedef {import("./structure.js").Point} Point
@@ -27,10 +27,10 @@ const POINTS = 200; // a period
 const LONG = 20000; // periods of a section that runs on
 
 export class Inspector {
-  /** @param {(id: string) => HTMLElement} at @param {import("./crew.js").Crew} crew @param {() => void} told */
-  constructor(at, crew, told) {
+  /** @param {(id: string) => HTMLElement} at @param {import("./worker_pool.js").WorkerPool} pool @param {() => void} told */
+  constructor(at, pool, told) {
     this.at = at;
-    this.crew = crew;
+    this.pool = pool;
     this.told = told;
     this.pictures = motionPictures(at);
     this.animation = new Animation(/** @type {HTMLCanvasElement} */ (at("animation")));
@@ -38,7 +38,7 @@ export class Inspector {
     this.periods = 10;
     /** @type {Choice | null} */
     this.choice = null;
-    /** @type {import("./crew.js").Order[]} */
+    /** @type {import("./worker_pool.js").Order[]} */
     this.orders = [];
     /** @type {{response: Response, motion: Motion} | null} */
     this.found = null;
@@ -71,7 +71,7 @@ export class Inspector {
 
   /** @param {string} task @param {unknown} asked @param {(parts: any[]) => void} take */
   ask(task, asked, take) {
-    const order = this.crew.ask(task, asked, take);
+    const order = this.pool.ask(task, asked, take);
     this.orders.push(order);
     return order;
   }

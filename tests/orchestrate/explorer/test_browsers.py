@@ -12,7 +12,7 @@ from orchestrate.explorer.page import SOURCES, explore
 from .traced import Traced
 
 ONE_WORKER = """
-explorer.regions.crew.workers.splice(1);
+explorer.regions.pool.workers.splice(1);
 Object.defineProperty(explorer.regions, "count", { get: () => 300 });
 """
 REGIONS = ((0.3, 0.6), (1.1, 1.4), (2.8, 3.1))

@@ -256,8 +256,8 @@ def test_the_weak_drive_is_the_masters(browser, clearance):
         const halves = { ...structure, clearance: arguments[0] };
         const asked = { run: null, start: { ...rest, drive: motor, structure: halves }, voltages };
         explorer.told = null;
-        explorer.crew.ask("drive", asked, ([first]) =>
-          explorer.crew.ask("drive", { ...asked, run: first.run }, ([last]) => {
+        explorer.pool.ask("drive", asked, ([first]) =>
+          explorer.pool.ask("drive", { ...asked, run: first.run }, ([last]) => {
             explorer.told = [...first.rows, ...last.rows];
           }));
         """,
