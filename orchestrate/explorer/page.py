@@ -25,6 +25,7 @@ from .bundle import bundle
 from .figure6 import first_diagram
 from .shipped import Shipped, shipped
 from .tour import TOUR
+from .words import WORDS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -126,6 +127,7 @@ def page(chosen: Shipped, drawn: dict[str, Any], kernels: dict[str, WebKernel]) 
             script=Markup(script),
             worker=Markup(bundle(scripts, "worker")),
             tour=TOUR,
+            words=WORDS,
             branches=drawn["branches"],
             source=f"{made_by}; sweep by {chosen.source}" if chosen.source else made_by,
             table={**table(chosen), **drawn, **tables, "drive": weak_drive()},

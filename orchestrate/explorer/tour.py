@@ -14,8 +14,8 @@ from ..structures import Structure
 START = (0.0, 0.0, 0.0, 0.0)
 OTHER = (-0.055, -0.041, -2.263, -2.141)  # leads to the second motion at 1.3
 OMEGA = 2.0 * math.pi * 40.0  # of the pressed beam, whose other numbers are the paper's, rad/s
+HILL = (36.2, 47.0)  # Hz: where the pressed beam opens at 0.5 g, and nowhere else in its region
 PRESSED: dict[str, Any] = {
-    "eta": 0.75,
     "region": (0.25, 1.5),
     "changes": {
         **{"k1": OMEGA**2, "k2": 1.2 * OMEGA**2, "d1": 0.01 * OMEGA, "d2": 0.01 * OMEGA},
@@ -86,15 +86,16 @@ class Step:
 TOUR = (
     Step(
         "Quiet",
-        "A beam is split along its middle and shaken. Well above its resonance the halves tap each "
-        "other once in each shaking period, always in the same way. In the diagram that is one "
-        "dot: the gap is the same each time the shaking begins anew. A sound beam would be silent.",
+        "A delaminated beam, split along its middle into two halves, is shaken. Well above its "
+        "resonance the halves tap each other once in each shaking period, always in the same way. "
+        "In the diagram that is one dot: the gap is the same each time the shaking begins anew. An "
+        "undamaged beam would be silent.",
         (Stop("quiet", "", 1.7),),
     ),
     Step(
         "Rattling",
         "Shaken more slowly, the halves part further and strike three times in each period, with "
-        "three different speeds. Still it repeats: one dot. Press S to hear the rhythm.",
+        "three different speeds. Still it repeats: one dot. Press Sound to hear the rhythm.",
         (Stop("rattling", "", 0.7),),
     ),
     Step(
@@ -122,12 +123,13 @@ TOUR = (
     ),
     Step(
         "Pressed shut",
-        "Here the halves are pressed together by 0.05 mm. Shaken gently the split stays shut, and "
-        "no test at this level can find it; above a threshold it opens and knocks. Compare, then "
-        "try the level and the gap at rest beside the pictures.",
+        "Pressed together by 0.05 mm, at 30 Hz and 0.5 g the halves stay shut: no test there can "
+        "find the delamination. At the same 0.5 g it opens between "
+        f"{HILL[0]:g} and {HILL[1]:g} Hz, the hill in the diagram, and at 30 Hz at a higher level.",
         (
-            Stop("pressed", "0.5 g: below", level=0.5, **PRESSED),
-            Stop("pressed-open", "3 g: above", level=3.0, **PRESSED),
+            Stop("pressed", "0.5 g at 30 Hz: shut", 0.75, level=0.5, **PRESSED),
+            Stop("pressed-hill", "0.5 g at 41 Hz: open", 1.025, level=0.5, **PRESSED),
+            Stop("pressed-open", "3 g at 30 Hz: open", 0.75, level=3.0, **PRESSED),
         ),
     ),
 )

@@ -3,17 +3,18 @@
 import { BasinPart } from "./basin_part.js";
 import { diagramCommand, motionCommand } from "./command.js";
 import { Controls } from "./controls.js";
-import { Crew } from "./crew.js";
-import { nearest, scaled, startAt } from "./diagram.js";
+import { WorkerPool } from "./worker_pool.js";
+import { lanesDiffer, nearest, opensElsewhere, scaled, startAt } from "./diagram.js";
 import { listen } from "./diagram_input.js";
 import { DrivePart } from "./drive_part.js";
 import { hertzOf, inHertz, PAPER, pointAt, sameLevel } from "./excitation.js";
-import { onNumber } from "./field.js";
+import { toDefault } from "./field.js";
 import { Inspector } from "./inspector.js";
 import { ETAS, fragmentOf, viewOf } from "./link.js";
 import { overlayOf } from "./overlay.js";
 import { load } from "./payload.js";
 import { acceptRecords } from "./record_part.js";
+import { Player } from "./player.js";
 import { Regions } from "./regions.js";
 import { USUAL } from "./response.js";
 import { saveShown } from "./saving.js";
@@ -51,17 +52,23 @@ export class App {
     this.structure = table.structure;
     this.level = this.usual.level;
     this.eta = NaN;
+    this.words = { record: at("record-status").textContent };
     this.waiting = false; // for the start of the chosen response
     const size = Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
-    this.crew = new Crew(worker, compiled, size);
-    this.crew.onerror = (text) => this.tell(text);
-    this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.crew, diagram, table, () => this.refreshDiagram());
-    this.inspector = new Inspector(at, this.crew, () => this.refreshMotion());
-    this.basin = new BasinPart(at, this.crew, {
+    this.pool = new WorkerPool(worker, compiled, size);
+    this.pool.onerror = (text) => this.tell(text);
+    this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.pool, diagram, table, () => this.refreshDiagram());
+    this.inspector = new Inspector(at, this.pool, () => this.refreshMotion());
+    this.player = new Player(at, this.inspector, {
+      tell: (text) => this.tell(text),
+      changed: () => this.refreshMotion(),
+    });
+    this.basin = new BasinPart(at, this.pool, {
       choose: (start) => this.inspect(this.eta, start),
       seen: () => this.computeBasin(),
+      others: () => this.hint(),
     });
-    this.drive = new DrivePart(at, this.crew, table.drive);
+    this.drive = new DrivePart(at, this.pool, table.drive);
     this.controls = new Controls(at, this.structure, table, (structure) => this.change(structure));
     this.shaking = new Shaking(at, table.units, this.structure, this.level, {
       choose: (eta, exactly) => this.choose(eta, exactly),
@@ -74,8 +81,9 @@ export class App {
       }
     };
     this.connect();
-    this.restore(location.hash);
-    this.inspector.animation.run(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+    this.first = location.hash; // with which the page was opened
+    this.restore(this.first);
+    this.player.animate();
     this.refreshMotion();
   }
 
@@ -99,25 +107,17 @@ export class App {
       whole: () => this.open(this.table.low, this.table.high),
       closer: () => this.open(middle() - 0.3 * half(), middle() + 0.3 * half()),
       "run-on": () => inspector.runOn(),
-      play: () => this.play(),
-      impact: () => this.nextImpact(),
-      listen: () => this.listen(),
       others: () => this.showOthers(),
+      "hint-go": () => this.showOthers(),
       link: () => this.copy(location.href, "link"),
       "command-copy": () => this.copy(at("command").textContent ?? "", "command"),
       "motion-command-copy": () => this.copy(at("motion-command").textContent ?? "", "command"),
-      reset: () => this.change(this.usual.structure, this.usual.level),
+      reset: () => this.reset(),
     };
     for (const id in clicks) at(id).addEventListener("click", clicks[id]);
     at("direction").addEventListener("change", () => this.open(regions.diagram.low, regions.diagram.high));
-    at("beside").addEventListener("change", () => inspector.drawMotion());
     at("branches").addEventListener("change", () => regions.view.refresh());
-    at("speed").addEventListener("input", () => (inspector.animation.speed = 2 ** input("speed").valueAsNumber));
-    onNumber(input("periods"), (periods) => this.setPeriods(periods));
-    onNumber(input("pitch"), (pitch) => {
-      if (inspector.sound.playing) inspector.listen(pitch);
-    });
-    acceptRecords(at, this.crew, (measured) => this.lay(measured));
+    acceptRecords(at, this.pool, (measured) => this.lay(measured));
     addEventListener("hashchange", () => this.restore(location.hash));
     addEventListener("keydown", (event) => this.pressed(event));
     document.querySelectorAll("button[data-save]").forEach((button) =>
@@ -129,7 +129,7 @@ export class App {
   pressed(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const typing = event.target instanceof HTMLInputElement && event.target.type !== "range";
-    if (event.key.toLowerCase() === "s" && !typing && !(event.target instanceof HTMLSelectElement)) this.listen();
+    if (event.key.toLowerCase() === "s" && !typing && !(event.target instanceof HTMLSelectElement)) this.player.listen();
   }
 
   /** A view from a link. @param {string} fragment */
@@ -146,6 +146,18 @@ export class App {
     if (view.eta !== null) this.choose(view.eta, true, view.start ?? (this.known(view.eta) ? null : REST));
     this.tour.show(name);
     this.write();
+  }
+
+  /** All as it was when the page was opened; what was seen is still behind Back. */
+  reset() {
+    for (const id of ["branches", "record"]) toDefault(input(id));
+    at("record-status").textContent = this.words.record;
+    this.inspector.measured = null;
+    this.player.reset();
+    this.drive.reset();
+    this.basin.forget();
+    this.restore(this.first);
+    this.refreshMotion();
   }
 
   /** Whether it is known where the response at a frequency begins. @param {number} eta */
@@ -180,7 +192,7 @@ export class App {
 
   /** Other parameters: the diagram follows, the motion goes on from where it was; frequencies stay, in Hz those in Hz. @param {Structure} structure @param {Level} [level] */
   change(structure, level = this.level) {
-    this.tour.show("");
+    this.tour.leave();
     const held = inHertz(level) && inHertz(this.level) ? omegaOf(this.structure) / omegaOf(structure) : 1; // in Hz
     this.eta *= held;
     this.set(structure, level);
@@ -206,7 +218,7 @@ export class App {
     const point = exactly && Math.abs(near.eta - eta) > 1e-9 * eta ? pointAt(this.structure, eta, this.level) : near;
     const there = startAt(diagram.lanes[0], index);
     const known = start ?? (there && scaled(there, near, point));
-    this.tour.show("");
+    this.tour.leave();
     this.mark(point.eta);
     this.waiting = !known;
     if (known) this.inspect(point.eta, known);
@@ -255,12 +267,12 @@ export class App {
 
   /** Something of the diagram has come. */
   refreshDiagram() {
-    const { diagram, complete, took, place, seen } = this.regions;
+    const { diagram, complete, place, seen } = this.regions;
     if (!diagram) return;
     const count = diagram.points.length * diagram.lanes.length;
-    const { transient, samples } = diagram.settings;
-    const time = complete && took ? ` in ${shown(took.all / 1000, 2)} s` : " …";
-    this.tell(`${count} responses × ${transient + samples} periods${time}`);
+    const ways = diagram.lanes.length > 1 ? ", up and down" : "";
+    const shut = complete && opensElsewhere(diagram) ? ". Impacts under a gap of 0: the halves open at another moment of the period" : "";
+    this.tell(`${diagram.points.length} frequencies${ways}: ${complete ? "all computed" : "computing …"}${shut}`);
     at("diagram").dataset.complete = String(complete);
     Object.assign(input("back"), { disabled: place <= 0 });
     Object.assign(input("forth"), { disabled: place >= seen.length - 1 });
@@ -270,6 +282,7 @@ export class App {
     const [low, high] = inHertz(diagram.level) ? [diagram.low, diagram.high].map((eta) => hertzOf(eta, diagram.structure)) : [diagram.low, diagram.high];
     this.regions.view.picture.describe(`Orbit diagram, gap over ${inHertz(diagram.level) ? "frequency in Hz" : "frequency ratio"} from ${shown(low, 6)} to ${shown(high, 6)}, ${count} responses. Arrow keys choose a frequency, plus and minus zoom, b and f go back and forth.`);
     this.write();
+    this.hint();
     if (complete && this.waiting && !this.regions.quick) {
       this.waiting = false;
       this.choose(this.eta, true);
@@ -278,15 +291,24 @@ export class App {
 
   /** The motion has come. */
   refreshMotion() {
-    const { choice, periods, animation, sound } = this.inspector;
-    at("listen").textContent = sound.playing ? "Silence (S)" : "Sound (S)";
-    at("play").textContent = animation.running ? "Pause" : "Play";
+    const { choice, found, periods } = this.inspector;
+    this.player.refresh();
     if (!choice) return;
     const { transient, samples } = choice.settings;
     const asked = { transient: transient + samples, periods, points: 200 };
     at("motion-command").textContent = motionCommand(choice.point, choice.start, asked, this.table.usual);
     at("motion").dataset.eta = String(choice.point.eta);
+    if (found && !this.basin.shown) this.basin.meet(choice, found.response);
     if (this.basin.visible) this.computeBasin();
+  }
+
+  /** Say so where other motions are known at this frequency. */
+  hint() {
+    const { diagram } = this.regions;
+    if (!diagram) return;
+    const index = nearest(diagram, this.eta);
+    const known = Math.abs(diagram.points[index].eta - this.eta) < 1e-3 * this.eta && lanesDiffer(diagram, index);
+    at("hint").classList.toggle("absent", !known && !this.basin.others);
   }
 
   computeBasin() {
@@ -305,31 +327,6 @@ export class App {
     if (!inHertz(this.level)) this.change(...this.shaking.converted(true));
     this.inspector.drawSpectrum();
     at("spectrum").scrollIntoView({ block: "center" });
-  }
-
-  play() {
-    const { animation } = this.inspector;
-    animation.run(!animation.running);
-    this.refreshMotion();
-  }
-
-  nextImpact() {
-    const turn = this.inspector.animation.nextImpact();
-    this.tell(turn === null ? "no impact in this motion" : `impact after ${turn.toFixed(4)} periods`);
-    this.refreshMotion();
-  }
-
-  listen() {
-    const { sound } = this.inspector;
-    if (sound.playing) sound.stop();
-    else this.inspector.listen(input("pitch").valueAsNumber);
-    this.refreshMotion();
-  }
-
-  /** @param {number} periods */
-  setPeriods(periods) {
-    this.inspector.periods = Math.round(periods);
-    if (this.inspector.choice) this.inspector.choose(this.inspector.choice);
   }
 
   /** @param {string} text @param {string} what */

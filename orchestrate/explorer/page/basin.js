@@ -32,7 +32,7 @@ export function startAt(point, plane, column, row) {
  */
 export function destination(instance, point, start) {
   const found = respond(instance, point, start, SETTLING);
-  return { multiplicity: found.multiplicity, samples: found.states.slice(-64), impacts: found.impacts };
+  return attractorOf(found);
 }
 
 /**
@@ -43,12 +43,22 @@ export function destination(instance, point, start) {
  * @param {number} tolerance
  */
 export function label(known, one, tolerance) {
-  const place = known.findIndex(
+  const place = placeOf(known, one, tolerance);
+  return place >= 0 ? place : known.push(one) - 1;
+}
+
+/** Number of an attractor among those known; −1 where it is new. @param {Attractor[]} known @param {Attractor} one @param {number} tolerance */
+export function placeOf(known, one, tolerance) {
+  return known.findIndex(
     (other) =>
       other.multiplicity === one.multiplicity &&
       (one.multiplicity === 0 || distance(other.samples, one.samples) <= tolerance),
   );
-  return place >= 0 ? place : known.push(one) - 1;
+}
+
+/** What a response is to the picture: as if it had so few samples. @param {import("./response.js").Response} response @returns {Attractor} */
+export function attractorOf({ states, multiplicity, impacts }) {
+  return { multiplicity: multiplicity <= SETTLING.samples / 4 ? multiplicity : 0, samples: states.slice(-64), impacts };
 }
 
 /** Least distance of the last state of `one` from states of `other`, relative. @param {Float64Array} other @param {Float64Array} one */

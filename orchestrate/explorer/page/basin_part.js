@@ -1,24 +1,35 @@
 /** Other motions at the chosen frequency: where a plane of starts leads to, asked of all workers. */
 
-import { BasinView, coarseFirst } from "./basin_view.js";
-import { shares } from "./orders.js";
+import { attractorOf, label, placeOf } from "./basin.js";
+import { BasinView, coarseFirst, SAME } from "./basin_view.js";
+import { shares } from "./requests.js";
 
 const SIDE = 64; // cells
+const FEW = [6, 19, 32, 45, 58]; // columns and rows of the cells that are tried for every motion
 
 export class BasinPart {
   /**
    * @param {(id: string) => HTMLElement} at
-   * @param {import("./crew.js").Crew} crew
-   * @param {{choose: (start: number[]) => void, seen: () => void}} acts
+   * @param {import("./worker_pool.js").WorkerPool} pool
+   * @param {{choose: (start: number[]) => void, seen: () => void, others: () => void}} acts
+   *   `others`: it is known by now whether there are other motions
    */
-  constructor(at, crew, { choose, seen }) {
+  constructor(at, pool, { choose, seen, others }) {
     this.at = at;
-    this.crew = crew;
+    this.pool = pool;
     this.choose = choose;
     this.view = new BasinView(/** @type {HTMLCanvasElement} */ (at("basin")), choose);
-    /** @type {import("./crew.js").Order | null} */
+    /** @type {import("./worker_pool.js").Order | null} */
     this.order = null;
-    this.point = ""; // that it was computed at
+    this.told = others;
+    /** @type {import("./basin.js").Attractor | null} */
+    this.shown = null; // the motion on the page
+    /** @type {import("./basin.js").Attractor[]} */
+    this.few = []; // to which a few starts lead
+    /** @type {import("./worker_pool.js").Order | null} */
+    this.trial = null;
+    this.about = ""; // the point that is shown
+    this.point = ""; // that the picture was computed at
     this.visible = false;
     /** @param {IntersectionObserverEntry[]} entries */
     const watch = ([{ isIntersecting }]) => {
@@ -30,24 +41,53 @@ export class BasinPart {
 
   /** Nothing is known of another point. @param {import("./structure.js").Point} point */
   leave(point) {
-    if (this.point === JSON.stringify(point)) return;
+    this.trial?.cancel();
+    this.shown = null;
+    this.told();
+    const text = JSON.stringify(point);
+    if (this.about === text) return;
+    this.about = text;
+    this.forget();
+  }
+
+  /** Nothing is known. */
+  forget() {
     this.order?.cancel();
     this.point = "";
+    this.few = [];
     this.view.clear();
     this.at("basins").replaceChildren();
+    this.told();
+  }
+
+  /** Whether a motion is known to which the one that is shown is another. */
+  get others() {
+    const { shown } = this;
+    return shown !== null && [...this.view.attractors, ...this.few].some((one) => placeOf([shown], one, SAME) < 0);
+  }
+
+  /** A motion is shown: mark it, and try a few starts. @param {import("./inspector.js").Choice} choice @param {import("./response.js").Response} response */
+  meet({ point }, response) {
+    this.shown = attractorOf(response);
+    if (this.point) this.tell(this.at("basins").dataset.complete === "true");
+    this.told();
+    if (this.point || this.few.length) return;
+    const cells = FEW.flatMap((column) => FEW.map((row) => [column, row]));
+    this.trial = this.pool.ask("basin", { point, plane: planeOf(point, response), cells }, (parts) => {
+      for (const part of parts) label(this.few, part, SAME);
+      this.told();
+    });
   }
 
   /** Unless it is there. @param {import("./inspector.js").Choice} choice @param {import("./response.js").Response} response */
-  compute({ point, level }, { peak, end }) {
+  compute({ point, level }, response) {
     if (this.point === JSON.stringify(point)) return;
     this.order?.cancel();
     this.point = JSON.stringify(point);
-    const reach = Math.max(peak, 1e-3) * 3;
-    const mean = /** @type {[number, number]} */ ([(end[0] + end[1]) / 2, (end[2] + end[3]) / 2]);
-    const plane = { side: SIDE, gap: reach, speed: reach * Math.max(point.eta, 1), mean };
+    const plane = planeOf(point, response);
     this.view.begin(point, plane, level);
-    const asked = shares(coarseFirst(SIDE), this.crew.workers.length).map((cells) => ({ point, plane, cells }));
-    const order = this.crew.askAll("basin", asked, (parts) => {
+    const asked = shares(coarseFirst(SIDE), this.pool.workers.length).map((cells) => ({ point, plane, cells }));
+    const order = this.pool.askAll("basin", asked, (parts) => {
       parts.forEach((part) => this.view.take(part));
       this.tell(false);
     });
@@ -58,20 +98,33 @@ export class BasinPart {
   /** @param {boolean} complete */
   tell(complete) {
     const list = this.at("basins");
-    const words = this.view.words();
+    const words = this.view.words(this.shown);
     list.replaceChildren(
-      ...words.map(({ colour, text, start }) => {
+      ...words.map(({ colour, text, now, start }) => {
         const [row, key, go] = ["li", "span", "button"].map((tag) => document.createElement(tag));
         key.className = "key";
         key.style.background = colour;
         go.textContent = "Show";
         go.ariaLabel = `show: ${text}`;
         go.addEventListener("click", () => this.choose(start));
-        row.append(key, text, " ", go);
+        row.append(key, text, " ", now ? shownNow() : go);
         return row;
       }),
     );
     list.dataset.complete = String(complete);
+    this.told();
     this.view.picture.describe(`Where starts lead to: ${words.map(({ text }) => text).join("; ")}`);
   }
+}
+
+/** In place of a button. */
+function shownNow() {
+  const words = document.createElement("span");
+  return Object.assign(words, { className: "now", textContent: "shown now" });
+}
+
+/** The plane of starts around a response. @param {import("./structure.js").Point} point @param {import("./response.js").Response} response @returns {import("./basin.js").Plane} */
+function planeOf({ eta }, { peak, end }) {
+  const reach = Math.max(peak, 1e-3) * 3;
+  return { side: SIDE, gap: reach, speed: reach * Math.max(eta, 1), mean: [(end[0] + end[1]) / 2, (end[2] + end[3]) / 2] };
 }

@@ -1,10 +1,10 @@
 /** The basin of attraction as a picture that fills in, coarse first; a click starts there. */
 
-import { label, startAt } from "./basin.js";
+import { label, placeOf, startAt } from "./basin.js";
 import { drawFrame, areaOf } from "./chart.js";
 import { inHertz, PAPER } from "./excitation.js";
 import { Picture } from "./picture.js";
-import { countOf } from "./motion_view.js";
+import { meanCountOf } from "./motion_view.js";
 import { omegaOf } from "./structure.js";
 import { channels } from "./theme.js";
 import { gapUnit, wordsOf } from "./units.js";
@@ -15,6 +15,7 @@ import { gapUnit, wordsOf } from "./units.js";
  * @typedef {import("./structure.js").Point} Point
  */
 
+export const SAME = 0.03; // relative distance up to which two motions are one
 const COLOURS = ["#5b8ff9", "#e8a33d", "#5ad8a6", "#d9468f", "#9270ca", "#7a7a7a"];
 
 /** Cells of a square, coarse ones first. @param {number} side @returns {[number, number][]} */
@@ -96,22 +97,23 @@ export class BasinView {
   /** @param {{column: number, row: number} & Attractor} part */
   take({ column, row, ...found }) {
     if (!this.plane) return;
-    const number = label(this.attractors, found, 0.03);
+    const number = label(this.attractors, found, SAME);
     this.labels[row * this.plane.side + column] = number;
     this.examples[number] ??= [column, row];
     this.picture.redraw();
   }
 
-  /** What was found in words, and a start that leads to each. */
-  words() {
+  /** What was found in words, and a start that leads to each. @param {Attractor | null} shown the motion on the page */
+  words(shown) {
     const { point, plane } = this;
     if (!point || !plane) return [];
     const total = this.labels.reduce((sum, one) => sum + (one >= 0 ? 1 : 0), 0) || 1;
+    const now = shown ? placeOf(this.attractors, shown, SAME) : -1;
     return this.attractors.map(({ multiplicity, impacts }, number) => {
       const share = this.labels.reduce((sum, one) => sum + (one === number ? 1 : 0), 0) / total;
       const kind = multiplicity ? `repeats after ${multiplicity} period${multiplicity > 1 ? "s" : ""}` : "does not repeat";
-      const text = `${kind}, ${countOf(impacts)}: ${(100 * share).toFixed(1)} % of starts`;
-      return { colour: colourOf(number), text, start: startAt(point, plane, ...this.examples[number]) };
+      const text = `${kind}, ${meanCountOf(impacts, multiplicity)}: ${(100 * share).toFixed(1)} % of starts`;
+      return { colour: colourOf(number), text, now: number === now, start: startAt(point, plane, ...this.examples[number]) };
     });
   }
 

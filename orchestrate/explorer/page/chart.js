@@ -9,10 +9,12 @@ import { scaleOf, shown, tickText, ticksOf } from "./scale.js";
  * @typedef {{x: ArrayLike<number>, y: ArrayLike<number>, colour: keyof Theme, dots?: number,
  *   label?: string, alpha?: number, width?: number}} Series
  * @typedef {{x: Axis, y: Axis, series: Series[], spans?: [number, number][]}} Chart
+ *   `spans` of contact
  * @typedef {[number, number, number, number]} Place x, y, width, height
  */
 
-const MARGIN = { left: 66, right: 18, top: 20, bottom: 38 };
+const CONTACT = "stuck together"; // what the spans are
+const MARGIN = { left: 72, right: 18, top: 20, bottom: 38 };
 
 /** The plotting area of a picture. @param {import("./picture.js").Size} size @returns {Place} */
 export function areaOf({ width, height }) {
@@ -27,11 +29,11 @@ export function drawChart(pen, size, theme, chart) {
   const px = scaleOf(chart.x, left, left + width);
   const py = scaleOf(chart.y, top + height, top);
   for (const [from, to] of chart.spans ?? []) {
-    pen.box(px(from), top, Math.max(px(to) - px(from), 0.5), height, { fill: theme.contact, alpha: 0.5 });
+    pen.box(px(from), top, Math.max(px(to) - px(from), 0.5), height, { fill: theme.contact });
   }
   drawFrame(pen, place, theme, chart.x, chart.y);
   pen.inside(place, () => chart.series.forEach((series) => drawSeries(pen, series, px, py, theme)));
-  drawLegend(pen, place, theme, chart.series);
+  drawLegend(pen, place, theme, chart);
 }
 
 /** @param {Pen} pen @param {Series} series @param {(v: number) => number} px @param {(v: number) => number} py @param {Theme} theme */
@@ -41,9 +43,15 @@ function drawSeries(pen, { x, y, colour, dots, alpha, width = 1.3 }, px, py, the
   else pen.line(xs, ys, { stroke: theme[colour], width, alpha });
 }
 
-/** @param {Pen} pen @param {Place} place @param {Theme} theme @param {Series[]} series */
-function drawLegend(pen, [left, top, width], theme, series) {
+/** @param {Pen} pen @param {Place} place @param {Theme} theme @param {Chart} chart */
+function drawLegend(pen, [left, top, width], theme, { series, spans }) {
   let x = left + width;
+  if (spans?.length) {
+    pen.text(x, top - 10, CONTACT, { anchor: "end", fill: theme.ink });
+    x -= 6.3 * CONTACT.length + 18;
+    pen.box(x, top - 16, 12, 12, { fill: theme.contact, stroke: theme.soft });
+    x -= 10;
+  }
   for (const { label, colour } of [...series].reverse()) {
     if (!label) continue;
     pen.text(x, top - 10, label, { anchor: "end", fill: theme[colour] });
@@ -52,28 +60,29 @@ function drawLegend(pen, [left, top, width], theme, series) {
 }
 
 /**
- * Frame, grid, ticks and labels.
+ * Frame, grid, ticks and labels; the ticks of x stand `strip` pixels lower.
  * @param {Pen} pen
  * @param {Place} place
  * @param {Theme} theme
  * @param {Axis} x
  * @param {Axis} y
+ * @param {number} [strip]
  */
-export function drawFrame(pen, [left, top, width, height], theme, x, y) {
+export function drawFrame(pen, [left, top, width, height], theme, x, y, strip = 0) {
   const px = scaleOf(x, left, left + width);
   const py = scaleOf(y, top + height, top);
   const [right, bottom] = [left + width, top + height];
   for (const tick of ticksOf(x, width / 64)) {
     pen.line([px(tick), px(tick)], [top, bottom], { stroke: theme.grid });
-    if (x.label !== undefined) pen.text(px(tick), bottom + 12, shown(tick, 6), { fill: theme.soft });
+    if (x.label !== undefined) pen.text(px(tick), bottom + strip + 12, shown(tick, 6), { fill: theme.soft });
   }
   for (const tick of ticksOf(y, height / 30)) {
     pen.line([left, right], [py(tick), py(tick)], { stroke: theme.grid });
     pen.text(left - 6, py(tick), tickText(tick, y), { anchor: "end", fill: theme.soft });
   }
   pen.box(left, top, width, height, { stroke: theme.soft });
-  if (x.label) pen.text(left + width / 2, bottom + 28, x.label, { fill: theme.ink });
-  if (y.label) pen.text(10, top + height / 2, y.label, { turn: true, fill: theme.ink });
+  if (x.label) pen.text(left + width / 2, bottom + strip + 28, x.label, { fill: theme.ink });
+  if (y.label) pen.text(8, top + height / 2, y.label, { turn: true, fill: theme.ink });
 }
 
 /** An axis around values, with some room. @param {ArrayLike<number>[]} columns @param {string} label @returns {Axis} */

@@ -59,6 +59,7 @@ export class Controls {
   row([name, label, min, max, step]) {
     const row = document.createElement("div");
     row.className = "slider";
+    row.title = document.getElementById(`help-${name}`)?.textContent ?? "";
     const words = document.createElement("label");
     Object.assign(words, { htmlFor: name, textContent: label });
     row.append(words);

@@ -104,3 +104,15 @@ export function scaled(start, from, to) {
   const speed = (length * omegaOf(to.structure)) / omegaOf(from.structure);
   return length === 1 && speed === 1 ? start : start.map((value, i) => value * (i < 2 ? length : speed));
 }
+
+/** Whether up and down lead to different motions at an index, by how often they repeat and how far they part. @param {Diagram} diagram @param {number} index */
+export function lanesDiffer({ lanes }, index) {
+  const [up, down] = lanes.map(({ found }) => found[index]);
+  if (!up || !down) return false;
+  return up.multiplicity !== down.multiplicity || (up.multiplicity > 0 && Math.abs(up.peak - down.peak) > 0.03 * Math.max(up.peak, down.peak));
+}
+
+/** Whether a response knocks though all of its samples are shut: it opens between them. @param {Diagram} diagram */
+export function opensElsewhere({ lanes }) {
+  return lanes.some(({ found }) => found.some((one) => one && one.impacts > 0 && one.gaps.every((gap) => gap <= 0)));
+}

@@ -84,7 +84,7 @@ export class Plate {
     this.ends = [left, left + wide];
     this.top = top;
     const [, below, , deep] = impacts.map((number) => number * density);
-    this.counts = scaleOf(axes.impacts, below + deep, below);
+    this.counts = scaleOf(axes.impacts, below + deep - this.strip, below);
     this.countsEnds = [below, below + deep];
     this.dot = Math.max(1, Math.round(density));
     this.broad = Math.max(this.dot, Math.min(6, Math.ceil((0.9 * wide) / Math.max(count, 1))));
@@ -102,7 +102,7 @@ export class Plate {
       const y = gap > LOWEST ? py(gap * unit) : bottom - strip / 2;
       if (y >= top && y <= bottom) this.mark(x, Math.floor(y), rgb);
     }
-    const y = found.impacts > 0.1 ? counts(found.impacts) : this.countsEnds[1] - 2;
+    const y = found.impacts > 0.1 ? counts(found.impacts) : this.countsEnds[1] - strip / 2;
     if (y >= this.countsEnds[0]) for (let i = 0; i < 3; i++) this.mark(x, Math.floor(y), rgb);
   }
 
@@ -132,14 +132,17 @@ export class Plate {
 
 /** Frames of both panels. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axes} axes @param {number} unit of frequency ratios on the axis */
 export function drawFrames(pen, size, theme, axes, unit) {
-  const { gaps, impacts } = panels(size);
-  const [left, top, width, height] = gaps;
-  pen.box(left, top + height - STRIP, width, STRIP, { fill: theme.grid });
-  pen.text(left - 6, top + height - STRIP / 2, "0", { anchor: "end", fill: theme.soft });
-  const above = /** @type {Place} */ ([left, top, width, height - STRIP]);
   const x = { ...axes.x, low: axes.x.low * unit, high: axes.x.high * unit };
-  drawFrame(pen, above, theme, { ...x, label: undefined }, axes.gaps);
-  drawFrame(pen, impacts, theme, x, axes.impacts);
+  const { gaps, impacts } = panels(size);
+  drawFrame(pen, aboveZero(pen, gaps, theme), theme, { ...x, label: undefined }, axes.gaps);
+  drawFrame(pen, aboveZero(pen, impacts, theme), theme, x, axes.impacts, STRIP);
+}
+
+/** The strip of zero below a logarithmic axis; the place that is left above it. @param {Pen} pen @param {Place} place @param {Theme} theme @returns {Place} */
+function aboveZero(pen, [left, top, width, height], theme) {
+  pen.box(left, top + height - STRIP, width, STRIP, { fill: theme.grid });
+  pen.text(left - 6, top + height - STRIP / 2 + 3, "0", { anchor: "end", fill: theme.soft });
+  return [left, top, width, height - STRIP];
 }
 
 /** Which colour is which direction, where there are both. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Diagram} diagram */
@@ -159,10 +162,10 @@ export function drawMarks(pen, size, theme, axis, { eta, drag }) {
   const px = scaleOf(axis, left, left + width);
   if (drag) {
     const [from, to] = drag.map(px);
-    pen.box(Math.min(from, to), top, Math.abs(to - from), bottom - top, { fill: theme.two, alpha: 0.25 });
+    pen.box(Math.min(from, to), top, Math.abs(to - from), bottom - top, { fill: theme.mark, alpha: 0.25 });
   }
   if (eta !== null && eta >= axis.low && eta <= axis.high) {
-    pen.line([px(eta), px(eta)], [top, bottom], { stroke: theme.hit, dash: [4, 3] });
+    pen.line([px(eta), px(eta)], [top, bottom], { stroke: theme.mark, width: 1.5, dash: [4, 3] });
   }
 }
 

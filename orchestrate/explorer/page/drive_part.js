@@ -1,8 +1,13 @@
 /** The weak drive: a motor with an unbalance shakes the box; its speed may hang at the resonance. */
 
 import { drawChart } from "./chart.js";
+import { toDefault } from "./field.js";
+import { countOf } from "./motion_view.js";
 import { Picture } from "./picture.js";
 import { shown } from "./scale.js";
+import { omegaOf } from "./structure.js";
+
+const IDLE = "Not running: press Slowly up.";
 
 const KEPT = 6000; // revolutions of the trace
 const PACE = 60; // ms between two requests
@@ -12,12 +17,14 @@ const SWEEP = 2e-4; // V/s of a ramp, times the largest voltage
 /** @typedef {{time: number, voltage: number, speed: number, amplitude: number, impacts: number}} Row */
 
 export class DrivePart {
-  /** @param {(id: string) => HTMLElement} at @param {import("./crew.js").Crew} crew @param {import("./coupled.js").Start} start */
-  constructor(at, crew, start) {
+  /** @param {(id: string) => HTMLElement} at @param {import("./worker_pool.js").WorkerPool} pool @param {import("./coupled.js").Start} start */
+  constructor(at, pool, start) {
     this.at = at;
-    this.crew = crew;
+    this.pool = pool;
     this.start = start;
     this.voltage = /** @type {HTMLInputElement} */ (at("voltage"));
+    this.bonded = /** @type {HTMLInputElement} */ (at("drive-bonded"));
+    this.omega = omegaOf(/** @type {import("./structure.js").Structure} */ (/** @type {unknown} */ (start.structure)));
     this.picture = new Picture(/** @type {HTMLCanvasElement} */ (at("drive")), (pen, size, theme) => this.draw(pen, size, theme));
     this.running = false;
     this.ramp = 0; // sign of the voltage's change
@@ -25,19 +32,22 @@ export class DrivePart {
     this.state = null;
     /** @type {Row[]} */
     this.rows = [];
-    /** @type {import("./crew.js").Order | null} */
+    /** @type {import("./worker_pool.js").Order | null} */
     this.order = null;
     at("drive-go").addEventListener("click", () => this.run(!this.running));
     at("ramp-up").addEventListener("click", () => this.drift(1));
     at("ramp-down").addEventListener("click", () => this.drift(-1));
-    at("drive-bonded").addEventListener("change", () => this.clear());
+    this.bonded.addEventListener("change", () => this.clear());
     this.voltage.addEventListener("input", () => (this.ramp = 0));
-    const seen = new IntersectionObserver(([{ isIntersecting }]) => {
-      if (!isIntersecting) return;
-      seen.disconnect(); // once: from then on its buttons say what it does
-      if (!this.rows.length && !this.running) this.drift(1);
-    });
-    seen.observe(this.picture.canvas);
+  }
+
+  /** As when the page was opened. */
+  reset() {
+    this.run(false);
+    this.ramp = 0;
+    for (const input of [this.voltage, this.bonded]) toDefault(input);
+    this.clear();
+    this.at("drive-status").textContent = IDLE;
   }
 
   /** Forget the run. */
@@ -78,7 +88,7 @@ export class DrivePart {
   }
 
   ask() {
-    const bonded = /** @type {HTMLInputElement} */ (this.at("drive-bonded")).checked ? 1 : 0;
+    const bonded = this.bonded.checked ? 1 : 0;
     const voltages = this.voltages();
     const { structure, drive } = this.start;
     const start = {
@@ -86,7 +96,7 @@ export class DrivePart {
       structure: { ...structure, bonded },
       drive: { ...drive, voltage: voltages[0], speed_start: voltages[0] / drive.motor_constant },
     };
-    const order = this.crew.ask("drive", { run: this.state, start, voltages }, ([part]) => this.take(part));
+    const order = this.pool.ask("drive", { run: this.state, start, voltages }, ([part]) => this.take(part));
     this.order = order;
     void order.done.then(() => {
       if (this.order === order) this.order = null;
@@ -100,7 +110,8 @@ export class DrivePart {
     this.rows = [...this.rows, ...rows].slice(-KEPT);
     const last = this.rows[this.rows.length - 1];
     if (last) {
-      const words = `${shown(last.voltage)} V: speed ${shown(last.speed)} rad/s, ${shown(last.impacts, 2)} impacts a revolution, amplitude ${shown(last.amplitude, 3)} m`;
+      const unit = this.start.drive.motor_constant * this.omega;
+      const words = `Voltage for a speed of ${shown(last.voltage / unit, 3)}: speed ${shown(last.speed / this.omega, 3)} of the beam's ω, ${countOf(last.impacts, "a revolution")}`;
       this.at("drive-status").textContent = words;
       this.picture.describe(`Speed of the motor over its voltage. ${words}`);
     }
@@ -110,16 +121,17 @@ export class DrivePart {
   /** @param {import("./pen.js").Pen} pen @param {import("./picture.js").Size} size @param {import("./theme.js").Theme} theme */
   draw(pen, size, theme) {
     const [low, high] = [Number(this.voltage.min), Number(this.voltage.max)];
-    const unit = this.start.drive.motor_constant;
-    const x = this.rows.map((row) => row.voltage);
-    const y = this.rows.map((row) => row.speed);
+    const unit = this.start.drive.motor_constant * this.omega;
+    const x = this.rows.map((row) => row.voltage / unit);
+    const y = this.rows.map((row) => row.speed / this.omega);
+    const ends = [low / unit, high / unit];
     drawChart(pen, size, theme, {
-      x: { low, high, label: "voltage, V" },
-      y: { low: low / unit, high: high / unit, label: "speed, rad/s" },
+      x: { low: ends[0], high: ends[1], label: "voltage, as the speed without load over ω" },
+      y: { low: ends[0], high: ends[1], label: "speed over ω" },
       series: [
-        { x: [low, high], y: [low / unit, high / unit], colour: "soft", label: "no load", alpha: 0.5 },
+        { x: ends, y: ends, colour: "soft", label: "no load", alpha: 0.5 },
         { x, y, colour: "one", label: "speed" },
-        { x: x.slice(-1), y: y.slice(-1), colour: "hit", dots: 4 },
+        { x: x.slice(-1), y: y.slice(-1), colour: "mark", dots: 4 },
       ],
     });
   }

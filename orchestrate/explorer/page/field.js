@@ -22,6 +22,13 @@ export function showNumber(input, value, digits = 12) {
   complain(input, "");
 }
 
+/** As the page has it when it is opened. @param {HTMLInputElement} input */
+export function toDefault(input) {
+  input.value = input.defaultValue;
+  input.checked = input.defaultChecked;
+  complain(input, "");
+}
+
 /** Say beside a field what is expected; nothing where all is well. @param {HTMLInputElement} input @param {string} words */
 function complain(input, words) {
   if (input.validationMessage === words) return;

@@ -13,7 +13,8 @@ import {
   sentenceOf,
   spectrumChart,
 } from "./motion_view.js";
-import { Sound } from "./sound.js";
+import { shown } from "./scale.js";
+import { Sound } from "./audio.js";
 
 /**
  * @typedef {import("./structure.js").Point} Point
@@ -27,10 +28,10 @@ const POINTS = 200; // a period
 const LONG = 20000; // periods of a section that runs on
 
 export class Inspector {
-  /** @param {(id: string) => HTMLElement} at @param {import("./crew.js").Crew} crew @param {() => void} told */
-  constructor(at, crew, told) {
+  /** @param {(id: string) => HTMLElement} at @param {import("./worker_pool.js").WorkerPool} pool @param {() => void} told */
+  constructor(at, pool, told) {
     this.at = at;
-    this.crew = crew;
+    this.pool = pool;
     this.told = told;
     this.pictures = motionPictures(at);
     this.animation = new Animation(/** @type {HTMLCanvasElement} */ (at("animation")));
@@ -38,7 +39,7 @@ export class Inspector {
     this.periods = 10;
     /** @type {Choice | null} */
     this.choice = null;
-    /** @type {import("./crew.js").Order[]} */
+    /** @type {import("./worker_pool.js").Order[]} */
     this.orders = [];
     /** @type {{response: Response, motion: Motion} | null} */
     this.found = null;
@@ -60,9 +61,8 @@ export class Inspector {
     Object.assign(this, { choice, found: null, spectra: null, bonded: null, exponent: undefined });
     this.at("exponent").textContent = "…";
     this.ask("motion", { ...choice, periods: this.periods, points: POINTS }, ([found]) => this.take(found));
-    const glued = { ...choice.point, structure: { ...choice.point.structure, bonded: 1 } };
     const settled = { transient: 2000, samples: 1, tolerance: 1e-2 };
-    const asked = { point: glued, start: [0, 0, 0, 0], settings: settled, periods: this.periods, points: POINTS };
+    const asked = { point: undamaged(choice.point), start: [0, 0, 0, 0], settings: settled, periods: this.periods, points: POINTS };
     this.ask("motion", asked, ([{ motion }]) => {
       this.bonded = motion;
       this.drawMotion();
@@ -71,7 +71,7 @@ export class Inspector {
 
   /** @param {string} task @param {unknown} asked @param {(parts: any[]) => void} take */
   ask(task, asked, take) {
-    const order = this.crew.ask(task, asked, take);
+    const order = this.pool.ask(task, asked, take);
     this.orders.push(order);
     return order;
   }
@@ -92,20 +92,21 @@ export class Inspector {
     this.drawMotion();
     this.drawSection();
     this.animation.load(found.motion, point);
-    this.animation.picture.describe(`Animation of box and masses at frequency ratio ${point.eta}, ${found.motion.impactTime.length} impacts`);
+    this.animation.picture.describe(`Animation of box and masses at frequency ratio ${shown(point.eta, 6)}, ${found.motion.impactTime.length} impacts`);
     this.showNumbers();
     this.told();
   }
 
   showNumbers() {
     const { point, level } = /** @type {Choice} */ (this.choice);
-    const { response } = /** @type {{response: Response}} */ (this.found);
-    this.at("sentence").textContent = sentenceOf(response, this.exponent);
+    const { response, motion } = /** @type {{response: Response, motion: Motion}} */ (this.found);
+    this.at("sentence").textContent = sentenceOf(response, this.exponent, motion.contact.some(Boolean));
     const list = this.at("numbers");
     list.querySelectorAll(".told").forEach((row) => row.remove());
     for (const [name, value] of Object.entries(numbersOf(response, point, level)).reverse()) {
       const row = document.createElement("div");
       row.className = "told";
+      if (/[ξη]/.test(name)) row.title = this.at(name.includes("ξ") ? "help-xi" : "help-eta").textContent ?? "";
       row.append(tagged("dt", name), tagged("dd", value));
       list.prepend(row);
     }
@@ -119,14 +120,14 @@ export class Inspector {
     const phase = phaseChart(motion, point, level);
     const beside = /** @type {HTMLInputElement} */ (this.at("beside")).checked;
     if (beside && this.bonded) {
-      const { x1, v1 } = columnsOf(this.bonded, point, level);
+      const { x1, v1 } = columnsOf(this.bonded, undamaged(point), level);
       const { turns } = columnsOf(motion, point, level);
-      const look = /** @type {const} */ ({ colour: "soft", label: "bonded", width: 2, alpha: 0.8 });
+      const look = /** @type {const} */ ({ colour: "soft", label: "undamaged", width: 2, alpha: 0.8 });
       history.series.unshift({ x: turns, y: x1, ...look });
       phase.series.unshift({ x: x1, y: v1, ...look });
       for (const chart of [history, phase]) widen(chart);
     }
-    const words = `at frequency ratio ${point.eta}`;
+    const words = `at frequency ratio ${shown(point.eta, 6)}`;
     this.pictures.show("history", history, `Time histories of both masses ${words}: ${motion.impactTime.length} impacts in ${this.periods} periods, permanent contact in ${history.spans?.length ?? 0} spans`);
     this.pictures.show("phase", phase, `Phase curves of both masses ${words}`);
   }
@@ -134,7 +135,7 @@ export class Inspector {
   drawSection() {
     const { point, level } = /** @type {Choice} */ (this.choice);
     const count = this.section.length / 4;
-    this.pictures.show("section", sectionChart(this.section, point, level), `Stroboscopic section at frequency ratio ${point.eta}: ${count} samples of gap and gap velocity`);
+    this.pictures.show("section", sectionChart(this.section, point, level), `Stroboscopic section at frequency ratio ${shown(point.eta, 6)}: ${count} samples of gap and gap velocity`);
     this.at("section-count").textContent = `${count} periods`;
   }
 
@@ -187,6 +188,9 @@ export class Inspector {
     });
   }
 }
+
+/** The same without its delamination. @param {Point} point @returns {Point} */
+const undamaged = (point) => ({ ...point, structure: { ...point.structure, bonded: 1 } });
 
 /** Let the axes of a chart hold all of its curves; time stays as it is. @param {import("./chart.js").Chart} chart */
 function widen(chart) {

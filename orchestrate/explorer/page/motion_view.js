@@ -1,7 +1,7 @@
 /** The motion at the chosen frequency in four pictures, and in words. */
 
 import { axisAround, drawChart } from "./chart.js";
-import { gapBetween, gapOffset } from "./clearance.js";
+import { atRest, gapBetween, gapOffset } from "./clearance.js";
 import { GRAVITY, inHertz } from "./excitation.js";
 import { Picture } from "./picture.js";
 import { peaksUpTo } from "./record.js";
@@ -21,6 +21,7 @@ import { scaleAt, wordsOf } from "./units.js";
 
 const CHAOTIC = 0.005; // exponents above
 const REGULAR = -0.002; // and below
+const FEW = 24; // places of a section that are drawn as larger dots
 
 /** @param {(id: string) => HTMLElement} at the page's elements */
 export function motionPictures(at) {
@@ -42,12 +43,13 @@ export function motionPictures(at) {
   return { pictures, show };
 }
 
-/** Columns of a motion as the axes have them, time from its beginning. @param {Motion} motion @param {Point} point @param {Level} level */
+/** Columns of a motion as the axes have them: time from its beginning, displacements from rest, where pressed halves touch. @param {Motion} motion @param {Point} point @param {Level} level */
 export function columnsOf(motion, point, level) {
   const { length, speed, time } = scaleAt(point, level);
+  const rest = [...atRest(point.structure), 0, 0];
   /** @param {number} part @param {number} unit */
   const column = (part, unit) =>
-    Float64Array.from({ length: motion.time.length }, (_, i) => motion.states[4 * i + part] / unit);
+    Float64Array.from({ length: motion.time.length }, (_, i) => (motion.states[4 * i + part] - rest[part]) / unit);
   return {
     turns: motion.time.map((t) => (t - motion.time[0]) / time),
     x1: column(0, length),
@@ -72,20 +74,27 @@ export function contactSpans({ contact }, turns) {
   return spans;
 }
 
+/** What a displacement is counted from is said where it is not the springs' own length. @param {Point} point @param {Level} level */
+function placeWords({ structure }, level) {
+  const { place } = wordsOf(level);
+  return gapOffset(structure) < 0 ? place.replace("displacement", "displacement from rest") : place;
+}
+
 /** Time histories with impacts and contact. @param {Motion} motion @param {Point} point @param {Level} level @returns {Chart} */
 export function historyChart(motion, point, level) {
   const { turns, x1, x2 } = columnsOf(motion, point, level);
   const { length, time } = scaleAt(point, level);
   const words = wordsOf(level);
+  const [rest] = atRest(point.structure);
   const hits = motion.impactTime.map((t) => (t - motion.time[0]) / time);
   return {
     x: { low: 0, high: turns[turns.length - 1], label: words.time },
-    y: axisAround([x1, x2], words.place),
+    y: axisAround([x1, x2], placeWords(point, level)),
     spans: contactSpans(motion, turns),
     series: [
       { x: turns, y: x1, colour: "one", label: "half 1" },
       { x: turns, y: x2, colour: "two", label: "half 2" },
-      { x: hits, y: motion.impactPlace.map((x) => x / length), colour: "hit", dots: 2.5, label: "impact" },
+      { x: hits, y: motion.impactPlace.map((x) => (x - rest) / length), colour: "hit", dots: 2.5, label: "impact" },
     ],
   };
 }
@@ -95,7 +104,7 @@ export function phaseChart(motion, point, level) {
   const { x1, x2, v1, v2 } = columnsOf(motion, point, level);
   const words = wordsOf(level);
   return {
-    x: axisAround([x1, x2], words.place),
+    x: axisAround([x1, x2], placeWords(point, level)),
     y: axisAround([v1, v2], words.speed),
     series: [
       { x: x1, y: v1, colour: "one", label: "half 1", width: 1 },
@@ -103,6 +112,9 @@ export function phaseChart(motion, point, level) {
     ],
   };
 }
+
+/** In which of 200 equal parts of an axis a value lies. @param {number} value @param {import("./scale.js").Axis} axis */
+const cell = (value, { low, high }) => Math.round((200 * (value - low)) / (high - low));
 
 /** Stroboscopic section of gap and gap velocity. @param {ArrayLike<number>} states @param {Point} point @param {Level} level @returns {Chart} */
 export function sectionChart(states, point, level) {
@@ -112,12 +124,10 @@ export function sectionChart(states, point, level) {
   const count = states.length / 4;
   const x = Float64Array.from({ length: count }, (_, i) => gapBetween(states[4 * i], states[4 * i + 1], offset) / length);
   const y = Float64Array.from({ length: count }, (_, i) => (states[4 * i + 3] - states[4 * i + 2]) / speed);
-  const dots = count > 2000 ? 0.8 : 1.8;
-  return {
-    x: axisAround([x], words.gap),
-    y: axisAround([y], words.gapSpeed),
-    series: [{ x, y, colour: "hit", dots, alpha: 0.8 }],
-  };
+  const axes = { x: axisAround([x], words.gap), y: axisAround([y], words.gapSpeed) };
+  const places = new Set(x.map((value, i) => 1000 * cell(value, axes.x) + cell(y[i], axes.y)));
+  const dots = places.size <= FEW ? 5 : count > 2000 ? 0.8 : 1.8;
+  return { ...axes, series: [{ x, y, colour: "ink", dots, alpha: 0.8 }] };
 }
 
 /** @param {{delaminated: Spectrum, bonded: Spectrum}} found @param {Point} point @param {Level} level @param {import("./record.js").Measured | null} measured @returns {Chart} */
@@ -133,7 +143,7 @@ export function spectrumChart({ delaminated, bonded }, point, level, measured) {
   /** @type {Series[]} */
   const series = [
     { x, y: kept(delaminated.amplitude), colour: "one", label: "delaminated", width: 1 },
-    { x, y: kept(bonded.amplitude), colour: "hit", label: "bonded" },
+    { x, y: kept(bonded.amplitude), colour: "two", label: "undamaged" },
   ];
   if (measured && inHertz(level)) {
     const peaks = peaksUpTo(measured, x[x.length - 1], 2000);
@@ -157,10 +167,10 @@ export function numbersOf({ peak, impacts, contact, multiplicity }, { eta, frequ
         "acceleration of the box, g": shown((amplitude * frequency * frequency) / GRAVITY),
         "largest gap, mm": shown(1e3 * peak * amplitude * eta * eta),
       }
-    : { "frequency ratio η": String(eta), "largest gap ξ": shown(peak, 6) };
+    : { "frequency ratio η": shown(eta, 6), "largest gap ξ": shown(peak, 6) };
   return {
     ...first,
-    "impacts a period": shown(impacts),
+    "impacts a period": multiplicity === 1 ? shown(impacts) : `${shown(impacts)} on average`,
     "repeats after": multiplicity ? `${multiplicity} period${multiplicity > 1 ? "s" : ""}` : "does not repeat",
     "stick together": !contact ? "no" : peak > 0 ? "for a while" : "always",
   };
@@ -172,18 +182,21 @@ export function exponentWords(exponent, repeats) {
   return `${shown(exponent, 3)}${exponent > CHAOTIC ? " (chaotic)" : exponent < REGULAR ? settles : ""}`;
 }
 
-/** @param {number} impacts */
-export const countOf = (impacts) => `${shown(impacts, 3)} impact${impacts === 1 ? "" : "s"} a period`;
+/** So many impacts a period, or a revolution. @param {number} impacts @param {string} [each] */
+export const countOf = (impacts, each = "a period") => `${shown(impacts, 3)} impact${impacts === 1 ? "" : "s"} ${each}`;
 
-/** A response in a sentence. @param {Response} response @param {number | undefined} exponent if it is known */
-export function sentenceOf({ impacts, contact, multiplicity, peak }, exponent) {
+/** The same of a motion: of periods that differ it is the mean. @param {number} impacts @param {number} multiplicity */
+export const meanCountOf = (impacts, multiplicity) => `${multiplicity === 1 ? "" : "on average "}${countOf(impacts)}`;
+
+/** A response in a sentence. @param {Response} response @param {number | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown */
+export function sentenceOf({ impacts, contact, multiplicity, peak }, exponent, seen) {
   if (!impacts) return peak > 0 ? "The halves never touch." : "The halves stay closed: no impact.";
-  const count = countOf(impacts);
-  const sticks = contact ? ", then the halves stick together for a while" : "";
+  const count = meanCountOf(impacts, multiplicity);
   if (multiplicity) {
     const every = multiplicity === 1 ? "every shaking period" : `after ${multiplicity} shaking periods`;
-    return `Repeats ${every}: ${count}${sticks}.`;
+    return `Repeats ${every}: ${count}${contact ? ", then the halves stick together for a while" : ""}.`;
   }
   const kind = exponent !== undefined && exponent > CHAOTIC ? "Chaos: never repeats" : "Does not repeat";
-  return `${kind}, ${count}${sticks}.`;
+  const sticks = `; at times${seen ? "" : ", not in those shown,"} the halves stick together`;
+  return `${kind}, ${count}${contact ? sticks : ""}.`;
 }

@@ -1,6 +1,7 @@
 /** A picture on the page: a canvas, sharp on every screen, that can be saved as PNG or SVG. */
 
 import { save } from "./files.js";
+import { drawCaption, heightOf, wrapped } from "./caption.js";
 import { CanvasPen, SvgPen } from "./pen.js";
 import { themeOf } from "./theme.js";
 
@@ -55,17 +56,32 @@ export class Picture {
     this.canvas.setAttribute("aria-label", words);
   }
 
-  /** @param {string} name of the file */
-  savePng(name) {
-    this.canvas.toBlob((blob) => blob && save(`${name}.png`, blob));
+  /** As it is on the screen, on paper, with lines below. @param {string} name of the file @param {string[]} caption */
+  savePng(name, caption) {
+    const { width, height } = this.size;
+    const { canvas } = this;
+    const density = canvas.width / width;
+    const lines = wrapped(caption, width);
+    const sheet = document.createElement("canvas");
+    Object.assign(sheet, { width: canvas.width, height: canvas.height + Math.round(density * heightOf(lines)) });
+    const context = /** @type {CanvasRenderingContext2D} */ (sheet.getContext("2d"));
+    const theme = themeOf();
+    context.fillStyle = theme.paper;
+    context.fillRect(0, 0, sheet.width, sheet.height);
+    context.drawImage(canvas, 0, 0);
+    context.setTransform(density, 0, 0, density, 0, 0);
+    drawCaption(new CanvasPen(context), lines, height, theme);
+    sheet.toBlob((blob) => blob && save(`${name}.png`, blob));
   }
 
-  /** @param {string} name of the file */
-  saveSvg(name) {
+  /** @param {string} name of the file @param {string[]} caption */
+  saveSvg(name, caption) {
     const { width, height } = this.size;
     const theme = themeOf();
-    const pen = new SvgPen(width, height, theme.paper);
+    const lines = wrapped(caption, width);
+    const pen = new SvgPen(width, height + heightOf(lines), theme.paper);
     this.draw(pen, { width, height }, theme);
+    drawCaption(pen, lines, height, theme);
     save(`${name}.svg`, new Blob([pen.finished()], { type: "image/svg+xml" }));
   }
 }

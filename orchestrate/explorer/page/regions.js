@@ -2,7 +2,7 @@
 
 import { empty } from "./diagram.js";
 import { DiagramView } from "./diagram_view.js";
-import { chain, replay } from "./orders.js";
+import { chain, replay } from "./requests.js";
 import { USUAL } from "./response.js";
 import { sameLevel } from "./excitation.js";
 import { sameStructure } from "./structure.js";
@@ -20,13 +20,13 @@ const LEAST = 1e-6; // width of a region
 export class Regions {
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {import("./crew.js").Crew} crew
+   * @param {import("./worker_pool.js").WorkerPool} pool
    * @param {Diagram | null} shipped
    * @param {{low: number, high: number}} whole
    * @param {(complete: boolean) => void} told when something has come
    */
-  constructor(canvas, crew, shipped, whole, told) {
-    this.crew = crew;
+  constructor(canvas, pool, shipped, whole, told) {
+    this.pool = pool;
     this.whole = whole;
     this.shipped = shipped;
     this.told = told;
@@ -35,7 +35,7 @@ export class Regions {
     this.seen = [];
     this.place = -1;
     this.complete = false;
-    /** @type {import("./crew.js").Order | null} */
+    /** @type {import("./worker_pool.js").Order | null} */
     this.order = null;
     this.timer = 0;
     /** @type {Diagram | null} */
@@ -100,14 +100,14 @@ export class Regions {
     this.complete = false;
     this.view.show(diagram, parent && parent !== diagram ? parent : null);
     const began = performance.now();
-    /** @type {import("./orders.js").Take} */
+    /** @type {import("./requests.js").Take} */
     const take = (lane, found) => {
       this.view.add(lane.direction, found.index, found);
       this.first ??= performance.now() - began;
     };
     this.first = undefined;
     const replayed = diagram.lanes.every((lane) => lane.starts);
-    const order = replayed ? replay(this.crew, diagram, take) : chain(this.crew, diagram, parent, take);
+    const order = replayed ? replay(this.pool, diagram, take) : chain(this.pool, diagram, parent, take);
     this.order = order;
     void order.done.then(() => {
       if (this.order !== order) return;

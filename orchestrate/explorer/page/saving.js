@@ -1,7 +1,20 @@
 /** What is shown, as files to take home. */
 
+import { beamWords } from "./caption.js";
 import { saveCsv } from "./files.js";
 import { diagramCsv, driveCsv, impactsCsv, motionCsv, sectionCsv, spectrumCsv } from "./tables.js";
+
+/** @type {Record<string, string>} */
+const TITLES = {
+  diagram: "Orbit diagram: the gap once a shaking period; below, impacts a period",
+  frame: "The halves in their box, at one moment",
+  history: "Displacements of both halves in time",
+  phase: "Phase curves of both halves",
+  section: "Stroboscopic section: gap and gap velocity once a shaking period",
+  spectrum: "Spectrum of the acceleration of half 1",
+  basin: "Where starts lead to: each colour a motion",
+  drive: "A weak motor shakes the box: its speed over its voltage",
+};
 
 /**
  * Save a picture or its numbers; says so.
@@ -11,12 +24,16 @@ import { diagramCsv, driveCsv, impactsCsv, motionCsv, sectionCsv, spectrumCsv } 
 export function saveShown(words, { eta, regions, inspector, basin, drive }) {
   const [name, kind] = words.split(".");
   const { found, choice, section, spectra, pictures, animation } = inspector;
-  const file = `${name}_eta${Number.isFinite(eta) ? eta : ""}`;
+  const file = `${name}_eta${Number.isFinite(eta) ? Number(eta.toPrecision(7)) : ""}`;
   if (kind !== "csv") {
     /** @type {Record<string, import("./picture.js").Picture>} */
-    const shown = { ...pictures.pictures, diagram: regions.view.picture, basin: basin.view.picture, drive: drive.picture, animation: animation.picture };
-    if (kind === "png") shown[name].savePng(file);
-    else shown[name].saveSvg(file);
+    const shown = { ...pictures.pictures, diagram: regions.view.picture, basin: basin.view.picture, drive: drive.picture, frame: animation.picture };
+    const caption = [TITLES[name]];
+    if (name === "drive") caption.push("A lighter beam, the parameter set quick");
+    else if (choice) caption.push(beamWords(choice.point, choice.level));
+    caption.push(document.getElementById("source")?.textContent ?? "");
+    if (kind === "png") shown[name].savePng(file, caption);
+    else shown[name].saveSvg(file, caption);
     return `${file}.${kind} saved`;
   }
   /** @type {Record<string, () => import("./files.js").Table | null>} */

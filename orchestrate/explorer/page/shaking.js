@@ -15,6 +15,7 @@ import { lengthOf, rescaled } from "./structure.js";
 
 /** @type {Level} */
 const FIRST = { unit: "g", value: 1 };
+const DIGITS = 7; // of a frequency ratio that is shown
 const OMEGA = 2 * Math.PI * 40; // of a first beam of one's own, rad/s
 
 export class Shaking {
@@ -75,7 +76,7 @@ export class Shaking {
   mark(eta) {
     const { eta: slider, number, hertz } = this.inputs;
     showNumber(slider, eta);
-    showNumber(number, eta);
+    showNumber(number, eta, DIGITS);
     showNumber(hertz, Number(hertzOf(eta, this.structure).toPrecision(9)));
   }
 

@@ -1,6 +1,6 @@
 /** Colours of the pictures: those of the style sheet, light or dark. */
 
-/** @typedef {Record<"paper" | "ink" | "soft" | "grid" | "one" | "two" | "hit" | "contact" | "up" | "down", string>} Theme */
+/** @typedef {Record<"paper" | "ink" | "soft" | "grid" | "one" | "two" | "hit" | "contact" | "mark" | "up" | "down", string>} Theme */
 
 /** @returns {Theme} */
 export function themeOf() {
@@ -16,6 +16,7 @@ export function themeOf() {
     two: colour("two"),
     hit: colour("hit"),
     contact: colour("contact"),
+    mark: colour("mark"),
     up: colour("up"),
     down: colour("down"),
   };

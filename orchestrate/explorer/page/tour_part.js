@@ -7,6 +7,7 @@ export class TourPart {
     this.links = tour.querySelectorAll("a");
     this.texts = /** @type {NodeListOf<HTMLElement>} */ (tour.querySelectorAll("[data-text]"));
     this.name = ""; // of the stop that is shown
+    for (const button of tour.querySelectorAll("[data-close]")) button.addEventListener("click", () => this.show(""));
   }
 
   /** The view of the stop that a link names, if it says no more; the stop is then marked. @param {string} fragment */
@@ -18,7 +19,7 @@ export class TourPart {
     return known && [...words].length === 1 ? this.stops[name] : null;
   }
 
-  /** Mark a stop and its step; none where it is no longer what is shown. @param {string} name */
+  /** Mark a stop and show the text of its step; without a name the tour is closed. @param {string} name */
   show(name) {
     this.name = name;
     const step = [...this.links].find((link) => link.hash === `#tour=${name}`)?.dataset.step ?? "";
@@ -27,5 +28,11 @@ export class TourPart {
       link.ariaCurrent = here ? "step" : null;
     }
     for (const text of this.texts) text.hidden = text.dataset.text !== step;
+  }
+
+  /** Something else than the stop is shown now; its step's text and links stay. */
+  leave() {
+    this.name = "";
+    for (const link of this.links) if (!link.closest("ol")) link.ariaCurrent = null;
   }
 }

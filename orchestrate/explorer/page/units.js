@@ -8,7 +8,7 @@ import { lengthOf, omegaOf, periodOf } from "./structure.js";
  * @typedef {import("./structure.js").Structure} Structure
  * @typedef {import("./structure.js").Point} Point
  * @typedef {{length: number, speed: number, time: number, line: number, acceleration: number}} Scale
- *   what is one on the axes, in m, m/s, s and m/s2; `line`: what the excitation's frequency is there
+ *   what is one on the axes, in m, m/s, s and m/s²; `line`: what the excitation's frequency is there
  * @typedef {{frequency: string, gap: string, gapSpeed: string, place: string, speed: string,
  *   time: string, line: string, acceleration: string}} Words
  */
@@ -22,7 +22,7 @@ const PAPER = {
   speed: "velocity ξ′",
   time: "time, shaking periods",
   line: "frequency / Ω",
-  acceleration: "acceleration, m/s²",
+  acceleration: "acceleration ξ″",
 };
 /** @type {Words} */
 const OWN = {
@@ -45,7 +45,8 @@ export function scaleAt(point, level) {
     return { length: 1e-3, speed: 1e-3, time: 1, line: point.frequency / (2 * Math.PI), acceleration: GRAVITY };
   }
   const length = lengthOf(point);
-  return { length, speed: length * omegaOf(point.structure), time: periodOf(point), line: 1, acceleration: 1 };
+  const omega = omegaOf(point.structure);
+  return { length, speed: length * omega, time: periodOf(point), line: 1, acceleration: length * omega * omega };
 }
 
 /** What a frequency ratio of one is on the axis. @param {Structure} structure @param {Level} level */

@@ -12,7 +12,7 @@ from orchestrate.explorer.page import SOURCES, explore
 from .traced import Traced
 
 ONE_WORKER = """
-explorer.regions.crew.workers.splice(1);
+explorer.regions.pool.workers.splice(1);
 Object.defineProperty(explorer.regions, "count", { get: () => 300 });
 """
 REGIONS = ((0.3, 0.6), (1.1, 1.4), (2.8, 3.1))
@@ -49,7 +49,7 @@ SLIDER = "{ const at = document.getElementById('e'); at.value = 0.6; "
 WAYS = {  # what is done, until when
     "irregular": ("explorer.choose(2.95)", CHOSEN),
     "many impacts": ("explorer.choose(0.4)", CHOSEN),
-    "sound": ("explorer.listen()", "explorer.inspector.sound.playing"),
+    "sound": ("explorer.player.listen()", "explorer.inspector.sound.playing"),
     "region": ("explorer.open(1.1, 1.4)", COMPLETE),
     "back": ("document.getElementById('back').click()", COMPLETE),
     "slider": (f"{SLIDER} at.dispatchEvent(new Event('input')); }}", COMPLETE),

@@ -1,5 +1,6 @@
 """The page in headless browsers: each way to use it, and the bits of what it shows."""
 
+import re
 import shlex
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -175,7 +176,12 @@ def test_what_is_shown_can_be_taken_home(browser):
     for name in ("diagram", "spectrum"):
         root = ET.fromstring(browser.download(f"{name}*.svg").read_text())
         assert root.tag.endswith("svg") and len(list(root)) > 10
-    assert browser.download("diagram*.png").read_bytes().startswith(b"\x89PNG")
+        words = "".join(root.itertext())
+        assert "e = 0.7" in words and "vibroimpact" in words  # its caption
+    picture = browser.download("diagram*.png").read_bytes()
+    assert picture.startswith(b"\x89PNG")
+    height = int.from_bytes(picture[20:24], "big")
+    assert height > browser.run("return document.getElementById('diagram').height") + 40
     table = np.genfromtxt(browser.download("history*.csv"), delimiter=",", names=True)
     states = browser.numbers(f"{MOTION}.states").reshape(-1, 4)
     assert np.array_equal(table["x1"], states[:, 0])
@@ -256,8 +262,8 @@ def test_the_weak_drive_is_the_masters(browser, clearance):
         const halves = { ...structure, clearance: arguments[0] };
         const asked = { run: null, start: { ...rest, drive: motor, structure: halves }, voltages };
         explorer.told = null;
-        explorer.crew.ask("drive", asked, ([first]) =>
-          explorer.crew.ask("drive", { ...asked, run: first.run }, ([last]) => {
+        explorer.pool.ask("drive", asked, ([first]) =>
+          explorer.pool.ask("drive", { ...asked, run: first.run }, ([last]) => {
             explorer.told = [...first.rows, ...last.rows];
           }));
         """,
@@ -271,11 +277,22 @@ def test_the_weak_drive_is_the_masters(browser, clearance):
         assert np.array_equal(mine, found[name].values), name
 
 
+def test_the_motor_waits_until_it_is_started(browser):
+    browser.run("document.getElementById('drive').scrollIntoView()")
+    browser.until("return new Promise((done) => setTimeout(() => done(true), 300))")
+    assert browser.run("return [explorer.drive.running, explorer.drive.rows.length]") == [False, 0]
+
+
 def test_the_motor_runs_and_is_stopped(browser):
     browser.click("ramp-up")
     browser.until("return explorer.drive.rows.length > 100")
     browser.click("drive-go")
-    assert "impacts a revolution" in browser.text("drive-status")
+    browser.run(
+        "const { rows, state } = explorer.drive; window.row = rows.at(-1);"
+        "explorer.drive.take({ rows: [{ ...row, impacts: 1 }], run: state })"
+    )
+    words = browser.text("drive-status")
+    assert words.endswith(", 1 impact a revolution") and not re.search(r"\d (m|V|rad)\b", words)
     assert browser.run("return explorer.drive.rows.at(-1).voltage > explorer.drive.rows[0].voltage")
 
 
@@ -373,7 +390,7 @@ def test_bonded_curves_are_inside_their_axes(browser):
     document.getElementById("beside").click();
     return ["history", "phase"].map((name) => {
       const { x, y, series } = kept[name];
-      const [bonded] = series.filter(({ label }) => label === "bonded");
+      const [bonded] = series.filter(({ label }) => label === "undamaged");
       const ends = (values) => [Math.min(...values), Math.max(...values)];
       return [x.low, x.high, y.low, y.high, ...ends(bonded.x), ...ends(bonded.y)];
     });

@@ -7,7 +7,7 @@ import pytest
 
 import orchestrate
 from orchestrate.constants import GRAVITY
-from orchestrate.explorer.tour import TOUR
+from orchestrate.explorer.tour import HILL, TOUR
 from orchestrate.flags import flag_words
 
 STOPS = {stop.name: stop for step in TOUR for stop in step.stops}
@@ -83,11 +83,44 @@ def test_a_pressed_delamination_stays_shut_below_a_level_and_knocks_above_it():
     assert float(motion.contact_force.min()) > 0.0
     swept, motion, _ = above
     assert float(swept.impacts_per_period) > 1.0 and float(motion.x_rel.max()) > 1e-4
+    swept, motion, _ = settled("pressed-hill")
+    assert STOPS["pressed-hill"].level == stops[0].level
+    assert float(swept.impacts_per_period) > 1.0 and float(motion.x_rel.max()) > 1e-4
+
+
+def test_at_the_level_where_it_is_shut_the_pressed_beam_opens_on_its_hill_alone():
+    """Over the frequencies of the step's diagram, closely at the ends of the hill."""
+    stop = STOPS["pressed"]
+    unit = stop.structure.omega / (2.0 * np.pi)
+    first, last = (end * unit for end in stop.region)
+    ends = [end + change for end in HILL for change in (-0.2, -0.1, 0.0, 0.1, 0.2)]
+    hertz = np.unique(np.round([*np.arange(first, last + 0.5, 1.0), *ends], 4))
+    assert hertz[0] == first and hertz[-1] == last
+    turns = 2.0 * np.pi * hertz
+    amplitude = stop.level * GRAVITY / turns**2
+    few = {"direction": "up", "transient": 200, "samples": 20, "progress": False}
+    swept = orchestrate.sweep(stop.structure, frequency=turns, amplitude=amplitude, **few)
+    opens = (swept.xi_rel_max > 0.0).values & (swept.impacts_per_period > 0.0).values
+    hill = (hertz >= HILL[0]) & (hertz <= HILL[1])
+    assert 5 < hill.sum() < len(hertz) - 5
+    assert np.array_equal(opens.reshape(-1), hill), hertz[opens.reshape(-1) != hill]
+    shut = swept.xi_rel.max("sample").values.reshape(-1) == 0.0
+    assert (opens.reshape(-1) & shut).any()  # impacts under a gap of 0: it opens between samples
+    (step,) = [step for step in TOUR if stop in step.stops]
+    for words in (f"{stop.eta * unit:g} Hz and {stop.level:g} g", "{:g} and {:g} Hz".format(*HILL)):
+        assert words in step.text
+    for one in step.stops:
+        assert one.label.startswith(f"{one.level:g} g at {one.eta * unit:g} Hz: ")
 
 
 TEXTS = (
     "return [...document.querySelectorAll('#tour p')].filter((p) => !p.hidden)"
     ".map((p) => p.textContent)"
+)
+
+
+CLOSE = (
+    "[...document.querySelectorAll('[data-close]')].find((one) => one.checkVisibility()).click()"
 )
 
 
@@ -101,6 +134,10 @@ def test_each_stop_is_a_link_that_opens_its_motion(everywhere):
         (step,) = [step for step in TOUR if stop in step.stops]
         (text,) = browser.run(TEXTS)
         assert text.startswith(step.text)
-    browser.run("explorer.choose(1.0)")
+    browser.mouse("diagram", (0.4, 0.4))  # its text and links stay until it is closed
     assert "tour" not in browser.run("return location.hash")
-    assert not browser.run(TEXTS)[0].startswith(step.text)
+    assert browser.run(TEXTS)[0].startswith(step.text)
+    browser.run(CLOSE)
+    (text,) = browser.run(TEXTS)
+    assert not text.startswith(step.text)
+    assert not browser.run("return document.querySelectorAll('#tour a[aria-current]').length")

@@ -4,8 +4,8 @@ import { startAt, startFrom } from "./diagram.js";
 import { columnsAt } from "./structure.js";
 
 /**
- * @typedef {import("./crew.js").Crew} Crew
- * @typedef {import("./crew.js").Order} Order
+ * @typedef {import("./worker_pool.js").WorkerPool} WorkerPool
+ * @typedef {import("./worker_pool.js").Order} Order
  * @typedef {import("./diagram.js").Diagram} Diagram
  * @typedef {import("./diagram.js").Lane} Lane
  * @typedef {import("./diagram.js").Found} Found
@@ -28,31 +28,31 @@ export function shares(list, size) {
   return Array.from({ length: size }, (_, first) => list.filter((_, i) => i % size === first));
 }
 
-/** Compute what a diagram still lacks, each response from where it is known to begin. @param {Crew} crew @param {Diagram} diagram @param {Take} take @returns {Order} */
-export function replay(crew, diagram, take) {
+/** Compute what a diagram still lacks, each response from where it is known to begin. @param {WorkerPool} pool @param {Diagram} diagram @param {Take} take @returns {Order} */
+export function replay(pool, diagram, take) {
   const orders = diagram.lanes.map((lane) => {
     const missing = coarseFirst(diagram.points.length).filter((i) => !lane.found[i]);
-    const groups = shares(missing, crew.workers.length).filter((indices) => indices.length);
+    const groups = shares(missing, pool.workers.length).filter((indices) => indices.length);
     const asked = groups.map((indices) => ({
       indices,
       columns: columnsAt(diagram.points, indices),
       starts: Float64Array.from(indices.flatMap((i) => startAt(lane, i) ?? [])),
       settings: diagram.settings,
     }));
-    return crew.askAll("replay", asked, (parts) => parts.forEach((part) => enter(lane, part, take)));
+    return pool.askAll("replay", asked, (parts) => parts.forEach((part) => enter(lane, part, take)));
   });
   return together(orders);
 }
 
-/** Compute a diagram, each response from the end of the last. @param {Crew} crew @param {Diagram} diagram @param {Diagram | null} parent where the first may begin from @param {Take} take @returns {Order} */
-export function chain(crew, diagram, parent, take) {
+/** Compute a diagram, each response from the end of the last. @param {WorkerPool} pool @param {Diagram} diagram @param {Diagram | null} parent where the first may begin from @param {Take} take @returns {Order} */
+export function chain(pool, diagram, parent, take) {
   const orders = diagram.lanes.map((lane) => {
     const indices = diagram.points.map((_, i) => i);
     if (lane.direction === "down") indices.reverse();
     const columns = columnsAt(diagram.points, indices);
     lane.from = startFrom(parent, diagram.points[indices[0]], lane.direction);
     const asked = { indices, columns, start: lane.from, settings: diagram.settings };
-    return crew.ask("chain", asked, (parts) => parts.forEach((part) => enter(lane, part, take)));
+    return pool.ask("chain", asked, (parts) => parts.forEach((part) => enter(lane, part, take)));
   });
   return together(orders);
 }

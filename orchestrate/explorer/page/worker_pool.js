@@ -5,7 +5,7 @@
  * @typedef {{cancel: () => void, done: Promise<void>}} Order
  */
 
-export class Crew {
+export class WorkerPool {
   /**
    * @param {string} source of the worker
    * @param {{oscillator: Compiled, shaker: Compiled}} compiled

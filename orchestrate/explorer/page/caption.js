@@ -1,0 +1,44 @@
+/** What stands below a saved picture: what it shows, of which beam, made by what. */
+
+import { givenHertz, inHertz } from "./excitation.js";
+import { shown } from "./scale.js";
+import { numbersIn } from "./structure.js";
+
+const SIZE = 11; // px of a letter
+const LINE = 16; // px
+const LETTER = 5.8; // px, the mean width of one
+const LEFT = 10; // px
+
+/** A beam and how it is shaken, in the units of the page. @param {import("./structure.js").Point} point @param {import("./excitation.js").Level} level */
+export function beamWords(point, level) {
+  const { structure, eta } = point;
+  const { e, mu, kappa, D, xi0, f1, f2, mass1, mass2, zeta, gap } = numbersIn(structure);
+  if (!inHertz(level)) {
+    return `Delaminated beam: e = ${shown(e)}, μ = ${shown(mu)}, κ = ${shown(kappa)}, D = ${shown(D)}, ξ₀ = ${shown(xi0)}; η = ${shown(eta, 7)}`;
+  }
+  const halves = `halves of ${shown(f1)} and ${shown(f2)} Hz, ${shown(mass1)} and ${shown(mass2)} kg`;
+  const shaken = `${shown(givenHertz(point), 6)} Hz, ${shown(level.value)} ${level.unit}`;
+  return `Delaminated beam: ${halves}, damping ${shown(zeta)} %, gap ${shown(gap)} mm, e = ${shown(e)}; shaken at ${shaken}`;
+}
+
+/** Texts in lines that fit. @param {string[]} texts @param {number} width px */
+export function wrapped(texts, width) {
+  const most = Math.max(20, Math.floor((width - 2 * LEFT) / LETTER));
+  return texts.flatMap((text) => {
+    const lines = [""];
+    for (const word of text.split(/\s+/)) {
+      const last = lines[lines.length - 1];
+      if (last && last.length + 1 + word.length > most) lines.push(word);
+      else lines[lines.length - 1] = last ? `${last} ${word}` : word;
+    }
+    return lines;
+  });
+}
+
+/** @param {string[]} lines */
+export const heightOf = (lines) => LINE * lines.length + LINE / 2;
+
+/** @param {import("./pen.js").Pen} pen @param {string[]} lines @param {number} top @param {import("./theme.js").Theme} theme */
+export function drawCaption(pen, lines, top, theme) {
+  lines.forEach((line, i) => pen.text(LEFT, top + LINE * (i + 0.5), line, { anchor: "start", size: SIZE, fill: i ? theme.soft : theme.ink }));
+}

@@ -1,0 +1,65 @@
+"""What the page's words mean: shown over its controls, and as a list at its end."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Word(NamedTuple):
+    """A word or symbol, and what it means in a sentence or two."""
+
+    word: str
+    meaning: str
+
+
+WORDS = {
+    "delaminated": Word(
+        "delaminated, undamaged",
+        "A delaminated beam is split along its middle into two halves that can part and strike "
+        "each other. In an undamaged one they are glued and move as one.",
+    ),
+    "paper": Word(
+        "the paper",
+        "“A vibro-impacting model for the detection of delamination”, which has the model of two "
+        "masses in a box. Its numbers have no units: they are ratios.",
+    ),
+    "eta": Word(
+        "frequency ratio η = Ω/ω",
+        "The shaking frequency Ω over ω, the natural frequency of half 1 alone.",
+    ),
+    "xi": Word(
+        "gap and displacement ξ",
+        "Lengths over aη², where a is the amplitude of the box; ξ′ and ξ″ are velocity and "
+        "acceleration, with time counted as τ = ωt.",
+    ),
+    "xi0": Word(
+        "gap at rest ξ₀",
+        "The gap between the halves at rest, in m. Below zero they are pressed together.",
+    ),
+    "e": Word(
+        "restitution e",
+        "Speed after an impact over the speed before it: at 1 nothing is lost, at 0 the halves do "
+        "not bounce.",
+    ),
+    "D": Word("damping D", "Damping ratio of each half: how fast it comes to rest by itself."),
+    "mu": Word("mass ratio μ", "Mass of half 2 over that of half 1."),
+    "kappa": Word("stiffness ratio κ", "Stiffness of the spring of half 2 over that of half 1."),
+    "exponent": Word(
+        "exponent",
+        "The largest Lyapunov exponent: how fast two motions that begin almost alike come apart, "
+        "per unit of τ. Above zero: chaos. Below: the motion repeats.",
+    ),
+    "spectrum": Word(
+        "spectrum",
+        "The vibrations of half 1 sorted by frequency, as an accelerometer on it would show them.",
+    ),
+    "phase": Word(
+        "phase curves",
+        "Velocity over displacement. A motion that repeats is a closed curve; an impact is a jump.",
+    ),
+    "section": Word(
+        "stroboscopic section",
+        "Gap and gap velocity at the same moment of each shaking period, as under a flashing lamp. "
+        "A motion that repeats every period is one dot.",
+    ),
+}
