@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..constants import TURN
 from .powers import ACCOUNTS, draw_powers
-from .style import GREY, panels, styled
+from .style import GREY, panels, set_title, styled
 from .weak_drive import COLOURS, jump_texts, outcome
 
 MAX_REPETITION = 4  # revolutions after which a motion is seen to repeat
@@ -64,8 +64,7 @@ def draw(
         axes[row * count].legend(loc="best", fontsize=7)
     bar = "amplitude of the acceleration in m/s$^2$"
     figure.colorbar(mesh, ax=axes[4 * count :], label=bar, pad=0.01)
-    if title:
-        figure.suptitle(title)
+    set_title(figure, title)
     return figure
 
 

@@ -10,12 +10,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
 from ..constants import GRAVITY
 from .labels import prefix, title_from_attributes
 from .scales import HERTZ
-from .style import BLACK, GREY, panels, set_title, styled
+from .style import BLACK, GREY, legend_below, panels, set_title, styled, write_plain_numbers
 from .threshold import THRESHOLD, finite
 
 FEW = 8  # levels that have a legend entry each; more have a colour bar
@@ -42,6 +41,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
         draw_threshold(plane["threshold"], data)
     axes[-1].set_xlabel(HERTZ)
     axes[0].margins(x=0.0)
+    legend_below(figure, axes)
     return figure
 
 
@@ -66,7 +66,6 @@ def draw_accelerations(axes: Axes, data: xr.Dataset) -> None:
     axes.plot(data.hertz, glued, label="bonded, at each level", **style)
     axes.set(yscale="log", ylabel="largest acceleration between\nimpacts over level, in g/g")
     write_plain_numbers(axes)
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
 
 
 def draw_gaps(axes: Axes, data: xr.Dataset) -> None:
@@ -87,11 +86,3 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
         axes.axhline(level / GRAVITY, color=colour, linewidth=1.0)
     axes.set(yscale="log", ylabel="level of the box in g")
     write_plain_numbers(axes)
-    axes.legend(loc="lower right", fontsize=8)
-
-
-def write_plain_numbers(axes: Axes) -> None:
-    """Label a logarithmic axis by numbers: 0.02, not powers of ten."""
-    axes.yaxis.set_major_formatter("{x:g}")
-    low, high = axes.get_ylim()
-    axes.yaxis.set_minor_formatter("{x:g}" if high < 100.0 * low else NullFormatter())

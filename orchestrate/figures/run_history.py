@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .powers import POWER_REVOLUTIONS, draw_powers, mean_powers
-from .style import GREY, panels, styled
+from .style import GREY, panels, set_title, styled
 from .weak_drive import COLOURS, outcome
 
 ROWS = {
@@ -53,6 +53,5 @@ def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> F
         panel.set_ylabel(label)
     axes[0].legend(loc="best")
     axes[(rows - 1) * count].legend(loc="best", fontsize=7)
-    if title:
-        figure.suptitle(title)
+    set_title(figure, title)
     return figure

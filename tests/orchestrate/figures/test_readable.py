@@ -22,6 +22,7 @@ from orchestrate.figures import (
     motion,
     orbit_diagram,
     resonance,
+    resonance_levels,
     scales,
     spectra,
     style,
@@ -170,6 +171,7 @@ PICTURES = {
     "spectra": lambda si: spectra.draw(lines(si)),
     "motion": lambda si: motion.draw(moving(si)),
     "map": lambda si: maps.draw(mapped(si)),
+    "levels": lambda si: resonance_levels.draw(levels(si)),
 }
 
 
@@ -212,6 +214,39 @@ def test_nothing_is_cut_off_or_covered(name):
         inside = [axes.bbox.padded(-1).overlaps(box) for axes in figure.axes]
         assert not any(inside), "covers data"
         assert [text for text, other in texts.items() if other.padded(-1).overlaps(box)] == []
+
+
+def colliding_numbers(figure, renderer) -> list[tuple[str, str]]:
+    """Numbers along one axis that lie on each other."""
+    found = []
+    for axis in (side for axes in figure.axes for side in (axes.xaxis, axes.yaxis)):
+        low, high = sorted(axis.get_view_interval())
+        ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
+        inside = [t.label1 for t in ticks if low <= t.get_loc() <= high and t.label1.get_visible()]
+        boxes = [(t.get_text(), t.get_window_extent(renderer)) for t in inside if t.get_text()]
+        pairs = itertools.combinations(boxes, 2)
+        found += [(a, b) for (a, one), (b, other) in pairs if one.overlaps(other)]
+    return found
+
+
+def levels(si: bool) -> xr.Dataset:
+    """Accelerations over one and a half decades, as resonance_levels gives them."""
+    hertz = np.linspace(30.0, 60.0, 40)
+    size = 2.0 + 60.0 / (1.0 + (hertz - 45.0) ** 2)
+    over = ("level", "structure", "direction", "frequency")
+    level = 9.80665 * np.array([0.3, 0.7, 1.1])
+    shape = level[:, None, None, None] * size * np.ones((3, 2, 2, 40))
+    variables = dict.fromkeys(("a1_max", "a2_max", "x_rel_max"), (over, shape))
+    names = {"structure": ["delaminated", "bonded"], "direction": ["up", "down"], "level": level}
+    sides = {"frequency": 2.0 * np.pi * hertz, "hertz": ("frequency", hertz)}
+    threshold = ("frequency", level[0] * 30.0 / size, {"event": "opens"})
+    variables["threshold_acceleration"] = threshold
+    return xr.Dataset(variables, {**sides, **names}, {**known(si), "clearance": -2e-5})
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_numbers_of_an_axis_lie_apart(name):
+    assert colliding_numbers(*picture(name)) == []
 
 
 @pytest.mark.parametrize("name", PICTURES)
@@ -285,9 +320,11 @@ def test_both_sides_of_a_line_are_visible():
     figure, _ = rendered(spectra.draw(lines(False)))
     left, right = figure.axes[:2]
     assert left.get_ylim() == right.get_ylim()
-    assert [line.get_label() for line in left.lines] == ["bonded"]
-    wide, thin = right.lines
+    assert [stems.get_label() for stems in left.collections] == ["bonded"]
+    wide, thin = right.collections
     assert wide.get_linewidth() > 2.0 * thin.get_linewidth()
+    (first, *_) = wide.get_segments()  # a stem: it stands on the axis, at one frequency
+    assert first[0, 0] == first[1, 0] == 1.0 and first[0, 1] == left.get_ylim()[0]
     legend = figure.legends[0]
     assert legend.get_title().get_text().endswith("of the largest line is left out")
 
@@ -314,10 +351,10 @@ def test_resonance_has_all_curves_and_their_peaks():
     first, *_, gap = figure.axes
     told = [text.get_text() for text in first.texts]
     assert [words.partition(":")[0] for words in told] == ["delaminated", "bonded"]
-    assert told[0] == f"delaminated: {float(data.x1_max[0].max()):.4g} at 12.523"
+    assert told[0] == f"delaminated: {float(data.x1_max[0].max()):.4g} m at 12.523 Hz"
     assert len([line for line in first.lines if line.get_marker() == "v"]) == 2
     jumps = [text.get_text() for text in gap.texts if text.get_rotation() == 90]
-    assert jumps == [" 11.937, jump up", " 12.732, jump down"]  # 75 and 80 rad/s
+    assert jumps == [" 11.937 Hz, jump up", " 12.732 Hz, jump down"]  # 75 and 80 rad/s
     assert [line.get_color() for line in gap.lines].count(style.BLUE) == 1  # glued: no gap
     labelled = [bool(plane.get_xlabel()) for plane in figure.axes]
     assert labelled == [False, False, True, True, True]  # two widths, each with its numbers
@@ -337,7 +374,8 @@ def test_a_motion():
     words = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert words == ["no permanent contact"]
     beside = motion.draw(moving(True), bonded=moving(True, impacts=0)).axes
-    assert [len(axes.lines) for axes in beside] == [3, 3, 2, 1, 0, 3]
+    assert [len(axes.lines) for axes in beside] == [3, 3, 2, 1, 0, 0]
+    assert len(beside[-1].collections) == 3  # stems of both masses and of the bonded structure
     quiet = motion.draw(moving(True, impacts=0))
     legends = [axes.get_legend() for axes in quiet.axes if axes.get_legend()]
     assert "no impacts" in [text.get_text() for legend in legends for text in legend.get_texts()]
