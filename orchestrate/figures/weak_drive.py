@@ -17,6 +17,9 @@ from matplotlib.figure import Figure
 from .powers import POWER_REVOLUTIONS, draw_powers, mean_powers
 from .style import (
     BLACK,
+    BLUE,
+    ORANGE,
+    RED,
     legend_below,
     legend_under,
     panels,
@@ -26,8 +29,8 @@ from .style import (
     write_plain_numbers,
 )
 
-COLOURS = {"bonded": "C0", "delaminated": "C3"}
-COLOUR_OF_RETURN = "C1"  # impacts on the way back
+COLOURS = {"bonded": BLUE, "delaminated": RED}
+COLOUR_OF_RETURN = ORANGE  # impacts on the way back
 IMPACT_REVOLUTIONS = 10  # revolutions that impacts are averaged over
 TIME_AROUND_JUMP = 500.0  # time shown before and after a jump, in 1/omega
 THEORY = "averaged theory, bonded"

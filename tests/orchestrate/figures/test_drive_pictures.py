@@ -60,6 +60,9 @@ def test_the_weak_drive(exported, jumps):
     second = weak_drive.draw_jumps({"bonded": data, "delaminated": data}, "set")
     assert [bool(drawn(panel)) for panel in second.axes] == [jumps] * (4 if jumps else 2)
     nothing_overlaps(second)
+    lines = [line for panel in (*figure.axes, *second.axes) for line in panel.lines]
+    names = {str(line.get_color()) for line in lines}
+    assert not {name for name in names if name.startswith("C")}  # of a user's own cycle, later
 
 
 def nothing_overlaps(figure):
