@@ -36,7 +36,7 @@ def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
         else:
             draw_line(panel, data)
         panel.label_outer()
-        legend_under(panel)
+        legend_under(panel, columns=4)
     set_title(figure, title)
     return figure
 

@@ -139,5 +139,5 @@ def draw_stems(
     """
     axes.set_yscale("log")
     shown = amplitudes > floor
-    thin = min(1.0, (MAX_STEMS / max(np.count_nonzero(shown), 1)) ** 0.5)
+    thin = min(1.0, (MAX_STEMS / (1 + int(shown.sum()))) ** 0.5)
     axes.vlines(x[shown], floor, amplitudes[shown], linewidth=width * thin, **style)
