@@ -28,7 +28,11 @@ extensions = [
     "numpydoc",
     "sphinx_copybutton",
 ]
-nitpicky = False
+nitpicky = True
+nitpick_ignore_regex = [  # of others, whose manuals are on the network; modules that are not public
+    (r"py:.*", r"(?:xarray|matplotlib|numpy)\..*"),
+    (r"py:.*", r"orchestrate\.[a-z_]+\.\w.*"),
+]
 
 html_theme = "furo"
 html_title = f"vibroimpact {version}"

@@ -9,7 +9,8 @@ entry of it and all pictures follow, those of commands and reports too.
 
 Colours are those of Okabe and Ito, which people tell apart however they see them. Wherever two
 things are compared, they differ in line style or width too, so that a picture printed in grey is
-read as well. What is unstable is dashed or dotted, and the legend says so. Letters are Matplotlib's own: nothing needs LaTeX.
+read as well. What is unstable is dashed or dotted, and the legend says so. Letters are
+Matplotlib's own: nothing needs LaTeX.
 """
 
 from __future__ import annotations

@@ -6,6 +6,10 @@ import re
 import runpy
 
 import pytest
+from PIL import Image, ImageChops
+
+from tools.pictures import __main__ as made
+from tools.pictures.small import save_small
 
 from .written import DOCS, ROOT
 
@@ -50,6 +54,20 @@ def test_pictures_are_small_and_shown(picture):
     assert picture.stat().st_size <= MOST_BYTES
     shown = [ROOT / "README.md", *PAGES]
     assert any(f"{picture.name})" in page.read_text(encoding="utf-8") for page in shown)
+
+
+def test_every_picture_is_made_by_a_tool():
+    assert {picture.stem for picture in PICTURES} <= {*made.PICTURES, *made.COMMANDS, *made.KEPT}
+    with pytest.raises(SystemExit, match="mona_lisa: no picture of the manual; expected one of"):
+        made.main(["mona_lisa"])
+
+
+@pytest.mark.parametrize("name", ["two_masses", "fmu", "certificate"])
+def test_drawings_are_those_of_their_script(name, tmp_path):
+    save_small(made.PICTURES[name](), tmp_path / f"{name}.png")
+    with Image.open(tmp_path / f"{name}.png") as own, Image.open(DOCS / f"{name}.png") as kept:
+        assert own.size == kept.size
+        assert ImageChops.difference(own.convert("L"), kept.convert("L")).getextrema()[1] < 64
 
 
 def test_three_users_have_a_picture_each_on_the_first_page():

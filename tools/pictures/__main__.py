@@ -1,8 +1,8 @@
-"""The pictures of README and manual: ``python -m tools.manual_pictures [NAME ...]`` draws them.
+"""The pictures of README and manual: ``python -m tools.pictures [NAME ...]`` draws them.
 
 All of them, or those that are named. They are kept in the repository, small, since some take
 minutes; figures of the paper come from ``python -m orchestrate paper``, those of branches from
-``python -m tools.bifurcation_table``, and get their palette here: ``python -m tools.manual_pictures
+``python -m tools.bifurcation_table``, and get their palette here: ``python -m tools.pictures
 figure6 branches``.
 """
 
@@ -23,7 +23,7 @@ from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spec
 from tools.pictures import beam, fmu, theory
 from tools.pictures.small import save_small, write_small
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAPER = orchestrate.Structure.nondimensional(e=0.7, D=0.005)
 COMMANDS = {  # pictures that a command draws: name, its line, ending of the file that is taken
     "weak_drive": ("couple --eta0 0.3:1.65", ""),
