@@ -18,9 +18,9 @@ from matplotlib.figure import Figure
 
 import orchestrate
 from orchestrate import cli
-from orchestrate.figures import drive_spectra, resonance
+from orchestrate.figures import drive_spectra
 from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spectra
-from tools.pictures import beam, fmu, theory
+from tools.pictures import beam, cards, fmu, theory
 from tools.pictures.small import save_small, write_small
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -57,11 +57,15 @@ def engineer() -> Figure:
     """Resonance curves of the tutorial's beam."""
     halves = {"m1": 1.5, "m2": 1.4, "f1": 11.9, "f2": 13.5, "zeta1": 0.005, "zeta2": 0.005}
     structure = orchestrate.Structure.from_halves(**halves, e=0.6)
-    turns = 2.0 * np.pi * np.arange(9.0, 17.0, 0.05)
-    answer = orchestrate.resonance(
-        structure, frequency=turns, amplitude=0.02 * 9.80665 / turns**2, progress=False
-    )
-    return resonance.draw(answer)
+    turns = 2.0 * np.pi * np.arange(10.0, 15.0, 0.05)
+    held = {"frequency": turns, "amplitude": 0.02 * 9.80665 / turns**2}
+    return cards.draw_resonance(orchestrate.resonance(structure, **held, progress=False))
+
+
+def researcher() -> Figure:
+    """A part of the paper's Figure 6."""
+    eta = np.arange(0.9, 4.0, 0.004)
+    return cards.draw_orbits(orchestrate.sweep(PAPER, eta=eta, samples=40, progress=False))
 
 
 def spectra() -> Figure:
@@ -75,6 +79,7 @@ PICTURES: dict[str, Callable[[], Figure]] = {
     "verdict": verdict,
     "two_masses": beam.draw_two_masses,
     "engineer": engineer,
+    "researcher": researcher,
     "fmu": fmu.draw_block,
     "states": states,
     "certificate": theory.draw_certificate,

@@ -9,32 +9,31 @@ from matplotlib.patches import FancyBboxPatch
 
 from orchestrate.figures.style import BLUE, RED, styled
 
-INPUTS = ("box_amplitude", "box_frequency", "box_acceleration")
-OUTPUTS = ("x1, x2, v1, v2", "x_rel: the gap", "contact_force", "box_force, box_impulse")
+INPUTS = ("box_\namplitude", "box_\nfrequency", "box_\nacceleration")
+OUTPUTS = ("x1, x2, v1, v2", "x_rel: gap", "contact_force", "box_force")
 
 
 @styled
 def draw_block() -> Figure:
     """Draw the block with its most used variables."""
-    figure = Figure(figsize=(7.2, 3.6), layout="constrained")
+    figure = Figure(figsize=(3.8, 2.9), layout="constrained")
     axes = figure.subplots()
     style: Any = {"boxstyle": "round,pad=0.1", "facecolor": "0.93", "edgecolor": "k", "lw": 1.6}
     axes.add_patch(FancyBboxPatch((3.2, 0.4), 4.0, 3.6, **style))
     middle: Any = {"ha": "center", "va": "center"}
-    axes.text(5.2, 3.1, "TwoMassImpactOscillator", fontsize=10, weight="bold", **middle)
-    axes.text(5.2, 2.5, "parameters  m1 m2 k1 k2 d1 d2\ne  gamma  clearance", fontsize=8, **middle)
-    axes.text(5.2, 1.3, "exact impacts,\nwhatever the step", fontsize=9, color=RED, **middle)
+    axes.text(5.2, 3.1, "TwoMass-\nImpact-\nOscillator", fontsize=10, weight="bold", **middle)
+    axes.text(5.2, 1.1, "exact impacts,\nwhatever\nthe step", fontsize=8, color=RED, **middle)
     arrow: Any = {"arrowstyle": "->", "lw": 1.4, "color": BLUE}
     for i, name in enumerate(INPUTS):
         y = 3.4 - 1.2 * i
         axes.annotate("", (3.1, y), (2.3, y), arrowprops=arrow)
-        axes.text(2.2, y, name, ha="right", va="center", fontsize=9)
+        axes.text(2.2, y, name, ha="right", va="center", fontsize=8)
     for i, name in enumerate(OUTPUTS):
         y = 3.7 - 0.8 * i
         axes.annotate("", (8.1, y), (7.3, y), arrowprops=arrow)
-        axes.text(8.2, y, name, va="center", fontsize=9)
+        axes.text(8.2, y, name, va="center", fontsize=8)
     axes.annotate("", (8.1, 0.5), (7.3, 0.5), arrowprops={**arrow, "color": RED, "ls": "--"})
-    axes.text(8.2, 0.5, "impact (clock, FMI 3.0)", va="center", fontsize=9, color=RED)
-    axes.set(xlim=(-0.6, 11.8), ylim=(0.0, 4.4))
+    axes.text(8.2, 0.5, "impact (clock)", va="center", fontsize=8, color=RED)
+    axes.set(xlim=(-1.1, 11.9), ylim=(0.0, 4.4))
     axes.axis("off")
     return figure
