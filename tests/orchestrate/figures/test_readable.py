@@ -452,3 +452,25 @@ def test_colours_are_told_apart_by_everyone(seen):
     light = [np.clip(rgb, 0.0, 1.0) ** (1 / 2.2) for rgb in linear]
     for one, other in itertools.combinations(light, 2):
         assert np.linalg.norm(one - other) > 0.2, json.dumps([one.tolist(), other.tolist()])
+
+
+HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.01}
+
+
+@pytest.mark.parametrize(
+    "structure",
+    [
+        Structure(),
+        Structure.from_halves(**HALVES, e=0.6, clearance=-2e-5),
+        Structure.nondimensional(mu=0.5, D1=0.01, D2=0.02, gamma=1e-5),
+        Structure.from_halves(**HALVES).as_bonded(),
+    ],
+    ids=lambda structure: structure.label(),
+)
+def test_titles_have_no_names_of_files(structure):
+    """Titles of stored results end with the short name of a structure."""
+    title = labels.plain_title(f"Orders: swept sine: {structure.label()}")
+    assert title.startswith("Orders: swept sine, ")
+    assert "_" not in "".join(title.split("$")[::2])  # outside of formulas
+    for number in ("0.6", "42, 55 Hz", "-2e-05 m") if structure.clearance else ():
+        assert number in title
