@@ -18,7 +18,6 @@ from .style import (
     GREEN,
     GREY,
     ORANGE,
-    PLAIN_SPAN,
     PURPLE,
     RED,
     panels,
@@ -32,6 +31,7 @@ Reader = Callable[[xr.Dataset], xr.DataArray]
 CHANNELS = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 COLOURS = (BLUE, RED, BLACK, ORANGE, GREEN, PURPLE)
 DECADES = 6  # of an axis, below the largest value
+FEW = 300.0  # largest over smallest value of an axis that has plain numbers
 DEGREES = 180.0 / np.pi
 
 
@@ -134,7 +134,7 @@ def from_the_top(axes: Axes, values: list[np.ndarray], decades: int = DECADES) -
         top = float(every.max())
         low = max(0.7 * float(every.min()), 10.0**-decades * top)
         axes.set_ylim(min(low, 0.5 * top), 1.5 * top)
-        if top < PLAIN_SPAN * low:
+        if top < FEW * low:
             write_plain_numbers(axes)
 
 

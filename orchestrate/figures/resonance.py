@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from .labels import prefix, title_from_attributes
 from .marks import MAX_DISTINCT, Marks, mark
-from .scales import HERTZ, Along, along, parameter_of
+from .scales import Along, along, parameter_of
 from .style import BLACK, BLUE, GREY, RED, legend_below, set_title, styled
 from .threshold import THRESHOLD, finite
 
@@ -89,7 +89,7 @@ def draw_quantity(axes: Axes, values: xr.DataArray, x: Along) -> None:
         largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[at], x.values[at]))
     axes.set(yscale="log", ylabel=NAMES[name].format(letter))
     axes.margins(x=0.0, y=0.12)
-    list_largest(axes, largest, f"{letter}m" if name.startswith("x") else "m/s²", frequency_unit(x))
+    list_largest(axes, largest)
 
 
 def draw_threshold(axes: Axes, data: xr.Dataset, x: Along) -> None:
@@ -152,7 +152,7 @@ def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: Along) -> None:
         axes.axvline(at, color=BLACK, linestyle=":", linewidth=0.8)
         text_style: Any = {"fontsize": 7, "rotation": 90, "va": "bottom"}
         side = "left" if direction == "up" else "right"
-        words = f" {at:.5g}{frequency_unit(x)}, jump {direction}"
+        words = f" {at:.5g}, jump {direction}"
         axes.text(at, 0.02, words, ha=side, transform=axes.get_xaxis_transform(), **text_style)
 
 
@@ -162,20 +162,13 @@ def axis_position(value: float, parameter: xr.DataArray, x: Along) -> float:
     return float(np.interp(value, parameter.values[order], x.values[order]))
 
 
-def frequency_unit(x: Along) -> str:
-    """Return what follows a number of the horizontal axis: a ratio has no unit."""
-    return " Hz" if x.label == HERTZ else ""
-
-
-def list_largest(
-    axes: Axes, largest: Mapping[str, tuple[float, float]], unit: str, hertz: str
-) -> None:
+def list_largest(axes: Axes, largest: Mapping[str, tuple[float, float]]) -> None:
     """Write the largest value of each structure with its place, in the corner away from them."""
     middle = float(np.mean(axes.get_xlim()))
     right = all(at < middle for _, at in largest.values())
     for row, (structure, (value, at)) in enumerate(largest.items()):
         style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}
         corner = (0.99 if right else 0.01, 0.97 - 0.075 * row)
-        text = f"{structure}: {value:.4g} {unit} at {at:.5g}{hertz}".lstrip(": ")
+        text = f"{structure}: {value:.4g} at {at:.5g}".lstrip(": ")
         colour = COLOURS.get(structure, BLACK)
         axes.text(*corner, text, color=colour, transform=axes.transAxes, **style)

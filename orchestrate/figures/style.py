@@ -52,7 +52,6 @@ STYLE: dict[str, Any] = {
 XI_REL, XI_REL_RATE = r"$\xi_{\mathrm{Rel}}$", r"$\xi'_{\mathrm{Rel}}$"
 LETTERS_AN_INCH = 14  # of a title
 UNDER = -0.16  # of a panel's height: below the name of its horizontal axis
-PLAIN_SPAN = 200.0  # of a logarithmic axis: up to here 2 and 5 are named, beyond it tens alone
 NO_BREAK_SPACE = "\xa0"  # a space that no line breaks at
 
 Arguments = ParamSpec("Arguments")
@@ -131,17 +130,16 @@ def legend_under(axes: Axes, columns: int = 3) -> None:
         axes.legend(ncols=columns, **below)
 
 
-def write_plain_numbers(axes: Axes) -> None:
-    """Label a logarithmic vertical axis by numbers: 0.02, not powers of ten, and none too close."""
-    low, high = axes.get_ylim()
-    subs = (1.0, 2.0, 5.0) if high < PLAIN_SPAN * low else (1.0,)
-    axes.yaxis.set_major_locator(LogLocator(subs=subs))
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_minor_formatter(NullFormatter())
-
-
 def write_in_panel(axes: Axes, words: str) -> None:
     """Write a text in the middle of a panel that has nothing to show, nor numbers."""
     axes.set_yticks([])
     middle: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
     axes.text(0.5, 0.5, words, color=GREY, fontsize=11, **middle)
+
+
+def write_plain_numbers(axes: Axes) -> None:
+    """Label a logarithmic axis by numbers, 0.02, not powers of ten; few enough to be read."""
+    low, high = axes.get_ylim()
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,)))
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
