@@ -23,7 +23,7 @@ FILES = sorted(
     for path in (ROOT / name).rglob("*.py*")
     if path.suffix in (".py", ".pyi")
 )
-GROUND = {"checks", "constants", "errors", "files", "flags", "temporary", "version"}
+GROUND = {"checks", "constants", "errors", "files", "flags", "temporary", "units", "version"}
 BELOW_ANSWERS = GROUND | {"structures", "access", "running"}
 FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know beside itself
     "checks": {"errors"},
@@ -34,6 +34,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "files": {"errors"},
     "supervisor": set(),
     "temporary": {"files"},
+    "units": {"constants", "errors"},
     "structures": GROUND,
     "access": GROUND | {"structures"},
     "running": GROUND,

@@ -58,7 +58,7 @@ def report(data: xr.Dataset) -> None:
     if data.sizes[name] <= MAX_VALUES_IN_FULL:
         for i in range(data.sizes[name]):
             at_value = data.isel({name: i})
-            where = format_parameter(name, float(at_value[name]))
+            where = format_parameter(data, name, float(at_value[name]))
             print(f"{int(at_value.number)} found at {where}, of {data.sizes['start']} starts")
             print_attractors(at_value, "starts")
         return
@@ -66,7 +66,7 @@ def report(data: xr.Dataset) -> None:
     for number in range(1, int(data.number.max()) + 1):
         holds = ordered.number.values == number
         if holds.any():
-            where = format_ranges(name, ordered[name].values, holds)
+            where = format_ranges(data, name, ordered[name].values, holds)
             print(f"{number} found at {int(holds.sum())} of {holds.size} values: {where}")
     print_lines(ordered, name)
 
@@ -78,7 +78,8 @@ def print_lines(data: xr.Dataset, name: str) -> None:
         exists = attractor.multiplicity.notnull().values
         shares = attractor.share.values[exists]
         first, last = (
-            format_parameter(name, float(attractor[end])) for end in ("first_found", "last_found")
+            format_parameter(data, name, float(attractor[end]))
+            for end in ("first_found", "last_found")
         )
         where = first if exists.sum() == 1 else f"{first} to {last}"
         print(f"  {number}: {where}, {shares.min():.1%} to {shares.max():.1%} of starts")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from .grammar import ends_of, plain_int
 from .options import Commands, add_structure, structure_of
-from .output import add_results
+from .output import add_results, add_units
 from .question import carry_out, format_parameter, picture_of, read_stored
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ def add_parser(commands: Commands) -> None:
     number = "its number (default: 0)"
     question.add("bifurcation", type=plain_int, default=0, metavar="N", help=number)
     question.declare("longest", "most")
+    add_units(parser)
     add_results(parser)
 
 
@@ -64,8 +65,7 @@ def report(data: xr.Dataset) -> None:
     for name in map(str, data.attrs["over"]):
         first, last = float(data[name][0]), float(data[name][-1])
         low, high = float(data[name].min()), float(data[name].max())
-        ends = f"{format_parameter(name, first)} to {format_parameter(name, last)}"
-        print(
-            f"from {ends}, within {format_parameter(name, low)} to {format_parameter(name, high)}"
-        )
+        ends = f"{format_parameter(data, name, first)} to {format_parameter(data, name, last)}"
+        reach = f"{format_parameter(data, name, low)} to {format_parameter(data, name, high)}"
+        print(f"from {ends}, within {reach}")
     print(f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}")

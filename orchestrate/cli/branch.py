@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..constants import TURN
 from ..errors import InputError
+from ..units import scale_of
 from .grammar import ends_of, plain_int
 from .options import (
     UNITS,
@@ -111,14 +111,13 @@ def report(data: xr.Dataset) -> None:
     stable = int(data.stable.sum())
     print(f"{data.sizes['point']} orbits, {stable} of them stable")
     low, high = float(data[name].min()), float(data[name].max())
-    print(f"from {format_parameter(name, low)} to {format_parameter(name, high)}")
+    print(f"from {format_parameter(data, name, low)} to {format_parameter(data, name, high)}")
     count = data.sizes.get("bifurcation", 0)
     if not count:
         print("no bifurcation in this range")
     else:
         words = flag_words(data.bifurcation_kind.attrs)
-        turns = name == "frequency"
-        unit, factor = ("Hz", TURN) if turns else (data.bifurcation_value.attrs["units"], 1.0)
+        factor, unit = scale_of(data, str(data.bifurcation_value.attrs["units"]))
         print(f"number  {'bifurcation':28}{name} ({unit})")
         for i in range(count):
             kind = words[int(data.bifurcation_kind[i])]

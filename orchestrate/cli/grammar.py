@@ -17,6 +17,13 @@ Side = tuple[str, float, float, int]
 MAX_VALUES = 10_000_000
 RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
 
+SET_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # of parameters in --set, over their own
+    ("clearance",): {"mm": "1e-3", "um": "1e-6", "µm": "1e-6", "m": "1"},
+    ("zeta1", "zeta2", "D", "D1", "D2"): {"%": "0.01"},
+    ("f1", "f2"): {"Hz": "1"},
+    ("m1", "m2"): {"kg": "1"},
+}
+
 # -- numbers --------------------------------------------------------------------------------------
 
 
@@ -221,17 +228,24 @@ def changes_of(texts: list[str]) -> dict[str, float | bool]:
             raise InputError(f"--set {text}: expected NAME=VALUE, such as e=0.3")
         if name in changes:
             raise InputError(f"--set {text}: {name} is set twice; expected once")
-        changes[name] = value_of(text, value)
+        changes[name] = value_of(text, name, value)
     return changes
 
 
-def value_of(text: str, value: str) -> float | bool:
-    """Parse a value of ``--set``."""
+def value_of(text: str, name: str, value: str) -> float | bool:
+    """Parse a value of ``--set``: a number, perhaps with a unit that its parameter may have."""
     if value in ("true", "false"):
         return value == "true"
+    known = next((units for names, units in SET_UNITS.items() if name in names), {})
+    unit = next((unit for unit in known if value.endswith(unit)), None)  # mm before m
     try:
+        if unit is not None:
+            number = value.removesuffix(unit).strip()
+            check_digits(number)
+            return float(Decimal(number) * Decimal(known[unit]))  # what one would write without it
         return plain_float(value)
-    except ValueError:
+    except (ValueError, InvalidOperation):
+        words = f", with {' or '.join(known)} if you like" if known else ", or true or false"
         raise InputError(
-            f"--set {text}: {value or 'nothing'} is no number; expected one, or true or false"
+            f"--set {text}: {value or 'nothing'} is no number; expected one{words}"
         ) from None

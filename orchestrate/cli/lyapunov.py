@@ -55,12 +55,12 @@ def report(data: xr.Dataset) -> None:
             *(ordered[key].values for key in (name, "exponent", "standard_error", "verdict")),
             strict=True,
         ):
-            where = format_parameter(name, float(value))
+            where = format_parameter(data, name, float(value))
             print(f"{where}: exponent {exponent:.5f} +- {error:.5f} per tau, {WORDS[int(verdict)]}")
         print_undecided(ordered)
         return
     top = data.isel(data.exponent.argmax(...))
-    where = format_parameter(name, float(top[name]))
+    where = format_parameter(data, name, float(top[name]))
     print(
         f"largest exponent {float(top.exponent):.5f} +- {float(top.standard_error):.5f} per tau "
         f"at {where}; of {data.exponent.size} it is chosen for its error "
@@ -68,7 +68,9 @@ def report(data: xr.Dataset) -> None:
     )
     for verdict, word in WORDS.items():
         holds = ordered.verdict.values == verdict
-        where = f" at {format_ranges(name, ordered[name].values, holds)}" if holds.any() else ""
+        where = (
+            f" at {format_ranges(data, name, ordered[name].values, holds)}" if holds.any() else ""
+        )
         print(f"{word}: {int(holds.sum())} of {holds.size}{where}")
     print_undecided(ordered)
 

@@ -86,7 +86,7 @@ def report(data: xr.Dataset) -> None:
     print(f"{kinds.size} responses: {', '.join(shares)}")
     top = data.isel(data.xi_rel_max.argmax(...))
     where = ", ".join(
-        format_parameter(str(name), float(top[name])) for name in data.xi_rel_max.dims
+        format_parameter(data, str(name), float(top[name])) for name in data.xi_rel_max.dims
     )
     print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g} at {where}")
     impacts = data.impacts_per_period

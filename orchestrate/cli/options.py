@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from .declared import option_of
 from .grammar import changes_of, is_one, number_of, one_or_more, plain_float, values_of
-from .output import add_results
+from .output import add_results, add_units
 
 if TYPE_CHECKING:
     from ..structures import Drive, Structure
@@ -20,6 +20,16 @@ if TYPE_CHECKING:
 SETS = Path(__file__).resolve().parents[1] / "structures" / "sets"
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
 FREQUENCIES = ("eta", *UNITS)
+SET_NAMES = tuple(path.stem for path in sorted(SETS.glob("*.toml")))
+ASSUMED = {  # what a beam needs beside what is set, with the names that set it as well
+    "m1": ("mu",),
+    "m2": ("mu",),
+    "f1": ("k1", "omega"),
+    "f2": ("k2", "kappa"),
+    "zeta1": ("d1", "D", "D1"),
+    "zeta2": ("d2", "D", "D2"),
+    "e": (),
+}
 ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
 QUANTITIES = """quantities:
   m1 m2, k1 k2, d1 d2   masses kg, stiffnesses N/m, dampers N s/m
@@ -127,6 +137,7 @@ class Commands:
     def finish(self) -> None:
         """Add the options of a result to the commands of :meth:`ask`."""
         for parser in self.asked:
+            add_units(parser)
             add_results(parser)
 
     def question(self, parser: argparse.ArgumentParser, title: str = "question") -> FunctionOptions:
@@ -224,7 +235,34 @@ def structure_of(arguments: argparse.Namespace) -> Structure:
     """Return the structure that the options describe."""
     from ..structures import Structure
 
-    return Structure.from_file(arguments.structure).replace(**changes_of(arguments.set))
+    changes = changes_of(arguments.set)
+    structure = Structure.from_file(arguments.structure).replace(**changes)
+    print_assumptions(structure, arguments.structure, changes)
+    return structure
+
+
+def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
+    """Print what a shipped set says of a beam whose frequencies somebody has set; warn of damping
+    ratios that look like per cent.
+    """
+    from ..structures.plausible import warn_of_per_cent
+
+    warn_of_per_cent({name: changes[name] for name in ("zeta1", "zeta2") if name in changes})
+    if source not in SET_NAMES or not changes.keys() & {"f1", "f2"}:
+        return
+    left = [name for name, others in ASSUMED.items() if not changes.keys() & {name, *others}]
+    texts = [f"{name} = {format_assumed(name, structure.get(name))}" for name in left]
+    if texts:
+        masses = "; of the masses the ratio alone acts" if {"m1", "m2"} & set(left) else ""
+        print(f"assumed, as in the set {source}: {', '.join(texts)} (--set){masses}")
+
+
+def format_assumed(name: str, value: float) -> str:
+    """Format a parameter that nobody has set, with its unit."""
+    units = {"m": " kg", "f": " Hz"}
+    if name.startswith("zeta"):
+        return f"{100.0 * value:.4g} %"
+    return f"{value:.4g}{units.get(name[0], '')}"
 
 
 # -- motor and box ---------------------------------------------------------------------------------
@@ -264,7 +302,27 @@ def structure_and_drive(arguments: argparse.Namespace) -> tuple[Structure, Drive
     of_drive = {name: float(value) for name, value in changes.items() if name in drive_names}
     of_structure = {name: value for name, value in changes.items() if name not in drive_names}
     of_drive |= datasheet_of(arguments, of_drive)
-    return structure.replace(**of_structure), drive.replace(**of_drive)
+    check_masses(arguments.structure or arguments.drive, of_structure)
+    changed = structure.replace(**of_structure)
+    print_assumptions(changed, arguments.structure or arguments.drive, of_structure)
+    return changed, drive.replace(**of_drive)
+
+
+def check_masses(source: str, changes: Mapping[str, Any]) -> None:
+    """Check that the masses of a beam are known, if its frequencies are set: the motor feels them.
+
+    Raises
+    ------
+    InputError
+        Where they would be those of a set without dimensions.
+    """
+    unknown = {"m1", "m2"} - changes.keys() - ({"m2"} if "mu" in changes else set())
+    named = next((name for name in ("f1", "f2") if name in changes), None)
+    if named and unknown and source in ("paper", "quick"):
+        raise InputError(
+            f"--set {named}={changes[named]:g}: the motor feels the masses, and those of {source} "
+            "are no beam's; expected --set m1=KG --set m2=KG too, or a --structure with them"
+        )
 
 
 def datasheet_of(arguments: argparse.Namespace, changes: Mapping[str, float]) -> dict[str, float]:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import orchestrate
 
+from ..units import units_of, with_units
 from .grammar import state_of
 from .options import Commands, excitation_of, structure_of
-from .question import carry_out
+from .question import carry_out, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,8 +42,10 @@ def run(arguments: argparse.Namespace) -> None:
         from ..figures.motion import draw
 
         start = data.state.isel(sample=0).values
-        shown = orchestrate.simulate(structure, **excitation, periods=arguments.period, start=start)
-        return draw(shown)
+        motion = orchestrate.simulate(
+            structure, **excitation, periods=arguments.period, start=start
+        )
+        return draw(with_units(motion, units_of(data)))
 
     drawable = not arguments.box_acceleration
     carry_out(arguments, structure, question, report, picture_of if drawable else None)
@@ -58,7 +61,8 @@ def report(data: xr.Dataset) -> None:
     times = data.impact_time.values
     for time, speed in zip(times, data.impact_velocity.values, strict=True):
         if time == time:
-            print(f"impact at {time:.8g} s, closing at {speed:.6g} m/s")
+            at, closing = with_unit(data, time, "s", ".8g"), with_unit(data, speed, "m/s", ".6g")
+            print(f"impact at {at}, closing at {closing}")
     for i, state in enumerate(data.state.values):
         numbers = ", ".join(f"{value:.8g}" for value in state)
         print(f"state at phase 0 after {i} periods: {numbers} (x1, x2 in m, v1, v2 in m/s)")

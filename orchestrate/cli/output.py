@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
-import math
 import os
 import re
 import threading
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
     from ..structures import Structure
+    from ..units import Units
 
 FORMATS = ("nc", "csv", "mat", "xlsx")
 PLOTS = ("png", "pdf", "svg")
@@ -96,6 +96,23 @@ def add_files(parser: argparse.ArgumentParser, store: bool = True) -> None:
     option("--plot", default="png", metavar="A,B,...", help=text)
 
 
+def add_units(parser: argparse.ArgumentParser) -> None:
+    """Add ``--units``."""
+    text = (
+        "of prints, pictures, tables and their names: Hz, rpm, rad/s or eta; m, mm or um; m/s2 or "
+        "g; s or periods, a list such as Hz,mm,g (default: as the question is asked; nc is in SI)"
+    )
+    option = parser.add_argument_group("units").add_argument
+    option("--units", default="", metavar="A,B,...", help=text)
+
+
+def units_option(arguments: argparse.Namespace) -> Units:
+    """Return the units of ``--units``; none where a command has no such option."""
+    from ..units import Units
+
+    return Units.from_text(getattr(arguments, "units", ""), "--units")
+
+
 def running_of(arguments: argparse.Namespace, store: Path | None = None) -> Running:
     """Return keywords of the public API from the options."""
     running: Running = {
@@ -151,7 +168,9 @@ def check_output(folder: Path, option: str = "--output") -> None:
 # -- names ----------------------------------------------------------------------------------------
 
 
-def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> str:
+def name_of(
+    command: str, structure: Structure, question: Mapping[str, Any], unit: str = "Hz"
+) -> str:
     """Return a file's name: readable, and different for every other question.
 
     Parameters
@@ -160,6 +179,8 @@ def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> 
     structure : Structure
     question : mapping
         Keywords of the public function.
+    unit : str
+        Of frequencies, as the question was asked: Hz, rpm, rad/s or eta.
 
     Examples
     --------
@@ -172,7 +193,7 @@ def name_of(command: str, structure: Structure, question: Mapping[str, Any]) -> 
     turns = question.get("over") == "frequency"  # then its values and limits are in Hz too
     named = ("frequency" if turns and name in ("values", "limits") else name for name in question)
     pairs = zip(named, question.values(), strict=True)
-    parts = [command, structure.label(), *(brief(*item) for item in pairs)]
+    parts = [command, structure.label(), *(brief(*item, unit, structure) for item in pairs)]
     return "_".join(filter(None, [*parts, digest(parameters_of(structure), question)]))
 
 
@@ -193,9 +214,10 @@ def digest(*arguments: Any) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
-def brief(name: str, value: Any) -> str:
+def brief(name: str, value: Any, unit: str, structure: Structure) -> str:
     """Return what a file's name says of a keyword: the frequency, what varies, the direction."""
     from ..structures import PARAMETERS
+    from ..units import FACTORS
 
     if name in ("direction", "over") and value != "frequency":
         return "-".join(value) if isinstance(value, tuple) else str(value)
@@ -206,13 +228,17 @@ def brief(name: str, value: Any) -> str:
     varied = isinstance(value, tuple) and name in (*PARAMETERS, "values", "limits")
     if name not in ("eta", "frequency") and not varied:
         return ""
-    hertz = 1.0 / (2.0 * math.pi) if name == "frequency" else 1.0
+    by_ratio = unit == "eta"
+    scale = structure.omega if by_ratio else FACTORS["frequency"][unit]
+    scale = scale if name == "frequency" else 1.0
     ends = (value[0], value[-1]) if isinstance(value, tuple) else (value,)
     if isinstance(ends[0], tuple):  # limits of two parameters
         return ""
-    text = "-".join(f"{hertz * end:.6g}" for end in dict.fromkeys(ends))
+    text = "-".join(f"{end / scale:.6g}" for end in dict.fromkeys(ends))
     letters = "" if name in ("values", "limits") else name
-    return f"{text}Hz" if name == "frequency" else f"{letters}{text}"
+    if name == "frequency":
+        return f"eta{text}" if by_ratio else f"{text}{unit.replace('/', '_')}"
+    return f"{letters}{text}"
 
 
 # -- files ----------------------------------------------------------------------------------------
@@ -229,12 +255,15 @@ class Files:
         Endings.
     fresh : bool
         Whether the result is to be computed: then what stands beside it is made anew too.
+    units : str
+        Of ``--units``: tables and pictures in these have them in their names.
     """
 
     result: Path
     formats: tuple[str, ...]
     plots: tuple[str, ...]
     fresh: bool
+    units: str = ""
 
     @classmethod
     def from_options(cls, arguments: argparse.Namespace, name: str) -> Files:
@@ -253,7 +282,8 @@ class Files:
             raise InputError(f"--store {store}: expected a name that ends in .nc")
         result = store or arguments.output / f"{name}.nc"
         check_output(result.parent)
-        files = cls(result, formats, plots, arguments.force or not result.exists())
+        units = str(units_option(arguments)).replace(", ", "-").replace("/", "_")
+        files = cls(result, formats, plots, arguments.force or not result.exists(), units)
         others = [path for path in files.beside() if existing_files(path)]
         if store is not None and others and not result.exists():
             raise InputError(
@@ -265,11 +295,17 @@ class Files:
     def beside(self) -> list[Path]:
         """Return the other files that this result would have, by their main names."""
         endings = (*(ending for ending in self.formats if ending != "nc"), *self.plots)
-        return [self.result.with_suffix(f".{ending}") for ending in endings]
+        return [self.shown.with_suffix(f".{ending}") for ending in endings]
+
+    @property
+    def shown(self) -> Path:
+        """The result's name for tables and pictures, whose units may be others than asked in."""
+        units = f"_{self.units}" if self.units else ""
+        return self.result.with_name(f"{self.result.stem}{units}{self.result.suffix}")
 
     def lacks_pictures(self) -> bool:
         """Return whether a picture has to be drawn."""
-        places = (self.result.with_suffix(f".{ending}") for ending in self.plots)
+        places = (self.shown.with_suffix(f".{ending}") for ending in self.plots)
         return any(self.fresh or not path.exists() for path in places)
 
     def write(self, data: xr.Dataset, draw: Callable[[], Any] | None) -> None:
@@ -282,8 +318,8 @@ class Files:
             Gives a :class:`matplotlib.figure.Figure`; none where there is nothing to draw.
         """
         print(f"{self.result}{'' if self.fresh else ': complete already'}")
-        others = export_formats(data, self.result, self.formats, self.fresh)
-        pictures = draw_picture(self.result, self.plots, self.fresh, draw) if draw else []
+        others = export_formats(data, self.shown, self.formats, self.fresh)
+        pictures = draw_picture(self.shown, self.plots, self.fresh, draw) if draw else []
         for path in (*others, *pictures):
             print(path)
 

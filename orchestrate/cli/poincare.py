@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from ..units import scale_of
 from .grammar import state_of
 from .options import Commands, excitation_of, structure_of
 from .question import carry_out, picture_of
@@ -48,4 +49,5 @@ def report(data: xr.Dataset) -> None:
         return
     for name, label in SHOWN[str(data.attrs["at"])].items():
         low, high = float(data[name].min()), float(data[name].max())
-        print(f"{label} from {low:.6g} to {high:.6g} {data[name].attrs['units']}")
+        factor, unit = scale_of(data, str(data[name].attrs["units"]))
+        print(f"{label} from {low / factor:.6g} to {high / factor:.6g} {unit}")

@@ -6,14 +6,16 @@ import argparse
 import json
 import logging
 import math
-from collections.abc import Callable, Mapping
+import warnings
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..constants import GRAVITY, TURN
+from ..constants import TURN
 from ..errors import InputError, StoreError
-from .output import Files, name_of, preparing_a_picture, running_of
+from ..units import Units, as_shown, omega_of, text_of, units_of, with_units
+from .output import Files, name_of, preparing_a_picture, running_of, units_option
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,6 +27,20 @@ HOW_DECIDED = {  # of attractors; nothing is said where Newton's method confirms
     4: ", undecided: near an unstable orbit",
 }
 FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
+FAR_LEVEL = 200.0  # times the level from which a clearance is hardly meant
+NEAR = 0.1  # of a frequency: so far beside its own ones a structure is still asked about
+OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
+    "frequency": (1.0 / TURN, "rad/s", "--hz"),
+    "hz": (TURN, "Hz", "--frequency"),
+}
+UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}
+UNIT_OF_KEY = {
+    "frequency_hz": "Hz",
+    "frequency_rpm": "rpm",
+    "frequency_rad_s": "rad/s",
+    "eta": "eta",
+}
+COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 log = logging.getLogger(__name__)
 Question = Mapping[str, Any]
 Draw = Callable[["xr.Dataset"], Any]
@@ -62,17 +78,39 @@ def carry_out(
     import orchestrate
 
     command = arguments.command
-    name = "_".join(filter(None, [name_of(command, structure, question), ending]))
-    files = Files.from_options(arguments, name)
+    asked, units = asked_units(arguments, question)
+    named = name_of(command, structure, question, asked.frequency)
+    files = Files.from_options(arguments, "_".join(filter(None, [named, ending])))
     ask = getattr(orchestrate, command)
     print_frequency_notes(arguments, structure, question)
     with preparing_a_picture(draw is not None and files.lacks_pictures()):
         data: xr.Dataset = ask(structure, **question, **running_of(arguments, files.result))
     for line in trivial_notes(structure, question):
         print(line)
-    report(data)
-    files.write(data, partial(draw, data) if draw else None)
+    shown = with_units(data, units)
+    report(shown)
+    files.write(shown, partial(draw, shown) if draw else None)
     return data
+
+
+def asked_units(arguments: argparse.Namespace, question: Question) -> tuple[Units, Units]:
+    """Return the units that a question was asked in, and those that its answer is shown in."""
+    over = UNIT_OF_OPTION.get(str(getattr(arguments, "over", "")), "")
+    given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
+    keys = excitation_keys(arguments) if "frequency" in question and not given else ()
+    given += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
+    frequency = over or next(iter(given), "eta" if "eta" in question else "Hz")
+    in_g = getattr(arguments, "g", None) is not None or "acceleration_g" in keys
+    asked = Units(frequency, acceleration="g" if in_g else "")
+    return asked, units_option(arguments).completed(asked)
+
+
+def excitation_keys(arguments: argparse.Namespace) -> Collection[str]:
+    """Return the keys of the [excitation] in the file of ``--structure``."""
+    from ..structures.files import parse, resolve
+
+    excitation = parse(resolve(arguments.structure)).get("excitation", {})
+    return tuple(excitation)
 
 
 def carry_out_beside(
@@ -109,8 +147,9 @@ def is_curve(question: Question) -> bool:
 
 def print_table(data: xr.Dataset, name: str) -> None:
     """Print a result at one value as a table: there is no curve to draw."""
-    print(f"one value, {format_parameter(name, float(data[name][0]))}: a table and no picture")
-    numbers = data.isel({name: 0})
+    where = format_parameter(data, name, float(data[name][0]))
+    print(f"one value, {where}: a table and no picture")
+    numbers = as_shown(data.isel({name: 0}))
     for key, array in numbers.data_vars.items():
         if not set(array.dims) - {"direction", "structure"}:
             values = ", ".join(f"{float(value):.6g}" for value in array.values.ravel())
@@ -130,7 +169,7 @@ def trivial_notes(structure: Structure, question: Question) -> list[str]:
         return ["bonded: both masses move as one, there are no impacts"]
     if structure.alike:
         return ["both oscillators are alike: masses that start together never part"]
-    return []
+    return clearance_notes(structure, question)
 
 
 def print_frequency_notes(
@@ -149,6 +188,7 @@ def print_frequency_notes(
     if getattr(arguments, "structure", "") == "paper" and not arguments.set:
         omega = f"omega = {structure.omega:.6g} rad/s, {own_frequency}"
         print(f"structure: the paper's, {omega} (--structure names another)")
+    warn_of_other_unit(arguments, structure, values)
     low, high = (end(values) / structure.omega for end in (min, max))
     if high > FAR_RATIO or low < 1.0 / FAR_RATIO:
         ends = " to ".join(f"{ratio:.3g}" for ratio in dict.fromkeys((low, high)))
@@ -159,6 +199,71 @@ def print_frequency_notes(
         )
 
 
+def warn_of_other_unit(
+    arguments: argparse.Namespace, structure: Structure, values: tuple[float, ...]
+) -> None:
+    """Warn where frequencies miss the structure, and would fit it in the other unit: Hz for rad/s,
+    or the reverse.
+    """
+    low, high = (1.0 - NEAR) * min(values), (1.0 + NEAR) * max(values)
+    own = [TURN * f for f in (structure.f1, structure.f2)]
+    if math.isclose(structure.omega, 1.0) or any(low <= omega <= high for omega in own):
+        return
+    for name, (factor, unit, other) in OTHER_UNIT.items():
+        text = getattr(arguments, name, None)
+        if text and any(low <= factor * omega <= high for omega in own):
+            numbers = f"{structure.f1:.4g} and {structure.f2:.4g} Hz"
+            warnings.warn(
+                f"--{name} {text}: these are {unit}, and the structure's own frequencies are "
+                f"{numbers}; is {other} meant?",
+                stacklevel=2,
+            )
+
+
+def clearance_notes(structure: Structure, question: Question) -> list[str]:
+    """Return a remark where the box's motion stays below the threshold of a clearance: the
+    response from rest is the linear one.
+    """
+    import numpy as np
+
+    names = {"eta", "frequency", "amplitude", "level"} & question.keys()
+    if question.get("over") == "level":
+        question, names = {**question, "level": question["values"]}, names | {"level"}
+    elif question.get("over") is not None or "clearance" in question:
+        return []
+    if structure.bonded or not structure.clearance or names not in COMPLETE:
+        return []
+    ratio = smallest_ratio(structure, {name: np.ravel(question[name]) for name in names})
+    if ratio <= 1.0:
+        return []
+    opens = structure.clearance < 0.0
+    if ratio > FAR_LEVEL:
+        warnings.warn(
+            f"clearance = {structure.clearance:g} m: {ratio:.3g} times what this level moves; is "
+            "it in m (20 um is 2e-5)?",
+            stacklevel=2,
+        )
+    kind = "pressed together" if opens else "open"
+    return [
+        f"{kind} by {abs(structure.clearance):g} m, it first {'opens' if opens else 'touches'} at "
+        f"{ratio:.4g} times this level: from rest the response is linear"
+    ]
+
+
+def smallest_ratio(structure: Structure, box: Mapping[str, Any]) -> float:
+    """Return the threshold over the box's level, the smallest of all that is asked for."""
+    import orchestrate
+
+    frequency = box["eta"] * structure.omega if "eta" in box else box["frequency"]
+    level = orchestrate.contact_threshold(structure, frequency=frequency)
+    threshold = level.threshold_amplitude.values
+    if "eta" in box:
+        return float((threshold * box["eta"] ** 2).min())
+    if "level" in box:
+        return float((threshold * frequency**2).min() / box["level"].max())
+    return float((threshold / box["amplitude"]).min())
+
+
 def parameter_of(data: xr.Dataset) -> str:
     """Return the parameter along which a result lies."""
     others = {"direction", "structure", "attractor"}
@@ -166,13 +271,30 @@ def parameter_of(data: xr.Dataset) -> str:
     return name
 
 
-def format_parameter(name: str, value: float) -> str:
-    """Format a value of a parameter: frequencies in Hz."""
+def format_parameter(data: xr.Dataset, name: str, value: float) -> str:
+    """Format a value of a parameter in the units that an answer is shown in; by default
+    frequencies in Hz and levels in g.
+    """
+    units = units_of(data)
     if name == "frequency":
-        return f"{value / TURN:.6g} Hz"
+        return text_of(data if units.frequency else with_units(data, "Hz"), value, "rad/s")
     if name == "level":
-        return f"{value / GRAVITY:.6g} g"
-    return f"{name} = {value:.6g}"
+        return text_of(data if units.acceleration else with_units(data, "g"), value, "m/s2")
+    if name == "eta" and units.frequency not in ("", "eta") and math.isfinite(omega_of(data)):
+        return text_of(data, value * omega_of(data), "rad/s")
+    unit = unit_of(data, name)
+    return f"{name} = {text_of(data, value, unit) if unit else format(value, '.6g')}"
+
+
+def unit_of(data: xr.Dataset, name: str) -> str:
+    """Return the SI unit of a parameter; empty where it has none."""
+    unit = str(data[name].attrs.get("units", "")) if name in data.variables else ""
+    return unit.removeprefix("1")
+
+
+def with_unit(data: xr.Dataset, value: Any, unit: str, form: str = ".4g") -> str:
+    """Format a length, a velocity, an acceleration or a time as an answer is shown."""
+    return text_of(data, float(value), unit, form)
 
 
 def is_flag(values: xr.DataArray, word: str) -> xr.DataArray:
@@ -181,11 +303,13 @@ def is_flag(values: xr.DataArray, word: str) -> xr.DataArray:
     return values == values.attrs["flag_values"][number]
 
 
-def format_ranges(name: str, values: Any, flags: Any, max_ranges: int = 8) -> str:
+def format_ranges(data: xr.Dataset, name: str, values: Any, flags: Any, max_ranges: int = 8) -> str:
     """Format the runs of values for which something holds.
 
     Parameters
     ----------
+    data : xarray.Dataset
+        Whose units they are shown in.
     name : str
         Of the parameter.
     values : array_like
@@ -201,11 +325,17 @@ def format_ranges(name: str, values: Any, flags: Any, max_ranges: int = 8) -> st
         elif holds:
             runs.append((index, index))
     longest = sorted(sorted(runs, key=lambda run: run[0] - run[1])[:max_ranges])
-    scale, unit = (1.0 / TURN, " Hz") if name == "frequency" else (1.0, "")
-    ends = [[f"{scale * float(values[i]):.6g}" for i in dict.fromkeys(run)] for run in longest]
+    shown = [
+        [format_parameter(data, name, float(values[i])) for i in dict.fromkeys(run)]
+        for run in longest
+    ]
+    before, _, first = shown[0][0].rpartition(" = ") if shown else ("", "", "")
+    unit = first.partition(" ")[2]
+    ends = [[text.rpartition(" = ")[2].removesuffix(f" {unit}") for text in run] for run in shown]
     text = ", ".join(" to ".join(pair) for pair in ends)
     left = len(runs) - len(longest)
-    return f"{text}{unit}" + (f" and {left} shorter ranges" if left else "")
+    words = f"{before} = {text}" if before else text
+    return f"{words} {unit}".rstrip() + (f" and {left} shorter ranges" if left else "")
 
 
 def print_attractors(data: xr.Dataset, whole: str) -> None:

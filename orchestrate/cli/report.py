@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from .options import Commands
-from .output import check_output
+from .output import add_units, check_output, units_option
 from .question import read_stored
 
 EXAMPLES = """  {program} report results/sweep.nc --title Beam --notes November
@@ -22,6 +22,7 @@ def add_parser(commands: Commands) -> None:
     option = parser.add_argument_group("page").add_argument
     option("--title", default="", metavar="WORDS", help="by default that of the first result")
     option("--notes", default="", metavar="WORDS", help="below the title: what, who, when")
+    add_units(parser)
     place = "folder of the page (default: results)"
     option("--output", type=Path, default=Path("results"), metavar="FOLDER", help=place)
 
@@ -35,4 +36,5 @@ def run(arguments: argparse.Namespace) -> None:
     check_output(arguments.output)
     answers = [read_stored("FILE", path) for path in arguments.results]
     page = open_folder(arguments.output) / f"report_{arguments.results[0].stem}.html"
-    print(orchestrate.report(*answers, output=page, title=arguments.title, notes=arguments.notes))
+    words = {"title": arguments.title, "notes": arguments.notes}
+    print(orchestrate.report(*answers, output=page, **words, units=units_option(arguments)))

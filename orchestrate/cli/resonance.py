@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from ..constants import GRAVITY
+from ..units import scale_of
 from .grammar import is_one
 from .options import Commands, excitation_by_level, excitation_of, structure_of
 from .question import carry_out, format_parameter, is_curve, parameter_of, picture_of, print_table
@@ -17,13 +18,14 @@ EXAMPLES = """  {program} resonance --structure beam --hz 8:20:0.05 --g 0.02
   {program} resonance --structure beam --rpm 500:1200:5 --amplitude 3e-5 --format nc,csv
   {program} resonance --structure beam --set clearance=-2e-5 --hz 8:20:0.05 --g 0.02,0.1,0.5
   {program} resonance --eta 0.3:4:0.005 --set e=0.3             the paper's structure"""
-COLUMNS = {  # of a printed peak: title, format
-    "x1_max": ("|x1| m", "11.4g"),
-    "x2_max": ("|x2| m", "11.4g"),
-    "a1_max": ("|a1| m/s2", "11.4g"),
-    "a2_max": ("|a2| m/s2", "11.4g"),
-    "x_rel_max": ("gap m", "11.4g"),
+COLUMNS = {  # of a printed row: title, unit
+    "x1_max": ("|x1|", "m"),
+    "x2_max": ("|x2|", "m"),
+    "a1_max": ("|a1|", "m/s2"),
+    "a2_max": ("|a2|", "m/s2"),
+    "x_rel_max": ("gap", "m"),
 }
+LENGTHS = ("x1_max", "x2_max", "x_rel_max")
 
 
 def add_parser(commands: Commands) -> None:
@@ -56,30 +58,35 @@ def report(data: xr.Dataset) -> None:
         return
     print_peaks(data, name)
     print_jumps(data, name)
+    print_threshold(data)
 
 
 def report_levels(data: xr.Dataset) -> None:
     """Print the largest response at each level, and the threshold, a line each."""
     parted = data.sel(structure="delaminated")
-    print(f"{'level':>10}{'|x1| m':>11}{'|x2| m':>11}{'gap m':>11}   largest gap at")
+    print(f"{'level':>10}{titles(data, LENGTHS)}   largest gap at")
     for level in data.level.values:
         at = parted.sel(level=level)
-        sizes = [float(at[name].max()) for name in ("x1_max", "x2_max", "x_rel_max")]
         top = at.isel(at.x_rel_max.argmax(...))
-        numbers = "".join(f"{size:11.4g}" for size in sizes)
-        print(f"{format_parameter('level', level):>10}{numbers}   {float(top.hertz):.6g} Hz")
-    if "threshold_acceleration" in data:
-        lowest = data.isel(frequency=int(data.threshold_acceleration.values.argmin()))
-        event = data.threshold_acceleration.attrs["event"]
-        level = float(lowest.threshold_acceleration) / GRAVITY
-        where = f"{float(lowest.hertz):.6g} Hz"
-        print(f"of these frequencies it first {event} at {where}: {level:.4g} g")
+        numbers = row(data, {name: float(at[name].max()) for name in LENGTHS})
+        where = format_parameter(data, "frequency", float(top.frequency))
+        print(f"{format_parameter(data, 'level', level):>10}{numbers}   {where}")
+    print_threshold(data)
+
+
+def print_threshold(data: xr.Dataset) -> None:
+    """Print the lowest level at which the structure first opens or touches."""
+    if "lowest_threshold" in data:
+        event = data.lowest_threshold.attrs["event"]
+        level = format_parameter(data, "level", float(data.lowest_threshold))
+        where = format_parameter(data, "frequency", float(data.lowest_threshold_frequency))
+        print(f"in this range it first {event} at {where}: {level}")
 
 
 def print_peaks(data: xr.Dataset, name: str) -> None:
     """Print where amplitudes are largest."""
     ends = " to ".join(
-        format_parameter(name, float(end)) for end in (data[name].min(), data[name].max())
+        format_parameter(data, name, float(end)) for end in (data[name].min(), data[name].max())
     )
     noise = int(data.peak_irregular.sum())
     peaks = data.isel(peak=data.peak_irregular.values == 0)
@@ -91,13 +98,24 @@ def print_peaks(data: xr.Dataset, name: str) -> None:
     if not peaks.sizes["peak"]:
         print(f"no peak from {ends} where responses are periodic")
         return
-    titles = "".join(f"{title:>11}" for title, _ in COLUMNS.values())
-    print(f"peaks{'':31}{titles}")
+    print(f"peaks{'':31}{titles(data, COLUMNS)}")
     for i in range(peaks.sizes["peak"]):
         peak = peaks.isel(peak=i)
-        texts = [format(float(peak[f"peak_{key}"]), form) for key, (_, form) in COLUMNS.items()]
-        where = format_parameter(name, float(peak[f"peak_{name}"]))
-        print(f"  {format_direction(peak, 'peak')} {where:>16}{''.join(texts)}")
+        numbers = row(data, {key: float(peak[f"peak_{key}"]) for key in COLUMNS})
+        where = format_parameter(data, name, float(peak[f"peak_{name}"]))
+        print(f"  {format_direction(peak, 'peak')} {where:>16}{numbers}")
+
+
+def titles(data: xr.Dataset, names: Iterable[str]) -> str:
+    """Format the heads of columns, with the units that they are shown in."""
+    heads = (f"{COLUMNS[name][0]} {scale_of(data, COLUMNS[name][1])[1]}" for name in names)
+    return "".join(f"{head:>11}" for head in heads)
+
+
+def row(data: xr.Dataset, values: Mapping[str, float]) -> str:
+    """Format the numbers of a row, in the units that its columns are shown in."""
+    numbers = (value / scale_of(data, COLUMNS[name][1])[0] for name, value in values.items())
+    return "".join(f"{number:11.4g}" for number in numbers)
 
 
 def print_jumps(data: xr.Dataset, name: str) -> None:
@@ -108,8 +126,10 @@ def print_jumps(data: xr.Dataset, name: str) -> None:
     print("jumps of the largest gap")
     for i in range(data.sizes["jump"]):
         jump = data.isel(jump=i)
-        sizes = f"{float(jump.jump_before):.4g} to {float(jump.jump_after):.4g} m"
-        where = format_parameter(name, float(jump[f"jump_{name}"]))
+        factor, unit = scale_of(data, "m")
+        before, after = (float(jump[f"jump_{side}"]) / factor for side in ("before", "after"))
+        sizes = f"{before:.4g} to {after:.4g} {unit}"
+        where = format_parameter(data, name, float(jump[f"jump_{name}"]))
         print(f"  {format_direction(jump, 'jump')} {where:>16}  {sizes}")
 
 

@@ -8,6 +8,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..units import scale_of
 from .grammar import (
     RANGE,
     breakpoints_of,
@@ -18,8 +19,8 @@ from .grammar import (
     whole_number_of,
 )
 from .options import Commands, add_beside, add_structure, option_name, options, structure_of
-from .output import add_results
-from .question import carry_out_beside
+from .output import add_results, add_units
+from .question import carry_out_beside, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,6 +61,7 @@ def add_parser(commands: Commands) -> None:
     question.add("start", state_of, metavar="X1,X2,V1,V2", help=start)
     question.declare("accuracy")
     add_beside(question)
+    add_units(parser)
     add_results(parser)
 
 
@@ -199,12 +201,11 @@ def level_of(arguments: argparse.Namespace) -> Any:
 def report(data: xr.Dataset) -> None:
     """What was found, in a few lines."""
     names = ("box_acceleration", "a1_abs", "a2_abs")
-    felt = [float(abs(data[name]).max()) for name in names]
-    text = (
-        "largest accelerations: box {:.4g}, masses 1 and 2 between impacts {:.4g} and {:.4g} m/s2"
-    )
-    print(text.format(*felt))
-    print(f"largest gap {float(data.x_rel.max()):.4g} m")
+    factor, unit = scale_of(data, "m/s2")
+    felt = [float(abs(data[name]).max()) / factor for name in names]
+    text = "largest accelerations: box {:.4g}, masses 1 and 2 between impacts {:.4g} and {:.4g} {}"
+    print(text.format(*felt, unit))
+    print(f"largest gap {with_unit(data, data.x_rel.max(), 'm')}")
     over = float(data.transient_time)
     print(f"the start is forgotten after {over:.3g} s where the motion is linear")
     count = data.sizes["impact"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from .grammar import state_of
 from .options import Commands, add_beside, excitation_of, structure_of
-from .question import carry_out_beside
+from .question import carry_out_beside, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,14 +38,14 @@ def run(arguments: argparse.Namespace) -> None:
 
 def report(data: xr.Dataset) -> None:
     """Print the result."""
-    reach = [float(abs(data[name]).max()) for name in ("x1", "x2", "x_rel")]
-    print("largest |x1| {:.6g} m, |x2| {:.6g} m, gap {:.6g} m".format(*reach))
-    felt = [float(abs(data[name]).max()) for name in ("a1_abs", "a2_abs")]
-    print("largest acceleration between impacts {:.4g} and {:.4g} m/s2".format(*felt))
+    reach = [with_unit(data, abs(data[n]).max(), "m", ".6g") for n in ("x1", "x2", "x_rel")]
+    print("largest |x1| {}, |x2| {}, gap {}".format(*reach))
+    felt = [with_unit(data, abs(data[name]).max(), "m/s2") for name in ("a1_abs", "a2_abs")]
+    print("largest acceleration between impacts {} and {}".format(*felt))
     count = data.sizes["impact"]
     if not count:
         print("no impacts")
         return
-    print(f"{count} impacts, the fastest at {float(data.impact_velocity.max()):.4g} m/s")
+    print(f"{count} impacts, the fastest at {with_unit(data, data.impact_velocity.max(), 'm/s')}")
     sticks = int(data.sticks.sum())
     print(f"{sticks} of them begin permanent contact" if sticks else "no permanent contact begins")

@@ -18,8 +18,8 @@ from .options import (
     options,
     structure_and_drive,
 )
-from .output import Files, add_results, digest, running_of
-from .question import carry_out, format_parameter, picture_of
+from .output import Files, add_results, add_units, digest, running_of
+from .question import carry_out, format_parameter, picture_of, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,6 +48,7 @@ def add_parser(commands: Commands) -> None:
     option("--voltage", type=plain_float, help="the same in V")
     add_excitation(parser, usual="none: shaken by the motor")
     commands.question(parser).declare("transient", "periods", "points")
+    add_units(parser)
     add_results(parser, several=True)
 
 
@@ -82,7 +83,7 @@ def motor_spectra(arguments: argparse.Namespace) -> None:
     data = drive_spectra(structure, drive, voltage=voltage, **running_of(arguments, files.result))
     for kind in map(str, data.kind.values):
         part = data.sel(kind=kind, mass=1)
-        print_line_ratio(f"{kind} at {float(part.speed):.4f} rad/s", part.acceleration)
+        print_line_ratio(data, f"{kind} at {float(part.speed):.4f} rad/s", part.acceleration)
     words = str(data.attrs["title"])
     title = f"{Path(arguments.drive).stem}: {words[0].lower()}{words[1:]}, mass 1 in space"
     files.write(data, lambda: figure.draw(data, title=title))
@@ -105,12 +106,14 @@ def report(data: xr.Dataset) -> None:
     for value in data[name].values:
         for kind in map(str, data.kind.values):
             part = data.acceleration.sel({"kind": kind, "mass": 1, name: value})
-            print_line_ratio(f"{kind} at {format_parameter(name, float(value))}", part)
+            where = format_parameter(data, name, float(value))
+            print_line_ratio(data, f"{kind} at {where}", part)
 
 
-def print_line_ratio(name: str, amplitude: xr.DataArray) -> None:
+def print_line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> None:
     """Print the largest line, and how much there is above the excitation."""
     largest = float(amplitude.max())
     above = float(amplitude.where(amplitude.order > 1.5, 0.0).max())
     share = above / largest if largest else 0.0
-    print(f"{name}: largest line {largest:.4g} m/s2, {share:.2g} of it above the excitation")
+    line = with_unit(data, largest, "m/s2")
+    print(f"{name}: largest line {line}, {share:.2g} of it above the excitation")

@@ -16,6 +16,7 @@ from .question import (
     parameter_of,
     picture_of,
     print_table,
+    with_unit,
 )
 
 if TYPE_CHECKING:
@@ -70,12 +71,13 @@ def report(data: xr.Dataset) -> None:
         print_table(data, name)
         return
     top = data.isel(data.xi_rel_max.argmax(...))
-    where = format_parameter(name, float(top[name]))
-    metres = float(top.xi_rel_max * top.amplitude * top.eta**2)
-    print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g}, {metres:.4g} m, at {where}")
+    where = format_parameter(data, name, float(top[name]))
+    gap = with_unit(data, top.xi_rel_max * top.amplitude * top.eta**2, "m")
+    print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g}, {gap}, at {where}")
     for mass in (1, 2):
-        far, felt = float(data[f"x{mass}_max"].max()), float(data[f"a{mass}_max"].max())
-        print(f"mass {mass}: largest displacement {far:.4g} m, acceleration {felt:.4g} m/s2")
+        far = with_unit(data, data[f"x{mass}_max"].max(), "m")
+        felt = with_unit(data, data[f"a{mass}_max"].max(), "m/s2")
+        print(f"mass {mass}: largest displacement {far}, acceleration {felt}")
     decided = data.multiplicity_decided
     periodic = int(is_flag(decided, "repeated").sum())
     print(f"periodic: {periodic} of {decided.size} responses")
@@ -84,7 +86,7 @@ def report(data: xr.Dataset) -> None:
         holds = holds.any("direction") if "direction" in holds.dims else holds
         if holds.any():
             ordered = holds.sortby(name)
-            print(f"{text} at {format_ranges(name, ordered[name].values, ordered.values)}")
+            print(f"{text} at {format_ranges(data, name, ordered[name].values, ordered.values)}")
     contact = int(data.permanent_contact.sum())
     print(f"with permanent contact: {contact} of {decided.size} responses")
     if "direction" in data.dims:
@@ -99,5 +101,5 @@ def print_differences(data: xr.Dataset, name: str) -> None:
     if not differ.any():
         print(f"up and down are the same to {DIFFERENT:.0%} of the largest gap: no hysteresis here")
         return
-    where = format_ranges(name, gaps[name].values, differ.values)
+    where = format_ranges(data, name, gaps[name].values, differ.values)
     print(f"up and down differ by more than {DIFFERENT:.0%} of the largest gap at {where}")

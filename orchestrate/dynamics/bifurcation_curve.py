@@ -3,7 +3,8 @@
 Folds, period doublings and Neimark-Sacker bifurcations are where the orbit's matrix with a
 multiplier on the unit circle is singular. How nearly it is, the bordered system says (Govaerts,
 Numerical Methods for Bifurcations of Dynamical Equilibria, 2000, chapter 4), without a determinant.
-Grazings have equations of their own.
+Grazings have equations of their own, and so has an earlier release: the contact force has a minimum
+that is zero. With a preload, and no impacts, that is the level at which the structure first opens.
 """
 
 from __future__ import annotations
@@ -15,19 +16,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
+from .bifurcations import EARLIER_RELEASE, FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
 from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root, leading_component
 from .families import Family, central_difference
 from .impact_sequence import CLOSING, PeriodicOrbit
 from .orbit_point import OrbitPoint
 from .tracer import BranchStep, BranchTracer, ContinuationSettings
-from .turning_points import GAP, derivatives, nearest_miss, turning_points
+from .turning_points import (
+    GAP,
+    derivatives,
+    nearest_miss,
+    pressing_force,
+    turning_points,
+    weakest_force,
+)
 
 REAL_MULTIPLIERS: dict[int, float] = {FOLD: 1.0, FLIP: -1.0}  # that lie on the unit circle
 SMOOTH_KINDS = (FOLD, FLIP, TORUS)
+FOLLOWED = (*SMOOTH_KINDS, GRAZING, TOUCHING, EARLIER_RELEASE)
 STEP = 1e-6  # of an unknown, over its scale, for differences
-OVERLAP = 1e-9  # over a eta^2: a gap smaller by this than zero is no rounding
+OVERLAP = 1e-9  # over a eta^2: a gap, or a force, smaller by this than zero is no rounding
 FIRST_STEP = 1e-3  # in unknowns over their scale: short, as the curve is not known yet
 HALVINGS = 24  # of the last step: its end is known to 1e-7 of it
 
@@ -44,9 +53,10 @@ class BifurcationCurve:
         Of two parameters.
     kind : int
     place : int
-        Index of the node that grazes, or of the segment that touches.
+        Index of the node that grazes, or of the segment that touches or is released.
     extra : ndarray
-        What the kind adds, at the start: the multiplier's angle, or the phase of touching.
+        What the kind adds, at the start: the multiplier's angle, or the phase of touching or of the
+        release.
     """
 
     family: Family
@@ -79,8 +89,11 @@ class BifurcationCurve:
         elif kind == TOUCHING:
             _, place, phase = nearest_miss(point.orbit, turning_points(point.orbit))
             extra = np.array([phase])
+        elif kind == EARLIER_RELEASE:
+            _, place, phase = weakest_force(point.orbit)
+            extra = np.array([phase])
         elif kind not in SMOOTH_KINDS:
-            expected = ", ".join(KINDS[known] for known in (*SMOOTH_KINDS, GRAZING, TOUCHING))
+            expected = ", ".join(KINDS[known] for known in FOLLOWED)
             raise InputError(f"bifurcation: {KINDS[kind]}; expected one of {expected}")
         return cls(family, kind, place, extra)
 
@@ -123,6 +136,11 @@ class BifurcationCurve:
             which = np.array([self.place]), np.array([GAP])
             rate, _, gap = derivatives(self.orbit(unknowns), *which, unknowns[-1:])
             return np.append(gap, rate)
+        if self.kind == EARLIER_RELEASE:
+            force, rate, _ = pressing_force(
+                self.orbit(unknowns), np.array([self.place]), unknowns[-1:]
+            )
+            return np.append(force, rate)
         size = self.family.size
         bordered = np.zeros((size + 1, size + 1), dtype=complex)
         bordered[:size, :size] = self.matrix(unknowns)
@@ -159,6 +177,9 @@ class BifurcationCurve:
             return "impacts change their order"
         if nearest_miss(orbit, turning_points(orbit))[0] < -OVERLAP:
             return "a flight grazes" if self.kind != TOUCHING else "another flight grazes"
+        if weakest_force(orbit)[0] < -OVERLAP:
+            earlier = self.kind == EARLIER_RELEASE
+            return "a still earlier release" if earlier else "an earlier release"
         if self.kind == TORUS and not 0.0 < unknowns[-1] < np.pi:
             return "a resonance 1:1 or 1:2"
         return ""

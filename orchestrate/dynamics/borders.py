@@ -158,8 +158,9 @@ def border(
     start : xarray.Dataset
         A branch of :func:`orchestrate.branch`.
     bifurcation : int
-        Number of one of its bifurcations: a fold, period doubling, Neimark-Sacker bifurcation or
-        grazing.
+        Number of one of its bifurcations: a fold, period doubling, Neimark-Sacker bifurcation,
+        grazing or earlier release. Of a structure that a preload holds together the earlier release
+        is the level at which it first opens, see :func:`orchestrate.contact_threshold`.
     over : sequence of 2 str
         The parameters; the first one is that of the branch.
     limits : array_like, shape (2, 2)

@@ -124,7 +124,7 @@ class OrbitPoint:
         if kind == TOUCHING:
             return self.nearest_miss
         if kind == EARLIER_RELEASE:
-            return weakest_force(self.orbit)
+            return weakest_force(self.orbit)[0]
         return self.contact_margin(kind)
 
     def happens(self, kind: BifurcationKind) -> bool:

@@ -76,7 +76,7 @@ def why_no_motion(orbit: PeriodicOrbit) -> str:
         return "an impact has no closing speed"
     if nearest_miss(orbit, turning_points(orbit))[0] < 0.0:
         return "the masses would go through each other"
-    if weakest_force(orbit) < 0.0:
+    if weakest_force(orbit)[0] < 0.0:
         return "the contact would pull"
     return ""
 

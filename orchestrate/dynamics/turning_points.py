@@ -128,27 +128,35 @@ def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int
     return float(turns.value[lowest]), int(turns.segment[lowest]), float(turns.phase[lowest])
 
 
-def weakest_force(orbit: PeriodicOrbit) -> float:
-    """Return the smallest -f (18) where f turns: it is 0 at an earlier release.
+def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
+    """Find the instant of permanent contact at which the masses are pressed together the least.
 
-    Infinite where there is no contact, or f does not turn there.
+    Returns
+    -------
+    force : float
+        The smallest -f (18) where f turns: it is 0 at an earlier release. Infinite where there is
+        no contact, or f does not turn there.
+    segment : int
+    phase : float
     """
     if not orbit.contact.any():
-        return np.inf
+        return np.inf, -1, 0.0
     segment, phase = sample_grid(orbit)
     inside = orbit.contact[segment]
     segment, phase = segment[inside], phase[inside]
     rate = pressing_force(orbit, segment, phase)[1]
     turned = (rate[1:] > 0.0) & (rate[:-1] <= 0.0) & (segment[1:] == segment[:-1])
     if not turned.any():
-        return np.inf
+        return np.inf, -1, 0.0
     low, high, segment = phase[:-1][turned], phase[1:][turned], segment[1:][turned]
     phases = 0.5 * (low + high)
     for _ in range(REFINEMENTS):
         _, rate, curvature = pressing_force(orbit, segment, phases)
         step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
         phases = np.clip(phases - orbit.form.eta * step, low, high)
-    return float(pressing_force(orbit, segment, phases)[0].min())
+    forces = pressing_force(orbit, segment, phases)[0]
+    lowest = forces.argmin()
+    return float(forces[lowest]), int(segment[lowest]), float(phases[lowest])
 
 
 def pressing_force(

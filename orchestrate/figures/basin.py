@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from .labels import orbit_label, symbol, title_from_attributes
+from ..units import scale_of, units_of
+from .labels import gap_name, orbit_label, symbol, title_from_attributes
 from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, panels, set_title, styled
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the most frequent attractors
@@ -36,15 +37,27 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     labels = data.attractor_of.where(data.attractor_of >= 0).values.clip(max=len(COLOURS))
     shades = ListedColormap([*COLOURS, OTHER])
     limits: Any = {"vmin": -0.5, "vmax": len(COLOURS) + 0.5}
-    plane.pcolormesh(data[x], data[y], labels, cmap=shades, rasterized=True, **limits)
+    (right, x_label), (up, y_label) = (coordinate_scale(data, name) for name in (x, y))
+    plane.pcolormesh(data[x] / right, data[y] / up, labels, cmap=shades, rasterized=True, **limits)
     label_attractors(plane, data)
     mark_attractors(plane, data)
-    plane.set(xlabel=names[0] or symbol(x), ylabel=names[1] or symbol(y))
+    plane.set(xlabel=names[0] or x_label, ylabel=names[1] or y_label)
     plane.grid(False)
-    eta = [rf"$\eta$ = {float(data.eta):.4g}"] if "eta" in data.coords else []
+    by_ratio = "eta" in data.coords and units_of(data).frequency in ("", "eta")
+    eta = [rf"$\eta$ = {float(data.eta):.4g}"] if by_ratio else []
     set_title(figure, title or ", ".join([title_from_attributes(data, ("eta", x, y)), *eta]))
     figure.legend(loc="outside lower left")
     return figure
+
+
+def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
+    """Return what a coordinate of the plane is divided by, and its label."""
+    unit = "m/s" if name.startswith("v") else "m"
+    if name == "phase":
+        return 1.0, symbol(name)
+    factor, word = scale_of(data, unit)
+    words = gap_name(data) if name == "x_rel" else symbol(name).rpartition(" in ")[0]
+    return factor, f"{words} in {word.replace('um', 'µm')}"
 
 
 def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
@@ -53,7 +66,8 @@ def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
     if "state" not in data or "phase" in (x, y):
         return
     columns = dict(zip(STATE, data.state.values.T, strict=True))
-    columns |= {"x_rel": columns["x2"] - columns["x1"], "v_rel": columns["v2"] - columns["v1"]}
+    columns |= {"x_rel": gap_of(data, columns), "v_rel": columns["v2"] - columns["v1"]}
+    right, up = (coordinate_scale(data, name)[0] for name in (x, y))
     limits = plane.get_xlim(), plane.get_ylim()
     style: Any = {
         "color": "white",
@@ -64,9 +78,17 @@ def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
     for index in range(data.sizes["attractor"]):
         colour = COLOURS[index] if index < len(COLOURS) else OTHER
         style["markerfacecolor"] = colour
-        plane.plot(columns[x][index], columns[y][index], "X", **style)
+        place = columns[x][index] / right, columns[y][index] / up
+        plane.plot(*place, "X", **style)
     plane.set(xlim=limits[0], ylim=limits[1])
     plane.plot([], [], "X", **{**style, "markerfacecolor": "white"}, label="states on them")
+
+
+def gap_of(data: xr.Dataset, columns: dict[str, np.ndarray]) -> np.ndarray:
+    """Return the gap between the faces in some states."""
+    clearance = 0.0 if data.attrs.get("bonded") else float(data.attrs.get("clearance", 0.0))
+    gap: np.ndarray = columns["x2"] - columns["x1"] + clearance
+    return gap
 
 
 def label_attractors(plane: Axes, data: xr.Dataset) -> None:

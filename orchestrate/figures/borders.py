@@ -5,8 +5,9 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .labels import symbol, title_from_attributes
-from .style import BLACK, BLUE, GREEN, ORANGE, RED, panels, styled
+from .labels import title_from_attributes
+from .scales import parameter_scale
+from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, panels, styled
 
 COLOURS = {
     "fold": ORANGE,
@@ -14,6 +15,7 @@ COLOURS = {
     "Neimark-Sacker": BLUE,
     "grazing of an impact": GREEN,
     "grazing of a flight": BLACK,
+    "earlier release": PURPLE,
 }
 
 
@@ -29,13 +31,17 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
     """
     figure, (plane,) = panels(1, 1, (9.6, 4.4))
     first, second = (str(name) for name in curves[0].attrs["over"])
+    (x_unit, x_label), (y_unit, y_label) = (
+        parameter_scale(curves[0], name) for name in (first, second)
+    )
     shown: set[str] = set()
     for curve in curves:
         kind = str(curve.attrs["kind"])
         label = kind if kind not in shown else None
-        plane.plot(curve[first], curve[second], color=COLOURS[kind], linewidth=1.2, label=label)
+        x, y = curve[first] / x_unit, curve[second] / y_unit
+        plane.plot(x, y, color=COLOURS[kind], linewidth=1.2, label=label)
         shown.add(kind)
     title = title or title_from_attributes(curves[0])
-    plane.set(xlabel=symbol(first), ylabel=symbol(second), title=title)
+    plane.set(xlabel=x_label, ylabel=y_label, title=title)
     figure.legend(loc="outside lower right", ncols=len(shown))
     return figure

@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 
 from ..errors import InputError
 from ..flags import flag_words
-from .labels import EXCITATION, symbol, title_from_attributes
+from .labels import EXCITATION, title_from_attributes
 from .marks import Marks, draw_samples
 from .orbit_diagram import set_gap_scale
-from .scales import HERTZ, in_si
+from .scales import parameter_scale
 from .style import BLUE, GREY, RED, XI_REL, legend_below, panels, styled
 
 MARKERS = {  # by the bifurcation's kind
@@ -53,7 +53,7 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
     set_gap_scale(
         plane, gaps if responses is None else np.append(gaps, responses.xi_rel.values.ravel())
     )
-    unit, label = unit_of(branches[0], name)
+    unit, label = parameter_scale(branches[0], name)
     low = min(float(branch[name].min()) for branch in branches) / unit
     high = max(float(branch[name].max()) for branch in branches) / unit
     edge = 0.01 * (high - low)  # room for markers at the ends
@@ -68,15 +68,6 @@ def draw(*branches: xr.Dataset, responses: xr.Dataset | None = None, title: str 
         draw_bifurcations(plane, branch, shown, unit)
     legend_below(figure, [plane], columns=8)
     return figure
-
-
-def unit_of(data: xr.Dataset, name: str) -> tuple[float, str]:
-    """Return what values of the parameter are divided by, and its label: hertz for a structure in
-    SI.
-    """
-    if name == "frequency" and in_si(data):
-        return 2.0 * np.pi, HERTZ
-    return 1.0, symbol(name)
 
 
 def draw_branch(plane: Axes, branch: xr.Dataset, name: str, unit: float) -> None:

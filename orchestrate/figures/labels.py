@@ -9,7 +9,8 @@ from typing import Any
 
 import xarray as xr
 
-from ..constants import GRAVITY
+from ..constants import GRAVITY, TURN
+from ..units import omega_of, scale_of, units_of
 
 SYMBOLS = {
     "eta": r"$\eta$",
@@ -99,42 +100,68 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
     if by_halves:
         text = ", ".join(filter(None, [format_halves(known), text]))
     if known.get("clearance") and "clearance" not in shown and not known.get("bonded"):
-        text = ", ".join(filter(None, [text, clearance_text(known["clearance"])]))
+        text = ", ".join(filter(None, [text, clearance_text(known["clearance"], data)]))
     shaken = [words for name, words in excitation_texts(data, known).items() if name not in shown]
     return ", ".join(filter(None, [text, "bonded" if known.get("bonded") else "", *shaken]))
 
 
-def clearance_text(clearance: float) -> str:
+def gap_name(data: xr.Dataset) -> str:
+    """Return what the gap is called on an axis: with a clearance it is not ``x2 - x1`` alone."""
+    return "gap" if data.attrs.get("clearance") else "gap $x_2 - x_1$"
+
+
+def clearance_text(clearance: float, data: xr.Dataset) -> str:
     """Format a gap or a preload.
 
     Examples
     --------
-    >>> clearance_text(1.5e-3), clearance_text(-2e-5)
+    >>> clearance_text(1.5e-3, xr.Dataset()), clearance_text(-2e-5, xr.Dataset())
     ('clearance 1.5 mm', 'pressed together by 20 µm')
     """
-    factor, letter = prefix(abs(clearance))
     words = "clearance" if clearance > 0.0 else "pressed together by"
-    return f"{words} {abs(clearance) / factor:.4g} {letter}m"
+    return f"{words} {length_text(data, abs(clearance))}"
+
+
+def length_text(data: xr.Dataset, length: float) -> str:
+    """Format a length in the unit that an answer is shown in, or with an SI prefix."""
+    if units_of(data).length:
+        factor, word = scale_of(data, "m")
+        return f"{length / factor:.4g} {word.replace('um', 'µm')}"
+    factor, letter = prefix(length)
+    return f"{length / factor:.4g} {letter}m"
+
+
+def frequency_text(data: xr.Dataset, frequency: float) -> str:
+    """Format a frequency in rad/s as an answer is shown, in Hz where nothing is asked for."""
+    factor, word = scale_of(data, "rad/s") if units_of(data).frequency else (TURN, "Hz")
+    if word == "eta":
+        return format_parameters({"eta": float(f"{frequency / factor:.5g}")})
+    letter = r"$\Omega$" if word == "rad/s" else r"$\Omega/2\pi$"
+    return f"{letter} = {frequency / factor:.5g} {word}"
 
 
 def excitation_texts(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
-    """Format the box's motion by its parameters: what is one number in a dataset, in Hz and in
-    m.
+    """Format the box's motion by its parameters: what is one number in a dataset, in the units it
+    is shown in; else in Hz and in m.
     """
-    texts = {}
+    units, texts = units_of(data), {}
     if "eta" in known:
-        texts["eta"] = format_parameters({"eta": known["eta"]})
+        omega = omega_of(data)
+        by_unit = units.frequency not in ("", "eta") and math.isfinite(omega)
+        eta = known["eta"]
+        texts["eta"] = (
+            frequency_text(data, eta * omega) if by_unit else format_parameters({"eta": eta})
+        )
     if "frequency" in known:
-        texts["frequency"] = rf"$\Omega/2\pi$ = {known['frequency'] / (2.0 * math.pi):.5g} Hz"
+        texts["frequency"] = frequency_text(data, known["frequency"])
     if "amplitude" in known:
-        factor, letter = prefix(known["amplitude"])
-        texts["amplitude"] = f"$a$ = {known['amplitude'] / factor:.4g} {letter}m"
+        texts["amplitude"] = f"$a$ = {length_text(data, known['amplitude'])}"
     elif "frequency" in data.dims and "amplitude" in data.coords:
         level = (data.amplitude * data.frequency**2).values
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
-            texts["amplitude"] = (
-                rf"$a\,\Omega^2$ = {level.max():.4g} m/s$^2$ ({level.max() / GRAVITY:.3g} g)"
-            )
+            peak, in_g = f"{level.max():.4g} m/s$^2$", f"{level.max() / GRAVITY:.3g} g"
+            both = {"": f"{peak} ({in_g})", "m/s2": peak, "g": in_g}
+            texts["amplitude"] = rf"$a\,\Omega^2$ = {both[units.acceleration]}"
     return texts
 
 

@@ -10,9 +10,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import prefix, title_from_attributes
+from ..constants import TURN
+from ..units import units_of
+from .labels import gap_name, title_from_attributes
 from .marks import draw_stems
-from .scales import in_si
+from .scales import acceleration_scale, frequency_scale, in_si, length_scale
 from .style import BLACK, BLUE, GREY, RED, set_title, styled, write_in_panel
 
 LAYOUT: list[Any] = [["masses", "phases"], ["gap", "relative"], ["force", "spectrum"]]
@@ -44,13 +46,15 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     axes = figure.subplot_mosaic(LAYOUT, width_ratios=(2.2, 1))
     set_title(figure, title or title_from_attributes(data))
     reach = max(float(np.abs(data[name]).max()) for name in ("x1", "x2"))
-    factor, letter = prefix(reach)
+    factor, letter = length_scale(data, reach)
     draw_histories(axes, data, factor, letter)
     draw_planes(axes["phases"], axes["relative"], data, factor, letter)
     top = draw_spectrum(axes["spectrum"], data, MASSES)
     if bonded is not None:
-        axes["masses"].plot(bonded.periods_done, bonded.x1 / factor, **GLUED)
-        axes["phases"].plot(bonded.x1 / factor, bonded.v1 / prefix(speed_of(data))[0], **GLUED)
+        axes["masses"].plot(time_axis(data, bonded)[0], bonded.x1 / factor, **GLUED)
+        axes["phases"].plot(
+            bonded.x1 / factor, bonded.v1 / length_scale(data, speed_of(data))[0], **GLUED
+        )
         top = max(top, draw_spectrum(axes["spectrum"], bonded, (("1", GLUED),)))
     axes["spectrum"].set_ylim(SPECTRUM_FLOOR * (top or 1.0), 2.0 * (top or 1.0))
     above: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
@@ -61,18 +65,18 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
 
 def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, letter: str) -> None:
     """Draw both masses, the gap with its impacts, and the contact force."""
-    turns = data.periods_done.values
+    turns, instants = time_axis(data, data)
     time, gap, _ = relative(data)
     for number, style in MASSES:
         axes["masses"].plot(turns, data[f"x{number}"] / factor, **style)
     axes["masses"].set_ylabel(f"displacement in {letter}m")
     at = np.interp(data.impact_time.values, data.time.values, turns)
     axes["gap"].plot(np.interp(time, data.time, turns), gap / factor, color=BLACK, linewidth=1.0)
-    axes["gap"].set_ylabel(f"gap $x_2 - x_1$ in {letter}m")
+    axes["gap"].set_ylabel(f"{gap_name(data)} in {letter}m")
     count = data.sizes["impact"]
     label = f"{count} impact{'s' * (count != 1)}" if count else "no impacts"
     axes["gap"].plot(at, np.zeros_like(at), "|", color=RED, markersize=8, label=label)
-    axes["force"].set(ylabel="contact force in N", xlabel="time in periods, $t/T$")
+    axes["force"].set(ylabel="contact force in N", xlabel=instants)
     if float(data.contact_force.max()):
         axes["force"].plot(turns, data.contact_force, color=BLACK, linewidth=1.0)
     else:
@@ -83,9 +87,18 @@ def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, le
     axes["force"].set_xlim(turns[0], turns[-1])
 
 
+def time_axis(data: xr.Dataset, motion: xr.Dataset) -> tuple[np.ndarray, str]:
+    """Return the instants of a motion beside an answer as this is shown, and the axis' label:
+    periods, or s.
+    """
+    if units_of(data).time == "s":
+        return motion.time.values, "time in s"
+    return motion.periods_done.values, "time in periods, $t/T$"
+
+
 def draw_planes(masses: Axes, plane: Axes, data: xr.Dataset, factor: float, letter: str) -> None:
     """Draw the phase planes of both masses, and of their relative motion."""
-    slow, prefixed = prefix(speed_of(data))
+    slow, prefixed = length_scale(data, speed_of(data))
     for number, style in MASSES:
         masses.plot(data[f"x{number}"] / factor, data[f"v{number}"] / slow, **style)
     masses.set(xlabel=f"displacement in {letter}m", ylabel=f"velocity in {prefixed}m/s")
@@ -124,18 +137,20 @@ def draw_spectrum(
             axes.set_xticks([])
         return 0.0
     base, top = periods / (time[-1] - time[0]), 0.0
+    (turn, word), (felt, unit_felt) = frequency_scale(data), acceleration_scale(data)
     for number, style in masses:
         frequency, amplitude = spectrum(data[f"x{number}"].values[1:], time[1] - time[0])
         shown = (frequency > 0.25 * base) & (frequency <= highest * base)
-        top = max(top, float(amplitude[shown].max(initial=0.0)))
-        lines = frequency / (1.0 if in_si(data) else base)
+        felt_amplitude = amplitude / felt
+        top = max(top, float(felt_amplitude[shown].max(initial=0.0)))
+        lines = frequency * (TURN / turn if in_si(data) else 1.0 / base)
         peaks = shown & is_line(amplitude)
         stem = {name: style[name] for name in ("color", "alpha", "zorder") if name in style}
-        floor = 1e-3 * SPECTRUM_FLOOR * float(amplitude[shown].max(initial=0.0))  # out of sight
+        floor = 1e-3 * SPECTRUM_FLOOR * float(felt_amplitude[shown].max(initial=0.0))  # unseen
         width = STEM_WIDTHS[style["color"]]
-        draw_stems(axes, lines[peaks], amplitude[peaks], floor, width, **stem)
-    unit = "in Hz" if in_si(data) else r"over $\Omega/2\pi$"
-    axes.set(xlabel=f"frequency {unit}", ylabel="acceleration in m/s$^2$")
+        draw_stems(axes, lines[peaks], felt_amplitude[peaks], floor, width, **stem)
+    unit = f"in {word}" if in_si(data) else r"over $\Omega/2\pi$"
+    axes.set(xlabel=f"frequency {unit}", ylabel=f"acceleration in {unit_felt}")
     return top
 
 

@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..errors import InputError
+from ..units import Units, with_units
 from . import (
     analysis,
     attractors,
@@ -71,7 +72,7 @@ EXPECTED = (
 )
 
 
-def plot(*answers: xr.Dataset, title: str = "", part: str = "") -> Figure:
+def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Units = "") -> Figure:
     """Draw answers.
 
     Parameters
@@ -86,6 +87,10 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "") -> Figure:
     part : str
         ``"jumps"``: of runs of :func:`orchestrate.couple` the second picture, speed and amplitude
         over time around each jump. By default the first one, the ramp.
+    units : str
+        Of its axes and its title, such as ``"Hz, mm, g"``: a frequency in Hz, rpm, rad/s or as eta,
+        a length in m, mm or um, an acceleration in m/s2 or g, a time in s or periods. By default
+        Hz and the prefix that suits of a structure in SI, the paper's ratios else.
 
     Returns
     -------
@@ -112,6 +117,7 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "") -> Figure:
     every picture from then on.
     """
     kinds = [question_of(answer) for answer in answers]
+    answers = tuple(with_units(answer, units) for answer in answers)
     several = set(kinds)
     if part:
         return plot_part(answers, several, part, title)

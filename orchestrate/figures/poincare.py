@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from ..constants import TURN
-from .labels import prefix, title_from_attributes
+from .labels import title_from_attributes
+from .scales import length_scale
 from .style import BLACK, RED, panels, set_title, styled
 
 POINTS: dict[str, Any] = {"linestyle": "none", "marker": ".", "markeredgewidth": 0.0}
@@ -55,8 +56,10 @@ def marker_size(count: int) -> float:
 
 def draw_phase(plane: Axes, data: xr.Dataset, size: float) -> None:
     """Draw the gap and its rate, once a period."""
-    factor, letter = prefix(float(data.x_rel.max()) if data.sizes["point"] else 1.0)
-    pace, speed_letter = prefix(float(abs(data.v_rel).max()) if data.sizes["point"] else 1.0)
+    factor, letter = length_scale(data, float(data.x_rel.max()) if data.sizes["point"] else 1.0)
+    pace, speed_letter = length_scale(
+        data, float(abs(data.v_rel).max()) if data.sizes["point"] else 1.0
+    )
     plane.plot(data.x_rel / factor, data.v_rel / pace, color=BLACK, markersize=size, **POINTS)
     plane.set(xlabel=f"gap in {letter}m", ylabel=f"its rate in {speed_letter}m/s")
 
@@ -64,7 +67,9 @@ def draw_phase(plane: Axes, data: xr.Dataset, size: float) -> None:
 def draw_impacts(plane: Axes, data: xr.Dataset, size: float) -> None:
     """Draw closing speeds by the phase of the box; those that begin permanent contact in red."""
     sticks = data.sticks.values.astype(bool)
-    factor, letter = prefix(float(data.impact_velocity.max()) if data.sizes["point"] else 1.0)
+    factor, letter = length_scale(
+        data, float(data.impact_velocity.max()) if data.sizes["point"] else 1.0
+    )
     kinds = (("impacts", ~sticks, BLACK), ("permanent contact follows", sticks, RED))
     for label, which, colour in kinds:
         if which.any():
@@ -79,7 +84,7 @@ def draw_impacts(plane: Axes, data: xr.Dataset, size: float) -> None:
 
 def draw_releases(plane: Axes, data: xr.Dataset, size: float) -> None:
     """Draw the common velocity of both masses by the phase of the box."""
-    factor, letter = prefix(float(abs(data.v1).max()) if data.sizes["point"] else 1.0)
+    factor, letter = length_scale(data, float(abs(data.v1).max()) if data.sizes["point"] else 1.0)
     plane.plot(data.phase / TURN, data.v1 / factor, color=BLACK, markersize=size, **POINTS)
     plane.set_ylabel(f"velocity of both masses in {letter}m/s")
     label_phase(plane)

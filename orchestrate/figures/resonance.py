@@ -10,10 +10,19 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import prefix, title_from_attributes
+from .labels import title_from_attributes
 from .marks import MAX_DISTINCT, Marks, mark
-from .scales import Along, along, parameter_of
-from .style import BLACK, BLUE, GREY, RED, legend_below, set_title, styled
+from .scales import Along, acceleration_scale, along, length_scale, parameter_of
+from .style import (
+    BLACK,
+    BLUE,
+    GREY,
+    RED,
+    legend_below,
+    set_title,
+    styled,
+    write_plain_numbers,
+)
 from .threshold import THRESHOLD, finite
 
 COLOURS = {"delaminated": RED, "bonded": BLUE}
@@ -23,11 +32,11 @@ STYLES: dict[str, Any] = {  # down lies on up
 }
 LAYOUT: list[Any] = [["x1_max", "x2_max"], ["a1_max", "a2_max"], ["x_rel_max", "x_rel_max"]]
 NAMES = {
-    "x1_max": "max $|x_1|$ in {}m",
-    "x2_max": "max $|x_2|$ in {}m",
-    "a1_max": r"max $|\ddot{{x}}_1 + \ddot{{y}}|$ in m/s$^2$",
-    "a2_max": r"max $|\ddot{{x}}_2 + \ddot{{y}}|$ in m/s$^2$",
-    "x_rel_max": "largest gap in {}m",
+    "x1_max": "max $|x_1|$ in {}",
+    "x2_max": "max $|x_2|$ in {}",
+    "a1_max": r"max $|\ddot{{x}}_1 + \ddot{{y}}|$ in {}",
+    "a2_max": r"max $|\ddot{{x}}_2 + \ddot{{y}}|$ in {}",
+    "x_rel_max": "largest gap in {}",
 }
 
 
@@ -57,7 +66,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
         if name == THRESHOLD:
             draw_threshold(plane, data, x)
             continue
-        draw_quantity(plane, data[name], x)
+        draw_quantity(plane, data, data[name], x)
         draw_peaks(plane, data, name, parameter, x)
     if "x_rel_max" in axes:
         draw_jumps(axes["x_rel_max"], data, parameter, x)
@@ -68,12 +77,12 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
-def draw_quantity(axes: Axes, values: xr.DataArray, x: Along) -> None:
+def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: Along) -> None:
     """Draw one quantity's curves, with the largest value of each structure; bonded there is no
     gap.
     """
     name = str(values.name)
-    factor, letter = unit_of(values)
+    factor, unit = unit_of(data, values)
     largest: dict[str, tuple[float, float]] = {}
     for words, part in curves_with_labels(values):
         curve = part.values / factor
@@ -87,28 +96,34 @@ def draw_quantity(axes: Axes, values: xr.DataArray, x: Along) -> None:
             axes.plot(x.values, curve, **mark(len(x.values), Marks(colour, 0.6)))
         at = int(np.nanargmax(curve))
         largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[at], x.values[at]))
-    axes.set(yscale="log", ylabel=NAMES[name].format(letter))
+    axes.set(yscale="log", ylabel=NAMES[name].format(unit))
     axes.margins(x=0.0, y=0.12)
-    list_largest(axes, largest)
+    write_plain_numbers(axes)
+    list_largest(axes, largest, unit, x)
 
 
 def draw_threshold(axes: Axes, data: xr.Dataset, x: Along) -> None:
     """Draw the box's acceleration, and that at which the linear response opens or touches."""
     level = (data.amplitude * data.frequency**2).broadcast_like(data[THRESHOLD]).values
-    threshold, event = finite(data[THRESHOLD]), data[THRESHOLD].attrs["event"]
+    factor, unit = acceleration_scale(data)
+    threshold, event = finite(data[THRESHOLD]) / factor, data[THRESHOLD].attrs["event"]
+    level = level / factor
     axes.plot(x.values, threshold, color=BLACK, linewidth=1.2, label=f"level at which it {event}")
     axes.plot(x.values, level, color=GREY, linewidth=1.2, linestyle="-.", label="level of the box")
     axes.fill_between(
         x.values, threshold, level, where=level >= threshold, color=GREY, alpha=0.25, linewidth=0.0
     )
-    axes.set(yscale="log", ylabel=r"peak $|\ddot{y}|$ in m/s$^2$")
+    axes.set(yscale="log", ylabel=rf"peak $|\ddot{{y}}|$ in {unit}")
     axes.margins(x=0.0, y=0.12)
+    write_plain_numbers(axes)
 
 
-def unit_of(values: xr.DataArray) -> tuple[float, str]:
-    """Return the prefix of a quantity's unit."""
-    length = str(values.name).startswith("x")
-    return prefix(float(values.max())) if length else (1.0, "")
+def unit_of(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
+    """Return what a quantity is divided by, and its unit."""
+    if str(values.name).startswith("a"):
+        return acceleration_scale(data)
+    factor, letter = length_scale(data, float(values.max()))
+    return factor, f"{letter}m"
 
 
 def curves_with_labels(values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
@@ -128,7 +143,7 @@ def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: Along
     """Draw a triangle on each peak, but not where responses are irregular."""
     if not data.sizes.get("peak"):
         return
-    factor, _ = unit_of(data[name])
+    factor, _ = unit_of(data, data[name])
     for i in range(data.sizes["peak"]):
         peak = data.isel(peak=i)
         if "peak_irregular" in data and bool(peak.peak_irregular):
@@ -152,7 +167,7 @@ def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: Along) -> None:
         axes.axvline(at, color=BLACK, linestyle=":", linewidth=0.8)
         text_style: Any = {"fontsize": 7, "rotation": 90, "va": "bottom"}
         side = "left" if direction == "up" else "right"
-        words = f" {at:.5g}, jump {direction}"
+        words = f" {x.text(at)}, jump {direction}"
         axes.text(at, 0.02, words, ha=side, transform=axes.get_xaxis_transform(), **text_style)
 
 
@@ -162,13 +177,15 @@ def axis_position(value: float, parameter: xr.DataArray, x: Along) -> float:
     return float(np.interp(value, parameter.values[order], x.values[order]))
 
 
-def list_largest(axes: Axes, largest: Mapping[str, tuple[float, float]]) -> None:
+def list_largest(
+    axes: Axes, largest: Mapping[str, tuple[float, float]], unit: str, x: Along
+) -> None:
     """Write the largest value of each structure with its place, in the corner away from them."""
     middle = float(np.mean(axes.get_xlim()))
     right = all(at < middle for _, at in largest.values())
     for row, (structure, (value, at)) in enumerate(largest.items()):
         style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}
         corner = (0.99 if right else 0.01, 0.97 - 0.075 * row)
-        text = f"{structure}: {value:.4g} at {at:.5g}".lstrip(": ")
+        text = f"{structure}: {value:.4g} {unit} at {x.text(at)}".lstrip(": ")
         colour = COLOURS.get(structure, BLACK)
         axes.text(*corner, text, color=colour, transform=axes.transAxes, **style)

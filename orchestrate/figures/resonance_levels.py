@@ -11,11 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from ..constants import GRAVITY
-from .labels import prefix, title_from_attributes
-from .scales import HERTZ
+from .labels import title_from_attributes
+from .scales import acceleration_scale, along, length_scale
 from .style import BLACK, GREY, legend_below, panels, set_title, styled, write_plain_numbers
-from .threshold import THRESHOLD, finite
+from .threshold import THRESHOLD, finite, mark_lowest
 
 FEW = 8  # levels that have a legend entry each; more have a colour bar
 
@@ -39,7 +38,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     draw_gaps(plane["gap"], data)
     if "threshold" in plane:
         draw_threshold(plane["threshold"], data)
-    axes[-1].set_xlabel(HERTZ)
+    axes[-1].set_xlabel(along(data, "frequency").label)
     axes[0].margins(x=0.0)
     legend_below(figure, axes)
     return figure
@@ -57,13 +56,15 @@ def colours(data: xr.Dataset) -> list[Any]:
 def draw_accelerations(axes: Axes, data: xr.Dataset) -> None:
     """Draw the larger acceleration of both masses over the level: one curve where it is linear."""
     size = np.maximum(data.a1_max, data.a2_max).max("direction") / data.level
+    factor, unit = acceleration_scale(data, "g")
+    x = along(data, "frequency").values
     for level, colour in zip(data.level.values, colours(data), strict=True):
-        label = f"{level / GRAVITY:.4g} g" if data.sizes["level"] <= FEW else None
+        label = f"{level / factor:.4g} {unit}" if data.sizes["level"] <= FEW else None
         curve = size.sel(level=level, structure="delaminated")
-        axes.plot(data.hertz, curve, color=colour, linewidth=1.4, label=label)
+        axes.plot(x, curve, color=colour, linewidth=1.4, label=label)
     glued = size.isel(level=0).sel(structure="bonded")
     style: Any = {"color": GREY, "linewidth": 1.0, "linestyle": "--"}
-    axes.plot(data.hertz, glued, label="bonded, at each level", **style)
+    axes.plot(x, glued, label="bonded, at each level", **style)
     axes.set(yscale="log", ylabel="largest acceleration between\nimpacts over level, in g/g")
     write_plain_numbers(axes)
 
@@ -71,18 +72,26 @@ def draw_accelerations(axes: Axes, data: xr.Dataset) -> None:
 def draw_gaps(axes: Axes, data: xr.Dataset) -> None:
     """Draw the largest gap; of up and down the larger one."""
     gaps = data.x_rel_max.sel(structure="delaminated").max("direction")
-    factor, letter = prefix(float(gaps.max()) or 1.0)
+    factor, letter = length_scale(data, float(gaps.max()) or 1.0)
+    x = along(data, "frequency").values
     for level, colour in zip(data.level.values, colours(data), strict=True):
-        axes.plot(data.hertz, gaps.sel(level=level) / factor, color=colour, linewidth=1.4)
+        axes.plot(x, gaps.sel(level=level) / factor, color=colour, linewidth=1.4)
     axes.set_ylabel(f"largest gap in {letter}m")
     axes.set_ylim(bottom=0.0)
 
 
 def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     """Draw the level at which the structure first opens or touches, and the levels asked for."""
-    threshold, event = finite(data[THRESHOLD]) / GRAVITY, data[THRESHOLD].attrs["event"]
-    axes.plot(data.hertz, threshold, color=BLACK, label=f"level at which it first {event}")
+    factor, unit = acceleration_scale(data, "g")
+    threshold, event = finite(data[THRESHOLD]) / factor, data[THRESHOLD].attrs["event"]
+    axes.plot(
+        along(data, "frequency").values,
+        threshold,
+        color=BLACK,
+        label=f"level at which it first {event}",
+    )
+    mark_lowest(axes, data)
     for level, colour in zip(data.level.values, colours(data), strict=True):
-        axes.axhline(level / GRAVITY, color=colour, linewidth=1.0)
-    axes.set(yscale="log", ylabel="level of the box in g")
+        axes.axhline(level / factor, color=colour, linewidth=1.0)
+    axes.set(yscale="log", ylabel=f"level of the box in {unit}")
     write_plain_numbers(axes)

@@ -1,4 +1,6 @@
-"""Units of axes: hertz and metres for a structure in SI, else the paper's ratios."""
+"""Units of axes: those that an answer is shown in; else hertz and metres for a structure in SI, and
+the paper's ratios.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +10,17 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..constants import GRAVITY
-from .labels import is_number, prefix, symbol
+from ..units import FACTORS, omega_of, scale_of, units_of
+from .labels import gap_name, is_number, prefix, symbol
 from .style import XI_REL
 
-HERTZ = r"frequency $\Omega/2\pi$ in Hz"
-LEVEL = "peak acceleration of the box in g"
+ETA = symbol("eta")
+FREQUENCIES = {
+    "Hz": r"frequency $\Omega/2\pi$ in Hz",
+    "rpm": "frequency of the box in rpm",
+    "rad/s": r"$\Omega$ in rad/s",
+    "eta": ETA,
+}
 
 
 class Along(NamedTuple):
@@ -28,6 +35,11 @@ class Along(NamedTuple):
     values: np.ndarray
     label: str
 
+    def text(self, value: float) -> str:
+        """Format a value with the unit of its axis."""
+        unit = self.label.rpartition(" in ")[2] if " in " in self.label else ""
+        return f"{value:.5g} {unit}".rstrip()
+
 
 def parameter_of(data: xr.DataArray) -> str:
     """Return the dimension that a quantity runs along, beside the direction and the structure."""
@@ -36,29 +48,81 @@ def parameter_of(data: xr.DataArray) -> str:
 
 
 def in_si(data: xr.Dataset) -> bool:
-    """Return whether a structure is given in SI: omega is not 1 rad/s, or frequencies were asked
-    for.
+    """Return whether frequencies are shown with a unit: one is asked for, or the structure is given
+    in SI, with omega not 1 rad/s, or frequencies are what varies.
     """
+    if units_of(data).frequency:
+        return units_of(data).frequency != "eta"
     known = all(is_number(data.attrs.get(name)) for name in ("k1", "m1"))
     has_own_frequency = known and not math.isclose(data.attrs["k1"], data.attrs["m1"], rel_tol=1e-9)
     return bool(has_own_frequency or "frequency" in data.dims)
 
 
+def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
+    """Return what frequencies in rad/s are divided by, and the unit: Hz where none is asked for."""
+    if units_of(data).frequency:
+        return scale_of(data, "rad/s")
+    return FACTORS["frequency"]["Hz"], "Hz"
+
+
+def length_scale(data: xr.Dataset, largest: float) -> tuple[float, str]:
+    """Return what lengths, or velocities, are divided by, and the prefix of the unit: the one that
+    is asked for, or the largest that leaves at least 1.
+    """
+    factor, word = scale_of(data, "m")
+    if not units_of(data).length:
+        return prefix(largest)
+    return factor, word.removesuffix("m").replace("u", "µ")
+
+
+def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, str]:
+    """Return what accelerations are divided by, and the unit for an axis.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+    usual : str
+        The unit where none is asked for.
+    """
+    word = units_of(data).acceleration or usual
+    return FACTORS["acceleration"][word], word.replace("m/s2", "m/s$^2$")
+
+
 def along(data: xr.Dataset, parameter: str) -> Along:
-    """Return the parameter's values: frequencies of a structure in SI in hertz."""
-    if parameter in ("eta", "frequency") and "frequency" in data.coords and in_si(data):
-        return Along(data.frequency.values / (2.0 * np.pi), HERTZ)
+    """Return the parameter's values as they are shown, and the axis' label."""
+    if parameter in ("eta", "frequency"):
+        factor, word = frequency_scale(data)
+        if word == "eta" and "eta" in data.coords:
+            return Along(data.eta.values, ETA)
+        if in_si(data) and "frequency" in data.coords:
+            return Along(data.frequency.values / factor, FREQUENCIES[word])
     if parameter == "level":
-        return Along(data.level.values / GRAVITY, LEVEL)
-    return Along(data[parameter].values, symbol(parameter))
+        factor, word = acceleration_scale(data, "g")
+        return Along(data.level.values / factor, f"peak acceleration of the box in {word}")
+    factor, label = parameter_scale(data, parameter)
+    return Along(data[parameter].values / factor, label)
+
+
+def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
+    """Return what values of a parameter are divided by, and the label of its axis."""
+    factor, word = frequency_scale(data)
+    if parameter == "frequency" and (in_si(data) or word == "eta"):
+        return factor, FREQUENCIES[word]
+    if parameter == "eta" and units_of(data).frequency not in ("", "eta"):
+        return factor / omega_of(data), FREQUENCIES[word]
+    if parameter in ("amplitude", "clearance") and units_of(data).length:
+        factor, letter = length_scale(data, 1.0)
+        return factor, f"{symbol(parameter).removesuffix(' m')} {letter}m"
+    return 1.0, symbol(parameter)
 
 
 def gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
-    """Return gaps over a eta^2 as an axis shows them, in m for a structure in SI, and their
-    label.
+    """Return gaps over a eta^2 as an axis shows them, in m for a structure in SI or where a unit of
+    length is asked for, and their label.
     """
-    if not (in_si(data) and {"amplitude", "eta"} <= set(data.coords)):
+    asked = in_si(data) or units_of(data).length
+    if not (asked and {"amplitude", "eta"} <= set(data.coords)):
         return values, XI_REL
     metres = values * data.amplitude * data.eta**2
-    factor, name = prefix(float(metres.max()))
-    return metres / factor, f"gap $x_2 - x_1$ in {name}m"
+    factor, name = length_scale(data, float(metres.max()))
+    return metres / factor, f"{gap_name(data)} in {name}m"

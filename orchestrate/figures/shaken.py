@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import prefix, title_from_attributes
+from .labels import title_from_attributes
+from .scales import acceleration_scale, length_scale
 from .style import BLACK, BLUE, RED, set_title, styled, write_in_panel
 
 COLUMNS = 400  # of an envelope
@@ -37,15 +38,16 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     rows = figure.subplots(4, 1, sharex=True, height_ratios=(1.0, 1.6, 1.2, 1.2))
     set_title(figure, title or f"{data.attrs['excitation']}; {title_from_attributes(data)}")
     box, masses, gap, impacts = rows
-    envelope(box, data, "box_acceleration", 1.0, color=BLACK)
-    box.set_ylabel("box in m/s$^2$")
+    felt, unit = acceleration_scale(data)
+    envelope(box, data, "box_acceleration", felt, color=BLACK)
+    box.set_ylabel(f"box in {unit}")
     for name, style in MASSES:
-        envelope(masses, data, name, 1.0, alpha=0.55, **style)
+        envelope(masses, data, name, felt, alpha=0.55, **style)
     if bonded is not None:
-        outline(masses, bonded)
-    masses.set_ylabel("masses in m/s$^2$")
+        outline(masses, bonded, felt)
+    masses.set_ylabel(f"masses in {unit}")
     masses.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
-    factor, letter = prefix(float(data.x_rel.max()))
+    factor, letter = length_scale(data, float(data.x_rel.max()))
     envelope(gap, data, "x_rel", factor, color=BLACK)
     gap.set_ylabel(f"gap in {letter}m")
     draw_impacts(impacts, data)
@@ -65,9 +67,9 @@ def draw_impacts(axes: Axes, data: xr.Dataset) -> None:
     axes.set_ylim(bottom=0.0)
 
 
-def outline(axes: Axes, bonded: xr.Dataset) -> None:
+def outline(axes: Axes, bonded: xr.Dataset, felt: float) -> None:
     """Draw the bonded structure's acceleration as the two lines that it stays between."""
-    time, low, high = extremes(bonded.time.values, bonded.a1_abs.values)
+    time, low, high = extremes(bonded.time.values, bonded.a1_abs.values / felt)
     axes.plot(time, high, color=BLACK, linewidth=0.9, label="both, bonded")
     axes.plot(time, low, color=BLACK, linewidth=0.9)
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .labels import title_from_attributes
 from .marks import draw_stems
-from .scales import in_si
+from .scales import acceleration_scale, frequency_scale, in_si
 from .style import BLACK, BLUE, ORANGE, legend_below, panels, set_title, styled
 
 SIDES: tuple[dict[str, dict[str, Any]], ...] = (  # left and right; a thin line lies on a wide one
@@ -42,7 +41,8 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
     decades : int
         Of the axis, down from the largest line of each row.
     """
-    shown = data.acceleration.sel(mass=mass)
+    felt, unit = acceleration_scale(data)
+    shown = data.acceleration.sel(mass=mass) / felt
     along = str(shown.dims[0])
     count = data.sizes[along]
     figure, axes = panels(count, 2, (9.6, 0.9 + 2.1 * count), sharex=not in_si(data), sharey="row")
@@ -54,9 +54,9 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
         for plane, kinds in zip(axes[2 * index : 2 * index + 2], SIDES, strict=True):
             draw_panel(plane, data, part, kinds, floor)
         axes[2 * index].set_ylim(floor, 2.0 * top)
-        axes[2 * index].set_ylabel(f"acceleration\nof mass {mass} in m/s$^2$")
+        axes[2 * index].set_ylabel(f"acceleration\nof mass {mass} in {unit}")
     for plane in axes if in_si(data) else axes[-2:]:
-        unit = "in Hz" if in_si(data) else r"over $\Omega$"
+        unit = f"in {frequency_scale(data)[1]}" if in_si(data) else r"over $\Omega$"
         plane.set_xlabel(f"frequency of the line {unit}")
     columns = sum(map(len, SIDES))
     left_out = f"what is below {10.0**-decades:g} of the largest line is left out"
@@ -72,14 +72,14 @@ def draw_panel(
     floor: float,
 ) -> None:
     """Draw the spectra of some structures (bonded, delaminated) at one frequency."""
-    si = in_si(data)
+    si, (turn, unit) = in_si(data), frequency_scale(data)
     speed = float(amplitudes.frequency)
-    lines = data.order.values * (speed / (2.0 * np.pi) if si else 1.0)
+    lines = data.order.values * (speed / turn if si else 1.0)
     for kind, style in kinds.items():
         if kind in data.kind.values:
             draw_stems(axes, lines, amplitudes.sel(kind=kind).values, floor, **style)
     frequency_text = (
-        f"{speed / (2.0 * np.pi):.4g} Hz" if si else rf"$\eta$ = {float(amplitudes.eta):.4g}"
+        f"{speed / turn:.4g} {unit}" if si else rf"$\eta$ = {float(amplitudes.eta):.4g}"
     )
     axes.set_title(f"{next(iter(kinds))}, {frequency_text}")
     axes.set_xlim(0.0, 1.02 * float(lines.max()))

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..constants import GRAVITY
 from .labels import title_from_attributes
-from .scales import HERTZ
+from .scales import acceleration_scale, along, frequency_scale
 from .style import BLACK, panels, set_title, styled
 
 THRESHOLD = "threshold_acceleration"
+LOWEST = "lowest_threshold"
 
 
 def finite(threshold: xr.DataArray) -> np.ndarray:
@@ -32,11 +35,25 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     """
     figure, (plane,) = panels(1, 1, (6.4, 4.2))
     set_title(figure, title or title_from_attributes(data, ("eta", "frequency")))
-    level = finite(data[THRESHOLD]) / GRAVITY
+    factor, unit = acceleration_scale(data, "g")
+    level = finite(data[THRESHOLD]) / factor
+    x = along(data, str(data[THRESHOLD].dims[0]))
     mark = "o-" if level.size < 2 else "-"
-    plane.plot(data.hertz, level, mark, color=BLACK, label=f"it first {data.attrs['event']}")
+    plane.plot(x.values, level, mark, color=BLACK, label=f"it first {data.attrs['event']}")
+    mark_lowest(plane, data)
     if np.nanmax(level, initial=0.0) > 0.0:
         plane.set_yscale("log")
-    plane.set(xlabel=HERTZ, ylabel="peak acceleration of the box in g")
+    plane.set(xlabel=x.label, ylabel=f"peak acceleration of the box in {unit}")
     plane.legend()
     return figure
+
+
+def mark_lowest(axes: Axes, data: xr.Dataset) -> None:
+    """Mark the lowest threshold of the range, which may lie between two frequencies."""
+    if LOWEST not in data:
+        return
+    (factor, unit), (turn, word) = acceleration_scale(data, "g"), frequency_scale(data)
+    place, level = float(data[f"{LOWEST}_frequency"]) / turn, float(data[LOWEST]) / factor
+    where = f"at {place:.5g} {word}" if word != "eta" else rf"at $\eta$ = {place:.5g}"
+    style: Any = {"color": BLACK, "markersize": 4.0, "linestyle": "none"}
+    axes.plot(place, level, "o", label=f"lowest: {level:.3g} {unit} {where}", **style)

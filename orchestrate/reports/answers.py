@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..figures.plot import plot, question_of
+from ..units import OVER_OMEGA, as_shown, scale_of
 from .page import Picture, Section, Table, text_of
 from .verdict import verdict_sections
 
@@ -45,7 +46,7 @@ def study_section(answer: xr.Dataset) -> Section:
 def scalar_table(answer: xr.Dataset) -> Table:
     """All that is one number in an answer."""
     rows = []
-    for name, array in answer.data_vars.items():
+    for name, array in as_shown(answer).data_vars.items():
         if not array.dims and array.dtype.kind in "iufb":
             value = text_of(float(array), str(array.attrs.get("units", "")), 5)
             rows.append((str(name), str(array.attrs.get("long_name", "")), word_of(array) or value))
@@ -64,11 +65,13 @@ def parameter_table(answer: xr.Dataset) -> Table:
     from ..structures.ranges import EXCITATION, STRUCTURE
 
     known = {**STRUCTURE, **EXCITATION}
-    rows = [
-        (name, known[name].description, text_of(float(answer.attrs[name]), known[name].unit, 6))
-        for name in known
-        if name in answer.attrs and not isinstance(answer.attrs[name], str)
-    ]
+    rows = []
+    for name, quantity in known.items():
+        if name in answer.attrs and not isinstance(answer.attrs[name], str):
+            factor, unit = scale_of(answer, quantity.unit)
+            value = float(answer.attrs[name]) / factor
+            shown = OVER_OMEGA if unit == "eta" else unit
+            rows.append((name, quantity.description, text_of(value, shown, 6)))
     return Table(("parameter", "what it is", "value"), rows)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from ..figures.plot import question_of
 from ..files import write_whole
+from ..units import Units, with_units
 from .answers import sections_of
 from .origin import origin
 from .page import Page
@@ -23,6 +24,7 @@ def report(
     output: str | PathLike[str] = "report.html",
     title: str = "",
     notes: str = "",
+    units: str | Units = "",
 ) -> Path:
     """Write answers as one HTML page, for a person who reads, prints and signs it.
 
@@ -38,6 +40,8 @@ def report(
         By default that of the first answer.
     notes : str
         A sentence below the title: who, which beam, which test.
+    units : str
+        Of pictures and numbers, as in :func:`orchestrate.plot`.
 
     Returns
     -------
@@ -62,7 +66,8 @@ def report(
     """
     if not answers:
         raise InputError("report: no answer given; expected one at least")
-    ordered = sorted(answers, key=lambda answer: not is_verdict(answer))
+    shown = [with_units(answer, units) for answer in answers]
+    ordered = sorted(shown, key=lambda answer: not is_verdict(answer))
     first = ordered[0]
     sections = [section for answer in ordered for section in sections_of(answer)]
     page = Page(

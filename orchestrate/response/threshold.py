@@ -8,6 +8,7 @@ threshold.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
+GRID = 400  # frequencies between which minima of the threshold are bracketed
+ACCURACY = 1e-12  # of a frequency at a minimum; the level there is flat, and exact far earlier
 
 
 def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
@@ -76,10 +79,73 @@ def threshold_variables(structure: Structure, along: str, frequency: Floats) -> 
         ),
     }
     made = {name: variable(along, *about) for name, about in levels.items()}
+    made |= lowest_variables(structure, np.asarray(frequency, dtype=float), amplitudes)
     return {
         name: (dims, values, {**about, "event": event})
         for name, (dims, values, about) in made.items()
     }
+
+
+def lowest_variables(
+    structure: Structure, frequency: Floats, amplitudes: Floats
+) -> dict[str, Variable]:
+    """Return the lowest threshold between some frequencies; none of a single one, and none where
+    no level opens or joins the halves, or any does.
+    """
+    low, high = float(frequency.min()), float(frequency.max())
+    if not (low < high and np.isfinite(amplitudes).all() and (amplitudes > 0.0).all()):
+        return {}
+    place, level = lowest_threshold(structure, low, high)
+    where = f"at which the structure first {event_of(structure)}"
+    return {
+        "lowest_threshold": variable((), level, "m/s2", f"lowest peak acceleration {where}"),
+        "lowest_threshold_frequency": variable(
+            (), place, "rad/s", f"frequency of the lowest peak acceleration {where}"
+        ),
+    }
+
+
+def lowest_threshold(structure: Structure, low: float, high: float) -> tuple[float, float]:
+    """Return where the threshold, as acceleration of the box, is lowest between two frequencies.
+
+    The curve is a smooth one with a valley at each natural frequency of the linear response, as
+    narrow as that is damped: its minima are bracketed on a grid with these frequencies in it, and
+    found by Brent's method.
+
+    Parameters
+    ----------
+    structure : Structure
+        With a clearance, and halves that do not move alike.
+    low, high : float
+        rad/s.
+
+    Returns
+    -------
+    frequency, acceleration : float
+        rad/s, m/s2.
+    """
+    from scipy.optimize import minimize_scalar
+
+    def level(frequency: float) -> float:
+        speed = np.array([frequency])
+        return float(threshold_amplitudes(structure, speed)[0]) * (frequency * frequency)
+
+    springs, masses = structure.k1 + structure.k2, structure.m1 + structure.m2
+    squares = structure.k1 / structure.m1, structure.k2 / structure.m2, springs / masses
+    valleys = [omega for omega in map(math.sqrt, squares) if low < omega < high]
+    grid = np.unique([*np.linspace(low, high, GRID), *valleys])
+    values = np.array([level(frequency) for frequency in grid])
+    best = (float(values.min()), float(grid[values.argmin()]))
+    inside = np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])) + 1
+    for middle, before, after in zip(grid[inside], grid[inside - 1], grid[inside + 1], strict=True):
+        found = minimize_scalar(  # by the distance, whose rounding is that of a narrow valley
+            lambda distance, middle=middle: level(middle + distance),
+            bounds=(before - middle, after - middle),
+            method="bounded",
+            options={"xatol": ACCURACY * middle},
+        )
+        best = min(best, (float(found.fun), float(middle + found.x)))
+    return best[1], best[0]
 
 
 def event_of(structure: Structure) -> str:
@@ -106,8 +172,10 @@ def contact_threshold(
     xarray.Dataset
         Over the frequency, which is there in ``hertz`` too: ``threshold_amplitude`` of the box in m
         and ``threshold_acceleration``, its peak acceleration in m/s2. The attribute ``event`` says
-        what happens there: "opens" or "touches". 0 where there is no clearance; infinite where the
-        halves move alike, so that no level parts or joins them.
+        what happens there: "opens" or "touches". ``lowest_threshold`` and
+        ``lowest_threshold_frequency`` are the true minimum of the acceleration between the lowest
+        and the highest frequency, whatever lies between. The threshold is 0 where there is no
+        clearance, and infinite where the halves move alike, so that no level parts or joins them.
 
     Raises
     ------

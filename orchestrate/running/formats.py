@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..files import write_whole
 from ..flags import flag_words
+from ..units import as_shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -64,6 +65,7 @@ def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
     """Return tables keyed by their dimensions, in the order of the variables; units in the
     headers.
     """
+    data = as_shown(data)
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, array in data.data_vars.items():
         groups.setdefault(tuple(map(str, array.dims)), []).append(str(name))
@@ -144,6 +146,7 @@ def metadata_table(data: xr.Dataset) -> pd.DataFrame:
     """Return what names mean: variables with their units, then parameters with their values."""
     import pandas as pd
 
+    data = as_shown(data)
     rows = [
         (str(name), array.attrs.get("units", ""), array.attrs.get("long_name", ""))
         for name, array in data.variables.items()

@@ -10,6 +10,7 @@ module              idea
 :mod:`.ranges`      names, units, defaults and ranges, from the FMUs' variable tables
 :mod:`.files`       TOML files of these, and the sets that come with the package
 :mod:`.sections`    what stands in their sections
+:mod:`.plausible`   warnings of numbers that are hardly meant
 ==================  ===============================================================================
 """
 

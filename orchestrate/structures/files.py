@@ -37,7 +37,7 @@ from .described import Described
 from .drive import Drive
 from .excitation import Excitation
 from .ranges import DRIVE, STRUCTURE, expected_one_of
-from .sections import Section, read_drive, read_excitation, read_structure
+from .sections import Section, check_masses, read_drive, read_excitation, read_structure
 from .structure import Structure
 
 FOLDER = Path(__file__).parent / "sets"
@@ -114,6 +114,8 @@ def read(source: str | PathLike[str], structure: Structure | None = None) -> dic
     if sections.keys() & {"motor", "box"}:
         for name in {"motor", "box"} - sections.keys():
             raise InputError(f"{path}: no section [{name}]; expected [motor] and [box] together")
+        if "structure" in sections:
+            check_masses(sections["structure"], sections["motor"])
         contents["drive"] = read_drive(sections["motor"], sections["box"], structure)
     return contents
 

@@ -213,6 +213,25 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
     return motor.make(lambda: Drive.nondimensional(**numbers, structure=structure))
 
 
+def check_masses(structure: Section, motor: Section) -> None:
+    """Check that a motor in SI, which feels the masses, does not move one of 1 kg unasked.
+
+    Raises
+    ------
+    InputError
+        Where a frequency is given beside ratios, and no mass.
+    """
+    if (
+        structure.present(OMEGAS)
+        and not structure.present(("m1",))
+        and not motor.present(("beta",))
+    ):
+        key = structure.present(OMEGAS)[0]
+        raise structure.error(
+            "m1", f"missing beside {key}; expected it, as the motor feels the masses"
+        )
+
+
 def si_drive(motor: Section, box: dict[str, float]) -> Drive:
     """Read the drive of a motor in SI, by its constants or as its datasheet has it."""
     values = {**motor.numbers(SI_MOTOR), **box}

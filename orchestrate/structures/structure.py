@@ -10,6 +10,7 @@ from typing import Any
 
 from ..errors import InputError
 from .described import Described
+from .plausible import warn_of_per_cent
 from .ranges import (
     RATIO_QUANTITIES,
     STRUCTURE,
@@ -249,6 +250,7 @@ class Structure(Described):
         """
         halves = {"f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
         v = {name: RATIO_QUANTITIES[name].check(value) for name, value in halves.items()}
+        warn_of_per_cent({"zeta1": v["zeta1"], "zeta2": v["zeta2"]})
         m1, m2 = STRUCTURE["m1"].check(m1), STRUCTURE["m2"].check(m2)
         return construct_or_explain(
             {"m1": m1, "m2": m2, **v},
@@ -319,6 +321,7 @@ class Structure(Described):
         """
         mass, f = STRUCTURE["m1"].check(mass), RATIO_QUANTITIES["f1"].check(f)
         zeta = RATIO_QUANTITIES["zeta1"].check(zeta)
+        warn_of_per_cent({"zeta": zeta})
         h1, h2 = check_thicknesses(thicknesses)
         heavy, light = h1 / (h1 + h2), h2 / (h1 + h2)
         stiff, soft = heavy**3 / (heavy**3 + light**3), light**3 / (heavy**3 + light**3)

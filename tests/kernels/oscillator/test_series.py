@@ -4,7 +4,7 @@ closed form is relative to the displacements.
 
 import mpmath as mp
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
@@ -14,7 +14,7 @@ from fmu_src.kernels.oscillator.motion import state_at
 from fmu_src.kernels.oscillator.parameters import SAME
 
 from . import truth
-from .kernel import DEFAULTS, examples, flight, sizes, structures
+from .kernel import DEFAULTS, examples, flight, sizes, structures, unloaded
 
 PLACES = st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)
 
@@ -73,6 +73,67 @@ def test_value_and_derivatives(values, x, v, slope, part):
         for order, value in enumerate(evaluate(m, tau)[:3]):
             assert abs(value - gap(mp.mpf(tau))) <= 1e-12 * float(scale), order
             gap = gap.derivative()
+
+
+@st.composite
+def pressed_or_open(draw):
+    """Structures whose faces rest against each other with a force, or apart."""
+    values = draw(structures())
+    size = draw(sizes(1e-6, 1e3))
+    return {**values, "clearance": draw(st.sampled_from((-size, -size, size)))}
+
+
+def leaving_with_clearance(values, x, v, slope):
+    """A flight that leaves faces which touch, and its gap in high precision."""
+    apart = max(values["clearance"], 0.0)
+    start = x, v, x - apart, v + slope
+    m = flight(*(start[i] for i in range(4)), **values)
+    full = {**DEFAULTS, **values}
+    first, second = truth.apart(full, unloaded(values, start), mp.mpf(values["phase_start"]))
+    return m, truth.gap_of(full, first, second)
+
+
+@examples(120)
+@given(pressed_or_open(), *PLACES, sizes(1e-9, 0.1))
+# pressed hard, so that the preload alone brings the faces together again
+@example({"clearance": -100.0, "phase_start": 1.0}, 0.3, -0.2, 0.05)
+@example({"clearance": -3.0, "phase_start": 0.0, "m2": 0.4, "d2": 0.3}, -0.5, 0.7, 1e-3)
+def test_a_short_flight_under_a_preload_is_that_of_the_gap(values, x, v, slope):
+    """Value and curvature all along, and the end: those of Newton's law, to rounding of the gap's
+    own terms; the fifth derivative stays below the bound that makes the root certain.
+    """
+    m, gap = leaving_with_clearance(values, x, v, slope)
+    if m[at.SERIES] == 0.0:
+        return
+    with mp.workdps(50):
+        end, curvature = m[at.END], abs(gap.derivative().derivative()(mp.mpf(0)))
+        offset = values["clearance"] if values["clearance"] > 0.0 else 0.0
+        terms = abs(m[at.FORCE_V] * v) + abs(m[at.FORCE_X]) * (abs(x) + offset)
+        terms += abs(m[at.PRELOAD]) + SAME * (abs(x) + abs(v))
+        start = abs(float(gap(mp.mpf(0))))  # faces that touch but for the rounding of the start
+        assert m[at.END_KIND] == at.END_EVENT
+        for part in (0.1, 0.5, 0.9, 1.0):
+            tau = mp.mpf(part * end)
+            bound = 1e-13 * (slope + terms * tau) * tau + 4.0 * start
+            assert abs(evaluate(m, float(tau))[0] - gap(tau)) <= bound
+        assert abs(gap(mp.mpf(end))) <= 1e-13 * (slope + terms * end) * end + 4.0 * start
+        fifth = gap.derivative().derivative().derivative().derivative().derivative()
+        reach = 0.3 / m[at.RATE]
+        largest = max(abs(fifth(mp.mpf(reach * i / 8))) for i in range(9))
+        assert largest <= m[at.SERIES_BOUND]
+        assert abs(evaluate(m, 0.0)[2] - gap.derivative().derivative()(mp.mpf(0))) <= 1e-12 * (
+            curvature + terms
+        )
+
+
+def test_flights_from_a_hard_preload_are_short():
+    """So that the test above has something to see."""
+    for slope in (1e-6, 1e-3, 0.05):
+        for clearance in (-1.0, -10.0, -1e3):
+            m, _ = leaving_with_clearance(
+                {"clearance": clearance, "phase_start": 0.0}, 0.1, 0.2, slope
+            )
+            assert m[at.SERIES] != 0.0
 
 
 @pytest.mark.parametrize(("slope", "order"), [(1e-3, 8), (1.5e-2, 12), (0.2, 4)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+import xarray as xr
 
 from orchestrate.cli.output import name_of
 from orchestrate.cli.question import format_ranges
@@ -40,7 +41,8 @@ def test_a_name_can_be_read():
 def test_ranges_are_told_in_the_unit_of_people():
     values = [6.283185307179586 * number for number in range(10)]
     flags = [number in (1, 2, 3, 7) for number in range(10)]
-    assert format_ranges("frequency", values, flags) == "1 to 3, 7 Hz"
+    assert format_ranges(xr.Dataset(), "frequency", values, flags) == "1 to 3, 7 Hz"
     assert (
-        format_ranges("frequency", values, flags, max_ranges=1) == "1 to 3 Hz and 1 shorter ranges"
+        format_ranges(xr.Dataset(), "frequency", values, flags, max_ranges=1)
+        == "1 to 3 Hz and 1 shorter ranges"
     )

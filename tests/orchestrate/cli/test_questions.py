@@ -93,9 +93,9 @@ def test_formats_hold_the_same_numbers(ask, folder):
     table = pd.read_csv(curves)
     digits = pd.read_csv(curves, dtype=str)["x1_max [m]"]  # older pandas reads numbers less exactly
     np.testing.assert_array_equal(list(map(float, digits)), data.x1_max.values.ravel())
-    np.testing.assert_allclose(table["hertz [Hz]"].unique(), np.arange(12.0, 13.05, 0.1))
+    np.testing.assert_allclose(table["frequency [Hz]"].unique(), np.arange(12.0, 13.05, 0.1))
     sheet = pd.read_excel(result.with_suffix(".xlsx"), sheet_name="structure_direction_frequency")
-    np.testing.assert_allclose(sheet["a2_max [m/s2]"], data.a2_max.values.ravel(), rtol=1e-15)
+    np.testing.assert_allclose(sheet["a2_max [g]"] * 9.80665, data.a2_max.values.ravel())
     assert result.with_suffix(".mat").stat().st_size > 1000
 
 
@@ -153,7 +153,7 @@ TRIVIAL = [
     ),
     (
         ("sweep", "--set", "e=0.86", "--eta", "0.827,0.9", "--transient", "240", "--samples", "60"),
-        "still converging or nearly periodic (--transient 5000 decides most) at 0.827",
+        "still converging or nearly periodic (--transient 5000 decides most) at eta = 0.827",
     ),
     (("branch", "--eta", "2.5", "--limits", "2.45:2.55"), "no bifurcation in this range"),
     (("lyapunov", "--eta", "1", "--set", "bonded=true", "--periods", "20"), "there are no impacts"),

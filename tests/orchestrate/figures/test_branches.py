@@ -38,7 +38,7 @@ def test_a_branch_of_a_structure_in_si_is_drawn_in_hertz():
     figure = branches.draw(window().assign_attrs(told))
     solid = figure.axes[0].get_lines()[0]
     assert solid.get_xdata() == pytest.approx(window().frequency.values / (2.0 * np.pi))
-    assert figure.axes[0].get_xlabel() == scales.HERTZ
+    assert figure.axes[0].get_xlabel() == scales.FREQUENCIES["Hz"]
 
 
 def test_bifurcations_are_marked_each_kind_once_in_the_legend():

@@ -142,6 +142,48 @@ def test_resonance_has_the_threshold_as_a_curve_and_the_picture_shows_it():
     assert "threshold_amplitude" not in without
 
 
+def fine_scan(structure, low, high):
+    """Lowest acceleration on a grid that is dense around each natural frequency."""
+    s = structure
+    natural = np.sqrt([s.k1 / s.m1, s.k2 / s.m2, (s.k1 + s.k2) / (s.m1 + s.m2)])
+    near = np.concatenate([[-1.0], -np.geomspace(1.0, 1e-9, 4000), np.geomspace(1e-9, 1.0, 4000)])
+    points = np.concatenate([np.linspace(low, high, 20000), *(w * (1.0 + near) for w in natural)])
+    points = np.unique(points[(points >= low) & (points <= high)])
+    level = orchestrate.contact_threshold(structure, frequency=points).threshold_acceleration
+    return float(level.min()), float(points[level.values.argmin()])
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_lowest_threshold_is_that_of_the_curve_not_of_the_grid(seed):
+    """Asked for at its two ends alone, with a damping ratio of 1e-6 or a good part of 1."""
+    structure, _ = structure_and_frequency(seed)
+    damping = 10.0 ** np.random.default_rng(seed).uniform(-6.0, -0.5)
+    structure = structure.replace(zeta1=damping, zeta2=0.7 * damping)
+    low, high = 0.11, 7.3
+    found = orchestrate.contact_threshold(structure, frequency=[low, high])
+    level, place = float(found.lowest_threshold), float(found.lowest_threshold_frequency)
+    scanned, near = fine_scan(structure, low, high)
+    assert level <= scanned * (1.0 + 1e-12)
+    assert level == pytest.approx(scanned, rel=1e-2)  # the scan misses the bottom by a little
+    assert place == pytest.approx(near, rel=1e-3)
+    there = orchestrate.contact_threshold(structure, frequency=place)
+    assert float(there.threshold_acceleration[0]) == pytest.approx(level, rel=1e-12)
+    assert low < place < high and level < 0.9 * float(found.threshold_acceleration.min())
+
+
+def test_a_range_without_a_valley_has_its_lowest_threshold_at_an_end():
+    rising = Structure(clearance=-0.25)
+    found = orchestrate.contact_threshold(rising, frequency=[1.3, 1.2, 1.25])
+    assert float(found.lowest_threshold_frequency) == 1.2
+    assert float(found.lowest_threshold) == float(found.threshold_acceleration[1])
+    for none in (
+        orchestrate.contact_threshold(rising, frequency=1.2),
+        orchestrate.contact_threshold(Structure(), frequency=[1.2, 1.3]),
+        orchestrate.contact_threshold(Structure(k2=1.0, clearance=-1.0), frequency=[1.2, 1.3]),
+    ):
+        assert "lowest_threshold" not in none
+
+
 def test_its_picture_has_hertz_and_g():
     pressed = Structure.from_halves(m1=1.0, m2=1.2, f1=42.0, f2=55.0, clearance=-2e-5)
     hertz = np.array([30.0, 40.0, 50.0])

@@ -235,6 +235,7 @@ def test_ranges_of_ratios_are_wide():
     assert RANGES["mu"].minimum == STRUCTURE["m2"].minimum
 
 
+@pytest.mark.filterwarnings("ignore:.* of critical damping")
 @given(SCALE, SCALE, SMALL, SMALL, RATIO, RATIO)
 def test_halves_to_si_and_back(m1, m2, f1, f2, zeta1, zeta2):
     """Each half alone is the damped oscillator of its frequency and damping ratio."""
@@ -265,6 +266,7 @@ def test_a_half_s_frequency_keeps_its_damping_ratio_and_the_other_half(structure
     assert other.m2 == structure.m2
 
 
+@pytest.mark.filterwarnings("ignore:.* of critical damping")
 @given(SCALE, SMALL, RATIO, SMALL, SMALL)
 def test_layers_together_are_the_beam_that_was_measured(mass, f, zeta, h1, h2):
     structure = Structure.from_bonded(mass=mass, f=f, zeta=zeta, thicknesses=(h1, h2))

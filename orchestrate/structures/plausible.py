@@ -1,0 +1,25 @@
+"""Warnings of numbers that are in range, and yet are hardly what somebody means."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+
+LARGEST_RATIO = 0.3  # damping ratio above which a half of a beam would hardly ring
+
+
+def warn_of_per_cent(ratios: Mapping[str, float]) -> None:
+    """Warn of damping ratios that look as if they were in per cent.
+
+    Parameters
+    ----------
+    ratios : mapping
+        Damping ratios by their names.
+    """
+    for name, ratio in ratios.items():
+        if ratio > LARGEST_RATIO:
+            warnings.warn(
+                f"{name} = {ratio:g} is {100.0 * ratio:.4g} % of critical damping: a ratio is "
+                f"meant, {ratio:g} % is {0.01 * ratio:g}",
+                stacklevel=3,
+            )

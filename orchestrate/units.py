@@ -1,0 +1,174 @@
+"""The units in which numbers are shown: in prints, pictures, tables and pages.
+
+Datasets are in SI, whatever is asked. What shows a dataset reads here which units were asked for,
+which the dataset carries as the attribute ``shown_in`` (:func:`with_units`); a stored result has
+none.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+from .constants import GRAVITY, TURN
+from .errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+SHOWN_IN = "shown_in"
+FACTORS: dict[str, dict[str, float]] = {  # SI of each word; nan where it depends on the answer
+    "frequency": {"Hz": TURN, "rpm": TURN / 60.0, "rad/s": 1.0, "eta": math.nan},
+    "length": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
+    "acceleration": {"m/s2": 1.0, "g": GRAVITY},
+    "time": {"s": 1.0, "periods": math.nan},
+}
+ALIKE = {"hz": "Hz", "µm": "um", "μm": "um", "rad_s": "rad/s", "m/s^2": "m/s2", "m/s²": "m/s2"}
+EXPECTED = "; ".join(f"{' or '.join(words)}" for words in FACTORS.values())
+OVER_OMEGA = "Omega/omega"
+
+
+@dataclass(frozen=True)
+class Units:
+    """The units of frequencies, lengths, accelerations and times; empty where none was asked for.
+
+    Attributes
+    ----------
+    frequency : str
+        Hz, rpm, rad/s or eta, the ratio to omega = sqrt(k1/m1).
+    length : str
+        m, mm or um, of velocities too.
+    acceleration : str
+        m/s2 or g, 9.80665 m/s2.
+    time : str
+        s, or periods of the box.
+    """
+
+    frequency: str = ""
+    length: str = ""
+    acceleration: str = ""
+    time: str = ""
+
+    @classmethod
+    def from_text(cls, text: str, option: str = "units") -> Units:
+        """Read units from a list such as ``Hz, mm, g``: at most one of each kind, in any order.
+
+        Raises
+        ------
+        InputError
+            Where a word is no unit, or there are two of a kind.
+
+        Examples
+        --------
+        >>> Units.from_text("mm, Hz")
+        Units(frequency='Hz', length='mm', acceleration='', time='')
+        """
+        chosen: dict[str, str] = {}
+        for part in text.replace(",", " ").split():
+            word = ALIKE.get(part.lower(), part)
+            kind = next((kind for kind, words in FACTORS.items() if word in words), None)
+            if kind is None:
+                raise InputError(f"{option} {text}: {part}; expected a list of {EXPECTED}")
+            if kind in chosen:
+                raise InputError(
+                    f"{option} {text}: {chosen[kind]} and {word}; expected one unit of {kind}"
+                )
+            chosen[kind] = word
+        return cls(**chosen)
+
+    def __str__(self) -> str:
+        return ", ".join(filter(None, (getattr(self, field.name) for field in fields(self))))
+
+    def completed(self, usual: Units) -> Units:
+        """Return these, and where none was asked for the usual ones."""
+        names = [field.name for field in fields(self)]
+        return Units(**{name: getattr(self, name) or getattr(usual, name) for name in names})
+
+
+def with_units(data: xr.Dataset, units: Units | str) -> xr.Dataset:
+    """Return an answer that is shown in some units; its numbers are the same, in SI."""
+    chosen = units if isinstance(units, Units) else Units.from_text(units)
+    text = str(chosen.completed(units_of(data)))
+    return data.assign_attrs({SHOWN_IN: text}) if text else data
+
+
+def units_of(data: xr.Dataset) -> Units:
+    """Return the units in which an answer is shown."""
+    return Units.from_text(str(data.attrs.get(SHOWN_IN, "")))
+
+
+def omega_of(data: xr.Dataset) -> float:
+    """Return sqrt(k1/m1) of an answer's structure, rad/s; nan where it varies."""
+    try:
+        return math.sqrt(float(data.attrs["k1"]) / float(data.attrs["m1"]))
+    except (KeyError, TypeError, ValueError):
+        return math.nan
+
+
+def period_of(data: xr.Dataset) -> float:
+    """Return the box's period, s, of an answer at one frequency; else nan."""
+    for holder in (data.attrs, data.coords):
+        for name, factor in (("frequency", 1.0), ("eta", omega_of(data))):
+            value = holder.get(name)
+            if value is not None and not getattr(value, "shape", ()):
+                return TURN / (factor * float(value))
+    return math.nan
+
+
+def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
+    """Return what numbers of an SI unit are divided by where an answer is shown, and the unit then.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+    unit : str
+        As the dataset's variables have it: rad/s, m, m/s, m/s2 or s; others stay.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> scale_of(with_units(xr.Dataset(), "mm, g"), "m/s")
+    (0.001, 'mm/s')
+    """
+    units = units_of(data)
+    word, factor = unit, 1.0
+    if unit == "rad/s" and units.frequency:
+        word = units.frequency
+        factor = omega_of(data) if word == "eta" else FACTORS["frequency"][word]
+    elif unit in ("m", "m/s") and units.length:
+        word = unit.replace("m", units.length, 1)
+        factor = FACTORS["length"][units.length]
+    elif unit == "m/s2" and units.acceleration:
+        word = units.acceleration
+        factor = FACTORS["acceleration"][word]
+    elif unit == "s" and units.time:
+        word = units.time
+        factor = period_of(data) if word == "periods" else 1.0
+    return (factor, word) if math.isfinite(factor) else (1.0, unit)
+
+
+def text_of(data: xr.Dataset, value: float, unit: str, form: str = ".6g") -> str:
+    """Format a number of an SI unit as an answer is shown: ``12.5 Hz``, ``eta = 0.8``."""
+    factor, word = scale_of(data, unit)
+    number = format(float(value) / factor, form)
+    return f"eta = {number}" if word == "eta" else f"{number} {word}"
+
+
+def as_shown(data: xr.Dataset) -> xr.Dataset:
+    """Return an answer for a table, its numbers and ``units`` attributes as it is shown.
+
+    A frequency ratio stands beside the frequency already, which stays in rad/s then.
+    """
+    if SHOWN_IN not in data.attrs:
+        return data
+    changed: dict[str, Any] = {}
+    for name, array in data.variables.items():
+        factor, word = scale_of(data, str(array.attrs.get("units", "")))
+        if word == "eta" and "eta" in data.variables:
+            continue
+        if array.dtype.kind == "f" and word != array.attrs.get("units", ""):
+            about = {**array.attrs, "units": OVER_OMEGA if word == "eta" else word}
+            changed[str(name)] = (array.dims, array.values / factor, about)
+    shown = data.assign_coords({n: v for n, v in changed.items() if n in data.coords})
+    return shown.assign({n: v for n, v in changed.items() if n not in data.coords})

@@ -1,0 +1,135 @@
+"""What a command takes for granted, and what somebody hardly means: said in one line."""
+
+from pathlib import Path
+
+import pytest
+
+import orchestrate
+from orchestrate import Structure
+
+SETS = Path(orchestrate.__file__).parent / "structures" / "sets"
+
+HALVES = ("--set", "f1=42", "--set", "f2=55")
+MASSES = ("--set", "m1=1.5", "--set", "m2=1.2")
+ZETAS = ("--set", "zeta1=0.007", "--set", "zeta2=0.007")
+SHAKEN = ("--hz", "42", "--g", "0.3")
+SHORT = ("--periods", "2", "--plot", "none")
+
+
+def said(ask, *options, shaken=SHAKEN):
+    """What simulate prints, and its complaints."""
+    done = ask("simulate", *options, *shaken, *SHORT)
+    assert done.code == 0, done.err
+    return done.out, done.complaints
+
+
+def test_what_is_not_set_of_a_beam_is_said(ask):
+    out, complaints = said(ask, *HALVES)
+    assert complaints == []
+    for word in ("m1 = 1 kg", "m2 = 1 kg", "zeta1 = 0.5 %", "e = 0.7", "the ratio alone acts"):
+        assert word in out, out
+    assert "assumed, as in the set paper" in out
+    whole = (*HALVES, *MASSES, *ZETAS, "--set", "e=0.6")
+    assert "assumed" not in said(ask, *whole)[0]
+    line = said(ask, "--set", "f1=42", *MASSES, *ZETAS)[0].splitlines()[0]
+    assert line.endswith("the set paper: f2 = 0.1592 Hz, e = 0.7 (--set)")
+    assert "m1 =" not in said(ask, *HALVES, "--set", "mu=0.8")[0]
+
+
+def test_numbers_may_have_their_units(ask, tmp_path):
+    """To the bit as without."""
+    plain = ("clearance=-2e-5", "zeta1=0.007", "f1=42", "m1=1.5")
+    written = ("clearance=-20um", "zeta1=0.7%", "f1=42 Hz", "m1=1.5kg")
+    names = set()
+    for settings in (plain, written, ("clearance=-0.02 mm", *written[1:])):
+        options = [word for setting in settings for word in ("--set", setting)]
+        done = ask("simulate", *HALVES[2:], *options, *SHAKEN, *SHORT).success()
+        names.add(done.out.splitlines()[-1].partition(": ")[0])
+    assert len(names) == 1 and "clearance-2e-05" in names.pop()
+
+
+@pytest.mark.parametrize("setting", ["clearance=2in", "zeta1=0.7mm", "e=70%", "clearance=mm"])
+def test_other_units_are_refused(ask, setting):
+    done = ask("simulate", "--set", setting, *SHAKEN)
+    done.complaint(f"--set {setting}", "is no number; expected one")
+
+
+def test_nothing_is_said_of_a_set_or_a_file_as_it_is(ask, tmp_path):
+    path = tmp_path / "beam.toml"
+    path.write_text("[structure]\nm1 = 1.0\nm2 = 1.0\nf1_hz = 4\nf2_hz = 5\nzeta1 = 0\nzeta2 = 0\n")
+    for source in ("beam", path):
+        out = said(ask, "--structure", source, "--set", "e=0.5", shaken=("--hz", "5", "--g", "1"))[
+            0
+        ]
+        assert "assumed" not in out
+    assert "assumed" not in said(ask, "--structure", path, *HALVES)[0]
+
+
+def test_a_file_of_frequencies_needs_the_masses(ask, tmp_path):
+    path = tmp_path / "beam.toml"
+    path.write_text("[structure]\nf1_hz = 42\nf2_hz = 55\nzeta1 = 0.007\nzeta2 = 0.007\n")
+    ask("simulate", "--structure", path, *SHAKEN).complaint("structure.m1", "missing", "m1, m2")
+
+
+def test_a_file_of_ratios_with_a_motor_needs_a_mass(ask, tmp_path):
+    path = tmp_path / "beam.toml"
+    text = (SETS / "beam.toml").read_text(encoding="utf-8")
+    _, _, drive = text.partition("[motor]")
+    path.write_text(f"[structure]\nomega_hz = 11.9\nmu = 1\n\n[motor]{drive}")
+    ask("jump-voltages", "--drive", path).complaint("structure.m1: missing beside omega_hz")
+    assert Structure.from_file(SETS / "beam.toml").m1 == 1.5
+
+
+@pytest.mark.parametrize("more", [(), ("--set", "m1=1.5"), ("--set", "mu=1")])
+def test_a_motor_needs_the_masses(ask, more):
+    done = ask("jump-voltages", *HALVES, *more)
+    done.complaint("--set f1=42", "the motor feels the masses", "expected --set m1=KG")
+
+
+def test_one_name_of_a_frequency_in_each_place(ask, tmp_path):
+    ask("simulate", "--set", "f1_hz=42", *SHAKEN).complaint("f1_hz: no parameter", "mean f1?")
+    path = tmp_path / "beam.toml"
+    path.write_text("[structure]\nm1 = 1\nm2 = 1\nf1 = 42\nf2_hz = 55\nzeta1 = 0\nzeta2 = 0\n")
+    ask("simulate", "--structure", path, *SHAKEN).complaint("structure.f1", "did you mean f1_hz")
+
+
+@pytest.mark.parametrize(
+    ("options", "shaken", "words"),
+    [
+        (("--set", "zeta1=0.7"), SHAKEN, ("zeta1 = 0.7 is 70 %", "0.7 % is 0.007")),
+        (("--set", "clearance=-20"), SHAKEN, ("clearance = -20 m", "20 um is 2e-5")),
+        (("--set", "clearance=1.5"), SHAKEN, ("clearance = 1.5 m", "is it in m")),
+        ((), ("--frequency", "42", "--g", "0.3"), ("these are rad/s", "is --hz meant?")),
+        ((), ("--hz", "264", "--g", "0.3"), ("these are Hz", "is --frequency meant?")),
+    ],
+)
+def test_what_is_hardly_meant_is_doubted_in_one_line(ask, options, shaken, words):
+    (line,) = said(ask, *HALVES, *MASSES, *options, shaken=shaken)[1]
+    assert all(word in line for word in words), line
+
+
+@pytest.mark.parametrize(
+    ("options", "shaken"),
+    [
+        (("--set", "zeta1=0.2", "--set", "clearance=-2e-5"), SHAKEN),
+        (("--set", "clearance=1.5e-3"), SHAKEN),
+        ((), ("--frequency", "270", "--g", "0.3")),
+        ((), ("--hz", "120", "--g", "0.3")),
+        ((), ("--rpm", "2500", "--g", "0.3")),
+    ],
+)
+def test_what_is_plausible_is_not_doubted(ask, options, shaken):
+    assert said(ask, *HALVES, *MASSES, *options, shaken=shaken)[1] == []
+
+
+def test_a_level_below_the_threshold_is_said(ask):
+    quiet = ("--hz", "20", "--g", "0.001")
+    for clearance, word in (("-2e-5", "opens at"), ("1.5e-3", "touches at")):
+        setting = ("--set", f"clearance={clearance}")
+        out = said(ask, *HALVES, *MASSES, *setting, shaken=quiet)[0]
+        assert word in out and "times this level: from rest the response is linear" in out
+        assert "no impacts" in out
+    loud = said(
+        ask, *HALVES, *MASSES, "--set", "clearance=-2e-5", shaken=("--hz", "48", "--g", "3")
+    )
+    assert "is linear" not in loud[0] and "no impacts" not in loud[0]

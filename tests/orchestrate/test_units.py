@@ -1,0 +1,187 @@
+"""One setting of units for prints, pictures, tables and pages; datasets stay in SI."""
+
+import re
+from functools import cache
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate import InputError, Structure
+from orchestrate.running import formats
+from orchestrate.units import Units, as_shown, scale_of, text_of, units_of, with_units
+
+TURN, G = 2.0 * np.pi, 9.80665
+BEAM = Structure.from_halves(
+    m1=1.0, m2=1.2, f1=42.0, f2=55.0, zeta1=0.02, zeta2=0.02, clearance=-2e-5
+)
+HERTZ = np.array([44.0, 48.0, 52.0])
+BOX = {"frequency": TURN * 48.0, "amplitude": 3.0 / (TURN * 48.0) ** 2}
+SHORT = {"transient": 20, "samples": 6}
+FOREIGN = re.compile(  # units that are not asked for with rpm, um, g
+    r"\bHz\b|rad/s|\bmm\b|m/s|\bin m\b|\d m\b|\beta\b|\\eta"
+)
+
+
+@cache
+def answers():
+    """An answer of each question that the setting is for."""
+    many = {"frequency": TURN * HERTZ, "amplitude": 3.0 / (TURN * HERTZ) ** 2}
+    return {
+        "simulate": orchestrate.simulate(BEAM, **BOX, periods=5, transient=20),
+        "resonance": orchestrate.resonance(BEAM, **many, direction="up", **SHORT),
+        "resonance_levels": orchestrate.resonance_levels(
+            BEAM, frequency=TURN * HERTZ, level=[1.0, 3.0], direction="up", **SHORT
+        ),
+        "contact_threshold": orchestrate.contact_threshold(BEAM, frequency=TURN * HERTZ),
+        "sweep": orchestrate.sweep(BEAM, **many, **SHORT),
+        "by level": orchestrate.sweep(
+            BEAM, frequency=BOX["frequency"], over="level", values=[1.0, 2.0], **SHORT
+        ),
+        "map": orchestrate.map(BEAM, frequency=TURN * HERTZ, level=[1.0, 3.0], **SHORT),
+        "spectra": orchestrate.spectra(BEAM, **BOX, transient=20, periods=8),
+        "poincare": orchestrate.poincare(BEAM, **BOX, transient=20, periods=30),
+        "basin": orchestrate.basin(
+            BEAM, **BOX, x=("x_rel", 0.0, 1e-3, 3), y=("v_rel", -0.1, 0.1, 3), **SHORT
+        ),
+        "lyapunov": orchestrate.lyapunov(BEAM, **many, transient=20, periods=30),
+    }
+
+
+def words_of(figure):
+    """All that is written in a picture, but for the marks of axes."""
+    axes = figure.axes
+    words = [text.get_text() for text in figure.texts]
+    words += [
+        t for one in axes for t in (one.get_xlabel(), one.get_ylabel(), one.get_title("left"))
+    ]
+    words += [text.get_text() for one in axes for text in one.texts]
+    legends = [*figure.legends, *(one.get_legend() for one in axes if one.get_legend())]
+    words += [text.get_text() for legend in legends for text in legend.get_texts()]
+    if figure._suptitle is not None:
+        words.append(figure._suptitle.get_text())
+    return words
+
+
+def of_the_structure(words):
+    """A text without the halves' own frequencies, which are in Hz always, and the velocities."""
+    words = re.sub(r"over \$m_1.*\$", "", words)  # numbers without a unit
+    plain = re.sub(r"\$f_[12]\$ = [\d.]+ Hz", "", words)
+    return plain.replace("µm/s", "µ").replace("um/s", "u")
+
+
+def test_grammar():
+    assert str(Units.from_text("mm Hz,g ; s".replace(" ;", ","))) == "Hz, mm, g, s"
+    assert Units.from_text("µm, HZ, m/s^2") == Units("Hz", "um", "m/s2")
+    assert Units.from_text("") == Units()
+    assert Units("rpm").completed(Units("Hz", "mm")) == Units("rpm", "mm")
+    for text, words in (("stone", "stone; expected"), ("Hz, rpm", "Hz and rpm; expected one")):
+        with pytest.raises(InputError, match=f"units {text}: {words}"):
+            Units.from_text(text)
+
+
+def test_numbers_are_divided_by_what_the_unit_says():
+    data = with_units(xr.Dataset(attrs={"k1": 4.0, "m1": 1.0, "frequency": TURN}), "rpm, um, g")
+    assert text_of(data, TURN, "rad/s") == "60 rpm"
+    assert text_of(data, 2e-5, "m") == "20 um"
+    assert text_of(data, 2e-5, "m/s") == "20 um/s"
+    assert text_of(data, G, "m/s2") == "1 g"
+    assert text_of(data, 3.0, "s") == "3 s"
+    assert text_of(with_units(data, "eta, periods"), 3.0, "rad/s") == "eta = 1.5"
+    assert text_of(with_units(data, "periods"), 3.0, "s") == "3 periods"
+    assert scale_of(data, "N") == (1.0, "N")
+    assert scale_of(with_units(xr.Dataset(), "eta"), "rad/s") == (1.0, "rad/s")  # no omega
+
+
+def test_a_shown_answer_is_the_same_in_si():
+    for answer in answers().values():
+        shown = with_units(answer, "rpm, um, g, periods")
+        assert shown.drop_attrs(deep=False).identical(answer.drop_attrs(deep=False))
+        assert "shown_in" not in answer.attrs
+        assert units_of(with_units(shown, "Hz")) == Units("Hz", "um", "g", "periods")
+
+
+@pytest.mark.parametrize("kind", ["resonance", "resonance_levels", "simulate", "sweep"])
+def test_tables_have_the_units_in_their_columns(kind, tmp_path):
+    answer = answers()[kind]
+    table = as_shown(with_units(answer, "rpm, um, g"))
+    assert as_shown(table).identical(table)
+    factors = {"rad/s": TURN / 60.0, "m": 1e-6, "m/s": 1e-6, "m/s2": G}
+    names = {"rad/s": "rpm", "m": "um", "m/s": "um/s", "m/s2": "g"}
+    changed = 0
+    for name, array in answer.variables.items():
+        unit = array.attrs.get("units")
+        if unit in factors and array.dtype.kind == "f":
+            assert table[name].attrs["units"] == names[unit]
+            expected = array.values / factors[unit]
+            np.testing.assert_allclose(table[name].values, expected, rtol=1e-14)
+            changed += 1
+        else:
+            assert table.variables[name].identical(array)
+    assert changed > 3
+    columns = set()
+    for path in formats.write(with_units(answer, "rpm, um, g"), tmp_path / "a.csv"):
+        columns |= set(pd.read_csv(path).columns)
+    assert any(column.endswith("[um]") for column in columns)
+    assert not any(re.search(r"\[(m|rad/s|m/s|m/s2)\]", column) for column in columns)
+    plain = formats.write(answer, tmp_path / "b.csv")
+    assert any("[m]" in column for path in plain for column in pd.read_csv(path).columns)
+
+
+def test_pictures_are_in_the_units_asked_for_and_in_no_other():
+    for kind, answer in answers().items():
+        words = words_of(orchestrate.plot(answer, units="rpm, um, g"))
+        foreign = [word for word in words if FOREIGN.search(of_the_structure(word))]
+        assert not foreign, (kind, foreign)
+        assert any("rpm" in word for word in words), kind
+
+
+def test_curves_move_with_their_axes():
+    answer = answers()["resonance_levels"]
+    pictures = [orchestrate.plot(answer, units=u) for u in ("Hz, mm, g", "rpm, um, m/s2", "eta")]
+    lines = [[axes.lines[0].get_xydata() for axes in figure.axes] for figure in pictures]
+    np.testing.assert_allclose(lines[0][0][:, 0], HERTZ)
+    np.testing.assert_allclose(lines[1][0][:, 0], 60.0 * HERTZ)
+    np.testing.assert_allclose(lines[2][0][:, 0], HERTZ / 42.0)
+    np.testing.assert_allclose(lines[1][1][:, 1], 1000.0 * lines[0][1][:, 1])
+    np.testing.assert_allclose(lines[1][2][:, 1], G * lines[0][2][:, 1])
+    assert pictures[2].axes[-1].get_xlabel() == r"$\eta$"
+    motion = answers()["simulate"]
+    for units, last in (("s", float(motion.time[-1])), ("periods", float(motion.periods_done[-1]))):
+        (axes,) = (
+            one
+            for one in orchestrate.plot(motion, units=units).axes
+            if one.get_xlabel().startswith(f"time in {units}")
+        )
+        assert axes.get_xlim()[1] == pytest.approx(last)
+
+
+def test_a_page_has_them_too(tmp_path):
+    answer = answers()["resonance_levels"]
+    page = orchestrate.report(answer, output=tmp_path / "a.html", units="rpm, um, g")
+    text = page.read_text(encoding="utf-8")
+    assert re.search(r"29\d\d(\.\d+)? rpm", text)  # of the lowest threshold
+    assert "-20 um" in text.replace("\N{MINUS SIGN}", "-")
+    plain = orchestrate.report(answer, output=tmp_path / "b.html").read_text(encoding="utf-8")
+    assert not re.search(r"\d rpm", plain)
+
+
+def test_wrong_units_are_one_line(tmp_path):
+    answer = answers()["contact_threshold"]
+    for asked in (lambda u: orchestrate.plot(answer, units=u),):
+        with pytest.raises(InputError, match="furlong; expected a list of Hz or rpm"):
+            asked("furlong")
+
+
+def test_the_cross_of_a_state_lies_where_the_gap_is():
+    """The gap has the clearance in it."""
+    answer = answers()["basin"]
+    crosses = [
+        line.get_xydata()[0]
+        for line in orchestrate.plot(answer, units="um").axes[0].lines
+        if line.get_marker() == "X" and len(line.get_xydata())
+    ]
+    x1, x2, *_ = answer.state.values[0]
+    assert crosses[0][0] == pytest.approx(1e6 * (x2 - x1 - 2e-5))
