@@ -6,6 +6,7 @@ from the docstrings. Formulas become MathML, which browsers show without any scr
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,11 @@ extensions = [
     "numpydoc",
     "sphinx_copybutton",
 ]
-nitpicky = False
+nitpicky = True
+nitpick_ignore_regex = [  # of others, whose manuals are on the network; modules that are not public
+    (r"py:.*", r"(?:xarray|matplotlib|numpy)\..*"),
+    (r"py:.*", r"orchestrate\.[a-z_]+\.\w.*"),
+]
 
 html_theme = "furo"
 html_title = f"vibroimpact {version}"
@@ -55,6 +60,32 @@ python_maximum_signature_line_length = 80
 numpydoc_show_class_members = False
 copybutton_prompt_text = r">>> |\.\.\. |\$ "
 copybutton_prompt_is_regexp = True
+
+
+WORDS_A_MINUTE = 200  # of a text that is read to be understood
+NOT_READ = (  # word by word: settings of a page, code and what it prints, formulas, comments
+    re.compile(r"\A---\n.*?^---\n", re.S | re.M),
+    re.compile(r"^(?P<fence>```+|~~~+)[^\n]*\n.*?^(?P=fence) *$", re.S | re.M),
+    re.compile(r"^\$\$.*?^\$\$[^\n]*$", re.S | re.M),
+    re.compile(r"<!--.*?-->", re.S),
+)
+
+
+def count_words(text: str) -> int:
+    """Return the number of words that are read on a page of Markdown."""
+    for part in NOT_READ:
+        text = part.sub("", text)
+    return sum(any(map(str.isalnum, word)) for word in text.split())
+
+
+def add_reading_time(app: Sphinx, tree: nodes.document) -> None:
+    """Write below a page's title how long it takes to read."""
+    source = Path(app.env.doc2path(app.env.docname))
+    title = next(iter(tree.findall(nodes.title)), None)
+    if source.suffix == ".md" and title is not None:
+        minutes = max(1, round(count_words(source.read_text(encoding="utf-8")) / WORDS_A_MINUTE))
+        text = f"Reading time: {minutes} minute{'s' * (minutes > 1)}"
+        title.parent.insert(1, nodes.paragraph("", text, classes=["reading-time"]))
 
 
 def as_mathml(translator: Any, node: nodes.Element) -> None:
@@ -107,7 +138,8 @@ def add_explorer(app: Sphinx, failure: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> None:
-    """Tell Sphinx about the formulas and the public face."""
+    """Tell Sphinx about the formulas, the public face and the reading time."""
     app.add_directive("public", Public)
+    app.connect("doctree-read", add_reading_time)
     app.connect("build-finished", add_explorer)
     app.add_html_math_renderer("mathml", (as_mathml, None), (as_mathml_block, None))

@@ -1,4 +1,4 @@
-"""The tables of docs/bifurcations.md: each bifurcation is checked by direct simulation.
+"""The tables of docs/bifurcation_tables.md: each bifurcation is checked by direct simulation.
 
     python -m tools.bifurcation_table
 
@@ -22,11 +22,11 @@ from orchestrate.dynamics.stable_windows import StableWindow, kind_names, stable
 from orchestrate.errors import InputError
 from orchestrate.figures import borders as borders_figure
 from orchestrate.figures import branches as branches_figure
-from orchestrate.figures.files import save
 from orchestrate.files import write_whole
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
 from tools.marked import put
+from tools.pictures.small import save_small
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
@@ -202,13 +202,13 @@ def main() -> None:
         label: branch(PAPER, start=orbit(PAPER, eta=eta, period=period), limits=limits)
         for label, (eta, period, limits) in STARTS.items()
     }
-    page = DOCS / "bifurcations.md"
+    page = DOCS / "bifurcation_tables.md"
     text = put(page.read_text("utf-8"), "table", table(answer))
     text = put(text, "windows", all_windows())
     write_whole(page, lambda place: place.write_text(text, "utf-8"))
     responses = sweep(PAPER, eta=FIGURE_6)
-    save(branches_figure.draw(*answer.values(), responses=responses), DOCS / "branches")
-    save(borders_figure.draw(*windows(answer)), DOCS / "borders")
+    save_small(branches_figure.draw(*answer.values(), responses=responses), DOCS / "branches.png")
+    save_small(borders_figure.draw(*windows(answer)), DOCS / "borders.png")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""The numbers of docs/paper.md: made from the claims that ``orchestrate paper`` has found.
+"""The numbers of docs/paper.md and docs/claims.md: made from what ``orchestrate paper`` computed.
 
     python -m tools.paper_page results/paper
 
-keeps ``claims.json`` beside the page and writes the page's counts and its tables anew.
+keeps ``claims.json`` beside the pages and writes their counts and tables anew.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from typing import Any
 
 from orchestrate.files import write_whole
 from orchestrate.paper.claims.claim import WORDS
-from tools.marked import put
+from tools.marked import MARK, put
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-PAGE, CLAIMS = DOCS / "paper.md", DOCS / "claims.json"
+PAGES, CLAIMS = (DOCS / "paper.md", DOCS / "claims.md"), DOCS / "claims.json"
 
 
 def counts(rows: Sequence[Mapping[str, str]]) -> list[str]:
@@ -29,6 +29,16 @@ def counts(rows: Sequence[Mapping[str, str]]) -> list[str]:
         f"Of {len(rows)} statements of all sections {number['yes']} are borne out, "
         f"{number['partly']} in part, {number['no']} are not."
     ]
+
+
+def sections(rows: Sequence[Mapping[str, str]]) -> list[str]:
+    """Return the table of counts of each section."""
+    heads = [*WORDS.values()]
+    lines = [f"| section | {' | '.join(heads)} |", f"|{'---|' * (1 + len(heads))}"]
+    for section in dict.fromkeys(row["section"] for row in rows):
+        own = [row["verdict"] for row in rows if row["section"] == section]
+        lines.append(f"| {section} | {' | '.join(str(own.count(word)) for word in WORDS)} |")
+    return lines
 
 
 def cell(text: str) -> str:
@@ -55,18 +65,27 @@ def regions(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def page(text: str, found: Mapping[str, Any]) -> str:
-    """Return the page's text with what was found."""
-    text = put(text, "counts", counts(found["claims"]))
-    text = put(text, "verdicts", verdicts(found["claims"]))
-    text = put(text, "regions", regions(found["regions"]))
-    return put(text, "answers", [f"- {sentence}" for sentence in found["answers"]])
+    """Return a page's text with what was computed, in the parts that it has."""
+    parts = {
+        "counts": lambda: counts(found["claims"]),
+        "sections": lambda: sections(found["claims"]),
+        "verdicts": lambda: verdicts(found["claims"]),
+        "regions": lambda: regions(found["regions"]),
+        "answers": lambda: [f"- {sentence}" for sentence in found["answers"]],
+    }
+    for name, lines in parts.items():
+        if MARK.format(name, "begin") in text:
+            text = put(text, name, lines())
+    return text
 
 
 def main(folder: str) -> None:
-    """Write the page."""
+    """Write the pages."""
     shutil.copyfile(Path(folder) / "claims.json", CLAIMS)
-    text = page(PAGE.read_text("utf-8"), json.loads(CLAIMS.read_text("utf-8")))
-    write_whole(PAGE, lambda place: place.write_text(text, "utf-8"))
+    found = json.loads(CLAIMS.read_text("utf-8"))
+    for place in PAGES:
+        text = page(place.read_text("utf-8"), found)
+        write_whole(place, lambda file, text=text: file.write_text(text, "utf-8"))
 
 
 if __name__ == "__main__":

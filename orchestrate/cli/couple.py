@@ -121,12 +121,13 @@ def run(arguments: argparse.Namespace) -> None:
             print(file)
     name = jobs[0].name.rpartition("_")[0] + (f"_{arguments.only}" if arguments.only else "")
     picture = arguments.output / f"{name}.nc"
-    for file in draw_picture(
+    files = draw_picture(
         picture,
         plots,
         fresh,
         lambda: picture_of(arguments, results, structure, drive, jobs[0], branches),
-    ):
+    )
+    for file in (*files, *draw_jumps(arguments, results, picture, plots, fresh)):
         print(file)
 
 
@@ -166,6 +167,27 @@ def branches_of(
     return branches
 
 
+def draw_jumps(
+    arguments: argparse.Namespace,
+    results: dict[str, xr.Dataset],
+    picture: Path,
+    plots: tuple[str, ...],
+    fresh: bool,
+) -> list[Path]:
+    """Draw the jumps over time beside the picture of the ramp, where there are any."""
+    import numpy as np
+
+    if not any(np.isfinite(data.jumps).any() for data in results.values()):
+        return []
+
+    def draw() -> Any:
+        from ..figures import weak_drive
+
+        return weak_drive.draw_jumps(results, title_of_runs(results, Path(arguments.drive).stem))
+
+    return draw_picture(picture.with_stem(f"{picture.stem}_jumps"), plots, fresh, draw)
+
+
 def picture_of(
     arguments: argparse.Namespace,
     results: dict[str, xr.Dataset],
@@ -191,7 +213,10 @@ def picture_of(
     Omega = np.linspace(0.3, 3.0, 20001)
     volts = averaged.no_load_speed(structure, drive, Omega) * drive.volts(structure)
     amplitude = averaged.amplitude(structure, drive, Omega) * drive.length
+    points, stable = averaged.stability(structure, drive)
+    part = np.searchsorted([point.Omega for point in points], Omega)
     along = {"voltage": ("speed", volts), "amplitude": ("speed", amplitude)}
+    along["stable"] = ("speed", np.array(stable)[part])
     theory = xr.Dataset(along, {"speed": Omega * structure.omega})
     return draw(results, theory, branches, title)
 

@@ -11,13 +11,27 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, panels, set_title, styled
+from .labels import plain_title
+from .style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    RED,
+    panels,
+    set_title,
+    styled,
+    write_plain_numbers,
+)
 
 Results = dict[str, xr.Dataset]  # by label
 Reader = Callable[[xr.Dataset], xr.DataArray]
 CHANNELS = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 COLOURS = (BLUE, RED, BLACK, ORANGE, GREEN, PURPLE)
 DECADES = 6  # of an axis, below the largest value
+FEW = 300.0  # largest over smallest value of an axis that has plain numbers
 DEGREES = 180.0 / np.pi
 
 
@@ -50,7 +64,7 @@ def draw(
         wrong = results[other[0]].attrs["analysis"]
         raise ValueError(f"others[{other[0]!r}]: result of {wrong}; expected one of {kind}")
     figure = DRAW[kind](results)
-    set_title(figure, title or str(data.attrs["title"]))
+    set_title(figure, title or plain_title(str(data.attrs["title"])))
     return figure
 
 
@@ -120,6 +134,8 @@ def from_the_top(axes: Axes, values: list[np.ndarray], decades: int = DECADES) -
         top = float(every.max())
         low = max(0.7 * float(every.min()), 10.0**-decades * top)
         axes.set_ylim(min(low, 0.5 * top), 1.5 * top)
+        if top < FEW * low:
+            write_plain_numbers(axes)
 
 
 def unbroken(phase: xr.DataArray) -> np.ndarray:

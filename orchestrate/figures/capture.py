@@ -10,9 +10,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLACK, GREY, panels, styled
+from .style import BLACK, GREEN, GREY, ORANGE, legend_under, panels, set_title, styled
 
-PASSED, UNDECIDED = "tab:green", "tab:orange"
+PASSED, UNDECIDED = GREEN, ORANGE
 FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, averaged theory"}
 
 
@@ -35,10 +35,9 @@ def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
             draw_map(panel, data, over.pop())
         else:
             draw_line(panel, data)
-        panel.legend(loc="best")
         panel.label_outer()
-    if title:
-        figure.suptitle(title)
+        legend_under(panel, columns=4)
+    set_title(figure, title)
     return figure
 
 

@@ -11,6 +11,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from .labels import plain_title
 from .style import (
     BLACK,
     BLUE,
@@ -69,7 +70,7 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     axes.grid(visible=False, axis="y")
     axes.set_xlabel("sign over what noise and a sound structure show of it")
     legend_below(figure, [axes], 4)
-    set_title(figure, title or str(data.attrs["title"]))
+    set_title(figure, title or plain_title(str(data.attrs["title"])))
     return figure
 
 
@@ -109,7 +110,7 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
         below.semilogy(data.frequency, force, label=f"at {level:.3g} m/s$^2$", **line)
     below.set(xlabel="frequency of the box in Hz", ylabel="preload that keeps\nit shut, in N")
     legend_below(figure, [plane, below], 4)
-    set_title(figure, title or str(data.attrs["title"]))
+    set_title(figure, title or plain_title(str(data.attrs["title"])))
     return figure
 
 

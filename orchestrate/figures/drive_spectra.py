@@ -5,7 +5,8 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .style import panels, styled
+from .marks import draw_stems
+from .style import panels, set_title, styled
 from .weak_drive import COLOURS
 
 FLOOR = 1e-6  # of the largest amplitude: the lower end of the axis
@@ -29,12 +30,11 @@ def draw(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
     shown = data.acceleration.sel(mass=mass)
     top = float(shown.max())
     for panel, kind in zip(axes, map(str, data.kind.values), strict=True):
-        amplitude = shown.sel(kind=kind).clip(1e-3 * FLOOR * top)
-        panel.semilogy(data.order, amplitude, color=COLOURS[kind], linewidth=0.7)
+        amplitude = shown.sel(kind=kind).values
+        draw_stems(panel, data.order.values, amplitude, FLOOR * top, color=COLOURS[kind])
         speed = float(data.speed.sel(kind=kind))
         panel.set(title=f"{kind}, $\\Omega$ = {speed:.4f} rad/s", ylabel="acceleration in m/s$^2$")
         panel.set_ylim(FLOOR * top, 2.0 * top)
     axes[-1].set_xlabel(r"frequency over the motor's speed $\Omega$")
-    if title:
-        figure.suptitle(title)
+    set_title(figure, title)
     return figure

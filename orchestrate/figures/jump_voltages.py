@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .style import panels, styled
+from .style import panels, set_title, styled
 from .weak_drive import COLOURS
 
 EXPONENT = 2.0 / 3.0
@@ -50,6 +50,5 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
             panel.text(0.5, 0.5, f"no jump {jump}", **in_the_middle)
         panel.set(xlabel="rate$^{2/3}$ in (V/s)$^{2/3}$", ylabel="voltage in V")
         panel.set_title(f"jump {jump}")
-    if title:
-        figure.suptitle(title)
+    set_title(figure, title)
     return figure

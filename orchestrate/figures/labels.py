@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -47,6 +48,7 @@ USUAL_VALUES = {"mu": 1.0, "kappa": 1.2, "gamma": 1e-4, "omega": 1.0}  # what a 
 EXCITATION = ("eta", "frequency", "amplitude")
 HALF_PARAMETERS = {"m1", "m2", "k1", "k2", "d1", "d2", "mu", "kappa", "omega", "D", "D1", "D2"}
 HALF_PARAMETERS |= {"f1", "f2", "zeta1", "zeta2"}
+PART_OF_LABEL = re.compile(r"bonded|(?P<name>[A-Za-z]+?)(?P<values>-?\d[\d.e+-]*)")
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -244,3 +246,32 @@ def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
         return ""
     impacts = round(n * impacts_per_period)
     return f"{n if n > 1 else ''}T, {impacts} impact{'s' * (impacts != 1)}"
+
+
+def plain_title(title: str) -> str:
+    """Write out the structure's short name at the end of a title, which is made for files.
+
+    Examples
+    --------
+    >>> plain_title("Orders: swept sine: e0.6_f42-55_clearance-2e-05")
+    'Orders: swept sine, $e$ = 0.6, $f_1$, $f_2$ = 42, 55 Hz, clearance = -2e-05 m'
+    >>> plain_title("Orders: Record beam.csv")
+    'Orders: Record beam.csv'
+    """
+    words, _, label = title.rpartition(": ")
+    parts = [PART_OF_LABEL.fullmatch(part) for part in label.split("_")]
+    if not words or not all(parts):
+        return title
+    return ", ".join([words, *(write_part(part[0]) for part in parts if part)])
+
+
+def write_part(part: str) -> str:
+    """Write out a part of a structure's short name, such as ``f42-55``."""
+    match = PART_OF_LABEL.fullmatch(part)
+    if match is None or not match["values"]:
+        return part
+    name, values = match["name"], re.split(r"(?<=\d)-", match["values"])
+    names = [name] if len(values) == 1 else [f"{name}{i + 1}" for i in range(len(values))]
+    letters = [symbol(each).partition(" in ") for each in names]
+    numbers = f"{', '.join(values)} {letters[0][2]}".rstrip()
+    return f"{', '.join(letter for letter, _, _ in letters)} = {numbers}"

@@ -1,4 +1,4 @@
-"""Marks for few values and for many: large enough to be seen, and no more of them than pixels."""
+"""Marks for few values and for many, large enough to be seen; lines of spectra as stems."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from matplotlib.axis import Axis
 
 MAX_DISTINCT = 600  # values along an axis that marks are told apart at
 CELLS = (1500, 750)  # of a panel, for samples that lie on each other
+MAX_STEMS = 80  # of a spectrum, in full width
 SHADES = ((1, 0.35), (3, 0.6), (8, 1.0))  # from so many samples in a cell on: opacity
 
 
@@ -113,3 +114,30 @@ def draw_steps(
     if len(x) <= MAX_DISTINCT:
         more = {**more, "label": None}
         axes.plot(x, values, **mark(len(x), Marks(colour, 0.7)), **more)
+
+
+def draw_stems(
+    axes: Axes,
+    x: np.ndarray,
+    amplitudes: np.ndarray,
+    floor: float,
+    width: float = 1.5,
+    **style: Any,
+) -> None:
+    """Draw the lines of a spectrum as stems on a logarithmic axis that begins at a floor.
+
+    Parameters
+    ----------
+    axes : Axes
+    x, amplitudes : ndarray, shape (n,)
+    floor : float
+        Lines below it are left out.
+    width : float
+        Of a stem, in points; many stems are thinner, so that they are told apart.
+    **style
+        Of :meth:`matplotlib.axes.Axes.vlines`.
+    """
+    axes.set_yscale("log")
+    shown = amplitudes > floor
+    thin = min(1.0, (MAX_STEMS / (1 + int(shown.sum()))) ** 0.5)
+    axes.vlines(x[shown], floor, amplitudes[shown], linewidth=width * thin, **style)

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from ..constants import TURN
 from ..units import units_of
 from .labels import gap_name, title_from_attributes
+from .marks import draw_stems
 from .scales import acceleration_scale, frequency_scale, in_si, length_scale
 from .style import BLACK, BLUE, GREY, RED, set_title, styled, write_in_panel
 
@@ -23,6 +24,8 @@ MASSES: tuple[tuple[str, dict[str, Any]], ...] = (
 )
 GLUED: dict[str, Any] = {"color": GREY, "linewidth": 3.0, "alpha": 0.6, "zorder": 1}
 GLUED["label"] = "both, bonded"
+STEM_WIDTHS = {GREY: 5.0, BLUE: 2.6, RED: 1.0}  # a thin line lies on a wide one
+SPECTRUM_FLOOR = 1e-5  # of the largest line: the lower end of the axis
 MIN_PERIODS = 4  # periods that a spectrum takes
 
 
@@ -53,7 +56,7 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
             bonded.x1 / factor, bonded.v1 / length_scale(data, speed_of(data))[0], **GLUED
         )
         top = max(top, draw_spectrum(axes["spectrum"], bonded, (("1", GLUED),)))
-    axes["spectrum"].set_ylim(1e-5 * (top or 1.0), 2.0 * (top or 1.0))
+    axes["spectrum"].set_ylim(SPECTRUM_FLOOR * (top or 1.0), 2.0 * (top or 1.0))
     above: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
     axes["masses"].legend(ncols=3, **above)
     axes["gap"].legend(**above)
@@ -131,18 +134,32 @@ def draw_spectrum(
     if periods < MIN_PERIODS:
         if not axes.texts:
             write_in_panel(axes, f"a spectrum takes {MIN_PERIODS} periods")
+            axes.set_xticks([])
         return 0.0
     base, top = periods / (time[-1] - time[0]), 0.0
     (turn, word), (felt, unit_felt) = frequency_scale(data), acceleration_scale(data)
     for number, style in masses:
         frequency, amplitude = spectrum(data[f"x{number}"].values[1:], time[1] - time[0])
         shown = (frequency > 0.25 * base) & (frequency <= highest * base)
-        top = max(top, float(amplitude[shown].max(initial=0.0)) / felt)
-        orders = frequency * (TURN / turn if in_si(data) else 1.0 / base)
-        axes.semilogy(orders[shown], amplitude[shown] / felt, **style)
+        felt_amplitude = amplitude / felt
+        top = max(top, float(felt_amplitude[shown].max(initial=0.0)))
+        lines = frequency * (TURN / turn if in_si(data) else 1.0 / base)
+        peaks = shown & is_line(amplitude)
+        stem = {name: style[name] for name in ("color", "alpha", "zorder") if name in style}
+        floor = 1e-3 * SPECTRUM_FLOOR * float(felt_amplitude[shown].max(initial=0.0))  # unseen
+        width = STEM_WIDTHS[style["color"]]
+        draw_stems(axes, lines[peaks], felt_amplitude[peaks], floor, width, **stem)
     unit = f"in {word}" if in_si(data) else r"over $\Omega/2\pi$"
     axes.set(xlabel=f"frequency {unit}", ylabel=f"acceleration in {unit_felt}")
     return top
+
+
+def is_line(amplitude: np.ndarray) -> np.ndarray:
+    """Return where amplitudes are larger than their neighbours: a window makes three of a line."""
+    above = np.full(len(amplitude), True)
+    above[1:] &= amplitude[1:] > amplitude[:-1]
+    above[:-1] &= amplitude[:-1] >= amplitude[1:]
+    return above
 
 
 def spectrum(displacement: np.ndarray, interval: float) -> tuple[np.ndarray, np.ndarray]:

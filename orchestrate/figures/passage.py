@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..constants import TURN
 from .powers import ACCOUNTS, draw_powers
-from .style import GREY, panels, styled
+from .style import BLUE, GREY, panels, set_title, styled
 from .weak_drive import COLOURS, jump_texts, outcome
 
 MAX_REPETITION = 4  # revolutions after which a motion is seen to repeat
@@ -47,7 +47,7 @@ def draw(
         time = data.time.values - begin
         draw_speed(column_axes[0], time, data, means)
         column_axes[1].plot(time, data.voltage, color="k", linewidth=1.0)
-        column_axes[2].plot(time, data.x1, color=COLOURS.get(name, "C0"), linewidth=0.3)
+        column_axes[2].plot(time, data.x1, color=COLOURS.get(name, BLUE), linewidth=0.3)
         draw_powers(column_axes[3], time, means)
         mesh = draw_waterfall(column_axes[4], spectra[name], begin, top)
         for panel in column_axes[:4]:
@@ -64,8 +64,7 @@ def draw(
         axes[row * count].legend(loc="best", fontsize=7)
     bar = "amplitude of the acceleration in m/s$^2$"
     figure.colorbar(mesh, ax=axes[4 * count :], label=bar, pad=0.01)
-    if title:
-        figure.suptitle(title)
+    set_title(figure, title)
     return figure
 
 
@@ -143,7 +142,7 @@ def draw_speed(
     axes: Axes, time: np.ndarray, data: xr.Dataset, revolution: Mapping[str, np.ndarray]
 ) -> None:
     """Draw the speed at each instant, and its mean over a revolution."""
-    instant: Any = {"color": "C0", "linewidth": 0.4, "alpha": 0.6, "label": "at the instant"}
+    instant: Any = {"color": BLUE, "linewidth": 0.4, "alpha": 0.6, "label": "at the instant"}
     axes.plot(time, np.abs(data.speed), **instant)
     mean: Any = {"color": "k", "linewidth": 1.2, "label": "mean of a revolution"}
     axes.plot(time, revolution["speed"], **mean)

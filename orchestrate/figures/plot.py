@@ -64,6 +64,7 @@ SEVERAL: dict[str, Callable[..., Figure]] = {  # of which one picture shows any 
 }
 BESIDE: dict[str, Callable[..., Figure]] = {"simulate": motion.draw, "shake": shaken.draw}
 OF_BOTH: dict[str, Callable[..., Figure]] = {"couple": weak_drive.draw, "capture": capture.draw}
+PARTS: dict[str, Callable[..., Figure]] = {"jumps": weak_drive.draw_jumps}  # of couple
 KNOWN = ", ".join(sorted({*DRAW, *OF_BOTH, *analysis.DRAW}))
 EXPECTED = (
     f"expected answers of one of {KNOWN}; several of one of {', '.join(SEVERAL)}; a sweep with "
@@ -71,7 +72,7 @@ EXPECTED = (
 )
 
 
-def plot(*answers: xr.Dataset, title: str = "", units: str | Units = "") -> Figure:
+def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Units = "") -> Figure:
     """Draw answers.
 
     Parameters
@@ -83,6 +84,9 @@ def plot(*answers: xr.Dataset, title: str = "", units: str | Units = "") -> Figu
         branches of :func:`orchestrate.drive_branch`.
     title : str
         Above the picture; by default structure and excitation.
+    part : str
+        ``"jumps"``: of runs of :func:`orchestrate.couple` the second picture, speed and amplitude
+        over time around each jump. By default the first one, the ramp.
     units : str
         Of its axes and its title, such as ``"Hz, mm, g"``: a frequency in Hz, rpm, rad/s or as eta,
         a length in m, mm or um, an acceleration in m/s2 or g, a time in s or periods. By default
@@ -105,10 +109,18 @@ def plot(*answers: xr.Dataset, title: str = "", units: str | Units = "") -> Figu
     >>> figure = orchestrate.plot(orchestrate.simulate(beam, eta=1.2, periods=4))
     >>> [axes.get_ylabel() for axes in figure.axes][0]
     'displacement in m'
+
+    Notes
+    -----
+    Colours, letters and sizes that all pictures have in common stand in
+    ``orchestrate.figures.style.STYLE``, as settings of Matplotlib: what is changed there holds for
+    every picture from then on.
     """
     kinds = [question_of(answer) for answer in answers]
     answers = tuple(with_units(answer, units) for answer in answers)
     several = set(kinds)
+    if part:
+        return plot_part(answers, several, part, title)
     if len(answers) == 1 and kinds[0] in analysis.DRAW:
         return analysis.draw(answers[0], title=title)
     told = {"title": title} if title else {}
@@ -124,6 +136,15 @@ def plot(*answers: xr.Dataset, title: str = "", units: str | Units = "") -> Figu
         if is_bonded(bonded) and not is_bonded(delaminated):
             return BESIDE[kinds[0]](delaminated, bonded=bonded, **told)
     return plot_drive(answers, kinds, title)
+
+
+def plot_part(answers: Sequence[xr.Dataset], kinds: set[str], part: str, title: str) -> Figure:
+    """Draw a picture that is not the first one of its answers."""
+    if part not in PARTS or kinds != {"couple"}:
+        asked = f"part={part!r} of {' and '.join(sorted(kinds))}"
+        raise InputError(f"plot: {asked}; expected {' or '.join(map(repr, PARTS))} of couple")
+    runs = {"bonded" if is_bonded(answer) else "delaminated": answer for answer in answers}
+    return PARTS[part](runs, title=title)
 
 
 def plot_drive(answers: Sequence[xr.Dataset], kinds: Sequence[str], title: str) -> Figure:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from .labels import title_from_attributes
 from .scales import acceleration_scale, along, length_scale
-from .style import BLACK, GREY, panels, set_title, styled, write_plain_numbers
+from .style import BLACK, GREY, legend_below, panels, set_title, styled, write_plain_numbers
 from .threshold import THRESHOLD, finite, mark_lowest
 
 FEW = 8  # levels that have a legend entry each; more have a colour bar
@@ -40,6 +40,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
         draw_threshold(plane["threshold"], data)
     axes[-1].set_xlabel(along(data, "frequency").label)
     axes[0].margins(x=0.0)
+    legend_below(figure, axes)
     return figure
 
 
@@ -66,7 +67,6 @@ def draw_accelerations(axes: Axes, data: xr.Dataset) -> None:
     axes.plot(x, glued, label="bonded, at each level", **style)
     axes.set(yscale="log", ylabel="largest acceleration between\nimpacts over level, in g/g")
     write_plain_numbers(axes)
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
 
 
 def draw_gaps(axes: Axes, data: xr.Dataset) -> None:
@@ -95,4 +95,3 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
         axes.axhline(level / factor, color=colour, linewidth=1.0)
     axes.set(yscale="log", ylabel=f"level of the box in {unit}")
     write_plain_numbers(axes)
-    axes.legend(loc="lower right", fontsize=8)

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .powers import POWER_REVOLUTIONS, draw_powers, mean_powers
-from .style import GREY, panels, styled
+from .style import BLUE, GREY, panels, set_title, styled
 from .weak_drive import COLOURS, outcome
 
 ROWS = {
@@ -38,7 +38,7 @@ def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> F
     for column, (name, data) in enumerate(runs.items()):
         column_axes = axes[column::count]
         for panel, what in zip(column_axes, ROWS, strict=False):
-            points: Any = {"color": COLOURS.get(name, "C0"), "linewidth": 1.0}
+            points: Any = {"color": COLOURS.get(name, BLUE), "linewidth": 1.0}
             style = "." if what == "impacts" else "-"
             panel.plot(data.time, data[what], style, markersize=2.5, **points)
         column_axes[0].axhline(
@@ -53,6 +53,5 @@ def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> F
         panel.set_ylabel(label)
     axes[0].legend(loc="best")
     axes[(rows - 1) * count].legend(loc="best", fontsize=7)
-    if title:
-        figure.suptitle(title)
+    set_title(figure, title)
     return figure

@@ -9,16 +9,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .labels import title_from_attributes
+from .marks import draw_stems
 from .scales import acceleration_scale, frequency_scale, in_si
 from .style import BLACK, BLUE, ORANGE, legend_below, panels, set_title, styled
 
 SIDES: tuple[dict[str, dict[str, Any]], ...] = (  # left and right; a thin line lies on a wide one
-    {"bonded": {"color": BLUE, "linewidth": 1.2, "label": "bonded"}},
+    {"bonded": {"color": BLUE, "width": 2.6, "label": "bonded"}},
     {
-        "delaminated": {"color": BLACK, "linewidth": 1.3, "label": "delaminated"},
+        "delaminated": {"color": BLACK, "width": 2.6, "label": "delaminated"},
         "sampled": {
             "color": ORANGE,
-            "linewidth": 0.6,
+            "width": 1.0,
             "label": "delaminated, sampled: without the impulses of the impacts",
         },
     },
@@ -48,10 +49,11 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
     set_title(figure, title or title_from_attributes(data))
     for index in range(count):
         part = shown.isel({along: index})
-        for plane, kinds in zip(axes[2 * index : 2 * index + 2], SIDES, strict=True):
-            draw_panel(plane, data, part, kinds)
         top = float(part.max()) or 1.0
-        axes[2 * index].set_ylim(10.0**-decades * top, 2.0 * top)
+        floor = 10.0**-decades * top
+        for plane, kinds in zip(axes[2 * index : 2 * index + 2], SIDES, strict=True):
+            draw_panel(plane, data, part, kinds, floor)
+        axes[2 * index].set_ylim(floor, 2.0 * top)
         axes[2 * index].set_ylabel(f"acceleration\nof mass {mass} in {unit}")
     for plane in axes if in_si(data) else axes[-2:]:
         unit = f"in {frequency_scale(data)[1]}" if in_si(data) else r"over $\Omega$"
@@ -63,7 +65,11 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
 
 
 def draw_panel(
-    axes: Axes, data: xr.Dataset, amplitudes: xr.DataArray, kinds: dict[str, dict[str, Any]]
+    axes: Axes,
+    data: xr.Dataset,
+    amplitudes: xr.DataArray,
+    kinds: dict[str, dict[str, Any]],
+    floor: float,
 ) -> None:
     """Draw the spectra of some structures (bonded, delaminated) at one frequency."""
     si, (turn, unit) = in_si(data), frequency_scale(data)
@@ -71,9 +77,9 @@ def draw_panel(
     lines = data.order.values * (speed / turn if si else 1.0)
     for kind, style in kinds.items():
         if kind in data.kind.values:
-            axes.semilogy(lines, amplitudes.sel(kind=kind), **style)
+            draw_stems(axes, lines, amplitudes.sel(kind=kind).values, floor, **style)
     frequency_text = (
         f"{speed / turn:.4g} {unit}" if si else rf"$\eta$ = {float(amplitudes.eta):.4g}"
     )
     axes.set_title(f"{next(iter(kinds))}, {frequency_text}")
-    axes.set_xlim(0.0, float(lines.max()))
+    axes.set_xlim(0.0, 1.02 * float(lines.max()))

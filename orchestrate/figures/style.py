@@ -1,4 +1,17 @@
-"""Style of all pictures, in force while one is drawn and no longer."""
+"""Style of all pictures, in force while one is drawn and no longer.
+
+``STYLE`` is the one place of what pictures have in common, as settings of Matplotlib: change an
+entry of it and all pictures follow, those of commands and reports too.
+
+>>> from orchestrate.figures.style import STYLE
+>>> STYLE["savefig.dpi"] = 300  # for print
+>>> STYLE["savefig.dpi"] = 150
+
+Colours are those of Okabe and Ito, which people tell apart however they see them. Wherever two
+things are compared, they differ in line style or width too, so that a picture printed in grey is
+read as well. What is unstable is dashed or dotted, and the legend says so. Letters are
+Matplotlib's own: nothing needs LaTeX.
+"""
 
 from __future__ import annotations
 
@@ -38,6 +51,7 @@ STYLE: dict[str, Any] = {
 }
 XI_REL, XI_REL_RATE = r"$\xi_{\mathrm{Rel}}$", r"$\xi'_{\mathrm{Rel}}$"
 LETTERS_AN_INCH = 14  # of a title
+UNDER = -0.16  # of a panel's height: below the name of its horizontal axis
 NO_BREAK_SPACE = "\xa0"  # a space that no line breaks at
 
 Arguments = ParamSpec("Arguments")
@@ -109,8 +123,16 @@ def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more:
         figure.legend(list(words.values()), list(words), **position, **more)
 
 
+def legend_under(axes: Axes, columns: int = 3) -> None:
+    """Draw the legend of one panel below it, where it covers nothing."""
+    if axes.get_legend_handles_labels()[0]:
+        below: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, UNDER), "frameon": False}
+        axes.legend(ncols=columns, **below)
+
+
 def write_in_panel(axes: Axes, words: str) -> None:
-    """Write a text in the middle of a panel that has nothing to show."""
+    """Write a text in the middle of a panel that has nothing to show, nor numbers."""
+    axes.set_yticks([])
     middle: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
     axes.text(0.5, 0.5, words, color=GREY, fontsize=11, **middle)
 

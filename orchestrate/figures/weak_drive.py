@@ -1,4 +1,8 @@
-"""Figure 2, the Sommerfeld effect: speed, amplitude, impacts, and where the motor's power goes."""
+"""Figure 2, the Sommerfeld effect, as two pictures: the ramp, and the jumps.
+
+The ramp has speed, amplitude, impacts, and where the motor's power goes; the jumps are speed and
+amplitude over time.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +15,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .powers import POWER_REVOLUTIONS, draw_powers, mean_powers
-from .style import panels, styled
+from .style import (
+    BLACK,
+    BLUE,
+    ORANGE,
+    RED,
+    legend_below,
+    legend_under,
+    panels,
+    set_title,
+    styled,
+    write_in_panel,
+    write_plain_numbers,
+)
 
-COLOURS = {"bonded": "C0", "delaminated": "C3"}
-COLOUR_OF_RETURN = "C1"  # impacts on the way back
+COLOURS = {"bonded": BLUE, "delaminated": RED}
+COLOUR_OF_RETURN = ORANGE  # impacts on the way back
 IMPACT_REVOLUTIONS = 10  # revolutions that impacts are averaged over
 TIME_AROUND_JUMP = 500.0  # time shown before and after a jump, in 1/omega
 THEORY = "averaged theory, bonded"
@@ -39,19 +55,14 @@ def draw(
     runs : mapping of xarray.Dataset
         ``"bonded"`` and ``"delaminated"``, or one of them; of :func:`orchestrate.couple`.
     theory : xarray.Dataset, optional
-        ``voltage``, ``speed`` and ``amplitude`` of the averaged theory, over ``speed``.
+        ``voltage``, ``amplitude`` and ``stable`` of the averaged theory, over ``speed``.
     branches : xarray.Dataset, optional
         Of :func:`orchestrate.drive_branch`: unstable motions are dashed.
     title : str
         What is shown: set, rate, volts.
     """
     shown = {name: without_beginning(data) for name, data in runs.items()}
-    jumps = [
-        str(direction)
-        for direction in ("up", "down")
-        if any(jumped(data, direction) for data in runs.values())
-    ]
-    figure, axes = panels(2 + len(jumps), 2, (13, 8.5 + 4.25 * len(jumps)))
+    figure, axes = panels(2, 2, (11, 9.4))
     for name, data in shown.items():
         for part, style, direction in split_directions(data):
             label = f"{name}, {direction}"
@@ -61,23 +72,59 @@ def draw(
             if name == "delaminated":
                 draw_impacts(axes[2], data.isel(revolution=part), direction)
         mark_jumps(axes[0], data, name)
-    for row, jump in enumerate(jumps):
-        draw_histories(axes[4 + 2 * row], runs, jump, "speed")
-        draw_histories(axes[5 + 2 * row], runs, jump, "amplitude")
     if theory is not None:
-        dotted: Any = {"linewidth": 1.0, "label": THEORY}
-        axes[0].plot(theory.voltage, theory.speed, "k:", **dotted)
-        axes[1].plot(theory.speed, theory.amplitude, "k:", **dotted)
+        draw_theory(axes, theory)
     if branches is not None:
         draw_branches(axes, branches.sel(structure=list(runs)))
-    if title:
-        figure.suptitle(title)
+    set_title(figure, title)
     name = list(runs)[-1]
     draw_powers_way_there(axes[3], shown[name], name)
     axes[0].set_title("\n".join(filter(None, (format_jumps(*item) for item in runs.items()))))
     label_axes(axes)
+    legend_below(figure, axes[:2], title="upper panels")
+    for panel in axes[2:]:
+        legend_under(panel)
     limit_axes(axes, list(shown.values()))
     return figure
+
+
+@styled
+def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
+    """Draw speed and amplitude over time around the jumps, one row a direction.
+
+    Parameters
+    ----------
+    runs : mapping of xarray.Dataset
+        As :func:`draw` takes them.
+    title : str
+        What is shown: set, rate, volts.
+    """
+    jumps = jumps_of(runs)
+    figure, axes = panels(max(len(jumps), 1), len(HISTORIES), (10, 0.8 + 3.6 * max(len(jumps), 1)))
+    for row, jump in enumerate(jumps):
+        for panel, what in zip(axes[len(HISTORIES) * row :], HISTORIES, strict=False):
+            draw_histories(panel, runs, jump, what)
+    if not jumps:
+        for panel in axes:
+            write_in_panel(panel, "no jump")
+    set_title(figure, title)
+    return figure
+
+
+def jumps_of(runs: Mapping[str, xr.Dataset]) -> list[str]:
+    """Return the directions in which one of the runs jumps."""
+    directions = ("up", "down")
+    return [way for way in directions if any(jumped(data, way) for data in runs.values())]
+
+
+def draw_theory(axes: Sequence[Axes], theory: xr.Dataset) -> None:
+    """Draw the averaged theory: dash-dotted where it is stable, dotted where it is unstable."""
+    stable = theory.stable.values
+    for part, style, what in ((stable, "-.", "stable"), (~stable, ":", "unstable")):
+        line: Any = {"color": BLACK, "linewidth": 1.0, "label": f"{THEORY}, {what}"}
+        voltage, amplitude = (theory[of].where(part) for of in ("voltage", "amplitude"))
+        axes[0].plot(voltage, theory.speed, style, **line)
+        axes[1].plot(theory.speed, amplitude, style, **line)
 
 
 def without_beginning(data: xr.Dataset) -> xr.Dataset:
@@ -165,9 +212,8 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
     speed = "mean speed in rad/s"
     axes[0].set(xlabel="voltage in V", ylabel=speed)
     axes[1].set(xlabel=speed, ylabel="amplitude of $x_1$ in m")
-    axes[0].legend(loc="best", fontsize=7)
-    if title:
-        figure.suptitle(title)
+    legend_below(figure, axes[:1])
+    set_title(figure, title)
     return figure
 
 
@@ -178,7 +224,7 @@ def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
             branch = branches.sel(structure=name, leg=leg)
             stable, known = branch.stable.values, np.isfinite(branch.voltage.values)
             for part, style, what in ((stable, "-", "stable"), (known & ~stable, ":", "unstable")):
-                line: Any = {"color": COLOURS[name], "linewidth": 3.0, "alpha": 0.35, "zorder": 1}
+                line: Any = {"color": COLOURS[name], "linewidth": 3.0, "alpha": 0.45, "zorder": 1}
                 line["label"] = None if i else f"{name}, branch, {what}"
                 voltage, speed, amplitude = (
                     np.where(part, branch[of].values, np.nan)
@@ -206,6 +252,7 @@ def draw_impacts(axes: Axes, data: xr.Dataset, direction: str) -> None:
         axes.plot(running_mean(speed), running_mean(count), style, **line)
     if count.size and count.max() > 10.0:
         axes.set_yscale("log")
+        write_plain_numbers(axes)
 
 
 def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
@@ -233,6 +280,7 @@ def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str, what: 
         label = f"{name}, {float(at.jumps):.4f} V"
         axes.plot(time[near], data[what].values[near], color=COLOURS[name], label=label)
     axes.set(xlabel=f"time from the jump {jump} in s", ylabel=HISTORIES[what])
+    legend_under(axes)
 
 
 def draw_powers_way_there(axes: Axes, data: xr.Dataset, name: str) -> None:
@@ -248,9 +296,8 @@ def draw_powers_way_there(axes: Axes, data: xr.Dataset, name: str) -> None:
         for account, values in mean_powers(part).items()
     }
     draw_powers(axes, speed, twice)
-    axes.set_title(
-        f"power, {name}, on the way there, means of {POWER_REVOLUTIONS} revolutions, twice"
-    )
+    means = f"means of {POWER_REVOLUTIONS} revolutions, taken twice"
+    axes.set_title(f"power on the way there, {name}\n{means}")
 
 
 def label_axes(axes: Sequence[Axes]) -> None:
@@ -260,9 +307,6 @@ def label_axes(axes: Sequence[Axes]) -> None:
     axes[1].set(xlabel=speed, ylabel="amplitude of $x_1$ in m")
     axes[2].set(xlabel=speed, ylabel="impacts in a revolution")
     axes[3].set(xlabel=speed, ylabel="power in W")
-    for panel in axes:
-        if panel.get_legend_handles_labels()[0]:
-            panel.legend(loc="best", fontsize=7)
 
 
 def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:

@@ -64,7 +64,7 @@ def read_record(
     Returns
     -------
     xarray.Dataset
-        As :func:`.record.record` makes it.
+        As :func:`orchestrate.record` makes it.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     Parameters
     ----------
     data : xarray.Dataset
-        As :func:`.record.record` makes it.
+        As :func:`orchestrate.record` makes it.
     path : path-like
         Its ending says what it is to be, as for :func:`read_record`; WAV is not written. CSV, MAT,
         NetCDF and universal files with ``binary`` have all digits; without, 13 of them.

@@ -30,7 +30,8 @@ def record_of_run(run: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        As :func:`.record.record` makes it, of box, mass 1 and mass 2, one row a communication step.
+        As :func:`orchestrate.record` makes it, of box, mass 1 and mass 2, one row a communication
+        step.
 
     Raises
     ------

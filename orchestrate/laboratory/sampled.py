@@ -72,7 +72,7 @@ class Sampled(ExcitationSignal):
         Parameters
         ----------
         record : xarray.Dataset
-            As :func:`.record.record` makes it.
+            As :func:`orchestrate.record` makes it.
 
         Raises
         ------

@@ -172,7 +172,7 @@ def measure(
     Returns
     -------
     xarray.Dataset
-        A record, see :func:`.record.record`. The attribute ``reconstruction_error`` in m/s2 is
+        A record, see :func:`orchestrate.record`. The attribute ``reconstruction_error`` in m/s2 is
         the largest distance of a mass's acceleration, solved from one sample of the history to
         the next, from that sample.
 

@@ -196,7 +196,7 @@ def shake(
 
     Notes
     -----
-    The FMU takes the acceleration as cubics (Chebyshev interpolation, :mod:`.pieces`) and is exact
+    The FMU takes the acceleration as cubics (Chebyshev interpolation) and is exact
     for these: states and impacts are those of the pieces whatever the sampling rate, to the last
     bit.
 

@@ -249,19 +249,32 @@ def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | No
         The end of the stable branch that comes from below, and of the one from beyond; None where
         all motions are stable.
     """
-    ends, at = folds(structure, drive), resonance(structure, drive)
-    torus = torus_points(structure, drive, 0.8 * at, 1.5 * at, count=151)
-    points = sorted([*ends, *torus], key=lambda point: point.Omega)
+    points, stable = stability(structure, drive)
     if not points:
         return None, None
-    speeds = [point.Omega for point in points]
-    between = [0.5 * (low + high) for low, high in pairwise(speeds)]
-    middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]]
-    stable = [growth(structure, drive, Omega)[0].real < 0.0 for Omega in middles]
+    ends = [point for point in points if point.kind != TORUS]
     first, last = (ends[0], ends[-1]) if ends else (points[-1], points[0])
     below = [i for i in range(points.index(first) + 1) if stable[i]]
     beyond = [i for i in range(points.index(last) + 1, len(stable)) if stable[i]]
     return (points[below[-1]] if below else None, points[beyond[0] - 1] if beyond else None)
+
+
+def stability(structure: Structure, drive: Drive) -> tuple[list[Place], list[bool]]:
+    """Return all folds and Neimark-Sacker points by their speeds, and which motions are stable.
+
+    Returns
+    -------
+    points : list of Place
+    stable : list of bool
+        Of the motions below the first point, between each and the next, and beyond the last one.
+    """
+    at = resonance(structure, drive)
+    torus = torus_points(structure, drive, 0.8 * at, 1.5 * at, count=151)
+    points = sorted([*folds(structure, drive), *torus], key=lambda point: point.Omega)
+    speeds = [point.Omega for point in points]
+    between = [0.5 * (low + high) for low, high in pairwise(speeds)]
+    middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]] if points else [at]
+    return points, [bool(growth(structure, drive, Omega)[0].real < 0.0) for Omega in middles]
 
 
 def on_the_axis(polynomial: Polynomial) -> Polynomial:

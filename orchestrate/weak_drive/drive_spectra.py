@@ -198,7 +198,7 @@ def drive_spectra(
     drive : Drive
     voltage : float, optional
         V; by default 0.6 of the way between the jumps of the averaged theory, see
-        :func:`voltage_at_resonance`, or less where the delaminated structure has jumped by then.
+        ``voltage_at_resonance``, or less where the delaminated structure has jumped by then.
     begin : float, optional
         Voltage from which it is approached, V; 0.85 of it by default.
     rate : float, optional

@@ -5,6 +5,7 @@ Slow: it takes half a minute, most of it the tutorial's own questions.
 
 from __future__ import annotations
 
+import json
 import re
 import runpy
 import subprocess
@@ -13,11 +14,14 @@ import zlib
 from importlib import import_module
 
 import pytest
+from sphinx.search.en import SearchEnglish
 
 import orchestrate
 from orchestrate import cli
+from tools.site import Site
 
 from ..exports import once
+from .test_manual import GENERATED
 from .written import DOCS
 
 KERNEL = "fmu_src.kernels.oscillator"
@@ -32,7 +36,7 @@ def site(exported, tmp_path_factory):
 def built(folder):
     """Build it."""
     place = folder / "html"
-    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", DOCS, place]
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "-n", "--keep-going", DOCS, place]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
     return place
@@ -58,11 +62,42 @@ def test_every_command_has_its_help(site):
 
 
 @pytest.mark.slow
-def test_nothing_comes_from_elsewhere(site):
+def test_nothing_comes_from_elsewhere_and_no_link_is_broken(site):
     """No script, style, font or picture is taken from the network."""
-    outside = re.compile(r'(?:<script[^>]* src|<link[^>]* href|<img[^>]* src)="(https?:[^"]*)"')
-    for page in site.rglob("*.html"):
-        assert outside.findall(page.read_text(encoding="utf-8")) == [], page.name
+    checked = Site(site)
+    assert len(checked.pages) > 40
+    assert checked.from_other_hosts() == []
+    assert checked.broken() == []
+
+
+@pytest.mark.slow
+def test_every_page_says_how_long_it_takes_to_read(site):
+    said = re.compile(r'class="reading-time">Reading time: (\d+) minutes?<')
+    for page in sorted(DOCS.glob("*.md")):
+        (minutes,) = said.findall((site / f"{page.stem}.html").read_text(encoding="utf-8"))
+        assert 1 <= int(minutes) <= 8 or page.stem in GENERATED, page.stem
+
+
+FOUND = {  # by the search: a page that is to be among the results
+    "measured": "measured_sweep",
+    "CSV": "laboratory",
+    "Simulink": "fmi",
+    "dSPACE": "fmi",
+    "delaminated": "delaminated",
+    "unbalance": "coupling",
+    "Hz": "engineer",
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("word", FOUND)
+def test_the_search_finds_what_users_ask_for(site, word):
+    text = (site / "searchindex.js").read_text(encoding="utf-8")
+    index = json.loads(text.removeprefix("Search.setIndex(").rstrip().removesuffix(")"))
+    stem = SearchEnglish({}).stem(word.lower())
+    places = [index[part].get(stem, []) for part in ("terms", "titleterms")]
+    numbers = {n for found in places for n in (found if isinstance(found, list) else [found])}
+    assert FOUND[word] in {index["docnames"][number] for number in numbers}
 
 
 def test_notebooks_ask_for_no_scripts_of_others():

@@ -1,17 +1,29 @@
-"""The manual's page of the paper: its numbers are those of the claims beside it."""
+"""The manual's pages of the paper: their numbers are those of the claims beside them."""
 
 from __future__ import annotations
 
 import json
 
+import pytest
+
 from orchestrate.paper.claims import CLAIMS
 from tools import paper_page
+from tools.marked import MARK
 
 
-def test_the_page_is_made_from_the_claims():
+@pytest.mark.parametrize("page", paper_page.PAGES, ids=lambda page: page.stem)
+def test_the_page_is_made_from_the_claims(page):
     found = json.loads(paper_page.CLAIMS.read_text("utf-8"))
-    text = paper_page.PAGE.read_text("utf-8")
+    text = page.read_text("utf-8")
     assert paper_page.page(text, found) == text
+    other = {**found, "claims": found["claims"][1:]}
+    assert paper_page.page(text, other) != text
+
+
+def test_all_that_was_computed_is_on_a_page():
+    text = "".join(page.read_text("utf-8") for page in paper_page.PAGES)
+    for name in ("counts", "sections", "verdicts", "regions", "answers"):
+        assert text.count(MARK.format(name, "begin")) == 1
 
 
 def test_the_claims_beside_it_are_those_of_the_code():

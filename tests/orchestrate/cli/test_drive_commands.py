@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import zipfile
+from argparse import Namespace
 
 import numpy as np
 import pytest
@@ -70,6 +71,17 @@ def test_couple(ask, folder):
     assert done.out.count("jump up none") == 2
     (picture,) = folder.glob("*.png")
     assert shows_something(picture)
+
+
+def test_jumps_have_a_picture_of_their_own(ask, folder, tmp_path):
+    ask("couple", "--eta0", "1.4:1.41", "--rate", "2e-4", *SHORT, "--plot", "none").success()
+    runs = {name.rpartition("_")[2]: data for name, data in results(folder).items()}
+    arguments, place = Namespace(drive="quick"), tmp_path / "couple_quick.nc"
+    assert couple_command.draw_jumps(arguments, runs, place, ("png",), fresh=True) == []
+    for data in runs.values():
+        data.jumps[:], data.jump_time[:] = data.voltage[-5], data.time[-5]
+    (picture,) = couple_command.draw_jumps(arguments, runs, place, ("png",), fresh=True)
+    assert picture.name == "couple_quick_jumps.png" and shows_something(picture)
 
 
 def test_another_question_has_another_file(ask, folder):

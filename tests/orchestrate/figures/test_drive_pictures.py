@@ -21,6 +21,7 @@ from orchestrate.files import write_whole
 from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spectra
 
 from .test_pictures import HERE, QUICK, drawn, texts
+from .test_readable import colliding_numbers
 
 
 def test_spectra_of_the_weak_drive(exported):
@@ -46,15 +47,22 @@ def test_the_weak_drive(exported, jumps):
     """Jumps are told in words, and drawn over time where there are any."""
     data = coupled(jumps)
     theory = xr.Dataset({"voltage": ("speed", [1.4, 1.5]), "amplitude": ("speed", [1.0, 2.0])})
-    theory = theory.assign_coords(speed=[1.2, 1.3])
+    theory = theory.assign_coords(speed=[1.2, 1.3]).assign(stable=("speed", [True, False]))
     figure = weak_drive.draw({"bonded": data, "delaminated": data}, theory, title="set")
-    assert "averaged theory, bonded" in texts(figure.axes[0])
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {f"averaged theory, bonded, {what}" for what in ("stable", "unstable")} < {*labels}
     up, down = (f"{value:.4f} V" for value in data.jumps.values)
     told = f"jump up at {up}, down at {down}" if jumps else "no jump"
     assert figure.axes[0].get_title(loc="left") == f"bonded: {told}\ndelaminated: {told}"
-    assert len(figure.axes) == (8 if jumps else 4)
+    assert len(figure.axes) == 4
     assert all(drawn(panel) for panel in figure.axes)
     nothing_overlaps(figure)
+    second = weak_drive.draw_jumps({"bonded": data, "delaminated": data}, "set")
+    assert [bool(drawn(panel)) for panel in second.axes] == [jumps] * (4 if jumps else 2)
+    nothing_overlaps(second)
+    lines = [line for panel in (*figure.axes, *second.axes) for line in panel.lines]
+    names = {str(line.get_color()) for line in lines}
+    assert not {name for name in names if name.startswith("C")}  # of a user's own cycle, later
 
 
 def nothing_overlaps(figure):
@@ -62,6 +70,10 @@ def nothing_overlaps(figure):
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     renderer = canvas.get_renderer()
+    assert colliding_numbers(figure, renderer) == []
+    legends = [*figure.legends, *filter(None, (panel.get_legend() for panel in figure.axes))]
+    for box in (legend.get_window_extent(renderer) for legend in legends):
+        assert box.x0 >= 0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0
     named = [text for panel in figure.axes for text in panel_texts(panel) if text.get_text()]
     boxes = [text.get_window_extent(renderer) for text in named]
     for i, box in enumerate(boxes):

@@ -22,6 +22,7 @@ from orchestrate.figures import (
     motion,
     orbit_diagram,
     resonance,
+    resonance_levels,
     scales,
     spectra,
     style,
@@ -170,6 +171,7 @@ PICTURES = {
     "spectra": lambda si: spectra.draw(lines(si)),
     "motion": lambda si: motion.draw(moving(si)),
     "map": lambda si: maps.draw(mapped(si)),
+    "levels": lambda si: resonance_levels.draw(levels(si)),
 }
 
 
@@ -212,6 +214,39 @@ def test_nothing_is_cut_off_or_covered(name):
         inside = [axes.bbox.padded(-1).overlaps(box) for axes in figure.axes]
         assert not any(inside), "covers data"
         assert [text for text, other in texts.items() if other.padded(-1).overlaps(box)] == []
+
+
+def colliding_numbers(figure, renderer) -> list[tuple[str, str]]:
+    """Numbers along one axis that lie on each other."""
+    found = []
+    for axis in (side for axes in figure.axes for side in (axes.xaxis, axes.yaxis)):
+        low, high = sorted(axis.get_view_interval())
+        ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
+        inside = [t.label1 for t in ticks if low <= t.get_loc() <= high and t.label1.get_visible()]
+        boxes = [(t.get_text(), t.get_window_extent(renderer)) for t in inside if t.get_text()]
+        pairs = itertools.combinations(boxes, 2)
+        found += [(a, b) for (a, one), (b, other) in pairs if one.overlaps(other)]
+    return found
+
+
+def levels(si: bool) -> xr.Dataset:
+    """Accelerations over one and a half decades, as resonance_levels gives them."""
+    hertz = np.linspace(30.0, 60.0, 40)
+    size = 2.0 + 60.0 / (1.0 + (hertz - 45.0) ** 2)
+    over = ("level", "structure", "direction", "frequency")
+    level = 9.80665 * np.array([0.3, 0.7, 1.1])
+    shape = level[:, None, None, None] * size * np.ones((3, 2, 2, 40))
+    variables = dict.fromkeys(("a1_max", "a2_max", "x_rel_max"), (over, shape))
+    names = {"structure": ["delaminated", "bonded"], "direction": ["up", "down"], "level": level}
+    sides = {"frequency": 2.0 * np.pi * hertz, "hertz": ("frequency", hertz)}
+    threshold = ("frequency", level[0] * 30.0 / size, {"event": "opens"})
+    variables["threshold_acceleration"] = threshold
+    return xr.Dataset(variables, {**sides, **names}, {**known(si), "clearance": -2e-5})
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_numbers_of_an_axis_lie_apart(name):
+    assert colliding_numbers(*picture(name)) == []
 
 
 @pytest.mark.parametrize("name", PICTURES)
@@ -285,9 +320,11 @@ def test_both_sides_of_a_line_are_visible():
     figure, _ = rendered(spectra.draw(lines(False)))
     left, right = figure.axes[:2]
     assert left.get_ylim() == right.get_ylim()
-    assert [line.get_label() for line in left.lines] == ["bonded"]
-    wide, thin = right.lines
+    assert [stems.get_label() for stems in left.collections] == ["bonded"]
+    wide, thin = right.collections
     assert wide.get_linewidth() > 2.0 * thin.get_linewidth()
+    (first, *_) = wide.get_segments()  # a stem: it stands on the axis, at one frequency
+    assert first[0, 0] == first[1, 0] == 1.0 and first[0, 1] == left.get_ylim()[0]
     legend = figure.legends[0]
     assert legend.get_title().get_text().endswith("of the largest line is left out")
 
@@ -337,7 +374,8 @@ def test_a_motion():
     words = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert words == ["no permanent contact"]
     beside = motion.draw(moving(True), bonded=moving(True, impacts=0)).axes
-    assert [len(axes.lines) for axes in beside] == [3, 3, 2, 1, 0, 3]
+    assert [len(axes.lines) for axes in beside] == [3, 3, 2, 1, 0, 0]
+    assert len(beside[-1].collections) == 3  # stems of both masses and of the bonded structure
     quiet = motion.draw(moving(True, impacts=0))
     legends = [axes.get_legend() for axes in quiet.axes if axes.get_legend()]
     assert "no impacts" in [text.get_text() for legend in legends for text in legend.get_texts()]
@@ -414,3 +452,25 @@ def test_colours_are_told_apart_by_everyone(seen):
     light = [np.clip(rgb, 0.0, 1.0) ** (1 / 2.2) for rgb in linear]
     for one, other in itertools.combinations(light, 2):
         assert np.linalg.norm(one - other) > 0.2, json.dumps([one.tolist(), other.tolist()])
+
+
+HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.01}
+
+
+@pytest.mark.parametrize(
+    "structure",
+    [
+        Structure(),
+        Structure.from_halves(**HALVES, e=0.6, clearance=-2e-5),
+        Structure.nondimensional(mu=0.5, D1=0.01, D2=0.02, gamma=1e-5),
+        Structure.from_halves(**HALVES).as_bonded(),
+    ],
+    ids=lambda structure: structure.label(),
+)
+def test_titles_have_no_names_of_files(structure):
+    """Titles of stored results end with the short name of a structure."""
+    title = labels.plain_title(f"Orders: swept sine: {structure.label()}")
+    assert title.startswith("Orders: swept sine, ")
+    assert "_" not in "".join(title.split("$")[::2])  # outside of formulas
+    for number in ("0.6", "42, 55 Hz", "-2e-05 m") if structure.clearance else ():
+        assert number in title

@@ -1,0 +1,117 @@
+"""The pictures of README and manual: ``python -m tools.pictures [NAME ...]`` draws them.
+
+All of them, or those that are named. They are kept in the repository, small, since some take
+minutes; figures of the paper come from ``python -m orchestrate paper``, those of branches from
+``python -m tools.bifurcation_table``, and get their palette here: ``python -m tools.pictures
+figure6 branches``.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import orchestrate
+from orchestrate import cli
+from orchestrate.figures import drive_spectra
+from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spectra
+from tools.pictures import beam, cards, fmu, theory
+from tools.pictures.small import save_small, write_small
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAPER = orchestrate.Structure.nondimensional(e=0.7, D=0.005)
+COMMANDS = {  # pictures that a command draws: name, its line, ending of the file that is taken
+    "weak_drive": ("couple --eta0 0.3:1.65", ""),
+    "weak_drive_jumps": ("couple --eta0 0.3:1.65", "_jumps"),
+    "passage": ("passage --eta0 1.4:1.65 --one-way --around 250", ""),
+    "capture": (
+        "capture --over rotor_inertia --values 500,1000,1500,2000 --eta0 1.46:1.60 --count 8",
+        "",
+    ),
+}
+KEPT = ("figure6", "figure12", "lyapunov", "branches", "borders")  # by other tools
+
+
+def verdict() -> Figure:
+    """What sensors read on two beams of the tutorial, and the verdict on each record."""
+    guess = orchestrate.Structure.from_file(DOCS / "records" / "beam.toml")
+    records = {}
+    for name in ("b", "a"):
+        record = orchestrate.read_record(DOCS / "records" / f"beam_{name}.csv")
+        records[str(orchestrate.detect(record, guess).verdict.item())] = record
+    return beam.draw_verdicts(records)
+
+
+def states() -> Figure:
+    """A period of the paper's Figure 5."""
+    motion = orchestrate.simulate(PAPER, eta=0.4, transient=100, periods=1, points=1200)
+    return theory.draw_states(motion)
+
+
+def engineer() -> Figure:
+    """Resonance curves of the tutorial's beam."""
+    halves = {"m1": 1.5, "m2": 1.4, "f1": 11.9, "f2": 13.5, "zeta1": 0.005, "zeta2": 0.005}
+    structure = orchestrate.Structure.from_halves(**halves, e=0.6)
+    turns = 2.0 * np.pi * np.arange(10.0, 15.0, 0.05)
+    held = {"frequency": turns, "amplitude": 0.02 * 9.80665 / turns**2}
+    return cards.draw_resonance(orchestrate.resonance(structure, **held, progress=False))
+
+
+def researcher() -> Figure:
+    """A part of the paper's Figure 6."""
+    eta = np.arange(0.9, 4.0, 0.004)
+    return cards.draw_orbits(orchestrate.sweep(PAPER, eta=eta, samples=40, progress=False))
+
+
+def spectra() -> Figure:
+    """Spectra of ``quick`` while the motor hangs at the resonance."""
+    structure = orchestrate.Structure.from_file("quick")
+    drive = orchestrate.Drive.from_file("quick")
+    return drive_spectra.draw(ask_drive_spectra(structure, drive, progress=False), title="quick")
+
+
+PICTURES: dict[str, Callable[[], Figure]] = {
+    "verdict": verdict,
+    "two_masses": beam.draw_two_masses,
+    "engineer": engineer,
+    "researcher": researcher,
+    "fmu": fmu.draw_block,
+    "states": states,
+    "certificate": theory.draw_certificate,
+    "spectra": spectra,
+}
+
+
+def by_command(line: str, ending: str) -> bytes:
+    """Run a command in a folder of its own and return the picture that it draws."""
+    with TemporaryDirectory() as folder:
+        if cli.main([*line.split(), "--output", folder]):
+            raise SystemExit(f"{line}: failed")
+        pictures = sorted(Path(folder).glob("*.png"), key=lambda path: len(path.name))
+        (chosen,) = [p for p in pictures if p.stem.endswith("_jumps") == bool(ending)]
+        return chosen.read_bytes()
+
+
+def main(names: list[str]) -> None:
+    """Draw the pictures that are named, by default all that are not kept by other tools."""
+    for name in names or [*PICTURES, *COMMANDS]:
+        place = DOCS / f"{name}.png"
+        if name in PICTURES:
+            save_small(PICTURES[name](), place)
+        elif name in COMMANDS:
+            write_small(by_command(*COMMANDS[name]), place)
+        elif name in KEPT:
+            write_small(place.read_bytes(), place)
+        else:
+            expected = ", ".join([*PICTURES, *COMMANDS, *KEPT])
+            raise SystemExit(f"{name}: no picture of the manual; expected one of {expected}")
+        print(place, place.stat().st_size)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

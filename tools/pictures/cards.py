@@ -1,0 +1,59 @@
+"""Small pictures for the first page of the manual, one for each reader, large letters in them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from orchestrate.figures.style import BLACK, BLUE, RED, legend_below, panels, styled
+
+SIZE = (3.8, 2.9)
+STYLES: dict[str, dict[str, Any]] = {
+    "bonded": {"color": BLUE, "linestyle": "--"},
+    "delaminated": {"color": RED, "linestyle": "-"},
+}
+
+
+def card() -> tuple[Figure, Axes]:
+    """Make one panel."""
+    figure, (axes,) = panels(1, 1, SIZE)
+    return figure, axes
+
+
+@styled
+def draw_resonance(curves: xr.Dataset) -> Figure:
+    """Draw the amplitude of mass 1 over the frequency, on the way up.
+
+    Parameters
+    ----------
+    curves : xarray.Dataset
+        Of :func:`orchestrate.resonance`.
+    """
+    figure, axes = card()
+    for name, style in STYLES.items():
+        amplitude = curves.x1_max.sel(structure=name, direction="up")
+        axes.plot(curves.hertz, 1e3 * amplitude, linewidth=1.8, label=name, **style)
+    axes.set(xlabel="frequency in Hz", ylabel="amplitude in mm")
+    legend_below(figure, [axes])
+    return figure
+
+
+@styled
+def draw_orbits(diagram: xr.Dataset) -> Figure:
+    """Draw an orbit diagram without its impacts.
+
+    Parameters
+    ----------
+    diagram : xarray.Dataset
+        Of :func:`orchestrate.sweep`.
+    """
+    figure, axes = card()
+    eta = np.repeat(diagram.eta.values, diagram.sizes["sample"])
+    dots: Any = {"color": BLACK, "markersize": 1.2, "alpha": 0.35, "markeredgewidth": 0.0}
+    axes.plot(eta, diagram.xi_rel.values.ravel(), ".", **dots)
+    axes.set(xlabel="frequency ratio", ylabel="gap, once a period", yscale="log", ylim=(1e-3, 30))
+    return figure

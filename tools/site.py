@@ -1,0 +1,129 @@
+"""The site, manual and explorer, as a folder that runs without installing anything.
+
+``python -m tools.site site/html`` builds it and checks it: no page may point to what is not there,
+nor take a script, a style, a font or a picture from another host. Serve the folder by any web
+server, such as ``python -m http.server --directory site/html``, or open its ``index.html``; the
+explorer is ``explore.html``, one file that can be mailed by itself. Without a server the search
+shows titles alone: browsers do not let a page read its neighbours.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from functools import cached_property
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urldefrag, urlsplit
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+TAKEN = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source": "src"}
+
+
+@dataclass
+class Page(HTMLParser):
+    """A page's links, what it takes from elsewhere, and the places that can be linked to.
+
+    Attributes
+    ----------
+    path : Path
+    links, taken, places : list or set of str
+    """
+
+    path: Path
+    links: list[str] = field(default_factory=list)
+    taken: list[str] = field(default_factory=list)
+    places: set[str] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        """Read the file."""
+        super().__init__()
+        self.feed(self.path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Collect what a tag links to, takes, and names."""
+        values = {name: value or "" for name, value in attrs}
+        self.places |= {values[name] for name in ("id", "name") if name in values}
+        if tag == "a" and "href" in values:
+            self.links.append(values["href"])
+        elif TAKEN.get(tag) in values and values.get("rel") != "canonical":
+            self.taken.append(values[TAKEN[tag]])
+
+
+@dataclass
+class Site:
+    """A folder of pages.
+
+    Attributes
+    ----------
+    folder : Path
+    """
+
+    folder: Path
+
+    @cached_property
+    def pages(self) -> dict[Path, Page]:
+        """All pages by their files."""
+        return {path: Page(path) for path in sorted(self.folder.resolve().rglob("*.html"))}
+
+    def from_other_hosts(self) -> list[str]:
+        """Return what pages take from other hosts, as ``page: address``."""
+        return [
+            f"{path.name}: {address}"
+            for path, page in self.pages.items()
+            for address in page.taken
+            if urlsplit(address).scheme in ("http", "https") or address.startswith("//")
+        ]
+
+    def broken(self) -> list[str]:
+        """Return links, pictures and scripts of pages to what is not there, as ``page: address``;
+        those of other hosts are not asked.
+        """
+        return [
+            f"{path.name}: {address}"
+            for path, page in self.pages.items()
+            for address in (*page.links, *page.taken)
+            if not self.leads_somewhere(path, address)
+        ]
+
+    def leads_somewhere(self, path: Path, address: str) -> bool:
+        """Return whether an address of a page is one of this folder that exists, or elsewhere."""
+        if urlsplit(address).scheme or address.startswith("//"):
+            return True
+        file, place = urldefrag(address)
+        target = (path.parent / unquote(urlsplit(file).path)).resolve() if file else path
+        if target not in self.pages:
+            return target.is_file()
+        return (
+            not place
+            or target.name == "explore.html"
+            or unquote(place) in self.pages[target].places
+        )
+
+
+def build(folder: Path) -> None:
+    """Build manual and explorer into a folder; warnings are errors."""
+    kept = folder.parent / "doctrees"  # what Sphinx remembers, which nobody is to be served
+    options = ["-q", "-W", "-n", "--keep-going", "-d", kept]
+    command = [sys.executable, "-m", "sphinx", *options, DOCS, folder]
+    subprocess.run(list(map(str, command)), check=True)
+    (folder / ".nojekyll").touch()  # or GitHub's pages would leave _static out
+
+
+def main(folder: str = "site/html") -> None:
+    """Build the site, check it, and say how large it is."""
+    begin = time.monotonic()
+    site = Site(Path(folder))
+    build(site.folder)
+    wrong = [*site.broken(), *site.from_other_hosts()]
+    if wrong:
+        raise SystemExit("\n".join(["not to be found, or from other hosts:", *wrong]))
+    files = [path for path in site.folder.rglob("*") if path.is_file()]
+    size = sum(path.stat().st_size for path in files) / 1e6
+    print(f"{folder}: {len(site.pages)} pages, {size:.1f} MB, {time.monotonic() - begin:.0f} s")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
